@@ -1,0 +1,28 @@
+#pragma once
+// Numbers and names as text, independent of the locale.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ayumi::text {
+
+/// Shortest text that reads back to the same double ("0.1", "1e-09", "nan", "inf").
+std::string exact(double value);
+
+/// `value` with `digits` digits after the point ("12.30").
+std::string fixed(double value, int digits);
+
+/// `value` with at most `digits` significant digits, for people ("0.0123").
+std::string brief(double value, int digits = 4);
+
+/// The candidate nearest to `word` by edit distance, empty when none is near enough to suggest.
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// "; did you mean 'x'?" when a candidate is near, otherwise "".
+std::string suggestion(std::string_view word, const std::vector<std::string>& candidates);
+
+/// Items joined by `separator`.
+std::string join(const std::vector<std::string>& items, std::string_view separator);
+
+}  // namespace ayumi::text

@@ -1,0 +1,124 @@
+#pragma once
+// The robot as an immutable, validated tree of moving bodies. Links joined by fixed joints are one
+// body; body 0 is the floating root; every other body hangs on its parent by one one-axis joint.
+// Bodies are sorted parents first. A mimic joint moves its body with the dof of another joint.
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "ayumi/geometry/shape.hpp"
+#include "ayumi/model/robot_description.hpp"
+#include "ayumi/model/robot_state.hpp"
+
+namespace ayumi {
+
+enum class Side { left = 0, right = 1 };
+inline const char* name_of(Side side) { return side == Side::left ? "left" : "right"; }
+inline Side other(Side side) { return side == Side::left ? Side::right : Side::left; }
+
+/// A moving body: a link and all links fixed to it. Body frame = frame of the first of them.
+struct Body {
+  std::string name;                                             ///< of its first link
+  int parent = -1;                                              ///< body index; -1 for the root
+  bool prismatic = false;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();              ///< unit, joint frame = body frame at 0
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< in the parent body at theta = 0
+  int dof = -1;                                                 ///< column of theta; -1 for the root
+  double ratio = 1, offset = 0;                                 ///< joint = ratio theta[dof] + offset
+  Inertia inertia;                                              ///< of all its links, body frame
+};
+
+/// One generalised coordinate of theta.
+struct Dof {
+  std::string name;             ///< joint name
+  int body = -1;                ///< the body it moves (the driving one when others mimic it)
+  bool prismatic = false;
+  bool limited = false;         ///< position limits exist (not a continuous joint)
+  double lower = 0, upper = 0;  ///< [rad] or [m]; +-infinity when not limited
+  ServoDescription servo;
+  EncoderDescription encoder;   ///< device 0 when the robot has none
+};
+
+/// Limits of one profile as vectors over the dofs; infinite where nothing is stated.
+struct ActuatorLimits {
+  std::string name;
+  Eigen::VectorXd speed;              ///< [rad/s]
+  Eigen::VectorXd peak_torque;        ///< [N m]
+  Eigen::VectorXd continuous_torque;  ///< [N m]
+  double thermal_window = 10.0;       ///< [s]
+};
+
+struct Link {
+  std::string name;
+  int body = 0;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< link frame in its body
+  Inertia inertia;                                         ///< link frame
+  std::vector<PlacedShape> visuals, collisions;            ///< link frame
+};
+
+struct Sole {
+  int body = 0;
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();  ///< sole frame in its body
+  std::vector<Eigen::Vector2d> polygon;                     ///< counter-clockwise, sole frame [m]
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();         ///< centroid of the polygon, sole frame
+  double stiffness = 0;                                     ///< [N/m]
+  double damping_time = 0;                                  ///< [s]
+};
+
+class RobotModel {
+ public:
+  /// Throws Error(bad_model) naming the link or joint and the remedy: no or several roots, a loop,
+  /// an unknown link, two links of one name, a moving body without mass, negative mass or an
+  /// inertia that no body can have, non-finite numbers, axis of length zero, limits reversed, an
+  /// unknown mimic, sole or posture joint, a posture outside the limits.
+  explicit RobotModel(RobotDescription description);
+
+  const RobotDescription& description() const { return description_; }
+  const std::string& name() const { return description_.name; }
+  double mass() const { return mass_; }  ///< [kg]
+
+  const std::vector<Body>& bodies() const { return bodies_; }
+  const std::vector<Dof>& dofs() const { return dofs_; }
+  const std::vector<Link>& links() const { return links_; }
+  int dof_count() const { return static_cast<int>(dofs_.size()); }
+  int velocity_count() const { return 6 + dof_count(); }
+  std::vector<std::string> dof_names() const;
+
+  /// Index by name; -1 when there is none.
+  int find_dof(const std::string& joint_name) const;
+  int find_link(const std::string& link_name) const;
+
+  bool has_soles() const { return soles_.size() == 2; }
+  const Sole& sole(Side side) const;  ///< throws Error(bad_model) when the robot has no soles
+  /// Dofs between the root and this foot, from the root outwards.
+  const std::vector<int>& leg(Side side) const;
+  int trunk_body() const { return trunk_body_; }
+
+  /// Actuator limits by profile name; the default profile for "". Throws Error(bad_model) naming
+  /// the known ones.
+  const ActuatorLimits& limits(const std::string& profile = "") const;
+  std::vector<std::string> profile_names() const;
+
+  /// theta of a named posture [rad]; joints it leaves out are 0. Throws Error(bad_model).
+  Eigen::VectorXd posture(const std::string& posture_name = "home") const;
+  bool has_posture(const std::string& posture_name) const;
+
+  Eigen::VectorXd joint_weight() const;  ///< diagonal of W, sidecar or 1
+
+  /// State at rest, base at the origin, joints in `posture_name`.
+  RobotState rest_state(const std::string& posture_name = "home") const;
+
+ private:
+  RobotDescription description_;
+  std::vector<Body> bodies_;
+  std::vector<Dof> dofs_;
+  std::vector<Link> links_;
+  std::vector<Sole> soles_;
+  std::vector<std::vector<int>> legs_;
+  std::vector<ActuatorLimits> limits_;
+  double mass_ = 0;
+  int trunk_body_ = 0;
+};
+
+}  // namespace ayumi

@@ -1,0 +1,34 @@
+#pragma once
+// The stabilised reference to be replayed: what the servos are to receive, row by row, and the
+// quantities it was made from. Self-describing; io writes it as CSV, JSON or HOAP pulses.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_state.hpp"
+
+namespace ayumi {
+
+struct Provenance {
+  std::string robot, robot_sha256, pattern, pattern_sha256, profile, controller, command_line;
+};
+
+struct ReferenceRow {
+  Eigen::VectorXd theta;                             ///< servo targets, joints order [rad]
+  BasePose base;                                     ///< planned or reference base, world
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();     ///< world [m]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();     ///< world [m]
+  double fz = 0;                                     ///< [N]
+  std::array<bool, 2> contact = {true, true};        ///< left, right foot
+};
+
+struct ReferenceTrajectory {
+  double dt = 0.001;                     ///< [s]
+  std::vector<std::string> joints;       ///< columns of theta
+  std::vector<ReferenceRow> rows;        ///< row k at k dt
+  Provenance provenance;
+};
+
+}  // namespace ayumi

@@ -1,0 +1,82 @@
+#pragma once
+// Everything a run left behind, one sample per control tick: enough to judge, plot, render and
+// export without simulating again.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_state.hpp"
+#include "ayumi/pattern/reference_trajectory.hpp"
+#include "ayumi/pattern/scenario.hpp"
+
+namespace ayumi {
+
+struct SimulationSample {
+  RobotState state;                                         ///< true state of the plant
+  Eigen::VectorXd target;                                   ///< what the servos received [rad]
+  Eigen::VectorXd torque;                                   ///< applied by the servos [N m]
+  BasePose reference_base;                                  ///< base of the reference posture
+  Eigen::VectorXd reference_theta;                          ///< ref theta (target without lead)
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();            ///< true, world [m]
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();           ///< [m/s]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();            ///< true, world; held in flight [m]
+  double fz = 0;                                            ///< true vertical ground force [N]
+  Eigen::Vector3d measured_cog = Eigen::Vector3d::Zero();   ///< estimated, plan frame [m]
+  Eigen::Vector3d measured_zmp = Eigen::Vector3d::Zero();   ///< from load cells, plan frame [m]
+  double measured_fz = 0;                                   ///< [N]
+  Eigen::Vector3d command_cog = Eigen::Vector3d::Zero();    ///< cmd p_G [m]
+  Eigen::Vector3d command_zmp = Eigen::Vector3d::Zero();    ///< cmd p_Z [m]
+  double command_fz = 0;                                    ///< [N]
+  Eigen::Vector3d reference_cog = Eigen::Vector3d::Zero();  ///< of the reference posture [m]
+  Eigen::Vector3d reference_zmp = Eigen::Vector3d::Zero();  ///< ref p_Z [m]
+  double reference_fz = 0;                                  ///< [N]
+  std::array<Eigen::Vector3d, 2> foot_force = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  std::array<Eigen::Vector3d, 2> foot_cop = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  std::array<bool, 2> planned_contact = {true, true};       ///< left, right
+  Eigen::Vector3d push_force = Eigen::Vector3d::Zero();     ///< external force, world [N]
+  Eigen::Vector3d push_point = Eigen::Vector3d::Zero();     ///< where it acts, world [m]
+  double contact_residual = 0;                              ///< of the contact solve [m/s]
+  int contact_iterations = 0;
+};
+
+struct SimulationEvent {
+  double t = 0;       ///< [s]
+  std::string kind;   ///< "push", "touchdown", "fell", "saturation", "support", ...
+  std::string text;   ///< in words
+};
+
+enum class Outcome { stands, unsettled, fell };
+const char* name_of(Outcome outcome);
+
+/// Verdict and figures of a run, as docs/cli.md defines them.
+struct SimulationResult {
+  Outcome outcome = Outcome::unsettled;
+  double fell_at = -1;             ///< [s]; negative when it did not fall
+  double max_tilt = 0;             ///< of the trunk [rad]
+  double final_cog_error = 0;      ///< foot-relative, horizontal [m]
+  double final_speed = 0;          ///< of the COG [m/s]
+  double zmp_tracking_rms = 0;     ///< measured ZMP against reference ZMP [m]
+  double flight = 0;               ///< time without ground contact [s]
+  double apex = 0;                 ///< of the COG above its command [m]
+  int steps = 0;                   ///< touchdowns
+  double max_speed_ratio = 0;      ///< joint speed / limit
+  double max_torque_ratio = 0;     ///< applied torque / limit
+  double max_penetration = 0;      ///< of a sole vertex [m]
+  double max_slip = 0;             ///< of a supporting foot while planned in contact [m]
+};
+
+struct SimulationLog {
+  double dt = 0.001;                    ///< control tick [s]
+  std::string controller;               ///< "none", "dtad", ...
+  Provenance provenance;
+  World world;
+  std::vector<Disturbance> scenario;
+  std::vector<std::string> joints;      ///< order of all joint vectors
+  std::vector<SimulationSample> samples;  ///< sample k at k dt
+  std::vector<SimulationEvent> events;
+  SimulationResult result;
+};
+
+}  // namespace ayumi
