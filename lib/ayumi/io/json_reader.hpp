@@ -1,0 +1,75 @@
+#pragma once
+// Strict reading of JSON documents: every complaint names the file, the JSON pointer and what was
+// expected, e.g. "step.json: /keyframes/3/time: expected a number, found a string". Comments are
+// allowed, duplicate keys, trailing text and non-finite numbers are not. Included by io/*.cpp only.
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ayumi/base/error.hpp"
+
+namespace ayumi {
+
+using Json = nlohmann::json;
+
+/// One value of a JSON document together with its place. Cheap to copy; the document outlives it.
+class JsonNode {
+ public:
+  JsonNode(const Json& value, std::string file, std::string pointer, ErrorCode code)
+      : value_(&value), file_(std::move(file)), pointer_(std::move(pointer)), code_(code) {}
+
+  const Json& value() const { return *value_; }
+  const std::string& file() const { return file_; }
+  const std::string& pointer() const { return pointer_; }
+
+  /// Throws Error "file: pointer: message".
+  [[noreturn]] void complain(const std::string& message) const;
+
+  bool has(const std::string& key) const;
+  JsonNode at(const std::string& key) const;                   ///< complains when missing
+  std::optional<JsonNode> find(const std::string& key) const;  ///< none when missing
+  std::vector<JsonNode> items() const;                         ///< of an array, complains otherwise
+  std::vector<std::pair<std::string, JsonNode>> members() const;  ///< of an object, sorted by key
+  size_t size() const { return value_->size(); }
+
+  void expect_object() const;
+  void expect_array() const;
+  /// Complains about the first key outside `known`, with the nearest known one.
+  void only_keys(const std::vector<std::string>& known) const;
+
+  double number() const;  ///< finite
+  /// Complains with the limit when outside [lower, upper].
+  double number_within(double lower, double upper) const;
+  int integer() const;
+  std::uint64_t unsigned_integer() const;
+  bool boolean() const;
+  std::string string() const;
+  /// A string that must be one of `allowed`; suggests the nearest.
+  std::string one_of(const std::vector<std::string>& allowed) const;
+  Eigen::Vector2d vector2() const;
+  Eigen::Vector3d vector3() const;
+  std::vector<double> numbers() const;
+  std::vector<std::string> strings() const;
+
+ private:
+  JsonNode child(const std::string& token, const Json& value) const;
+  Eigen::VectorXd vector(int size) const;
+
+  const Json* value_;
+  std::string file_, pointer_;
+  ErrorCode code_;
+};
+
+/// Parses `bytes`. Throws Error(code) "file:line:column: what" when it is not JSON.
+Json parse_json(const std::string& bytes, const std::string& file, ErrorCode code);
+
+/// The root of a parsed document.
+inline JsonNode root_of(const Json& document, const std::string& file, ErrorCode code) {
+  return {document, file, "", code};
+}
+
+}  // namespace ayumi
