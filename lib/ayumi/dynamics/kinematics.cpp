@@ -1,0 +1,170 @@
+#include "ayumi/dynamics/kinematics.hpp"
+
+#include "ayumi/math/rotation.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+
+RobotData::RobotData(const RobotModel& model) {
+  const size_t n = model.bodies().size();
+  rotation.resize(n);
+  for (auto* field : {&position, &axis, &com, &angular_velocity, &velocity, &angular_acceleration,
+                      &acceleration, &force, &moment})
+    field->resize(n);
+  composite.resize(n);
+  subtree_mass.assign(n, 0.0);
+  for (size_t i = n; i-- > 0;) {
+    subtree_mass[i] += model.bodies()[i].inertia.mass;
+    if (i > 0) subtree_mass[model.bodies()[i].parent] += subtree_mass[i];
+  }
+}
+
+void update_positions(const RobotModel& model, const RobotState& state, RobotData& data) {
+  const std::vector<Body>& bodies = model.bodies();
+  data.base_position = state.base.position;
+  data.rotation[0] = state.base.attitude.toRotationMatrix();
+  data.position[0].setZero();
+  data.axis[0].setZero();
+  data.com[0] = data.rotation[0] * bodies[0].inertia.com;
+  Vector3d moment = bodies[0].inertia.mass * data.com[0];
+  for (size_t i = 1; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    const double q = body.ratio * state.theta[body.dof] + body.offset;
+    const Matrix3d& R = data.rotation[body.parent];
+    const Matrix3d Rj = R * body.placement.linear();
+    data.position[i] = data.position[body.parent] + R * body.placement.translation();
+    data.axis[i] = Rj * body.axis;
+    if (body.prismatic) {
+      data.rotation[i] = Rj;
+      data.position[i] += q * data.axis[i];
+    } else {
+      data.rotation[i] = Rj * Eigen::AngleAxisd(q, body.axis).toRotationMatrix();
+    }
+    data.com[i] = data.position[i] + data.rotation[i] * body.inertia.com;
+    moment += body.inertia.mass * data.com[i];
+  }
+  data.cog_offset = moment / model.mass();
+  data.cog = data.base_position + data.cog_offset;
+}
+
+void update_velocities(const RobotModel& model, const RobotState& state, RobotData& data) {
+  update_positions(model, state, data);
+  const std::vector<Body>& bodies = model.bodies();
+  data.velocity[0] = state.base_velocity;
+  data.angular_velocity[0] = state.base_angular_velocity;
+  Vector3d momentum = bodies[0].inertia.mass *
+                      (data.velocity[0] + data.angular_velocity[0].cross(data.com[0]));
+  for (size_t i = 1; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    const double rate = body.ratio * state.dtheta[body.dof];
+    const Vector3d& w = data.angular_velocity[body.parent];
+    data.angular_velocity[i] = w;
+    data.velocity[i] =
+        data.velocity[body.parent] + w.cross(data.position[i] - data.position[body.parent]);
+    (body.prismatic ? data.velocity[i] : data.angular_velocity[i]) += rate * data.axis[i];
+    momentum += body.inertia.mass *
+                (data.velocity[i] +
+                 data.angular_velocity[i].cross(data.com[i] - data.position[i]));
+  }
+  data.dcog = momentum / model.mass();
+}
+
+Isometry3d link_pose(const RobotModel& model, const RobotData& data, int link) {
+  const Link& l = model.links()[link];
+  return data.pose(l.body) * l.pose;
+}
+
+Isometry3d sole_pose(const RobotModel& model, const RobotData& data, Side side) {
+  const Sole& sole = model.sole(side);
+  return data.pose(sole.body) * sole.frame;
+}
+
+Vector3d point_velocity(const RobotData& data, int body, const Vector3d& point) {
+  return data.velocity[body] +
+         data.angular_velocity[body].cross(point - data.base_position - data.position[body]);
+}
+
+MatrixXd body_jacobian(const RobotModel& model, const RobotData& data, int body,
+                       const Vector3d& point) {
+  MatrixXd J = MatrixXd::Zero(6, model.velocity_count());
+  const Vector3d p = point - data.base_position;
+  J.block<3, 3>(0, 0).setIdentity();
+  J.block<3, 3>(0, 3) = -skew(p);
+  J.block<3, 3>(3, 3).setIdentity();
+  for (int i = body; i > 0; i = model.bodies()[i].parent) {
+    const Body& b = model.bodies()[i];
+    const Vector3d a = b.ratio * data.axis[i];
+    if (b.prismatic) {
+      J.block<3, 1>(0, 6 + b.dof) += a;
+    } else {
+      J.block<3, 1>(0, 6 + b.dof) += a.cross(p - data.position[i]);
+      J.block<3, 1>(3, 6 + b.dof) += a;
+    }
+  }
+  return J;
+}
+
+MatrixXd cog_jacobian_floating(const RobotModel& model, RobotData& data) {
+  const std::vector<Body>& bodies = model.bodies();
+  MatrixXd J = MatrixXd::Zero(3, model.velocity_count());
+  J.leftCols<3>().setIdentity();
+  J.block<3, 3>(0, 3) = -skew(data.cog_offset);
+  // First moment of each subtree, leaves first.
+  for (size_t i = 0; i < bodies.size(); ++i)
+    data.composite[i].moment = bodies[i].inertia.mass * data.com[i];
+  for (size_t i = bodies.size() - 1; i > 0; --i) {
+    const Body& b = bodies[i];
+    const double mass = data.subtree_mass[i];
+    const Vector3d& moment = data.composite[i].moment;
+    const Vector3d a = b.ratio / model.mass() * data.axis[i];
+    if (b.prismatic)
+      J.col(6 + b.dof) += mass * a;
+    else
+      J.col(6 + b.dof) += a.cross(moment - mass * data.position[i]);
+    data.composite[b.parent].moment += moment;
+  }
+  return J;
+}
+
+namespace {
+
+// Base twist per joint rate that keeps a body's frame fixed: with the reference point at the base
+// origin the base part of J_F is inverted in closed form, J_Fb = [1 -[p x]; 0 1].
+MatrixXd base_map(const RobotModel& model, const RobotData& data, int body) {
+  const Vector3d p = data.position[body];
+  const MatrixXd J = body_jacobian(model, data, body, data.base_position + p);
+  MatrixXd base(6, model.dof_count());
+  base.bottomRows<3>() = -J.bottomRightCorner(3, model.dof_count());
+  base.topRows<3>() = -J.topRightCorner(3, model.dof_count()) + skew(p) * base.bottomRows<3>();
+  return base;
+}
+
+}  // namespace
+
+MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, Side support) {
+  MatrixXd map(model.velocity_count(), model.dof_count());
+  map.topRows<6>() = base_map(model, data, model.sole(support).body);
+  map.bottomRows(model.dof_count()).setIdentity();
+  return map;
+}
+
+MatrixXd cog_jacobian(const RobotModel& model, RobotData& data, Side support) {
+  const MatrixXd J = cog_jacobian_floating(model, data);
+  return J.rightCols(model.dof_count()) +
+         J.leftCols<6>() * base_map(model, data, model.sole(support).body);
+}
+
+void anchor_base(const RobotModel& model, Side support, const Isometry3d& sole, RobotState& state,
+                 RobotData& data) {
+  update_positions(model, state, data);
+  const Isometry3d moved = sole * sole_pose(model, data, support).inverse() * data.pose(0);
+  state.base.position = moved.translation();
+  state.base.attitude = Eigen::Quaterniond(moved.linear()).normalized();
+  update_positions(model, state, data);
+}
+
+}  // namespace ayumi

@@ -1,0 +1,41 @@
+#pragma once
+// Positions, velocities and Jacobians. (1)-(13) of the paper.
+
+#include "ayumi/dynamics/robot_data.hpp"
+
+namespace ayumi {
+
+/// Fills the position part of `data` from base pose and theta.
+void update_positions(const RobotModel& model, const RobotState& state, RobotData& data);
+
+/// Positions, then the velocity part: (1)(2) carried out along the tree.
+void update_velocities(const RobotModel& model, const RobotState& state, RobotData& data);
+
+/// Pose of a link or of a sole frame in the world; needs update_positions().
+Eigen::Isometry3d link_pose(const RobotModel& model, const RobotData& data, int link);
+Eigen::Isometry3d sole_pose(const RobotModel& model, const RobotData& data, Side side);
+
+/// Velocity of a world point fixed to a body; needs update_velocities().
+Eigen::Vector3d point_velocity(const RobotData& data, int body, const Eigen::Vector3d& point);
+
+/// 6 x (6+dof): linear velocity of the world point `point` fixed to `body` (rows 0-2) and angular
+/// velocity of the body (rows 3-5) per generalised velocity, world axes; needs update_positions().
+Eigen::MatrixXd body_jacobian(const RobotModel& model, const RobotData& data, int body,
+                              const Eigen::Vector3d& point);
+
+/// 3 x (6+dof): COG velocity per generalised velocity (floating base); needs update_positions().
+Eigen::MatrixXd cog_jacobian_floating(const RobotModel& model, RobotData& data);
+
+/// 3 x dof, (13): COG velocity per joint rate with the sole of `support` fixed in the world,
+/// J_G = J_cth - J_cb J_Fb^-1 J_Fth with the floating Jacobians. Needs update_positions().
+Eigen::MatrixXd cog_jacobian(const RobotModel& model, RobotData& data, Side support);
+
+/// (6+dof) x dof: generalised velocity per joint rate while the sole of `support` is fixed.
+Eigen::MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, Side support);
+
+/// Moves the base of `state` so that the sole of `support` has the pose `sole` in the world, and
+/// updates the positions in `data`.
+void anchor_base(const RobotModel& model, Side support, const Eigen::Isometry3d& sole,
+                 RobotState& state, RobotData& data);
+
+}  // namespace ayumi

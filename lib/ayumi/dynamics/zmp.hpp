@@ -1,0 +1,32 @@
+#pragma once
+// ZMP from a ground wrench, and the point-mass law (14)-(17).
+
+#include "ayumi/dynamics/robot_data.hpp"
+
+namespace ayumi {
+
+/// The ground wrench that a motion needs, told as ZMP, force and yaw moment.
+struct GroundReaction {
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< world, on the plane z = height [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the robot [N]
+  double yaw_moment = 0;                            ///< about the vertical through the ZMP [N m]
+};
+
+/// From the base wrench of inverse_dynamics (force, moment about `base_position`). Where the
+/// vertical force is below `min_force` the ZMP has no meaning and stays under the base.
+GroundReaction ground_reaction(const Eigen::Vector3d& base_position,
+                               const Eigen::Matrix<double, 6, 1>& wrench, double height,
+                               double min_force = 1e-9);
+
+/// (17): omega^2 = f_z / (m (z_G - z_Z)) [1/s^2].
+double omega_squared(double fz, double mass, double height_above_zmp);
+
+/// (14)-(16): COG acceleration of the mass-concentrated model [m/s^2].
+Eigen::Vector3d pendulum_acceleration(const Eigen::Vector3d& cog, const Eigen::Vector3d& zmp,
+                                      double fz, double mass);
+
+/// (14)(15) solved for the ZMP, at the height of `ground`.
+Eigen::Vector3d pendulum_zmp(const Eigen::Vector3d& cog, const Eigen::Vector3d& ddcog,
+                             double ground);
+
+}  // namespace ayumi

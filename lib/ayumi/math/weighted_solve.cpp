@@ -1,0 +1,14 @@
+#include "ayumi/math/weighted_solve.hpp"
+
+namespace ayumi {
+
+Eigen::VectorXd weighted_least_norm(const Eigen::MatrixXd& J, const Eigen::VectorXd& u,
+                                    const Eigen::VectorXd& w, const Eigen::VectorXd& x0,
+                                    double damping) {
+  const Eigen::MatrixXd JW = J * w.cwiseInverse().asDiagonal();
+  Eigen::MatrixXd A = JW * J.transpose();
+  if (damping > 0) A.diagonal().array() += damping * A.trace() / static_cast<double>(A.rows());
+  return x0 + JW.transpose() * A.ldlt().solve(u - J * x0);
+}
+
+}  // namespace ayumi
