@@ -1,0 +1,297 @@
+#include "ayumi/model/validate.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+namespace {
+
+std::vector<std::string> link_names(const RobotDescription& robot) {
+  std::vector<std::string> names;
+  for (const LinkDescription& link : robot.links) names.push_back(link.name);
+  return names;
+}
+
+std::vector<std::string> joint_names(const RobotDescription& robot) {
+  std::vector<std::string> names;
+  for (const JointDescription& joint : robot.joints) names.push_back(joint.name);
+  return names;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string twice(const std::vector<std::string>& names) {
+  std::set<std::string> seen;
+  for (const std::string& name : names)
+    if (!seen.insert(name).second) return name;
+  return "";
+}
+
+void validate_inertia(const RobotDescription& robot, const LinkDescription& link) {
+  const std::string where = "link " + link.name + ": ";
+  const Inertia& inertia = link.inertia;
+  if (!std::isfinite(inertia.mass) || !inertia.com.allFinite() || !inertia.about_com.allFinite())
+    complain_urdf(robot, where + "its inertia holds a number that is not finite; correct it");
+  if (inertia.mass < 0)
+    complain_urdf(robot, where + "mass " + text::exact(inertia.mass) +
+                             " kg is negative; give the link its mass");
+  if (inertia.mass > kLargestMass)
+    complain_urdf(robot, where + "mass " + text::exact(inertia.mass) + " kg is above " +
+                             text::exact(kLargestMass) + " kg; URDF masses are in kilograms");
+  if (inertia.com.cwiseAbs().maxCoeff() > kLargestLength)
+    complain_urdf(robot, where + "its centre of mass lies farther than " +
+                             text::exact(kLargestLength) + " m away; URDF lengths are in metres");
+  const Eigen::Vector3d principal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia.about_com).eigenvalues();
+  if (principal.minCoeff() < -1e-9 * std::max(1e-6, principal.cwiseAbs().maxCoeff()))
+    complain_urdf(robot, where + "its inertia tensor has the negative principal moment " +
+                             text::brief(principal.minCoeff()) +
+                             " kg m^2, which no body can have; check the products of inertia");
+}
+
+void validate_joint_numbers(const RobotDescription& robot, const JointDescription& joint) {
+  const std::string where = "joint " + joint.name + ": ";
+  if (!joint.origin.matrix().allFinite() || !joint.axis.allFinite() ||
+      !std::isfinite(joint.lower + joint.upper + joint.velocity + joint.effort + joint.damping +
+                     joint.friction + joint.mimic_multiplier + joint.mimic_offset))
+    complain_urdf(robot, where + "holds a number that is not finite; correct it");
+  if (joint.origin.translation().cwiseAbs().maxCoeff() > kLargestLength)
+    complain_urdf(robot, where + "its origin lies farther than " + text::exact(kLargestLength) +
+                             " m from its parent; URDF lengths are in metres");
+  if (joint.type == JointType::fixed || joint.type == JointType::floating) return;
+  if (joint.axis.norm() < 1e-9)
+    complain_urdf(robot, where + "its axis has length zero; give it a direction");
+  if (joint.has_limits && joint.lower > joint.upper)
+    complain_urdf(robot, where + "lower limit " + text::exact(joint.lower) +
+                             " exceeds the upper limit " + text::exact(joint.upper) +
+                             "; swap them");
+  if (joint.velocity < 0 || joint.effort < 0 || joint.damping < 0 || joint.friction < 0)
+    complain_urdf(robot, where + "velocity, effort, damping and friction cannot be negative");
+}
+
+void validate_mimic(const RobotDescription& robot, const JointDescription& joint) {
+  const auto find = [&](const std::string& name) {
+    return std::find_if(robot.joints.begin(), robot.joints.end(),
+                        [&](const JointDescription& other) { return other.name == name; });
+  };
+  const std::string where = "joint " + joint.name + ": ";
+  const JointDescription* driver = &joint;
+  for (size_t steps = 0; !driver->mimic.empty(); ++steps) {
+    const auto next = find(driver->mimic);
+    if (next == robot.joints.end())
+      complain_urdf(robot, where + "mimics the joint '" + driver->mimic +
+                               "', which does not exist" +
+                               text::suggestion(driver->mimic, joint_names(robot)));
+    driver = &*next;
+    if (steps > robot.joints.size())
+      complain_urdf(robot, where + "mimics itself through other joints; break the circle");
+  }
+  if (driver->type == JointType::fixed || driver->type == JointType::floating)
+    complain_urdf(robot, where + "mimics the joint '" + driver->name + "', which does not move");
+}
+
+}  // namespace
+
+void complain_urdf(const RobotDescription& robot, const std::string& message) {
+  const std::string place = robot.urdf_file.empty() ? "robot " + robot.name : robot.urdf_file;
+  fail(ErrorCode::bad_model, place + ": " + message);
+}
+
+void complain_sidecar(const RobotDescription& robot, const std::string& message) {
+  const std::string place = robot.sidecar_file.empty() ? "robot " + robot.name : robot.sidecar_file;
+  fail(ErrorCode::bad_model, place + ": " + message);
+}
+
+void validate_links(const RobotDescription& robot) {
+  if (robot.links.empty()) complain_urdf(robot, "the robot has no link; add one");
+  const std::string name = twice(link_names(robot));
+  if (!name.empty())
+    complain_urdf(robot, "link " + name + ": two links have this name; rename one");
+  for (const LinkDescription& link : robot.links) validate_inertia(robot, link);
+}
+
+void validate_joints(const RobotDescription& robot) {
+  const std::vector<std::string> links = link_names(robot);
+  const std::string name = twice(joint_names(robot));
+  if (!name.empty())
+    complain_urdf(robot, "joint " + name + ": two joints have this name; rename one");
+  for (const JointDescription& joint : robot.joints) {
+    for (const std::string& end : {joint.parent, joint.child})
+      if (!contains(links, end))
+        complain_urdf(robot, "joint " + joint.name + ": the link '" + end + "' does not exist" +
+                                 text::suggestion(end, links));
+    validate_joint_numbers(robot, joint);
+    if (!joint.mimic.empty()) validate_mimic(robot, joint);
+  }
+}
+
+int find_root_link(const RobotDescription& robot) {
+  std::map<std::string, std::string> parent_joint;  // of each child link
+  std::multimap<std::string, std::string> children;
+  for (const JointDescription& joint : robot.joints) {
+    const auto [other, fresh] = parent_joint.emplace(joint.child, joint.name);
+    if (!fresh)
+      complain_urdf(robot, "link " + joint.child + ": has two parents, by the joints " +
+                               other->second + " and " + joint.name +
+                               "; closed chains are not supported, remove one joint");
+    children.emplace(joint.parent, joint.child);
+  }
+  std::vector<std::string> roots;
+  for (const LinkDescription& link : robot.links)
+    if (!parent_joint.contains(link.name)) roots.push_back(link.name);
+  if (roots.empty())
+    complain_urdf(robot, "link " + robot.links.front().name +
+                             ": the joints form a loop, so no link is the root; remove one joint");
+  if (roots.size() > 1)
+    complain_urdf(robot, "several root links: " + text::join(roots, ", ") +
+                             "; connect all but one by a joint");
+  std::set<std::string> reached = {roots[0]};
+  std::vector<std::string> open = roots;
+  while (!open.empty()) {
+    const auto [begin, end] = children.equal_range(open.back());
+    open.pop_back();
+    for (auto child = begin; child != end; ++child)
+      if (reached.insert(child->second).second) open.push_back(child->second);
+  }
+  for (const LinkDescription& link : robot.links)
+    if (!reached.contains(link.name))
+      complain_urdf(robot, "link " + link.name + ": lies on a loop of joints apart from the root " +
+                               roots[0] + "; remove one joint of the loop");
+  const auto root =
+      std::find_if(robot.links.begin(), robot.links.end(),
+                   [&](const LinkDescription& link) { return link.name == roots[0]; });
+  return static_cast<int>(root - robot.links.begin());
+}
+
+std::vector<int> ordered_dof_joints(const RobotDescription& robot) {
+  std::vector<int> moving;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < robot.joints.size(); ++i) {
+    const JointDescription& joint = robot.joints[i];
+    const bool moves = joint.type != JointType::fixed && joint.type != JointType::floating;
+    if (!moves || !joint.mimic.empty()) continue;
+    moving.push_back(static_cast<int>(i));
+    names.push_back(joint.name);
+  }
+  if (robot.joint_order.empty()) return moving;
+  const std::string name = twice(robot.joint_order);
+  if (!name.empty()) complain_sidecar(robot, "/joint_order: '" + name + "' appears twice");
+  std::vector<int> ordered;
+  for (size_t i = 0; i < robot.joint_order.size(); ++i) {
+    const std::string& wanted = robot.joint_order[i];
+    const auto found = std::find(names.begin(), names.end(), wanted);
+    if (found == names.end())
+      complain_sidecar(robot, "/joint_order/" + std::to_string(i) + ": '" + wanted +
+                                  "' is not a moving joint of the URDF" +
+                                  text::suggestion(wanted, names));
+    ordered.push_back(moving[found - names.begin()]);
+  }
+  for (const std::string& missing : names)
+    if (!contains(robot.joint_order, missing))
+      complain_sidecar(robot, "/joint_order: the joint '" + missing + "' is missing; add it");
+  return ordered;
+}
+
+namespace {
+
+// Checks the names of a map from joints to anything.
+template <typename Value>
+void known_joints(const RobotDescription& robot, const std::string& pointer,
+                  const std::map<std::string, Value>& map, const std::vector<std::string>& names) {
+  for (const auto& [name, value] : map)
+    if (!contains(names, name))
+      complain_sidecar(robot, pointer + "/" + name + ": is not a moving joint of the robot" +
+                                  text::suggestion(name, names));
+}
+
+void known_link(const RobotDescription& robot, const std::string& pointer,
+                const std::string& name) {
+  const std::vector<std::string> names = link_names(robot);
+  if (!contains(names, name))
+    complain_sidecar(robot, pointer + ": the link '" + name + "' does not exist" +
+                                text::suggestion(name, names));
+}
+
+void positive(const RobotDescription& robot, const std::string& pointer,
+              const std::map<std::string, double>& values) {
+  for (const auto& [name, value] : values)
+    if (!(value > 0))
+      complain_sidecar(robot, pointer + "/" + name + ": " + text::exact(value) +
+                                  " is not possible; give a number above 0");
+}
+
+void validate_sole(const RobotDescription& robot, const std::string& side,
+                   const SoleDescription& sole) {
+  const std::string pointer = "/soles/" + side;
+  if (side != "left" && side != "right")
+    complain_sidecar(robot, pointer + ": unknown foot; the two feet are 'left' and 'right'");
+  known_link(robot, pointer + "/link", sole.link);
+  const auto& corners = sole.polygon;
+  const std::string remedy =
+      "; give at least three corners of a convex polygon, counter-clockwise "
+      "seen from above";
+  if (corners.size() < 3) complain_sidecar(robot, pointer + "/polygon: too few corners" + remedy);
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d along = corners[(i + 1) % corners.size()] - corners[i];
+    const Eigen::Vector2d next = corners[(i + 2) % corners.size()] - corners[i];
+    if (!(along.x() * next.y() - along.y() * next.x() > 0))
+      complain_sidecar(robot, pointer + "/polygon/" + std::to_string((i + 1) % corners.size()) +
+                                  ": the polygon is not convex and counter-clockwise here" +
+                                  remedy);
+  }
+  if (!(sole.stiffness >= 0) || !(sole.damping_time >= 0))
+    complain_sidecar(robot, pointer + ": stiffness and damping_time cannot be negative");
+}
+
+void validate_servos(const RobotDescription& robot) {
+  for (const auto& [name, servo] : robot.servos)
+    if (!(servo.kp >= 0 && servo.kd >= 0 && servo.rotor_inertia >= 0 && servo.viscous >= 0 &&
+          servo.coulomb >= 0))
+      complain_sidecar(robot, "/servos/" + name + ": servo constants cannot be negative");
+}
+
+}  // namespace
+
+void validate_sidecar(const RobotDescription& robot, const std::vector<std::string>& names) {
+  for (const auto& [side, sole] : robot.soles) validate_sole(robot, side, sole);
+  if (robot.soles.size() == 1)
+    complain_sidecar(robot, "/soles: only one foot is given; name 'left' and 'right'");
+  for (const auto& [posture, values] : robot.postures)
+    known_joints(robot, "/postures/" + posture, values, names);
+  known_joints(robot, "/servos", robot.servos, names);
+  validate_servos(robot);
+  known_joints(robot, "/encoders", robot.encoders, names);
+  known_joints(robot, "/control/joint_weight", robot.control.joint_weight, names);
+  positive(robot, "/control/joint_weight", robot.control.joint_weight);
+  for (const ActuatorProfile& profile : robot.profiles) {
+    const std::string pointer = "/profiles/" + profile.name;
+    for (const auto* values : {&profile.speed, &profile.peak_torque, &profile.continuous_torque}) {
+      known_joints(robot, pointer, *values, names);
+      positive(robot, pointer, *values);
+    }
+    if (!(profile.thermal_window > 0))
+      complain_sidecar(robot, pointer + "/thermal_window: must be above 0 s");
+  }
+  if (!robot.trunk_link.empty()) known_link(robot, "/trunk_link", robot.trunk_link);
+  if (!robot.sensors.imu_link.empty())
+    known_link(robot, "/sensors/imu_link", robot.sensors.imu_link);
+  for (size_t i = 0; i < robot.collision_ignore.size(); ++i) {
+    const auto& [a, b] = robot.collision_ignore[i];
+    known_link(robot, "/collision_ignore/" + std::to_string(i) + "/0", a);
+    known_link(robot, "/collision_ignore/" + std::to_string(i) + "/1", b);
+  }
+  if (!(robot.servo_period > 0)) complain_sidecar(robot, "/servo_period: must be above 0 s");
+  if (!(robot.soft_limit_margin >= 0))
+    complain_sidecar(robot, "/soft_limit_margin: cannot be negative");
+}
+
+}  // namespace ayumi

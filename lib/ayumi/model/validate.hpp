@@ -1,0 +1,37 @@
+#pragma once
+// What a robot description must satisfy before a RobotModel can be built from it. Each function
+// throws Error(bad_model) "file: link or joint: what is wrong, what to do".
+
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_description.hpp"
+
+namespace ayumi {
+
+/// Largest figures taken for those of a robot; anything beyond is a wrong unit.
+inline constexpr double kLargestMass = 1e6;    // [kg]
+inline constexpr double kLargestLength = 1e4;  // [m]
+
+/// Throws "urdf file: message".
+[[noreturn]] void complain_urdf(const RobotDescription& robot, const std::string& message);
+/// Throws "sidecar file: message".
+[[noreturn]] void complain_sidecar(const RobotDescription& robot, const std::string& message);
+
+/// Names, finite numbers, masses and inertia tensors of all links.
+void validate_links(const RobotDescription& robot);
+
+/// Names, ends, axes, limits and mimic targets of all joints.
+void validate_joints(const RobotDescription& robot);
+
+/// One root, one parent for each link, no loop. Returns the index of the root link.
+int find_root_link(const RobotDescription& robot);
+
+/// Indices into `robot.joints` of the joints with a coordinate of their own (neither fixed,
+/// floating nor mimicking), in `joint_order` when it is given, else in the file's order.
+std::vector<int> ordered_dof_joints(const RobotDescription& robot);
+
+/// Everything of the sidecar that names a joint or link of the URDF, and its numbers.
+void validate_sidecar(const RobotDescription& robot, const std::vector<std::string>& dof_names);
+
+}  // namespace ayumi

@@ -1,0 +1,288 @@
+#include "ayumi/model/robot_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "ayumi/base/error.hpp"
+
+namespace ayumi {
+namespace {
+
+LinkDescription heavy(const std::string& name, double mass = 1.0) {
+  LinkDescription link;
+  link.name = name;
+  link.has_inertial = true;
+  link.inertia = {mass, {0.01, 0.02, 0.03}, Eigen::Vector3d(0.01, 0.02, 0.025).asDiagonal()};
+  return link;
+}
+
+JointDescription hinge(const std::string& name, const std::string& parent,
+                       const std::string& child) {
+  JointDescription joint;
+  joint.name = name;
+  joint.type = JointType::revolute;
+  joint.parent = parent;
+  joint.child = child;
+  joint.origin =
+      Eigen::Translation3d(0, 0, -0.1) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX());
+  joint.axis = Eigen::Vector3d::UnitY();
+  joint.has_limits = true;
+  joint.lower = -1;
+  joint.upper = 2;
+  joint.velocity = 5;
+  joint.effort = 7;
+  return joint;
+}
+
+SoleDescription sole_on(const std::string& link) {
+  SoleDescription sole;
+  sole.link = link;
+  sole.polygon = {{-0.04, -0.03}, {0.06, -0.03}, {0.06, 0.03}, {-0.04, 0.03}};
+  return sole;
+}
+
+// trunk - l_hip - l_shank, trunk - r_hip - r_shank, and a cap fixed to the left shank.
+RobotDescription biped() {
+  RobotDescription robot;
+  robot.name = "biped";
+  robot.urdf_file = "biped.urdf";
+  robot.sidecar_file = "robot.json";
+  for (const char* name : {"cap", "l_thigh", "l_shank", "trunk", "r_thigh", "r_shank"})
+    robot.links.push_back(heavy(name));
+  robot.joints = {hinge("l_knee", "l_thigh", "l_shank"), hinge("l_hip", "trunk", "l_thigh"),
+                  hinge("r_hip", "trunk", "r_thigh"), hinge("r_knee", "r_thigh", "r_shank"),
+                  hinge("l_cap", "l_shank", "cap")};
+  robot.joints.back().type = JointType::fixed;
+  robot.soles = {{"left", sole_on("cap")}, {"right", sole_on("r_shank")}};
+  return robot;
+}
+
+std::string error_of(const std::function<void(RobotDescription&)>& spoil) {
+  RobotDescription robot = biped();
+  spoil(robot);
+  try {
+    const RobotModel model(robot);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_model);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(RobotModel, SortsBodiesParentsFirstAndMergesFixedLinks) {
+  const RobotModel model(biped());
+  ASSERT_EQ(model.bodies().size(), 5u);
+  EXPECT_EQ(model.bodies()[0].name, "trunk");
+  for (size_t i = 1; i < model.bodies().size(); ++i)
+    EXPECT_LT(model.bodies()[i].parent, static_cast<int>(i));
+  EXPECT_EQ(model.links().size(), 6u);
+  const Link& cap = model.links()[model.find_link("cap")];
+  EXPECT_EQ(model.bodies()[cap.body].name, "l_shank");
+  EXPECT_TRUE(cap.pose.isApprox(biped().joints.back().origin));
+  EXPECT_DOUBLE_EQ(model.mass(), 6.0);
+  EXPECT_EQ(model.dof_names(), (std::vector<std::string>{"l_knee", "l_hip", "r_hip", "r_knee"}));
+  for (int i = 0; i < model.dof_count(); ++i)
+    EXPECT_EQ(model.bodies()[model.dofs()[i].body].dof, i);
+}
+
+TEST(RobotModel, FollowsTheGivenJointOrder) {
+  RobotDescription robot = biped();
+  robot.joint_order = {"r_hip", "r_knee", "l_hip", "l_knee"};
+  const RobotModel model(robot);
+  EXPECT_EQ(model.dof_names(), robot.joint_order);
+  EXPECT_EQ(model.leg(Side::left), (std::vector<int>{2, 3}));
+  EXPECT_EQ(model.leg(Side::right), (std::vector<int>{0, 1}));
+  EXPECT_EQ(model.bodies()[model.dofs()[3].body].name, "l_shank");
+}
+
+// Kinetic energy of a rigid pair, link by link and merged, for random twists.
+TEST(RobotModel, MergedInertiaHasTheEnergyOfItsLinks) {
+  const RobotModel model(biped());
+  const int cap = model.find_link("cap"), shank = model.find_link("l_shank");
+  const Body& body = model.bodies()[model.links()[cap].body];
+  const auto energy = [](const Inertia& inertia, const Eigen::Vector3d& v,
+                         const Eigen::Vector3d& w) {
+    const Eigen::Vector3d at_com = v + w.cross(inertia.com);
+    return 0.5 * inertia.mass * at_com.squaredNorm() + 0.5 * w.dot(inertia.about_com * w);
+  };
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Eigen::Vector3d v(uniform(random), uniform(random), uniform(random));
+    const Eigen::Vector3d w(uniform(random), uniform(random), uniform(random));
+    double expected = 0;
+    for (const int index : {cap, shank}) {
+      const Link& link = model.links()[index];
+      const Eigen::Matrix3d turn = link.pose.linear().transpose();
+      const Eigen::Vector3d at_link = v + w.cross(link.pose.translation());
+      expected += energy(link.inertia, turn * at_link, turn * w);
+    }
+    EXPECT_NEAR(energy(body.inertia, v, w), expected, 1e-14);
+  }
+}
+
+TEST(RobotModel, MimicJointsFollowThroughChains) {
+  RobotDescription robot = biped();
+  robot.joints[0].mimic = "l_hip";  // l_knee = 2 l_hip + 0.5
+  robot.joints[0].mimic_multiplier = 2;
+  robot.joints[0].mimic_offset = 0.5;
+  robot.joints[3].mimic = "l_knee";  // r_knee = -1 l_knee + 0.25 = -2 l_hip - 0.25
+  robot.joints[3].mimic_multiplier = -1;
+  robot.joints[3].mimic_offset = 0.25;
+  const RobotModel model(robot);
+  EXPECT_EQ(model.dof_names(), (std::vector<std::string>{"l_hip", "r_hip"}));
+  const auto body_of = [&](const char* link) {
+    return model.bodies()[model.links()[model.find_link(link)].body];
+  };
+  EXPECT_EQ(body_of("r_shank").dof, 0);
+  EXPECT_DOUBLE_EQ(body_of("r_shank").ratio, -2);
+  EXPECT_DOUBLE_EQ(body_of("r_shank").offset, -0.25);
+  EXPECT_EQ(model.bodies()[model.dofs()[0].body].name, "l_thigh");
+}
+
+TEST(RobotModel, SolesHaveCentroidAndConstants) {
+  RobotDescription robot = biped();
+  robot.soles["left"].polygon = {{0, 0}, {0.3, 0}, {0, 0.3}};
+  robot.soles["left"].frame = Eigen::Translation3d(0, 0, -0.02) * Eigen::Isometry3d::Identity();
+  robot.soles["left"].stiffness = 1000;
+  const RobotModel model(robot);
+  EXPECT_TRUE(model.sole(Side::left).center.isApprox(Eigen::Vector2d(0.1, 0.1)));
+  EXPECT_TRUE(model.sole(Side::right).center.isApprox(Eigen::Vector2d(0.01, 0.0), 1e-12));
+  EXPECT_DOUBLE_EQ(model.sole(Side::left).stiffness, 1000);
+  EXPECT_NEAR(model.mass() * 9.80665 / model.sole(Side::right).stiffness, 0.0005, 1e-12);
+  const Eigen::Isometry3d expected =
+      biped().joints.back().origin * Eigen::Translation3d(0, 0, -0.02);
+  EXPECT_TRUE(model.sole(Side::left).frame.isApprox(expected));
+}
+
+TEST(RobotModel, ProfilesFallBackToTheUrdf) {
+  RobotDescription robot = biped();
+  robot.joints[1].effort = 0;
+  EXPECT_EQ(RobotModel(robot).profile_names(), std::vector<std::string>{"urdf"});
+  ActuatorProfile slow;
+  slow.name = "slow";
+  slow.speed = {{"l_knee", 1.5}};
+  robot.profiles = {slow};
+  const RobotModel model(robot);
+  const ActuatorLimits& limits = model.limits();
+  EXPECT_EQ(limits.name, "slow");
+  EXPECT_DOUBLE_EQ(limits.speed[model.find_dof("l_knee")], 1.5);
+  EXPECT_DOUBLE_EQ(limits.speed[model.find_dof("l_hip")], 5);
+  EXPECT_TRUE(std::isinf(limits.peak_torque[model.find_dof("l_hip")]));
+  EXPECT_THROW(model.limits("fast"), Error);
+}
+
+TEST(RobotModel, PosturesLeaveOtherJointsAtZero) {
+  RobotDescription robot = biped();
+  robot.postures["bow"] = {{"l_hip", 0.5}};
+  robot.joints[3].lower = 0.1;
+  const RobotModel model(robot);
+  EXPECT_DOUBLE_EQ(model.posture("bow")[model.find_dof("l_hip")], 0.5);
+  EXPECT_DOUBLE_EQ(model.posture("bow")[model.find_dof("r_hip")], 0.0);
+  EXPECT_DOUBLE_EQ(model.posture()[model.find_dof("r_knee")], 0.1);  // nearest to 0
+  EXPECT_THROW(model.posture("bouw"), Error);
+}
+
+TEST(RobotModel, LetsABareFrameBetweenTwoAxesBeMassless) {
+  RobotDescription robot = biped();
+  robot.links[1].inertia = {};
+  robot.links[1].has_inertial = false;  // l_thigh, no shape, the shank beyond it
+  EXPECT_DOUBLE_EQ(RobotModel(robot).mass(), 5.0);
+  robot.links[1].collisions.emplace_back();
+  EXPECT_THROW(RobotModel{robot}, Error);
+}
+
+TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
+  EXPECT_EQ(error_of([](auto& r) { r.links[0].name = "trunk"; }),
+            "biped.urdf: link trunk: two links have this name; rename one");
+  EXPECT_EQ(error_of([](auto& r) { r.joints[1].name = "r_hip"; }),
+            "biped.urdf: joint r_hip: two joints have this name; rename one");
+  EXPECT_EQ(error_of([](auto& r) { r.joints[0].parent = "l_thig"; }),
+            "biped.urdf: joint l_knee: the link 'l_thig' does not exist; did you mean 'l_thigh'?");
+  EXPECT_EQ(error_of([](auto& r) { r.links.push_back(heavy("stray")); }),
+            "biped.urdf: several root links: trunk, stray; connect all but one by a joint");
+  EXPECT_EQ(error_of([](auto& r) { r.joints.push_back(hinge("x", "r_shank", "l_shank")); }),
+            "biped.urdf: link l_shank: has two parents, by the joints l_knee and x; closed chains "
+            "are not supported, remove one joint");
+  EXPECT_EQ(error_of([](auto& r) { r.joints.push_back(hinge("x", "r_shank", "trunk")); }),
+            "biped.urdf: link cap: the joints form a loop, so no link is the root; remove one "
+            "joint");
+  EXPECT_EQ(error_of([](auto& r) { r.joints[1].parent = "cap"; }),
+            "biped.urdf: link cap: lies on a loop of joints apart from the root trunk; remove one "
+            "joint of the loop");
+  EXPECT_EQ(error_of([](auto& r) { r.links[2].inertia.mass = -1; }),
+            "biped.urdf: link l_shank: mass -1 kg is negative; give the link its mass");
+  EXPECT_EQ(error_of([](auto& r) { r.links[5].inertia.mass = 0; }),
+            "biped.urdf: link r_shank: its mass is 0 although a joint moves it; give it a mass and "
+            "an inertia");
+  EXPECT_EQ(error_of([](auto& r) {
+              r.links[3].inertia = {};
+              r.links[3].has_inertial = false;
+            }),
+            "biped.urdf: link trunk: it has no <inertial> although it is the root of a robot that "
+            "moves; give it a mass and an inertia");
+  EXPECT_NE(error_of([](auto& r) { r.links[2].inertia.mass = 1e7; }).find("above 1e+06 kg"),
+            std::string::npos);
+  EXPECT_NE(error_of([](auto& r) {
+              r.joints[2].origin.translation().x() = 1e5;
+            }).find("joint r_hip: its origin lies farther than 10000 m"),
+            std::string::npos);
+  EXPECT_NE(error_of([](auto& r) { r.links[2].inertia.com.x() = std::nan(""); }).find("not finite"),
+            std::string::npos);
+  EXPECT_NE(error_of([](auto& r) {
+              r.links[2].inertia.about_com(0, 0) = -0.01;
+            }).find("link l_shank: its inertia tensor has the negative principal moment -0.01"),
+            std::string::npos);
+  EXPECT_EQ(error_of([](auto& r) { r.joints[0].axis.setZero(); }),
+            "biped.urdf: joint l_knee: its axis has length zero; give it a direction");
+  EXPECT_EQ(error_of([](auto& r) { r.joints[0].lower = 3; }),
+            "biped.urdf: joint l_knee: lower limit 3 exceeds the upper limit 2; swap them");
+  EXPECT_EQ(error_of([](auto& r) { r.joints[0].mimic = "hip"; }),
+            "biped.urdf: joint l_knee: mimics the joint 'hip', which does not exist; did you mean "
+            "'l_hip'?");
+  EXPECT_EQ(error_of([](auto& r) {
+              r.joints[0].mimic = "l_hip";
+              r.joints[1].mimic = "l_knee";
+            }),
+            "biped.urdf: joint l_knee: mimics itself through other joints; break the circle");
+  EXPECT_EQ(error_of([](auto& r) { r.joints[0].mimic = "l_cap"; }),
+            "biped.urdf: joint l_knee: mimics the joint 'l_cap', which does not move");
+}
+
+TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
+  EXPECT_EQ(error_of([](auto& r) { r.soles["left"].link = "capp"; }),
+            "robot.json: /soles/left/link: the link 'capp' does not exist; did you mean 'cap'?");
+  EXPECT_EQ(error_of([](auto& r) { r.soles.erase("left"); }),
+            "robot.json: /soles: only one foot is given; name 'left' and 'right'");
+  EXPECT_EQ(
+      error_of([](auto& r) { r.soles["left"].link = "l_shank", r.soles["right"].link = "cap"; }),
+      "robot.json: /soles: both feet are on one body; name two foot links");
+  EXPECT_NE(
+      error_of([](auto& r) { std::swap(r.soles["left"].polygon[1], r.soles["left"].polygon[3]); })
+          .find("robot.json: /soles/left/polygon/1: the polygon is not convex and "
+                "counter-clockwise here"),
+      std::string::npos);
+  EXPECT_EQ(error_of([](auto& r) {
+              r.postures["home"] = {{"l_kne", 0.1}};
+            }),
+            "robot.json: /postures/home/l_kne: is not a moving joint of the robot; did you mean "
+            "'l_knee'?");
+  EXPECT_EQ(error_of([](auto& r) {
+              r.postures["home"] = {{"l_knee", 2.9}};
+            }),
+            "robot.json: /postures/home/l_knee: 2.9 rad exceeds the limit 2 rad");
+  EXPECT_EQ(error_of([](auto& r) {
+              r.joint_order = {"l_hip", "l_knee", "r_hip"};
+            }),
+            "robot.json: /joint_order: the joint 'r_knee' is missing; add it");
+  EXPECT_EQ(error_of([](auto& r) {
+              r.control.joint_weight = {{"l_knee", 0.0}};
+            }),
+            "robot.json: /control/joint_weight/l_knee: 0 is not possible; give a number above 0");
+}
+
+}  // namespace
+}  // namespace ayumi
