@@ -23,6 +23,7 @@ inline bool supports(Support support, Side side) {
 
 /// How a track goes from one key to the next.
 enum class Interpolation { linear, cubic, minimum_jerk, hold, spline };
+const char* name_of(Interpolation interpolation);
 
 /// A foothold: pose of the sole frame in the world.
 struct Foothold {
@@ -89,9 +90,11 @@ struct CorrectionTrack {
 struct Pattern {
   std::string name;
   std::string file;                        ///< where it came from, for messages
-  std::string sha256;                      ///< of the file's bytes
+  std::string sha256;                      ///< of its bytes, then those of includes and table
+  std::string schema;                      ///< "$schema" as written, for editors; may be empty
   std::string robot;                       ///< name or path as written
   std::string profile;                     ///< actuator profile; "" = the robot's default
+  bool degrees = true;                     ///< angle unit of the file; everything here is in rad
   Interpolation interpolation = Interpolation::minimum_jerk;
   std::string default_posture = "home";
   bool full_model = true;                  ///< COG from ZMP keys for the full model, else (14)(15)
@@ -99,6 +102,8 @@ struct Pattern {
   std::array<std::optional<Foothold>, 2> start_feet;  ///< by Side; else those of the default posture
   std::vector<Phase> phases;
   std::vector<Keyframe> keyframes;
+  std::map<std::string, std::map<std::string, double>> postures;  ///< the pattern's own, or those
+                                           ///< it includes; they come before the robot's [rad]
   std::optional<DenseTable> table;
   std::optional<CorrectionTrack> correction;
   std::map<std::string, double> parameters;           ///< declared ${names} with their values

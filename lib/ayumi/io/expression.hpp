@@ -1,0 +1,20 @@
+#pragma once
+// Small arithmetic over a pattern's parameters: "${stride}*2 + 0.01".
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace ayumi {
+
+/// Whether a string is meant as an expression: it names at least one parameter, "${name}".
+bool is_expression(std::string_view text);
+
+/// Value of + - * / parentheses, unary minus, numbers and ${names}. Names met are added to `used`
+/// when given. Throws Error(bad_pattern) "where: reason" for an unknown name, bad syntax or a
+/// result that is not finite.
+double evaluate_expression(std::string_view text, const std::map<std::string, double>& parameters,
+                           const std::string& where, std::set<std::string>* used = nullptr);
+
+}  // namespace ayumi

@@ -1,0 +1,306 @@
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/pattern_scope.hpp"
+
+namespace ayumi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string quoted(const std::string& text) {
+  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string number(double value) { return value == 0 ? "0" : text::exact(value); }
+
+// Shortest number of degrees that reads back to the same radians; where no double does, the nearest.
+std::string degrees(double radians) {
+  const double value = radians / kRadiansPerDegree;
+  for (int digits = 1; digits <= 17; ++digits) {
+    const std::string attempt = text::brief(value, digits);
+    double read = 0;
+    std::from_chars(attempt.data(), attempt.data() + attempt.size(), read);
+    if (read * kRadiansPerDegree == radians) return number(read);
+  }
+  return number(value);
+}
+
+// The members of one object or array, in order.
+class Members {
+ public:
+  Members& add(const std::string& key, const std::string& value) {
+    items_.push_back(quoted(key) + ": " + value);
+    return *this;
+  }
+  Members& item(const std::string& value) {
+    items_.push_back(value);
+    return *this;
+  }
+  bool empty() const { return items_.empty(); }
+  std::string object() const {
+    return items_.empty() ? "{}" : "{ " + text::join(items_, ", ") + " }";
+  }
+  std::string array() const { return "[" + text::join(items_, ", ") + "]"; }
+  /// One member per line.
+  std::string lines(char open, char close, const std::string& indent) const {
+    return open + ("\n" + indent + "  ") + text::join(items_, ",\n" + indent + "  ") + "\n" +
+           indent + close;
+  }
+
+ private:
+  std::vector<std::string> items_;
+};
+
+class Writer {
+ public:
+  explicit Writer(const Pattern& pattern) : pattern_(pattern) {}
+
+  std::string whole() const {
+    Members top;
+    if (!pattern_.schema.empty()) top.add("$schema", quoted(pattern_.schema));
+    top.add("format", quoted("ayumi.pattern/1"));
+    if (!pattern_.name.empty()) top.add("name", quoted(pattern_.name));
+    top.add("robot", quoted(pattern_.robot));
+    if (!pattern_.profile.empty()) top.add("profile", quoted(pattern_.profile));
+    top.add("units", Members().add("angle", quoted(pattern_.degrees ? "deg" : "rad")).object());
+    add_postures(top);
+    add_defaults(top);
+    add_start(top);
+    add_list(top, "phases", pattern_.phases, [this](const Phase& each) { return phase(each); });
+    add_list(top, "keyframes", pattern_.keyframes,
+             [this](const Keyframe& each) { return keyframe(each); });
+    if (pattern_.table) top.add("table", quoted(pattern_.table->file));
+    add_world(top);
+    add_controller(top);
+    add_list(top, "scenario", pattern_.scenario,
+             [this](const Disturbance& each) { return disturbance(each); });
+    add_tolerances(top);
+    if (pattern_.correction) top.add("correction", correction(*pattern_.correction));
+    return top.lines('{', '}', "") + "\n";
+  }
+
+ private:
+  template <typename Item, typename Text>
+  static void add_list(Members& top, const char* key, const std::vector<Item>& items,
+                       const Text& text_of) {
+    if (items.empty()) return;
+    Members list;
+    for (const Item& each : items) list.item(text_of(each));
+    top.add(key, list.lines('[', ']', "  "));
+  }
+
+  std::string angle(double radians) const {
+    return pattern_.degrees ? degrees(radians) : number(radians);
+  }
+
+  std::string joint_angles(const std::map<std::string, double>& joints) const {
+    Members members;
+    for (const auto& [joint, value] : joints) members.add(joint, angle(value));
+    return members.object();
+  }
+
+  static std::string vector(const Eigen::Vector3d& v) {
+    return Members().item(number(v.x())).item(number(v.y())).item(number(v.z())).array();
+  }
+
+  std::string foothold(const Foothold& foot) const {
+    const Eigen::Vector3d& p = foot.position;
+    if (foot.rpy.x() != 0 || foot.rpy.y() != 0) {
+      Members rpy;
+      for (const double each : foot.rpy) rpy.item(angle(each));
+      return Members().add("position", vector(p)).add("rpy", rpy.array()).object();
+    }
+    Members list;
+    list.item(number(p.x())).item(number(p.y()));
+    if (p.z() != 0 || foot.rpy.z() != 0) list.item(number(p.z()));
+    if (foot.rpy.z() != 0) list.item(angle(foot.rpy.z()));
+    return list.array();
+  }
+
+  void add_postures(Members& top) const {
+    if (pattern_.postures.empty()) return;
+    Members postures;
+    for (const auto& [name, joints] : pattern_.postures) postures.add(name, joint_angles(joints));
+    top.add("postures", postures.lines('{', '}', "  "));
+  }
+
+  void add_defaults(Members& top) const {
+    Members defaults;
+    defaults.add("interpolation", quoted(name_of(pattern_.interpolation)));
+    defaults.add("posture", quoted(pattern_.default_posture));
+    if (pattern_.cog_height != 0) defaults.add("cog_height", number(pattern_.cog_height));
+    if (!pattern_.full_model) defaults.add("cog_model", quoted("point_mass"));
+    top.add("defaults", defaults.object());
+  }
+
+  std::string feet(const std::array<std::optional<Foothold>, 2>& poses) const {
+    Members members;
+    for (const Side side : {Side::left, Side::right})
+      if (const auto& pose = poses[static_cast<size_t>(side)])
+        members.add(name_of(side), foothold(*pose));
+    return members.empty() ? "" : members.object();
+  }
+
+  void add_start(Members& top) const {
+    const std::string start = feet(pattern_.start_feet);
+    if (!start.empty()) top.add("start", start);
+  }
+
+  std::string phase(const Phase& each) const {
+    Members members;
+    members.add("until", number(each.until)).add("support", quoted(name_of(each.support)));
+    if (each.swing)
+      members.add("swing", Members()
+                               .add("foot", quoted(name_of(each.swing->foot)))
+                               .add("to", foothold(each.swing->to))
+                               .add("lift", number(each.swing->lift))
+                               .object());
+    return members.object();
+  }
+
+  static std::string zmp(const ZmpKey& key) {
+    switch (key.place) {
+      case ZmpKey::Place::left: return quoted("left");
+      case ZmpKey::Place::right: return quoted("right");
+      case ZmpKey::Place::center: return quoted("center");
+      case ZmpKey::Place::point: break;
+    }
+    return Members().item(number(key.point.x())).item(number(key.point.y())).array();
+  }
+
+  std::string keyframe(const Keyframe& key) const {
+    Members members;
+    members.add("t", number(key.t));
+    if (key.interpolation) members.add("interpolation", quoted(name_of(*key.interpolation)));
+    if (key.posture) members.add("posture", quoted(*key.posture));
+    if (!key.joints.empty())
+      members.add(key.posture ? "joints" : "posture", joint_angles(key.joints));
+    if (key.zmp) members.add("zmp", zmp(*key.zmp));
+    Members cog;
+    if (key.cog_x) cog.add("x", number(*key.cog_x));
+    if (key.cog_y) cog.add("y", number(*key.cog_y));
+    if (key.cog_height) cog.add("height", number(*key.cog_height));
+    if (!cog.empty()) members.add("cog", cog.object());
+    if (key.fz) members.add("fz", number(*key.fz));
+    if (key.torso)
+      members.add("torso", Members()
+                               .add("roll", angle(key.torso->x()))
+                               .add("pitch", angle(key.torso->y()))
+                               .add("yaw", angle(key.torso->z()))
+                               .object());
+    const std::string poses = feet(key.feet);
+    if (!poses.empty()) members.add("feet", poses);
+    Members weights;
+    for (const auto& [joint, weight] : key.weights) weights.add(joint, number(weight));
+    if (!weights.empty()) members.add("weights", weights.object());
+    return members.object();
+  }
+
+  void add_world(Members& top) const {
+    Members world;
+    world.add("friction", number(pattern_.world.friction));
+    const Eigen::Vector2d& slope = pattern_.world.slope;
+    world.add("ground",
+              slope.isZero(0)
+                  ? quoted("flat")
+                  : Members().add("roll", angle(slope.x())).add("pitch", angle(slope.y())).object());
+    top.add("world", world.object());
+  }
+
+  void add_controller(Members& top) const {
+    Members members;
+    members.add("type", quoted(pattern_.controller.type));
+    Members gains;
+    for (const auto& [name, value] : pattern_.controller.gains) gains.add(name, number(value));
+    if (!gains.empty()) members.add("gains", gains.object());
+    top.add("controller", members.object());
+  }
+
+  std::string disturbance(const Disturbance& push) const {
+    const char* const type = push.type == DisturbanceType::impulse ? "impulse"
+                             : push.type == DisturbanceType::force ? "force"
+                                                                   : "torque";
+    Members members;
+    members.add("type", quoted(type)).add("at", number(push.at));
+    members.add("duration", number(push.duration)).add("on", quoted(push.on));
+    if (push.on != "cog" && !push.point.isZero(0)) members.add("point", vector(push.point));
+    if (push.frame == DisturbanceFrame::link) members.add("frame", quoted("link"));
+    members.add("direction", vector(push.direction)).add(type, number(push.magnitude));
+    if (push.shape == DisturbanceShape::half_sine) members.add("shape", quoted("half_sine"));
+    return members.object();
+  }
+
+  void add_tolerances(Members& top) const {
+    Members members;
+    for (const auto& [kind, value] : pattern_.tolerances) members.add(kind, number(value));
+    if (!members.empty()) top.add("tolerances", members.object());
+  }
+
+  static std::string correction(const CorrectionTrack& track) {
+    Members columns;
+    for (const char* const name : {"base.x[m]", "base.y[m]", "base.z[m]", "base.rx[rad]",
+                                   "base.ry[rad]", "base.rz[rad]"})
+      columns.item(quoted(name));
+    for (const std::string& joint : track.joints) columns.item(quoted("theta." + joint + "[rad]"));
+    Members rows;
+    for (Eigen::Index r = 0; r < track.coefficients.rows(); ++r) {
+      Members row;
+      for (Eigen::Index c = 0; c < track.coefficients.cols(); ++c)
+        row.item(number(track.coefficients(r, c)));
+      rows.item(row.array());
+    }
+    Members members;
+    members.add("begin", number(track.begin)).add("spacing", number(track.spacing));
+    members.add("columns", columns.array());
+    members.add("coefficients",
+                track.coefficients.rows() == 0 ? "[]" : rows.lines('[', ']', "    "));
+    return members.lines('{', '}', "  ");
+  }
+
+  const Pattern& pattern_;
+};
+
+// A relative path written for files in `from`, so that it holds for files in `to`.
+std::string rebased(const std::string& name, const fs::path& from, const fs::path& to) {
+  if (fs::path(name).is_absolute() || from.lexically_normal() == to.lexically_normal())
+    return name;
+  std::error_code ignored;
+  const fs::path relative = fs::relative(from / name, to.empty() ? fs::path(".") : to, ignored);
+  return relative.empty() ? fs::absolute(from / name).string() : relative.string();
+}
+
+}  // namespace
+
+std::string pattern_text(const Pattern& pattern, const std::vector<std::string>& comments) {
+  std::string text;
+  for (const std::string& line : comments) text += line.empty() ? "//\n" : "// " + line + "\n";
+  if (!pattern.parameters.empty()) {
+    std::vector<std::string> values;
+    for (const auto& [name, value] : pattern.parameters) values.push_back(name + " = " + number(value));
+    text += "// Written with the parameters " + text::join(values, ", ") + ".\n";
+  }
+  return text + Writer(pattern).whole();
+}
+
+void write_pattern(const fs::path& path, const Pattern& pattern,
+                   const std::vector<std::string>& comments) {
+  Pattern moved = pattern;
+  if (!pattern.file.empty()) {
+    const fs::path from = fs::path(pattern.file).parent_path();
+    const fs::path to = path.parent_path();
+    if (moved.table) moved.table->file = rebased(moved.table->file, from, to);
+    if (moved.robot.find('/') != std::string::npos || moved.robot.ends_with(".json") ||
+        moved.robot.ends_with(".urdf"))
+      moved.robot = rebased(moved.robot, from, to);
+    if (!moved.schema.empty() && moved.schema.find("://") == std::string::npos)
+      moved.schema = rebased(moved.schema, from, to);
+  }
+  write_file(path, pattern_text(moved, comments));
+}
+
+}  // namespace ayumi
