@@ -25,8 +25,8 @@ Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
   swing.foot = read_side(node.at("foot"));
   if (supports(support, swing.foot))
     node.at("foot").complain("the " + std::string(name_of(swing.foot)) +
-                             " foot carries the robot in this phase (support " +
-                             name_of(support) + "); it cannot swing");
+                             " foot carries the robot in this phase (support " + name_of(support) +
+                             "); it cannot swing");
   swing.to = read_foothold(node.at("to"), scope);
   if (const auto lift = node.find("lift")) swing.lift = read_number(*lift, scope, 0, 10);
   return swing;

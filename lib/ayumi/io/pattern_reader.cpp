@@ -36,10 +36,9 @@ void read_parameters(const JsonNode& root, const std::map<std::string, double>& 
   for (const auto& [name, value] : set) {
     const std::string place = root.file() + ": parameter '" + name + "'";
     if (!scope.parameters.contains(name))
-      fail(ErrorCode::usage, place + " is not declared in the pattern" +
-                                 text::suggestion(name, names) +
-                                 (names.empty() ? "; it declares none"
-                                                : "; declared: " + text::join(names, ", ")));
+      fail(ErrorCode::usage,
+           place + " is not declared in the pattern" + text::suggestion(name, names) +
+               (names.empty() ? "; it declares none" : "; declared: " + text::join(names, ", ")));
     if (!(std::abs(value) <= kLargestNumber))
       fail(ErrorCode::usage, place + ": " + text::exact(value) + " is not a sensible number");
     scope.parameters[name] = value;
@@ -111,7 +110,8 @@ void require_increasing(const JsonNode& node, double time, double previous, bool
 void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
   const JsonNode phases = root.at("phases");
   phases.expect_array();
-  if (phases.size() == 0) phases.complain("is empty; at least one phase says who carries the robot");
+  if (phases.size() == 0)
+    phases.complain("is empty; at least one phase says who carries the robot");
   double previous = 0;
   for (const JsonNode& node : phases.items()) {
     pattern.phases.push_back(read_phase(node, scope));

@@ -48,8 +48,10 @@ double plain_number(const JsonNode& node, PatternScope& scope) {
   if (!node.value().is_string()) return node.number();
   const std::string text = node.string();
   if (!is_expression(text))
-    node.complain("expected a number (or an expression with a parameter such as \"${stride}*2\"), "
-                  "found the string \"" + text + "\"");
+    node.complain(
+        "expected a number (or an expression with a parameter such as \"${stride}*2\"), "
+        "found the string \"" +
+        text + "\"");
   return evaluate_expression(text, scope.parameters, where(node), &scope.used);
 }
 
@@ -74,8 +76,9 @@ double read_number(const JsonNode& node, PatternScope& scope, double lower, doub
 double read_angle(const JsonNode& node, PatternScope& scope) {
   const double value = read_number(node, scope);
   if (!scope.radians_per_unit)
-    node.complain("an angle needs its unit: add \"units\": {\"angle\": \"deg\"} (or \"rad\") at "
-                  "the top of the file");
+    node.complain(
+        "an angle needs its unit: add \"units\": {\"angle\": \"deg\"} (or \"rad\") at "
+        "the top of the file");
   return value * *scope.radians_per_unit;
 }
 
@@ -125,9 +128,9 @@ std::map<std::string, double> read_joint_angles(const JsonNode& node, PatternSco
 }
 
 Interpolation read_interpolation(const JsonNode& node) {
-  static const std::vector<Interpolation> all = {
-      Interpolation::linear, Interpolation::cubic, Interpolation::minimum_jerk,
-      Interpolation::hold, Interpolation::spline};
+  static const std::vector<Interpolation> all = {Interpolation::linear, Interpolation::cubic,
+                                                 Interpolation::minimum_jerk, Interpolation::hold,
+                                                 Interpolation::spline};
   std::vector<std::string> names;
   for (const Interpolation each : all) names.push_back(name_of(each));
   const std::string name = node.one_of(names);

@@ -11,14 +11,14 @@
 namespace ayumi {
 
 inline constexpr double kRadiansPerDegree = EIGEN_PI / 180;
-inline constexpr double kLargestNumber = 1e6;   ///< anything beyond is a mistake
+inline constexpr double kLargestNumber = 1e6;    ///< anything beyond is a mistake
 inline constexpr double kLongestPattern = 3600;  ///< [s]
 
 /// What the values of one file need to be understood.
 struct PatternScope {
   std::map<std::string, double> parameters;
-  std::set<std::string> used;               ///< parameters met in expressions
-  std::optional<double> radians_per_unit;   ///< none: the file names no angle unit
+  std::set<std::string> used;              ///< parameters met in expressions
+  std::optional<double> radians_per_unit;  ///< none: the file names no angle unit
 };
 
 /// Complains about keys that pattern_keys() does not list for `kind`.

@@ -18,7 +18,8 @@ std::string quoted(const std::string& text) {
 
 std::string number(double value) { return value == 0 ? "0" : text::exact(value); }
 
-// Shortest number of degrees that reads back to the same radians; where no double does, the nearest.
+// Shortest number of degrees that reads back to the same radians; where no double does, the
+// nearest.
 std::string degrees(double radians) {
   const double value = radians / kRadiansPerDegree;
   for (int digits = 1; digits <= 17; ++digits) {
@@ -165,10 +166,14 @@ class Writer {
 
   static std::string zmp(const ZmpKey& key) {
     switch (key.place) {
-      case ZmpKey::Place::left: return quoted("left");
-      case ZmpKey::Place::right: return quoted("right");
-      case ZmpKey::Place::center: return quoted("center");
-      case ZmpKey::Place::point: break;
+      case ZmpKey::Place::left:
+        return quoted("left");
+      case ZmpKey::Place::right:
+        return quoted("right");
+      case ZmpKey::Place::center:
+        return quoted("center");
+      case ZmpKey::Place::point:
+        break;
     }
     return Members().item(number(key.point.x())).item(number(key.point.y())).array();
   }
@@ -205,10 +210,11 @@ class Writer {
     Members world;
     world.add("friction", number(pattern_.world.friction));
     const Eigen::Vector2d& slope = pattern_.world.slope;
-    world.add("ground",
-              slope.isZero(0)
-                  ? quoted("flat")
-                  : Members().add("roll", angle(slope.x())).add("pitch", angle(slope.y())).object());
+    world.add(
+        "ground",
+        slope.isZero(0)
+            ? quoted("flat")
+            : Members().add("roll", angle(slope.x())).add("pitch", angle(slope.y())).object());
     top.add("world", world.object());
   }
 
@@ -243,8 +249,8 @@ class Writer {
 
   static std::string correction(const CorrectionTrack& track) {
     Members columns;
-    for (const char* const name : {"base.x[m]", "base.y[m]", "base.z[m]", "base.rx[rad]",
-                                   "base.ry[rad]", "base.rz[rad]"})
+    for (const char* const name :
+         {"base.x[m]", "base.y[m]", "base.z[m]", "base.rx[rad]", "base.ry[rad]", "base.rz[rad]"})
       columns.item(quoted(name));
     for (const std::string& joint : track.joints) columns.item(quoted("theta." + joint + "[rad]"));
     Members rows;
@@ -267,8 +273,7 @@ class Writer {
 
 // A relative path written for files in `from`, so that it holds for files in `to`.
 std::string rebased(const std::string& name, const fs::path& from, const fs::path& to) {
-  if (fs::path(name).is_absolute() || from.lexically_normal() == to.lexically_normal())
-    return name;
+  if (fs::path(name).is_absolute() || from.lexically_normal() == to.lexically_normal()) return name;
   std::error_code ignored;
   const fs::path relative = fs::relative(from / name, to.empty() ? fs::path(".") : to, ignored);
   return relative.empty() ? fs::absolute(from / name).string() : relative.string();
@@ -281,7 +286,8 @@ std::string pattern_text(const Pattern& pattern, const std::vector<std::string>&
   for (const std::string& line : comments) text += line.empty() ? "//\n" : "// " + line + "\n";
   if (!pattern.parameters.empty()) {
     std::vector<std::string> values;
-    for (const auto& [name, value] : pattern.parameters) values.push_back(name + " = " + number(value));
+    for (const auto& [name, value] : pattern.parameters)
+      values.push_back(name + " = " + number(value));
     text += "// Written with the parameters " + text::join(values, ", ") + ".\n";
   }
   return text + Writer(pattern).whole();

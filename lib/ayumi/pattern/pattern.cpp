@@ -6,21 +6,30 @@ namespace ayumi {
 
 const char* name_of(Support support) {
   switch (support) {
-    case Support::both: return "both";
-    case Support::left: return "left";
-    case Support::right: return "right";
-    case Support::none: return "none";
+    case Support::both:
+      return "both";
+    case Support::left:
+      return "left";
+    case Support::right:
+      return "right";
+    case Support::none:
+      return "none";
   }
   return "?";
 }
 
 const char* name_of(Interpolation interpolation) {
   switch (interpolation) {
-    case Interpolation::linear: return "linear";
-    case Interpolation::cubic: return "cubic";
-    case Interpolation::minimum_jerk: return "minimum_jerk";
-    case Interpolation::hold: return "hold";
-    case Interpolation::spline: return "spline";
+    case Interpolation::linear:
+      return "linear";
+    case Interpolation::cubic:
+      return "cubic";
+    case Interpolation::minimum_jerk:
+      return "minimum_jerk";
+    case Interpolation::hold:
+      return "hold";
+    case Interpolation::spline:
+      return "spline";
   }
   return "?";
 }

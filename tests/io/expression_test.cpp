@@ -1,0 +1,54 @@
+#include "ayumi/io/expression.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+
+namespace ayumi {
+namespace {
+
+double value(const std::string& text) {
+  return evaluate_expression(text, {{"a", 3}, {"step length", 0.5}}, "f: /x");
+}
+
+std::string message(const std::string& text) {
+  try {
+    value(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Expression, FollowsTheUsualRules) {
+  EXPECT_EQ(value("${a}"), 3);
+  EXPECT_EQ(value("-${a}*2 + 1"), -5);
+  EXPECT_EQ(value("2 - 3 - ${a}"), -4);
+  EXPECT_EQ(value("12/${a}/2"), 2);
+  EXPECT_EQ(value("2*(${a} + 1e-1)"), 6.2);
+  EXPECT_EQ(value("--${a}"), 3);
+  EXPECT_EQ(value(" .5 * ${step length} "), 0.25);
+}
+
+TEST(Expression, NamesWhatItUsed) {
+  std::set<std::string> used;
+  evaluate_expression("${a} + ${a}", {{"a", 1}, {"b", 2}}, "", &used);
+  EXPECT_EQ(used, std::set<std::string>{"a"});
+}
+
+TEST(Expression, SaysWhatIsWrong) {
+  EXPECT_NE(message("${b}").find("f: /x: expression \"${b}\": unknown parameter 'b'"),
+            std::string::npos);
+  EXPECT_NE(message("${a} *").find("missing at the end"), std::string::npos);
+  EXPECT_NE(message("${a} 2").find("unexpected '2'"), std::string::npos);
+  EXPECT_NE(message("(${a}").find("')' is missing"), std::string::npos);
+  EXPECT_NE(message("${a}/0").find("division by zero"), std::string::npos);
+  EXPECT_NE(message("${a}*inf").find("expected a number"), std::string::npos);
+  EXPECT_NE(message("${a}*1e300*1e300").find("not a finite number"), std::string::npos);
+  EXPECT_NE(message("$a").find("a parameter is written ${name}"), std::string::npos);
+  EXPECT_NE(message(std::string(100000, '(')).find("nested too deeply"), std::string::npos);
+  EXPECT_NE(message(std::string(100000, '-')).find("nested too deeply"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ayumi
