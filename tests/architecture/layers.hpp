@@ -1,0 +1,172 @@
+#pragma once
+// The layering rules of docs/architecture.md, read from the sources: who may include whom, and
+// which third party may appear where.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace ayumi::test {
+
+namespace fs = std::filesystem;
+
+struct Room {
+  int floor = 0;
+  std::set<std::string> also = {};    ///< seen although on the same floor
+  std::set<std::string> hidden = {};  ///< lower rooms that are out of sight
+  bool data_only = false;             ///< of floors 5 and 6 only data_headers()
+};
+
+inline const std::map<std::string, Room>& rooms() {
+  static const std::map<std::string, Room> table = {
+      {"base", {0, {}, {}, false}},
+      {"math", {1, {}, {}, false}},
+      {"geometry", {2, {}, {}, false}},
+      {"model", {2, {"geometry"}, {}, false}},
+      {"dynamics", {3, {}, {}, false}},
+      {"pattern", {4, {}, {}, false}},
+      {"check", {5, {}, {}, false}},
+      {"control", {5, {}, {}, false}},
+      {"optimize", {6, {}, {"control"}, false}},
+      {"sim", {6, {}, {"check"}, false}},
+      {"study", {7, {}, {}, false}},
+      {"plant_mujoco", {7, {}, {"check", "control", "optimize"}, false}},
+      {"io", {7, {}, {}, true}},
+      {"preview", {7, {}, {}, true}},
+      {"report", {8, {}, {}, true}},
+      {"app", {9, {}, {}, false}}};
+  return table;
+}
+
+/// Headers of floors 5 and 6 that hold results and options, open to io, preview and report.
+inline const std::set<std::string>& data_headers() {
+  static const std::set<std::string> headers = {"check/consistency.hpp", "optimize/repair.hpp",
+                                                "sim/simulate.hpp", "sim/simulation_log.hpp"};
+  return headers;
+}
+
+/// Headers that show a third party other than Eigen: not installed, for their own room alone.
+inline const std::set<std::string>& private_headers() {
+  static const std::set<std::string> headers = [] {
+    std::ifstream list(fs::path(AYUMI_SOURCE_DIR) / "lib/cmake/private_headers.txt");
+    return std::set<std::string>(std::istream_iterator<std::string>(list), {});
+  }();
+  return headers;
+}
+
+struct ThirdParty {
+  std::string name;
+  std::regex header;
+  std::set<std::string> rooms;  ///< empty: everywhere, public headers included
+};
+
+inline const std::vector<ThirdParty>& third_parties() {
+  static const std::vector<ThirdParty> table = {
+      {"Eigen", std::regex("Eigen/.*"), {}},
+      {"FCL", std::regex("fcl/.*"), {"geometry"}},
+      {"Ipopt", std::regex("Ip[A-Z].*|coin(-or)?/.*"), {"optimize"}},
+      {"urdfdom", std::regex("(urdf|console_bridge|tinyxml).*"), {"io"}},
+      {"assimp", std::regex("assimp/.*"), {"io"}},
+      {"OpenSSL", std::regex("openssl/.*"), {"io"}},
+      {"nlohmann-json", std::regex("nlohmann/.*"), {"io", "app"}},
+      {"OpenGL", std::regex("E?GL/.*"), {"preview"}},
+      {"cairo", std::regex("cairo.*"), {"preview"}},
+      {"CLI11", std::regex("CLI/.*"), {"app"}},
+      {"MuJoCo", std::regex("mujoco/.*"), {"plant_mujoco"}},
+      {"POSIX",
+       std::regex("sys/.*|(unistd|fcntl|signal|spawn|poll|termios|pthread)\\.h"),
+       {"base", "preview", "app"}},
+      {"processor intrinsics", std::regex("(imm|x86)intrin\\.h"), {"dynamics", "sim"}}};
+  return table;
+}
+
+/// The broken rule, empty when a file of `room` may include "ayumi/`header`".
+inline std::string room_rule(const std::string& room, bool public_header,
+                             const std::string& header) {
+  const std::string target = header.substr(0, header.find('/'));
+  const auto to = rooms().find(target);
+  if (to == rooms().end()) return "there is no room '" + target + "'";
+  const bool is_private = private_headers().contains(header);
+  if (is_private && (room != target || public_header))
+    return "ayumi/" + header + " is private to the sources of its room";
+  if (room == target) return "";
+  const Room& from = rooms().at(room);
+  if (from.also.contains(target)) return "";
+  const int floor = to->second.floor;
+  if (floor >= from.floor || from.hidden.contains(target))
+    return "room '" + room + "' (floor " + std::to_string(from.floor) + ") may not include room '" +
+           target + "' (floor " + std::to_string(floor) + ")";
+  if (from.data_only && (floor == 5 || floor == 6) && !data_headers().contains(header))
+    return "room '" + room + "' may include only data types of room '" + target + "'";
+  return "";
+}
+
+/// The broken rule, empty when a file of `room` may include <`header`>.
+inline std::string third_party_rule(const std::string& room, bool public_header,
+                                    const std::string& header) {
+  if (header.find_first_of("/.") == std::string::npos) return "";  // the standard library
+  for (const ThirdParty& party : third_parties()) {
+    if (!std::regex_match(header, party.header)) continue;
+    if (party.rooms.empty()) return "";
+    if (!party.rooms.contains(room)) return party.name + " may not be used in room '" + room + "'";
+    return public_header ? "only Eigen shows in public headers" : "";
+  }
+  return "<" + header + "> is no known third party";
+}
+
+/// Breaks in one source file, "shown:line: rule" each.
+inline std::vector<std::string> file_violations(const fs::path& file, const std::string& shown,
+                                                const std::string& room, bool public_header) {
+  static const std::regex include(R"re(^\s*#\s*include\s*(["<])([^">]+)[">].*)re");
+  if (!rooms().contains(room)) return {shown + ":1: there is no room '" + room + "'"};
+  std::vector<std::string> found;
+  std::ifstream stream(file);
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    std::smatch match;
+    if (!std::regex_match(line, match, include)) continue;
+    const std::string header = match[2];
+    std::string rule;
+    if (header.starts_with("ayumi/"))
+      rule = room_rule(room, public_header, header.substr(6));
+    else if (match[1] == "<")
+      rule = third_party_rule(room, public_header, header);
+    else if (room != "app")
+      rule = "\"" + header + "\": write the path from ayumi/";
+    if (!rule.empty()) found.push_back(shown + ":" + std::to_string(number) + ": " + rule);
+  }
+  return found;
+}
+
+/// Every break of the rules in lib/ayumi and app below `root`, sorted.
+inline std::vector<std::string> layering_violations(const fs::path& root) {
+  static const std::set<std::string> forbidden = {"util",   "utils",   "common",  "core",
+                                                  "helper", "helpers", "manager", "managers"};
+  std::vector<std::string> found;
+  for (const fs::path& top : {fs::path("lib/ayumi"), fs::path("app")}) {
+    if (!fs::exists(root / top)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const fs::path inside = fs::relative(entry.path(), root / top);
+      const std::string shown = (top / inside).generic_string();
+      const std::string extension = entry.path().extension();
+      if (entry.is_directory() && forbidden.contains(inside.filename()))
+        found.push_back(shown + ": no such folder name");
+      if (extension != ".cpp" && extension != ".hpp") continue;
+      const std::string room = top == "app" ? "app" : inside.begin()->string();
+      const bool public_header = extension == ".hpp" && room != "app" &&
+                                 !private_headers().contains(inside.generic_string());
+      const auto breaks = file_violations(entry.path(), shown, room, public_header);
+      found.insert(found.end(), breaks.begin(), breaks.end());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace ayumi::test
