@@ -1,0 +1,43 @@
+#pragma once
+// Robots by name or by file: a folder robots/<name> with robot.json (the sidecar) and its URDF, a
+// sidecar alone, or a bare URDF whose soles, servos and home posture are then inferred. The sidecar
+// is specified in docs/formats.md, "Robot sidecar".
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+/// Folders that hold robots, searched in this order; each robot is a folder with a robot.json.
+struct RobotSearch {
+  std::vector<std::filesystem::path> folders;
+};
+
+struct LoadOptions {
+  bool meshes = false;  ///< fill MeshShape::mesh of every visual and collision
+};
+
+struct RobotEntry {
+  std::string name;
+  std::filesystem::path sidecar;
+};
+
+/// The robots in the search folders by name; an earlier folder hides a later one.
+std::vector<RobotEntry> find_robots(const RobotSearch& search);
+
+/// `name_or_path`: a name in the search folders, a folder, a robot.json, or a .urdf. What was not
+/// stated but inferred is listed in `assumptions`. Throws Error(bad_file) when nothing is there or
+/// a file cannot be read, "file: /pointer: ..." for a sidecar that is not as specified,
+/// Error(bad_model) for an impossible robot.
+RobotDescription load_robot_description(const std::string& name_or_path,
+                                        const RobotSearch& search = {},
+                                        const LoadOptions& options = {});
+
+/// The same as a validated model.
+RobotModel load_robot(const std::string& name_or_path, const RobotSearch& search = {},
+                      const LoadOptions& options = {});
+
+}  // namespace ayumi
