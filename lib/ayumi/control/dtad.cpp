@@ -1,0 +1,211 @@
+// Per axis x (y alike), hats measured, Delta = cmd - measured (21):
+//   Z*    = cmdZ - K Dx - D Ddx                                    (18)(19), sign of D corrected
+//   refZ  = nearest point of the shrunk support polygon to Z*
+//   reffz = max(fmin, cmdfz + m (Kz Dz + Dz Ddz))                  (20)
+//   w2    = reffz / (m (zG - zZ))                                  (17)
+//   ddx   = cmdddx + ka w2 (zhat - refZ - zd) + ks^2 w^2 (cmdx - xref) + 2 kd w (cmddx - dxref)
+//   zd'   = (zhat - refZ - zd) / Tw                                washout
+//   dxref += dt ddx; theta from (22)(23); xref is read back from the posture.
+// The term with ka is what the reference lacks of (14): w2 (x - refZ) is asked, w2 (x - zhat) is
+// what the ground gives. It is zero when the ZMP is where it should be: short-term absorption.
+#include "ayumi/control/dtad.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/control/support.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/zmp.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kMinForceShare = 0.1;    // of the weight: f_min of the projection of f_z
+constexpr double kOffsetLimit = 0.09;     // of the washed-out offset, times z
+constexpr double kSpeedLimit = 0.8;       // of the reference COG, times omega z
+constexpr double kAccelerationLimit = 4;  // of the reference COG, times g
+
+}  // namespace
+
+VectorXd servo_lead(const RobotModel& model) {
+  VectorXd lead(model.dof_count());
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const ServoDescription& servo = model.dofs()[j].servo;
+    lead[j] = servo.kp > 0 ? servo.kd / servo.kp : 0.0;
+  }
+  return lead;
+}
+
+DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
+  DtadParams p;
+  const std::map<std::string, double*> fields = {
+      {"q", &p.q},         {"ka", &p.ka},           {"ks", &p.ks},   {"kd", &p.kd},
+      {"tau_z", &p.tau_z}, {"margin", &p.margin},   {"kz", &p.kz},   {"dz", &p.dz},
+      {"kaz", &p.kaz},     {"washout", &p.washout}, {"ankle", &p.ankle}};
+  std::vector<std::string> names = {"k", "d"};
+  for (const auto& [name, field] : fields) names.push_back(name);
+  auto set = [&](const std::string& name, double value, const std::string& where) {
+    if (!std::isfinite(value) || value < 0)
+      fail(ErrorCode::usage, where + ": gain " + name + " is " + text::brief(value) +
+                                 "; gains are finite and not negative");
+    if (name == "k")
+      p.k = value;
+    else if (name == "d")
+      p.d = value;
+    else if (const auto found = fields.find(name); found != fields.end())
+      *found->second = value;
+    else
+      fail(ErrorCode::usage, where + ": dtad has no gain '" + name + "'" +
+                                 text::suggestion(name, names) + " (known: " +
+                                 text::join(names, ", ") + ")");
+  };
+  for (const auto& [name, value] : model.description().control.dtad)
+    set(name, value, model.name() + " sidecar");
+  bool q_given = false;
+  for (const auto& [name, value] : spec.gains) {
+    set(name, value, "controller gains");
+    q_given |= name == "q";
+  }
+  if (p.k.has_value() != p.d.has_value())
+    fail(ErrorCode::usage, "controller gains: k and d are given together or not at all");
+  if (p.k && q_given)
+    fail(ErrorCode::usage, "controller gains: q sets K and D; give q, or k and d, not both");
+  if (p.k && (*p.k <= 1 || *p.d <= 0))
+    fail(ErrorCode::usage, "controller gains: k = " + text::brief(*p.k) + ", d = " +
+                               text::brief(*p.d) +
+                               " never bring the COG back; (18)(19) need K > 1 and D > 0");
+  if (!p.k && p.q <= 0)
+    fail(ErrorCode::usage, "controller gains: q must be positive (K = 1 + q must exceed 1)");
+  if (p.tau_z <= 0) fail(ErrorCode::usage, "controller gains: tau_z must be positive");
+  p.literal = spec.type == "dtad-literal";
+  return p;
+}
+
+Dtad::Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadParams& params,
+           double dt, const CommandSample& first)
+    : model_(&model),
+      limits_(limits),
+      params_(params),
+      dt_(dt),
+      data_(model),
+      weight_(model.joint_weight()),
+      lead_(servo_lead(model)),
+      previous_target_(first.state.theta),
+      reference_(first.state),
+      zmp_filtered_(first.zmp.head<2>()),
+      fz_filtered_(first.fz) {
+  if (first.support == Support::right) anchor_ = Side::right;
+}
+
+CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& estimate) {
+  const DtadParams& p = params_;
+  const double m = model_->mass(), weight = m * kGravity;
+  const double z = command.cog.z() - command.zmp.z();
+  const double w = std::sqrt(kGravity / z);
+  const double K = p.k ? *p.k : 1 + p.q;
+  const double D = (p.d ? *p.d : 1 + p.q) / w;
+
+  const Vector3d e = command.cog - estimate.cog;
+  const Vector3d de = command.dcog - estimate.dcog;
+  CogReference ref;
+  const ConvexPolygon polygon =
+      support_polygon(*model_, command.feet, command.support).shrunk(p.margin * z);
+  const Vector2d wanted = command.zmp.head<2>() - K * e.head<2>() - D * de.head<2>();
+  ref.zmp = command.zmp;
+  ref.zmp.head<2>() = polygon.empty() ? wanted : polygon.project(wanted);
+  ref.fz = std::max(kMinForceShare * weight,
+                    command.fz + m * (p.kz * w * w * e.z() + p.dz * w * de.z()));
+
+  const double filter = 1.0 - std::exp(-dt_ * w / p.tau_z);
+  if (estimate.contact) {
+    zmp_filtered_ += filter * (estimate.zmp.head<2>() - zmp_filtered_);
+    fz_filtered_ += filter * (estimate.fz - fz_filtered_);
+  }
+  const double w2 = omega_squared(ref.fz, m, z);
+
+  if (p.literal) {
+    ref.ddcog.head<2>() = w2 * (estimate.cog - ref.zmp).head<2>();
+    ref.ddcog.z() = ref.fz / m - kGravity;
+    return ref;
+  }
+  Vector2d gap = Vector2d::Zero();
+  if (estimate.contact && command.support != Support::none) {
+    gap = zmp_filtered_ - ref.zmp.head<2>() - offset_;
+    if (p.washout > 0) {
+      offset_ += dt_ * w / p.washout * gap;
+      const double limit = kOffsetLimit * z;
+      if (offset_.norm() > limit) offset_ *= limit / offset_.norm();
+    }
+  }
+  const Vector3d pull = p.ks * p.ks * w * w * (command.cog - data_.cog) +
+                        2 * p.kd * w * (command.dcog - dcog_);
+  ref.ddcog = command.ddcog + pull;
+  ref.ddcog.head<2>() += p.ka * w2 * gap;
+  if (estimate.contact) ref.ddcog.z() += p.kaz * (ref.fz - fz_filtered_) / m;
+  return ref;
+}
+
+// A foot that has tipped is turned back flat by the two joints nearest to it.
+VectorXd Dtad::ankle_offsets(const Estimate& estimate) const {
+  VectorXd offsets = VectorXd::Zero(model_->dof_count());
+  const std::vector<int>& leg = model_->leg(estimate.stance);
+  for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i) {
+    const int body = model_->dofs()[leg[i]].body;
+    offsets[leg[i]] = -params_.ankle * data_.axis[body].dot(estimate.foot_tilt);
+  }
+  return offsets;
+}
+
+ControlOutput Dtad::update(const CommandSample& command, const CommandSample& next,
+                           const Estimate& estimate) {
+  ControlOutput out;
+  if (command.support == Support::left) anchor_ = Side::left;
+  if (command.support == Support::right) anchor_ = Side::right;
+  anchor_base(*model_, anchor_, command.feet[static_cast<int>(anchor_)], reference_, data_);
+
+  out.cog = data_.cog;
+  out.cog_reference = cog_reference(command, estimate);
+  CogReference& ref = out.cog_reference;
+  const double z = command.cog.z() - command.zmp.z();
+  const double w = std::sqrt(kGravity / z);
+  const double limit = kAccelerationLimit * kGravity;
+  if (ref.ddcog.norm() > limit) ref.ddcog *= limit / ref.ddcog.norm();
+  dcog_ += dt_ * ref.ddcog;
+  const double speed = kSpeedLimit * w * z;
+  if (dcog_.norm() > speed) dcog_ *= speed / dcog_.norm();
+  ref.dcog = dcog_;
+
+  const Resolution resolution = resolve(*model_, limits_, reference_, data_, anchor_, dcog_,
+                                        command, next, dt_, weight_);
+  if (resolution.scale < 1)
+    out.notes.push_back("speed limit of " + model_->dofs()[resolution.limiting_dof].name +
+                        " slows the reference");
+  for (int j : resolution.held)
+    out.notes.push_back("position limit holds " + model_->dofs()[j].name);
+
+  const VectorXd offsets = ankle_offsets(estimate);
+  reference_.dtheta = resolution.dtheta;
+  reference_.theta += dt_ * resolution.dtheta;
+  out.reference = reference_;
+  out.target = reference_.theta + lead_.cwiseProduct(resolution.dtheta) + offsets;
+  for (int j = 0; j < out.target.size(); ++j) {
+    const Dof& dof = model_->dofs()[j];
+    const double step = limits_.speed[j] * dt_;
+    out.target[j] =
+        std::clamp(out.target[j], previous_target_[j] - step, previous_target_[j] + step);
+    if (dof.limited) out.target[j] = std::clamp(out.target[j], dof.lower, dof.upper);
+  }
+  previous_target_ = out.target;
+  return out;
+}
+
+}  // namespace ayumi

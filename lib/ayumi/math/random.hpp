@@ -1,0 +1,32 @@
+#pragma once
+// Seeded random numbers that are the same on every platform.
+
+#include <cmath>
+#include <cstdint>
+
+namespace ayumi {
+
+/// SplitMix64 with uniform and normal deviates.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  std::uint64_t bits() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return z ^ (z >> 31);
+  }
+  /// In [0, 1).
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
+  /// Mean 0, standard deviation 1 (Box-Muller, one of the pair).
+  double normal() {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return radius * std::cos(2.0 * M_PI * uniform());
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace ayumi

@@ -1,0 +1,80 @@
+#include "ayumi/sim/sensors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+
+Sensors::Sensors(const RobotModel& model, double dt, bool noise, std::uint64_t seed)
+    : model_(&model), data_(model), dt_(dt), noise_(noise), random_(seed) {
+  if (noise)
+    delay_ = static_cast<size_t>(std::lround(model.description().sensors.latency / dt));
+}
+
+Measurement Sensors::measure(const RobotState& state, const StepReport& report) {
+  const SensorDescription& s = model_->description().sensors;
+  update_velocities(*model_, state, data_);
+  Measurement m;
+  m.theta = state.theta;
+  if (noise_ && s.encoder_quantisation) {
+    for (int j = 0; j < model_->dof_count(); ++j) {
+      const double counts = std::abs(model_->dofs()[j].encoder.counts_per_degree) * 180.0 / M_PI;
+      if (counts > 0) m.theta[j] = std::round(m.theta[j] * counts) / counts;
+    }
+  }
+  // Rates are differences of successive readings; the integrator makes them exact without noise.
+  m.dtheta = previous_theta_.size() ? Eigen::VectorXd((m.theta - previous_theta_) / dt_)
+                                    : state.dtheta;
+  previous_theta_ = m.theta;
+
+  const int imu = std::max(0, model_->find_link(s.imu_link));
+  const Link& link = model_->links()[imu];
+  Eigen::Quaterniond attitude(
+      Eigen::Matrix3d(data_.rotation[link.body] * link.pose.linear()));
+  auto noise = [&](double sigma) {
+    return Vector3d(sigma * random_.normal(), sigma * random_.normal(), sigma * random_.normal());
+  };
+  Vector3d w = attitude.conjugate() * data_.angular_velocity[link.body];
+  if (noise_) {
+    Vector3d error = noise(s.attitude_noise);
+    error.head<2>().array() += s.attitude_bias;
+    attitude = exp_rotation(error) * attitude;
+    w += noise(s.gyro_noise);
+  }
+  m.attitude = attitude.normalized();
+  m.gyro = w;
+
+  for (int side = 0; side < 2; ++side) {
+    const std::vector<SoleForce>& cells = report.soles[side];
+    const Sole& sole = model_->sole(static_cast<Side>(side));
+    const Eigen::Matrix3d to_sole =
+        sole_pose(*model_, data_, static_cast<Side>(side)).linear().transpose();
+    FootLoad& load = m.feet[side];
+    Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+    for (size_t i = 0; i < cells.size(); ++i) {
+      double f = (to_sole * cells[i].force).z();
+      if (noise_) {
+        f += s.force_noise * random_.normal();
+        if (s.force_resolution > 0) f = std::round(f / s.force_resolution) * s.force_resolution;
+      }
+      f = std::max(f, 0.0);
+      load.fz += f;
+      moment += f * sole.polygon[i];
+    }
+    load.cop = load.fz > 0 ? Eigen::Vector2d(moment / load.fz) : sole.center;
+  }
+  return m;
+}
+
+Measurement Sensors::read(const RobotState& state, const StepReport& report) {
+  delayed_.push_back(measure(state, report));
+  while (delayed_.size() > delay_ + 1) delayed_.pop_front();
+  return delayed_.front();
+}
+
+}  // namespace ayumi

@@ -1,0 +1,159 @@
+#include "ayumi/sim/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kFallTilt = 0.8;           // [rad]
+constexpr double kFallHeightShare = 0.6;    // of the commanded COG height
+constexpr double kRestTilt = 0.2;           // [rad]
+constexpr double kRestError = 0.09;         // times z
+constexpr double kRestSpeed = 0.054;        // times omega z
+constexpr double kTouchShare = 0.05;        // of the weight: a foot is on the ground
+constexpr double kMinFlightOfFoot = 0.03;   // off the ground before a touchdown counts [s]
+
+/// Horizontal rigid motion that takes the planned soles onto the real ones: mean place and heading.
+Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
+                         const CommandSample& command) {
+  Vector3d plan = Vector3d::Zero(), real = Vector3d::Zero();
+  double sine = 0, cosine = 0;
+  int count = 0;
+  for (Side side : {Side::left, Side::right}) {
+    if (command.support != Support::none && !supports(command.support, side)) continue;
+    const Isometry3d& p = command.feet[static_cast<int>(side)];
+    const Isometry3d r = sole_pose(model, data, side);
+    plan += p.translation();
+    real += r.translation();
+    const double yaw = matrix_to_rpy(r.linear()).z() - matrix_to_rpy(p.linear()).z();
+    sine += std::sin(yaw);
+    cosine += std::cos(yaw);
+    ++count;
+  }
+  Isometry3d turn = Isometry3d::Identity();
+  turn.linear() =
+      Eigen::AngleAxisd(std::atan2(sine, cosine), Vector3d::UnitZ()).toRotationMatrix();
+  turn.translation() = real / count - turn.linear() * plan / count;
+  return turn;
+}
+
+}  // namespace
+
+const char* name_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::stands: return "stands";
+    case Outcome::unsettled: return "unsettled";
+    case Outcome::fell: return "fell";
+  }
+  return "";
+}
+
+Judge::Judge(const RobotModel& model, const ActuatorLimits& limits, const World& world)
+    : model_(&model),
+      limits_(limits),
+      normal_(exp_rotation({world.slope.x(), world.slope.y(), 0}).toRotationMatrix().col(2)),
+      data_(model) {
+  result_.apex = -1e9;
+}
+
+bool Judge::observe(double t, const CommandSample& command, const SimulationSample& sample,
+                    const StepReport& report, double dt) {
+  update_positions(*model_, sample.state, data_);
+  const double weight = model_->mass() * kGravity;
+  const Vector3d up = data_.rotation[model_->trunk_body()].col(2);
+  const double tilt = std::acos(std::clamp(up.dot(normal_), -1.0, 1.0));
+  SimulationResult& r = result_;
+  const bool fallen_before = r.fell_at >= 0;
+  if (!fallen_before) {
+    r.max_tilt = std::max(r.max_tilt, tilt);
+    r.apex = std::max(r.apex, sample.cog.z() - command.cog.z());
+    r.max_penetration = std::max(r.max_penetration, report.max_penetration);
+    for (int j = 0; j < model_->dof_count(); ++j) {
+      r.max_speed_ratio =
+          std::max(r.max_speed_ratio, std::abs(sample.state.dtheta[j]) / limits_.speed[j]);
+      r.max_torque_ratio =
+          std::max(r.max_torque_ratio, std::abs(sample.torque[j]) / limits_.peak_torque[j]);
+    }
+    if (sample.fz > kTouchShare * weight) {
+      zmp_square_sum_ += (sample.measured_zmp - sample.reference_zmp).head<2>().squaredNorm();
+      ++zmp_count_;
+      airborne_ = 0;
+    } else {
+      airborne_ += dt;
+      r.flight += dt;
+    }
+    observe_feet(t, command, report, dt);
+  }
+
+  std::string reason;
+  if (tilt > kFallTilt)
+    reason = "trunk tilt " + text::fixed(tilt, 2) + " rad";
+  else if (normal_.dot(sample.cog) < kFallHeightShare * (command.cog.z() - command.zmp.z()))
+    reason = "COG at " + text::fixed(normal_.dot(sample.cog), 3) + " m";
+  else if (report.body_contact)
+    reason = "touched the ground with something but a foot";
+  if (reason.empty() || fallen_before) return false;
+  r.fell_at = t;
+  events_.push_back({t, "fell", reason});
+  return true;
+}
+
+void Judge::observe_feet(double t, const CommandSample& command, const StepReport& report,
+                         double dt) {
+  const double weight = model_->mass() * kGravity;
+  for (Side side : {Side::left, Side::right}) {
+    const int i = static_cast<int>(side);
+    double fz = 0;
+    for (const SoleForce& cell : report.soles[i]) fz += normal_.dot(cell.force);
+    const bool loaded = fz > kTouchShare * weight;
+    if (loaded && unloaded_[i] > kMinFlightOfFoot) {
+      ++result_.steps;
+      events_.push_back({t, "touchdown", std::string(name_of(side)) + " foot"});
+    }
+    unloaded_[i] = loaded ? 0.0 : unloaded_[i] + dt;
+    // Slip is told from where the foot stood when it first carried load in its stance.
+    const bool stance = supports(command.support, side) && loaded;
+    const Vector3d place = sole_pose(*model_, data_, side).translation();
+    if (stance && !in_stance_[i]) stance_start_[i] = place;
+    if (stance) {
+      const Vector3d moved = place - stance_start_[i];
+      const double slip = (moved - normal_.dot(moved) * normal_).norm();
+      result_.max_slip = std::max(result_.max_slip, slip);
+    }
+    in_stance_[i] = supports(command.support, side) && (in_stance_[i] || loaded);
+  }
+}
+
+SimulationResult Judge::conclude(const CommandSample& command, const RobotState& state) {
+  SimulationResult& r = result_;
+  update_velocities(*model_, state, data_);
+  r.zmp_tracking_rms =
+      zmp_count_ > 0 ? std::sqrt(zmp_square_sum_ / static_cast<double>(zmp_count_)) : 0.0;
+  const Vector3d cog = plan_to_world(*model_, data_, command).inverse() * data_.cog;
+  r.final_cog_error = (cog - command.cog).head<2>().norm();
+  r.final_speed = data_.dcog.norm();
+  if (r.fell_at >= 0) {
+    r.outcome = Outcome::fell;
+    return r;
+  }
+  const double z = command.cog.z() - command.zmp.z();
+  const double omega = std::sqrt(kGravity / z);
+  const Vector3d up = data_.rotation[model_->trunk_body()].col(2);
+  const double tilt = std::acos(std::clamp(up.dot(normal_), -1.0, 1.0));
+  const bool rest = r.final_cog_error < kRestError * z && r.final_speed < kRestSpeed * omega * z &&
+                    tilt < kRestTilt;
+  r.outcome = rest ? Outcome::stands : Outcome::unsettled;
+  return r;
+}
+
+}  // namespace ayumi

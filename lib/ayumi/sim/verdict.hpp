@@ -1,0 +1,43 @@
+#pragma once
+// The verdict of a run, one definition everywhere (docs/cli.md, "Outcome").
+
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/simulation_log.hpp"
+
+namespace ayumi {
+
+/// Gathers a run's figures tick by tick.
+class Judge {
+ public:
+  Judge(const RobotModel& model, const ActuatorLimits& limits, const World& world);
+
+  /// One control tick: plan, true state and the last step's report. `sample` is the log entry of
+  /// this tick. Returns true once, at the tick of the fall.
+  bool observe(double t, const CommandSample& command, const SimulationSample& sample,
+               const StepReport& report, double dt);
+
+  /// After the last tick; `command` is the plan's end.
+  SimulationResult conclude(const CommandSample& command, const RobotState& state);
+
+  const std::vector<SimulationEvent>& events() const { return events_; }
+
+ private:
+  void observe_feet(double t, const CommandSample& command, const StepReport& report, double dt);
+
+  const RobotModel* model_;
+  ActuatorLimits limits_;
+  Eigen::Vector3d normal_;
+  RobotData data_;
+  SimulationResult result_;
+  std::vector<SimulationEvent> events_;
+  double zmp_square_sum_ = 0;
+  long zmp_count_ = 0;
+  double airborne_ = 0;                              // of the present flight [s]
+  std::array<double, 2> unloaded_ = {0, 0};          // time each foot has been off the ground [s]
+  std::array<bool, 2> in_stance_ = {false, false};
+  std::array<Eigen::Vector3d, 2> stance_start_;
+};
+
+}  // namespace ayumi
