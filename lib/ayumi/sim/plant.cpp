@@ -26,7 +26,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kStaticSink = 1e-4;      // of a robot on one sole of default stiffness [m]
+constexpr double kStaticSink = 5e-6;      // of a robot on one sole of default stiffness [m]
 constexpr double kDampingTime = 0.004;    // default contact damping / stiffness [s]
 constexpr double kStickRate = 1e-3;       // joint rate below which dry friction holds [rad/s]
 constexpr double kLimitStiffness = 20.0;  // of a joint's end stop, in servo stiffnesses

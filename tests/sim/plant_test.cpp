@@ -1,0 +1,134 @@
+#include "ayumi/sim/plant.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "tests/support/random_robot.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+RobotDescription block_description(const Vector3d& size, double mass) {
+  RobotDescription d;
+  d.name = "block";
+  LinkDescription link;
+  link.name = "block";
+  link.has_inertial = true;
+  link.inertia.mass = mass;
+  link.inertia.about_com =
+      (mass / 12.0 *
+       Vector3d(size.y() * size.y() + size.z() * size.z(),
+                size.x() * size.x() + size.z() * size.z(),
+                size.x() * size.x() + size.y() * size.y()))
+          .asDiagonal();
+  PlacedShape shape;
+  shape.shape = Box{size};
+  link.collisions.push_back(shape);
+  d.links.push_back(link);
+  return d;
+}
+
+struct BlockOnSlope {
+  BlockOnSlope(double angle, double friction, const Vector3d& size = {0.2, 0.1, 0.04})
+      : model(block_description(size, 2.0)),
+        plant(model, model.limits(), World{friction, {0, angle}}) {
+    RobotState s = model.rest_state();
+    s.base.attitude = exp_rotation({0, angle, 0});
+    s.base.position = s.base.attitude * Vector3d(0, 0, 0.5 * size.z());
+    plant.set_state(s);
+  }
+  void run(double time, double dt = 1e-3) {
+    for (long i = 0; i < std::lround(time / dt); ++i) plant.step(VectorXd(0), {}, dt);
+  }
+  RobotModel model;
+  Plant plant;
+};
+
+// Rotation about +y by a positive angle turns x downhill.
+TEST(Block, SlidesDownASlopeByCoulombsLaw) {
+  const double angle = 0.4, mu = 0.2;
+  BlockOnSlope block(angle, mu);
+  block.run(0.2);
+  const Vector3d start = block.plant.state().base.position;
+  const double v0 = block.plant.state().base_velocity.norm();
+  const double T = 0.8;
+  block.run(T);
+  const double a = kGravity * (std::sin(angle) - mu * std::cos(angle));
+  const double distance = (block.plant.state().base.position - start).norm();
+  EXPECT_NEAR(distance, v0 * T + 0.5 * a * T * T, 0.005 * distance);
+}
+
+TEST(Block, SlidesAndStopsByCoulombsLaw) {
+  const double mu = 0.3, v0 = 1.0;
+  BlockOnSlope block(0, mu);
+  block.run(0.2);
+  RobotState s = block.plant.state();
+  s.base_velocity.x() = v0;
+  block.plant.set_state(s);
+  block.run(1.0);
+  EXPECT_NEAR(block.plant.state().base.position.x() - s.base.position.x(),
+              v0 * v0 / (2 * mu * kGravity), 0.005 * v0 * v0 / (2 * mu * kGravity));
+  EXPECT_LT(block.plant.state().base_velocity.norm(), 1e-9);
+}
+
+TEST(Block, SticksBelowTheFrictionAngleWithoutCreep) {
+  BlockOnSlope block(0.3, 0.35);
+  block.run(1.0);
+  const Vector3d start = block.plant.state().base.position;
+  block.run(1.0);
+  EXPECT_LT((block.plant.state().base.position - start).norm(), 1e-9);
+}
+
+TEST(Block, TipsAtTheRightAngle) {
+  // Half length 0.02 over half height 0.05: tips beyond atan(0.4).
+  const double critical = std::atan(0.4);
+  for (const double share : {0.97, 1.03}) {
+    BlockOnSlope block(share * critical, 5.0, {0.04, 0.1, 0.1});
+    block.run(1.5);
+    const double tilt = matrix_to_rpy(block.plant.state().base.attitude.toRotationMatrix()).y();
+    if (share < 1)
+      EXPECT_NEAR(tilt, share * critical, 0.02);
+    else
+      EXPECT_GT(tilt, critical + 0.3);
+  }
+}
+
+TEST(Block, AtRestCarriesItsWeight) {
+  BlockOnSlope block(0, 0.5);
+  block.run(1.0);
+  EXPECT_LT(block.plant.state().base_velocity.norm(), 1e-12);
+  EXPECT_NEAR(block.plant.state().base.position.z(), 0.02, 2e-4);
+}
+
+class Flight : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Flight, LinearMomentumFollowsGravity) {
+  RobotDescription d = test::random_tree(GetParam(), 12, false);
+  for (const JointDescription& joint : d.joints)
+    if (joint.type != JointType::fixed) d.servos[joint.name] = {50.0, 1.0, 0.003, 0.0, 0.0};
+  const RobotModel model(d);
+  Plant plant(model, model.limits(), World{});
+  test::Random random(GetParam());
+  RobotState s = test::random_state(model, random);
+  s.base.position.z() = 100;
+  plant.set_state(s);
+  RobotData data(model);
+  update_velocities(model, s, data);
+  const Momentum before = centroidal_momentum(model, data);
+  const VectorXd targets = random.vector(model.dof_count(), 0.5);
+  for (int i = 0; i < 500; ++i) plant.step(targets, {}, 1e-3);
+  update_velocities(model, plant.state(), data);
+  const Momentum after = centroidal_momentum(model, data);
+  const Vector3d expected = before.linear - Vector3d(0, 0, model.mass() * kGravity * 0.5);
+  EXPECT_LT((after.linear - expected).norm(), 1e-2 * expected.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Flight, testing::Range(1u, 6u));
+
+}  // namespace
+}  // namespace ayumi
