@@ -149,4 +149,12 @@ Momentum centroidal_momentum(const RobotModel& model, const RobotData& data) {
   return h;
 }
 
+Matrix3d locked_inertia(const RobotModel& model, const RobotData& data) {
+  Matrix3d total = Matrix3d::Zero();
+  const std::vector<Body>& bodies = model.bodies();
+  for (size_t i = 0; i < bodies.size(); ++i)
+    total += body_inertia(bodies[i], data.rotation[i], data.com[i] - data.cog_offset).inertia;
+  return total;
+}
+
 }  // namespace ayumi

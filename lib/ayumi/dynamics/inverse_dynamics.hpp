@@ -31,6 +31,10 @@ struct Momentum {
 /// Needs update_velocities().
 Momentum centroidal_momentum(const RobotModel& model, const RobotData& data);
 
+/// Inertia of the whole robot about its COG with the joints locked, world axes [kg m^2]. Needs
+/// update_positions().
+Eigen::Matrix3d locked_inertia(const RobotModel& model, const RobotData& data);
+
 /// Partial derivatives of inverse_dynamics, each (6+dof) square. Columns of `configuration` are
 /// base translation (world), base rotation vector (world axes, left-multiplied) and theta; the
 /// velocity and acceleration components stay fixed in world axes.

@@ -13,7 +13,6 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/version.hpp"
-#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 
@@ -165,17 +164,21 @@ void Plant::collect_contacts(double dt) {
 }
 
 // Fills M_ (with rotors), the momentum and bias terms, contact Jacobians and the fixed part of b.
-void Plant::assemble(const VectorXd&, const std::vector<ExternalWrench>& wrenches, double dt) {
+void Plant::assemble(const std::vector<ExternalWrench>& wrenches, double dt) {
   bias_ = bias_force(*model_, state_, data_);
   mass_matrix(*model_, data_, M_);
   M_.diagonal().tail(model_->dof_count()) += rotor_;
   momentum_ = M_ * state_.velocity() - dt * bias_;
+  external_.linear = {0, 0, -dt * model_->mass() * kGravity};
+  external_.angular.setZero();
   for (const ExternalWrench& w : wrenches) {
     const int body = w.body < 0 ? model_->trunk_body() : w.body;
     const Vector3d point = w.body < 0 ? data_.cog : w.point;
     const Eigen::MatrixXd J = body_jacobian(*model_, data_, body, point);
     momentum_ += dt * (J.topRows<3>().transpose() * w.force +
                        J.bottomRows<3>().transpose() * w.torque);
+    external_.linear += dt * w.force;
+    external_.angular += dt * (w.torque + (point - data_.cog).cross(w.force));
   }
   collect_contacts(dt);
   const int n = static_cast<int>(active_.size());
@@ -196,7 +199,8 @@ void Plant::assemble(const VectorXd&, const std::vector<ExternalWrench>& wrenche
 
 StepReport Plant::step(const VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
                        double dt) {
-  assemble(targets, wrenches, dt);
+  assemble(wrenches, dt);
+  Momentum momentum = centroidal_momentum(*model_, data_);
   const int n = model_->dof_count();
   const int contacts = static_cast<int>(active_.size());
   VectorXd compliance(3 * contacts), shift(3 * contacts), impulse(3 * contacts);
@@ -280,6 +284,9 @@ StepReport Plant::step(const VectorXd& targets, const std::vector<ExternalWrench
   for (int i = 0; i < contacts; ++i) {
     ContactPoint& point = points_[active_[i].point];
     const Vector3d l = impulse.segment<3>(3 * i);
+    const Vector3d force = ground_ * l;
+    external_.linear += force;
+    external_.angular += (active_[i].position - data_.cog).cross(force);
     const Vector2d slip = J_.middleRows<2>(3 * i + 1) * velocity;
     point.impulse = l;
     point.touching = l[0] > 0;
@@ -290,21 +297,38 @@ StepReport Plant::step(const VectorXd& targets, const std::vector<ExternalWrench
     if (point.side >= 0) {
       SoleForce& sole = report.soles[point.side][point.vertex];
       sole.position = active_[i].position;
-      sole.force = ground_ * l / dt;
+      sole.force = force / dt;
       sole.gap = active_[i].gap;
       report.max_penetration = std::max(report.max_penetration, -active_[i].gap);
     } else if (point.touching) {
       report.body_contact = true;
     }
   }
-  state_.base_velocity = velocity.head<3>();
-  state_.base_angular_velocity = velocity.segment<3>(3);
-  state_.dtheta = velocity.tail(n);
-  state_.base.position += dt * state_.base_velocity;
-  state_.base.attitude =
-      (exp_rotation(dt * state_.base_angular_velocity) * state_.base.attitude).normalized();
-  state_.theta += dt * state_.dtheta;
+  momentum.linear += external_.linear;
+  momentum.angular += external_.angular;
+  advance(velocity, momentum, dt);
   return report;
+}
+
+// Joints move with their solved rates. The base then takes the velocity that gives the robot, in its
+// new posture, exactly the momentum the outside has left it: M(q) v changes along the step, and this
+// is what keeps momentum to rounding in flight and ground forces equal to its rate in contact.
+void Plant::advance(const VectorXd& velocity, const Momentum& momentum, double dt) {
+  const Vector3d cog = data_.cog;
+  state_.dtheta = velocity.tail(model_->dof_count());
+  state_.theta += dt * state_.dtheta;
+  state_.base.attitude =
+      (exp_rotation(dt * velocity.segment<3>(3)) * state_.base.attitude).normalized();
+  state_.base_velocity.setZero();
+  state_.base_angular_velocity.setZero();
+  update_velocities(*model_, state_, data_);
+  const Momentum joints = centroidal_momentum(*model_, data_);
+  const Vector3d cog_velocity = momentum.linear / model_->mass();
+  const Vector3d w =
+      locked_inertia(*model_, data_).llt().solve(momentum.angular - joints.angular);
+  state_.base_angular_velocity = w;
+  state_.base_velocity = cog_velocity - joints.linear / model_->mass() - w.cross(data_.cog_offset);
+  state_.base.position = cog + dt * cog_velocity - data_.cog_offset;
 }
 
 }  // namespace ayumi

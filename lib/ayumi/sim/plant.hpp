@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "ayumi/dynamics/robot_data.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/pattern/scenario.hpp"
 #include "ayumi/sim/contact_solver.hpp"
 
@@ -64,8 +64,8 @@ class Plant {
   };
 
   void collect_contacts(double dt);
-  void assemble(const Eigen::VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
-                double dt);
+  void assemble(const std::vector<ExternalWrench>& wrenches, double dt);
+  void advance(const Eigen::VectorXd& velocity, const Momentum& momentum, double dt);
   double torque_limit(int dof, double rate, double direction) const;
 
   const RobotModel* model_;
@@ -86,6 +86,7 @@ class Plant {
   std::vector<Active> active_;
   Eigen::MatrixXd M_, J_, MinvJt_;
   Eigen::VectorXd momentum_, bias_;
+  Momentum external_;  // linear and angular (about the COG) momentum from outside in this step
   ContactProblem problem_;
 };
 
