@@ -1,0 +1,248 @@
+#include "ayumi/io/run_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/io/sha256.hpp"
+#include "ayumi/io/simulation_log_file.hpp"
+#include "tests/support/random_robot.hpp"
+
+namespace ayumi {
+namespace {
+
+namespace fs = std::filesystem;
+
+SimulationSample random_sample(test::Random& random, int joints) {
+  SimulationSample s;
+  s.state.base = {random.vector(1), Eigen::Quaterniond(1, random.uniform(), 0.2, 0.1).normalized()};
+  s.state.base_velocity = random.vector(1);
+  s.state.base_angular_velocity = random.vector(1);
+  for (Eigen::VectorXd* v :
+       {&s.state.theta, &s.state.dtheta, &s.target, &s.torque, &s.reference_theta})
+    *v = random.vector(joints, 1);
+  s.reference_base.position = random.vector(1);
+  for (Eigen::Vector3d* v :
+       {&s.cog, &s.dcog, &s.zmp, &s.measured_cog, &s.measured_zmp, &s.command_cog, &s.command_zmp,
+        &s.reference_cog, &s.reference_zmp, &s.foot_force[0], &s.foot_force[1], &s.foot_cop[0],
+        &s.foot_cop[1], &s.push_force, &s.push_point})
+    *v = random.vector(1);
+  for (double* x : {&s.fz, &s.measured_fz, &s.command_fz, &s.reference_fz, &s.contact_residual})
+    *x = random.uniform();
+  s.planned_contact = {random.uniform() > 0, random.uniform() > 0};
+  s.contact_iterations = static_cast<int>(random.uniform(0, 50));
+  return s;
+}
+
+SimulationLog random_log(unsigned seed) {
+  test::Random random(seed);
+  SimulationLog log;
+  log.controller = "dtad";
+  log.provenance = {"hoap1", "ab", "walk", "cd", "hoap1", "dtad", "ayumi run walk.json"};
+  log.world.slope = {0.01, 1.0 / 3};
+  Disturbance push;
+  push.at = 0.1;
+  push.magnitude = 1.1;
+  push.shape = DisturbanceShape::half_sine;
+  push.direction = Eigen::Vector3d(1, 2, 3).normalized();
+  log.scenario = {push};
+  log.joints = {"a", "b", "c"};
+  log.events = {{0.1, "push", "1.1 N s on the \"COG\""}};
+  log.result = {.outcome = Outcome::stands, .max_tilt = 0.1 + 0.2, .steps = 9};
+  for (int k = 0; k < 20; ++k) log.samples.push_back(random_sample(random, 3));
+  return log;
+}
+
+fs::path fresh_folder() {
+  const fs::path folder =
+      fs::path(::testing::TempDir()) /
+      ("ayumi_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+  fs::remove_all(folder);
+  return folder;
+}
+
+template <typename Do>
+std::string message(const Do& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_file);
+    return error.what();
+  }
+  return "no error";
+}
+std::string parse_message(const std::string& bytes) {
+  return message([&] { parse_log(bytes, "x.bin"); });
+}
+
+TEST(SimulationLogFile, EveryFieldSurvives) {
+  const SimulationLog log = random_log(1);
+  const SimulationLog back = parse_log(log_bytes(log), "x.bin");
+  // Second route: field by field for a few, the whole by its bytes.
+  ASSERT_EQ(back.samples.size(), log.samples.size());
+  EXPECT_EQ(back.samples[7].state.base.attitude.coeffs(),
+            log.samples[7].state.base.attitude.coeffs());
+  EXPECT_EQ(back.samples[7].state.dtheta, log.samples[7].state.dtheta);
+  EXPECT_EQ(back.samples[7].reference_theta, log.samples[7].reference_theta);
+  EXPECT_EQ(back.samples[7].foot_cop[1], log.samples[7].foot_cop[1]);
+  EXPECT_EQ(back.samples[7].planned_contact, log.samples[7].planned_contact);
+  EXPECT_EQ(back.samples[7].contact_iterations, log.samples[7].contact_iterations);
+  EXPECT_EQ(back.samples[19].push_point, log.samples[19].push_point);
+  EXPECT_EQ(back.scenario.at(0).direction, log.scenario[0].direction);
+  EXPECT_EQ(back.scenario.at(0).shape, DisturbanceShape::half_sine);
+  EXPECT_EQ(back.events.at(0).text, log.events[0].text);
+  EXPECT_EQ(back.world.slope, log.world.slope);
+  EXPECT_EQ(back.result.outcome, Outcome::stands);
+  EXPECT_EQ(back.result.max_tilt, 0.1 + 0.2);
+  EXPECT_EQ(back.provenance.command_line, log.provenance.command_line);
+  EXPECT_EQ(log_bytes(back), log_bytes(log));
+}
+
+// A field that for_each_field forgets would be lost without a sound: the size tells.
+TEST(SimulationLogFile, NoFieldOfASampleIsForgotten) {
+  const SimulationLog log = random_log(2);
+  const std::string bytes = log_bytes(log);
+  std::uint32_t header = 0;
+  std::memcpy(&header, bytes.data() + 12, 4);
+  // Poses 2 x 7, joint vectors 5 x 3, 3-vectors 2 + 15, scalars 5, flags 2, count 1.
+  const size_t columns = 14 + 15 + 3 * 17 + 5 + 2 + 1;
+  EXPECT_EQ(bytes.size(), 16 + header + 20 * columns * 8);
+  const auto json = nlohmann::json::parse(bytes.substr(16, header));
+  EXPECT_EQ(json.at("columns").size(), columns);
+  EXPECT_EQ(json.at("columns").at(0), "base.x[m]");
+  const size_t fields_of_plain_sample =
+      2 * sizeof(BasePose) + 2 * 24 + 5 * sizeof(Eigen::VectorXd) + 15 * 24 + 5 * 8 + 8;
+  EXPECT_LE(sizeof(SimulationSample) - fields_of_plain_sample, 64u) << "a field was added?";
+}
+
+TEST(SimulationLogFile, UndefinedNumbersSurvive) {
+  SimulationLog log = random_log(3);
+  log.samples[0].zmp.x() = std::numeric_limits<double>::quiet_NaN();
+  log.samples[1].zmp.x() = -0.0;
+  const SimulationLog back = parse_log(log_bytes(log), "x.bin");
+  EXPECT_TRUE(std::isnan(back.samples[0].zmp.x()));
+  EXPECT_TRUE(std::signbit(back.samples[1].zmp.x()));
+}
+
+TEST(SimulationLogFile, HashIsOfTheMotionNotOfTheCommandLine) {
+  SimulationLog log = random_log(4);
+  const std::string hash = log_hash(log);
+  EXPECT_EQ(hash.size(), 64u);
+  log.provenance.command_line = "another";
+  EXPECT_EQ(log_hash(log), hash);
+  log.provenance.command_line.clear();
+  EXPECT_EQ(log_hash(log), sha256(log_bytes(log)));
+  log.samples[5].state.theta[1] = std::nextafter(log.samples[5].state.theta[1], 9);
+  EXPECT_NE(log_hash(log), hash);
+}
+
+TEST(SimulationLogFile, BrokenFilesGetOneClearMessage) {
+  const std::string good = log_bytes(random_log(5));
+  EXPECT_EQ(parse_message(good), "no error");
+  EXPECT_EQ(parse_message(""), "x.bin: the file is empty, a simulation log is needed");
+  EXPECT_NE(parse_message("{}").find("is not a simulation log"), std::string::npos);
+  EXPECT_NE(parse_message(std::string(100, '\xff')).find("is not a simulation log"),
+            std::string::npos);
+  std::string other = good;
+  other[8] = 9;
+  EXPECT_NE(parse_message(other).find("log version 9 is not readable here"), std::string::npos);
+  EXPECT_NE(parse_message(good.substr(0, 40)).find("truncated: the header is cut off"),
+            std::string::npos);
+  EXPECT_NE(parse_message(good.substr(0, good.size() - 1)).find("truncated: "), std::string::npos);
+  EXPECT_NE(parse_message(good + "x").find("damaged: "), std::string::npos);
+  std::string damaged = good;
+  damaged[16] = '?';
+  EXPECT_NE(parse_message(damaged).find("x.bin (header):1:1"), std::string::npos);
+  std::string rows = good;
+  rows.replace(rows.find("\"rows\":20"), 9, "\"rows\":99");
+  EXPECT_NE(parse_message(rows).find("truncated: "), std::string::npos);
+  std::string column = good;
+  column.replace(column.find("measured.fz"), 11, "measured.fx");
+  EXPECT_NE(parse_message(column).find("/columns: are not those of this version"),
+            std::string::npos);
+  // No prefix of a log and no flipped byte of its header may do worse than an Error.
+  for (size_t length = 0; length < good.size(); length += 97) parse_message(good.substr(0, length));
+  for (size_t at = 0; at < 2000 && at < good.size(); ++at) {
+    std::string flipped = good;
+    flipped[at] = static_cast<char>(flipped[at] ^ 0x15);
+    parse_message(flipped);
+  }
+}
+
+RunFolder example() {
+  RunFolder run;
+  run.provenance = {"hoap1", "ab", "walk", "cd", "hoap1", "dtad", "ayumi run walk.json"};
+  run.sections = {{"check", R"({"verdict": "consistent"})"}, {"options", R"({"seed": 1})"}};
+  run.logs = {{"open_loop", random_log(6)}, {"closed_loop", random_log(7)}};
+  run.reference.emplace();
+  run.reference->joints = {"a"};
+  run.reference->rows.resize(3);
+  for (ReferenceRow& row : run.reference->rows) row.theta = Eigen::VectorXd::Constant(1, 0.1);
+  return run;
+}
+
+TEST(RunFolderFile, ReadsBackWhatWasWritten) {
+  const fs::path folder = fresh_folder() / "a" / "b";
+  write_run(folder, example());
+  EXPECT_TRUE(is_run_folder(folder));
+  const RunFolder back = read_run(folder);
+  EXPECT_EQ(back.provenance.pattern, "walk");
+  ASSERT_EQ(back.logs.size(), 2u);
+  EXPECT_EQ(log_bytes(back.logs.at("open_loop")), log_bytes(random_log(6)));
+  EXPECT_EQ(back.reference->rows.size(), 3u);
+  ASSERT_EQ(back.sections.size(), 2u);
+  EXPECT_EQ(nlohmann::json::parse(back.sections[0].second).at("verdict"), "consistent");
+  EXPECT_EQ(log_hash(read_run_log(folder)), log_hash(random_log(7)));
+  EXPECT_EQ(log_hash(read_run_log(folder, "open_loop")), log_hash(random_log(6)));
+  EXPECT_EQ(log_hash(read_run_log(folder / "log_open_loop.bin")), log_hash(random_log(6)));
+}
+
+TEST(RunFolderFile, SameRunSameBytesWhereverItIsWritten) {
+  const fs::path folder = fresh_folder();
+  write_run(folder / "one", example());
+  write_run(folder / "two", example());
+  for (const char* const name :
+       {"run.json", "log_open_loop.bin", "log_closed_loop.bin", "reference.csv"})
+    EXPECT_EQ(read_file(folder / "one" / name), read_file(folder / "two" / name)) << name;
+  EXPECT_EQ(read_file(folder / "one" / "run.json").find(folder.string()), std::string::npos);
+}
+
+TEST(RunFolderFile, SaysWhatIsWrong) {
+  const fs::path folder = fresh_folder();
+  EXPECT_NE(message([&] { read_run(folder); }).find("no such folder; a RUN is needed"),
+            std::string::npos);
+  write_run(folder, example());
+  EXPECT_NE(message([&] {
+              read_run_log(folder, "closedloop");
+            }).find("no log 'closedloop' in this run; did you mean 'closed_loop'?"),
+            std::string::npos);
+  std::ofstream(folder / "log_open_loop.bin", std::ios::app) << "x";
+  EXPECT_NE(message([&] { read_run(folder); }).find("has changed since the run was written"),
+            std::string::npos);
+  fs::remove(folder / "log_open_loop.bin");
+  EXPECT_NE(message([&] { read_run(folder); }).find("log_open_loop.bin: no such file"),
+            std::string::npos);
+  std::string text = read_file(folder / "run.json");
+  text.replace(text.find("ayumi.run/1"), 11, "ayumi.run/7");
+  write_file(folder / "run.json", text);
+  EXPECT_NE(message([&] { read_run(folder); }).find("/format: 'ayumi.run/7' is not readable here"),
+            std::string::npos);
+  fs::remove(folder / "run.json");
+  EXPECT_NE(message([&] { read_run(folder); }).find("holds no run.json"), std::string::npos);
+  RunFolder run = example();
+  run.files = {"absent.svg"};
+  EXPECT_NE(message([&] { write_run(folder, run); }).find("absent.svg: no such file"),
+            std::string::npos);
+  EXPECT_NE(message([&] { write_run(folder / "reference.csv", run); }).find("is not a folder"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ayumi
