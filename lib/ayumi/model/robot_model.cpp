@@ -21,9 +21,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A sole without constants of its own sinks this far under the whole weight ...
-constexpr double kSoleSink = 0.0005;  // [m]
+constexpr double kSoleSink = 0.0001;  // [m]
 // ... and its damping over its stiffness is this.
-constexpr double kSoleDampingTime = 0.010;  // [s]
+constexpr double kSoleDampingTime = 0.004;  // [s]
 
 Inertia moved(const Inertia& inertia, const Eigen::Isometry3d& pose) {
   const Eigen::Matrix3d turn = pose.linear();

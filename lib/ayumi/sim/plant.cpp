@@ -25,8 +25,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kStaticSink = 5e-6;      // of a robot on one sole of default stiffness [m]
-constexpr double kDampingTime = 0.004;    // default contact damping / stiffness [s]
+constexpr double kStaticSink = 2e-5;      // of a body on four of its points [m]
+constexpr double kDampingTime = 0.004;    // contact damping / stiffness of bodies [s]
 constexpr double kStickRate = 1e-3;       // joint rate below which dry friction holds [rad/s]
 constexpr double kLimitStiffness = 20.0;  // of a joint's end stop, in servo stiffnesses
 
@@ -88,7 +88,7 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
   const Vector3d tangent = (Vector3d::UnitX() - normal.x() * normal).normalized();
   ground_ << normal, tangent, normal.cross(tangent);
 
-  const double default_stiffness = model.mass() * kGravity / kStaticSink;
+  const double body_stiffness = model.mass() * kGravity / kStaticSink;
   for (Side side : {Side::left, Side::right}) {
     if (!model.has_soles()) break;
     const Sole& sole = model.sole(side);
@@ -98,8 +98,8 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
       ContactPoint point;
       point.body = sole.body;
       point.position = sole.frame * Vector3d(p.x(), p.y(), 0);
-      point.stiffness = (sole.stiffness > 0 ? sole.stiffness : default_stiffness) / count;
-      point.damping_time = sole.damping_time > 0 ? sole.damping_time : kDampingTime;
+      point.stiffness = sole.stiffness / count;
+      point.damping_time = sole.damping_time;
       point.side = static_cast<int>(side);
       point.vertex = static_cast<int>(i);
       points_.push_back(point);
@@ -115,7 +115,7 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
         point.body = link.body;
         point.position = link.pose * position;
         point.radius = radius;
-        point.stiffness = 0.25 * default_stiffness;
+        point.stiffness = 0.25 * body_stiffness;
         point.damping_time = kDampingTime;
         points_.push_back(point);
       }
