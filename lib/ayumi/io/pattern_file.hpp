@@ -19,6 +19,9 @@ namespace ayumi {
 Pattern read_pattern(const std::filesystem::path& path,
                      const std::map<std::string, double>& set_parameters = {});
 
+/// The robot to load: the bundled name as written, or the path as it holds from here.
+std::string robot_of(const Pattern& pattern);
+
 /// The file's text: short, keys in a fixed order, one phase or keyframe per line, `comments` as
 /// lines above. Numbers are the shortest that read back to the same double; angles in the pattern's
 /// unit. Expressions are written as their values (the parameters then become a comment).

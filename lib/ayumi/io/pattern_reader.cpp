@@ -151,6 +151,11 @@ void read_rest(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
 
 }  // namespace
 
+bool names_a_path(const std::string& robot) {
+  return robot.find('/') != std::string::npos || robot.ends_with(".json") ||
+         robot.ends_with(".urdf");
+}
+
 Pattern read_pattern(const fs::path& path, const std::map<std::string, double>& set_parameters) {
   std::string bytes = read_file(path, kLargestFile);
   const Json document = parse_json(bytes, path.string(), ErrorCode::bad_pattern);
@@ -192,6 +197,11 @@ Pattern read_pattern(const fs::path& path, const std::map<std::string, double>& 
   }
   pattern.sha256 = sha256(bytes);
   return pattern;
+}
+
+std::string robot_of(const Pattern& pattern) {
+  if (!names_a_path(pattern.robot)) return pattern.robot;
+  return (fs::path(pattern.file).parent_path() / pattern.robot).string();
 }
 
 }  // namespace ayumi

@@ -21,6 +21,9 @@ struct PatternScope {
   std::optional<double> radians_per_unit;  ///< none: the file names no angle unit
 };
 
+/// Whether a pattern's "robot" is a path rather than a bundled name.
+bool names_a_path(const std::string& robot);
+
 /// Complains about keys that pattern_keys() does not list for `kind`.
 void only_pattern_keys(const JsonNode& node, const std::string& kind);
 

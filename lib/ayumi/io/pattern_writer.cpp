@@ -300,9 +300,7 @@ void write_pattern(const fs::path& path, const Pattern& pattern,
     const fs::path from = fs::path(pattern.file).parent_path();
     const fs::path to = path.parent_path();
     if (moved.table) moved.table->file = rebased(moved.table->file, from, to);
-    if (moved.robot.find('/') != std::string::npos || moved.robot.ends_with(".json") ||
-        moved.robot.ends_with(".urdf"))
-      moved.robot = rebased(moved.robot, from, to);
+    if (names_a_path(moved.robot)) moved.robot = rebased(moved.robot, from, to);
     if (!moved.schema.empty() && moved.schema.find("://") == std::string::npos)
       moved.schema = rebased(moved.schema, from, to);
   }
