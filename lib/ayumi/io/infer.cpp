@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/mesh.hpp"
+#include "ayumi/model/body_poses.hpp"
+#include "ayumi/model/outline.hpp"
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
@@ -18,50 +19,14 @@ constexpr double kSoleThickness = 0.005;  // what is this near to the lowest poi
 constexpr double kSideways = 0.01;        // a foot lies at least this far from the middle [m]
 constexpr double kLargestSole = 1.0;      // [m]
 
-std::vector<Eigen::Vector3d> corners_of(const Box& box) {
-  std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < 8; ++i)
-    points.emplace_back((i & 1 ? 0.5 : -0.5) * box.size.x(), (i & 2 ? 0.5 : -0.5) * box.size.y(),
-                        (i & 4 ? 0.5 : -0.5) * box.size.z());
-  return points;
+std::vector<Eigen::Vector3d> loaded_outline(const PlacedShape& placed) {
+  const auto* reference = std::get_if<MeshShape>(&placed.shape);
+  if (!reference || !reference->mesh.parts.empty()) return outline(placed.shape);
+  return outline(MeshShape{{}, {}, load_mesh(reference->file, reference->scale)});
 }
 
-std::vector<Eigen::Vector3d> rings_of(double radius, const std::vector<double>& heights) {
-  std::vector<Eigen::Vector3d> points;
-  for (const double z : heights)
-    for (int i = 0; i < 16; ++i) {
-      const double angle = i * std::numbers::pi / 8;
-      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
-    }
-  return points;
-}
-
-// Points whose bounding box is that of the shape (for round ones: nearly).
-std::vector<Eigen::Vector3d> outline(const Shape& shape) {
-  if (const auto* box = std::get_if<Box>(&shape)) return corners_of(*box);
-  if (const auto* sphere = std::get_if<Sphere>(&shape))
-    return corners_of({Eigen::Vector3d::Constant(2 * sphere->radius)});
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape))
-    return rings_of(cylinder->radius, {-cylinder->length / 2, cylinder->length / 2});
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    const double end = capsule->length / 2 + capsule->radius;
-    return rings_of(capsule->radius, {-end, end});
-  }
-  const auto& reference = std::get<MeshShape>(shape);
-  const TriangleMesh mesh =
-      reference.mesh.parts.empty() ? load_mesh(reference.file, reference.scale) : reference.mesh;
-  std::vector<Eigen::Vector3d> points;
-  for (const MeshPart& part : mesh.parts)
-    for (const Eigen::Vector3f& vertex : part.vertices) points.push_back(vertex.cast<double>());
-  return points;
-}
-
-// Poses of the bodies in the root with every joint at 0.
 std::vector<Eigen::Isometry3d> zero_poses(const RobotModel& model) {
-  std::vector<Eigen::Isometry3d> poses;
-  for (const Body& body : model.bodies())
-    poses.push_back(body.parent < 0 ? body.placement : poses[body.parent] * body.placement);
-  return poses;
+  return body_poses(model, Eigen::VectorXd::Zero(model.dof_count()));
 }
 
 struct FootCandidate {
@@ -85,7 +50,7 @@ FootCandidate lowest_foot(const RobotModel& model, const std::vector<Eigen::Isom
       if (link.body != body) continue;
       if (foot.link < 0) foot.link = static_cast<int>(i);
       for (const PlacedShape& placed : link.collisions.empty() ? link.visuals : link.collisions)
-        for (const Eigen::Vector3d& point : outline(placed.shape))
+        for (const Eigen::Vector3d& point : loaded_outline(placed))
           foot.points.push_back(poses[body] * link.pose * placed.pose * point);
     }
     for (const Eigen::Vector3d& point : foot.points) foot.lowest = std::min(foot.lowest, point.z());

@@ -19,25 +19,25 @@ inline Side other(Side side) { return side == Side::left ? Side::right : Side::l
 
 /// A moving body: a link and all links fixed to it. Body frame = frame of the first of them.
 struct Body {
-  std::string name;                                             ///< of its first link
-  int parent = -1;                                              ///< body index; -1 for the root
+  std::string name;  ///< of its first link
+  int parent = -1;   ///< body index; -1 for the root
   bool prismatic = false;
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();              ///< unit, joint frame = body frame at 0
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, joint frame = body frame at 0
   Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< in the parent body at theta = 0
-  int dof = -1;                                                 ///< column of theta; -1 for the root
-  double ratio = 1, offset = 0;                                 ///< joint = ratio theta[dof] + offset
-  Inertia inertia;                                              ///< of all its links, body frame
+  int dof = -1;                  ///< column of theta; -1 for the root
+  double ratio = 1, offset = 0;  ///< joint = ratio theta[dof] + offset
+  Inertia inertia;               ///< of all its links, body frame
 };
 
 /// One generalised coordinate of theta.
 struct Dof {
-  std::string name;             ///< joint name
-  int body = -1;                ///< the body it moves (the driving one when others mimic it)
+  std::string name;  ///< joint name
+  int body = -1;     ///< the body it moves (the driving one when others mimic it)
   bool prismatic = false;
   bool limited = false;         ///< position limits exist (not a continuous joint)
   double lower = 0, upper = 0;  ///< [rad] or [m]; +-infinity when not limited
   ServoDescription servo;
-  EncoderDescription encoder;   ///< device 0 when the robot has none
+  EncoderDescription encoder;  ///< device 0 when the robot has none
 };
 
 /// Limits of one profile as vectors over the dofs; infinite where nothing is stated.

@@ -6,8 +6,8 @@
 namespace ayumi {
 
 struct BasePose {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();                   ///< p_WB [m]
-  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();         ///< R_WB, unit
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();            ///< p_WB [m]
+  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();  ///< R_WB, unit
 };
 
 struct RobotState {

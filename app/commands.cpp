@@ -1,0 +1,172 @@
+#include "commands.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "help.hpp"
+#include "signals.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr AddCommand kCommands[] = {
+#define AYUMI_COMMAND(name) &add_##name,
+#include "commands/list.def"
+#undef AYUMI_COMMAND
+};
+
+// Options that must not show in written files, and whether a value follows them.
+constexpr std::pair<const char*, bool> kUnrecorded[] = {
+    {"-o", true},      {"--out", true},    {"--threads", true}, {"--robot-path", true},
+    {"--json", false}, {"--quiet", false}, {"-q", false},       {"--force", false}};
+
+std::string recorded_command_line(int argc, char** argv) {
+  std::string line = "ayumi";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto unrecorded =
+        std::find_if(std::begin(kUnrecorded), std::end(kUnrecorded), [&](const auto& option) {
+          return word == option.first ||
+                 (option.second && word.starts_with(std::string(option.first) + "="));
+        });
+    if (unrecorded == std::end(kUnrecorded))
+      line += " " + word;
+    else if (unrecorded->second && word == unrecorded->first)
+      ++i;
+  }
+  return line;
+}
+
+int exit_code_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::usage:
+      return 2;
+    case ErrorCode::solver:
+      return 4;
+    case ErrorCode::internal:
+      return 5;
+    default:
+      return 3;
+  }
+}
+
+void complain(const std::string& message) { std::fprintf(stderr, "ayumi: %s\n", message.c_str()); }
+
+void add_global_options(CLI::App& app, Context& context) {
+  app.set_help_flag("-h,--help", "this page");
+  app.set_version_flag("--version", std::string("ayumi ") + version() + " (" AYUMI_LIBRARIES ")",
+                       "version, and those of the libraries");
+  app.add_flag("--json", context.json, "one JSON object on stdout instead of text");
+  app.add_flag("-q,--quiet", context.quiet, "no progress on stderr");
+  app.add_flag("--force", context.force, "overwrite existing output");
+  app.add_option("--threads", context.threads, "threads, 0 for all; results do not depend on it")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->type_name("N");
+  app.add_option("--seed", context.seed, "of noise and random choices")->type_name("N");
+  app.add_option("--robot-path", context.robot_path, "folder with robots, searched first")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* level = &app; level; level = level->get_parent())
+    for (const CLI::Option* option : level->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// CLI11's message, or a better one that names the nearest command or option.
+std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
+  const auto chosen = app.get_subcommands();
+  const CLI::App& level = chosen.empty() ? app : *chosen.front();
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    commands.push_back(command->get_name());
+  for (const std::string& word : app.remaining(true)) {
+    if (word.size() > 1 && word[0] == '-')
+      return "unknown option '" + word + "'" +
+             text::suggestion(word.substr(0, word.find('=')), option_names(level));
+    if (chosen.empty()) return "unknown command '" + word + "'" + text::suggestion(word, commands);
+    return "unexpected argument '" + word + "'";
+  }
+  return error.what();
+}
+
+int parse_and_run(CLI::App& app, const Context& context, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    const auto chosen = app.get_subcommands();
+    complain(usage_message(app, error) + "\nSee ayumi " +
+             (chosen.empty() ? "" : chosen.front()->get_name() + " ") + "--help");
+    return 2;
+  } catch (const Interrupted&) {
+    complain("stopped");
+    return 130;
+  } catch (const Error& error) {
+    complain(error.what());
+    return exit_code_of(error.code());
+  } catch (const std::exception& error) {
+    complain(std::string("internal error: ") + error.what());
+    return 5;
+  }
+  return context.exit_code;
+}
+
+}  // namespace
+
+void Context::print(const std::string& text) const {
+  if (!json) std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+void Context::print_json(const std::string& object) const {
+  if (json) std::printf("%s\n", object.c_str());
+}
+
+fs::path data_folder(const std::string& name) {
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  const fs::path beside = program.parent_path().parent_path() / "share" / "ayumi" / name;
+  for (const fs::path& folder : {beside, fs::path(AYUMI_SOURCE_DIR) / name})
+    if (fs::is_directory(folder, ignored)) return folder;
+  return fs::path(AYUMI_INSTALLED_DATA) / name;
+}
+
+RobotSearch robot_search(const Context& context) {
+  RobotSearch search;
+  for (const std::string& folder : context.robot_path) {
+    if (!fs::is_directory(folder))
+      fail(ErrorCode::bad_file, folder + ": --robot-path needs a folder");
+    search.folders.emplace_back(folder);
+  }
+  search.folders.push_back(data_folder("robots"));
+  return search;
+}
+
+int run(int argc, char** argv) {
+  watch_for_stop();
+  Context context;
+  context.command_line = recorded_command_line(argc, argv);
+  CLI::App app("", "ayumi");
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.fallthrough();
+  add_global_options(app, context);
+  for (const AddCommand add : kCommands) add(app, context);
+  if (argc == 1) {
+    std::fputs(app.help().c_str(), stdout);
+    return 2;
+  }
+  app.require_subcommand(1);
+  return parse_and_run(app, context, argc, argv);
+}
+
+}  // namespace ayumi::app

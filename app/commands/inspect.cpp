@@ -1,0 +1,267 @@
+// The model doctor: everything a robot's files say, what was inferred, and what is suspicious.
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/diagnose.hpp"
+#include "ayumi/model/outline.hpp"
+#include "commands.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct Stance {
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  // from the middle between the soles [m]
+  double height = 0;                              // top to bottom with every joint at 0 [m]
+};
+
+// The home posture stood on the ground, the origin midway between the sole frames.
+Stance stance_of(const RobotModel& model) {
+  Stance stance;
+  RobotData data(model);
+  RobotState state = model.rest_state();
+  update_positions(model, state, data);
+  if (model.has_soles()) {
+    anchor_base(model, Side::left, Eigen::Isometry3d::Identity(), state, data);
+    const Eigen::Vector3d right = sole_pose(model, data, Side::right).translation();
+    stance.cog = data.cog - right / 2;
+  } else {
+    stance.cog = data.cog;
+  }
+  state = model.rest_state();
+  state.theta.setZero();
+  update_positions(model, state, data);
+  Eigen::AlignedBox3d box;
+  for (size_t i = 0; i < model.links().size(); ++i)
+    for (const auto* shapes : {&model.links()[i].visuals, &model.links()[i].collisions})
+      for (const PlacedShape& placed : *shapes)
+        for (const Eigen::Vector3d& point : outline(placed.shape))
+          box.extend(link_pose(model, data, static_cast<int>(i)) * placed.pose * point);
+  stance.height = box.isEmpty() ? 0 : box.sizes().z();
+  return stance;
+}
+
+// Infinity has no JSON number; a limit that is not stated is null.
+OrderedJson number(double value) {
+  return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
+}
+
+OrderedJson joint_json(const RobotModel& model, int index) {
+  const Dof& dof = model.dofs()[index];
+  OrderedJson limits;
+  for (const std::string& name : model.profile_names()) {
+    const ActuatorLimits& profile = model.limits(name);
+    limits[name] = {{"speed_rad_s", number(profile.speed[index])},
+                    {"peak_torque_Nm", number(profile.peak_torque[index])},
+                    {"continuous_torque_Nm", number(profile.continuous_torque[index])}};
+  }
+  return {{"name", dof.name},
+          {"link", model.bodies()[dof.body].name},
+          {"type", dof.prismatic ? "prismatic" : "revolute"},
+          {"lower", number(dof.lower)},
+          {"upper", number(dof.upper)},
+          {"home", model.posture()[index]},
+          {"weight", model.joint_weight()[index]},
+          {"limits", limits},
+          {"servo",
+           {{"kp", dof.servo.kp},
+            {"kd", dof.servo.kd},
+            {"rotor_inertia", dof.servo.rotor_inertia},
+            {"viscous", dof.servo.viscous},
+            {"coulomb", dof.servo.coulomb}}},
+          {"encoder",
+           {{"device", dof.encoder.device}, {"counts_per_degree", dof.encoder.counts_per_degree}}}};
+}
+
+OrderedJson soles_json(const RobotModel& model) {
+  OrderedJson soles = OrderedJson::object();
+  if (!model.has_soles()) return soles;
+  for (const Side side : {Side::left, Side::right}) {
+    const Sole& sole = model.sole(side);
+    OrderedJson polygon = OrderedJson::array();
+    for (const Eigen::Vector2d& corner : sole.polygon) polygon.push_back({corner.x(), corner.y()});
+    soles[name_of(side)] = {{"link", model.description().soles.at(name_of(side)).link},
+                            {"polygon_m", polygon},
+                            {"stiffness_N_m", sole.stiffness},
+                            {"damping_time_s", sole.damping_time}};
+  }
+  return soles;
+}
+
+OrderedJson inspection_json(const RobotModel& model, const Stance& stance,
+                            const std::vector<ModelWarning>& warnings) {
+  OrderedJson joints = OrderedJson::array(), notes = OrderedJson::array();
+  for (int i = 0; i < model.dof_count(); ++i) joints.push_back(joint_json(model, i));
+  for (const ModelWarning& warning : warnings)
+    notes.push_back({{"where", warning.where}, {"message", warning.message}});
+  OrderedJson links = OrderedJson::array();
+  for (const Link& link : model.links())
+    links.push_back({{"name", link.name}, {"mass_kg", link.inertia.mass}});
+  const RobotDescription& files = model.description();
+  return {{"robot", model.name()},
+          {"dof", model.dof_count()},
+          {"mass_kg", model.mass()},
+          {"height_m", stance.height},
+          {"cog_m", {stance.cog.x(), stance.cog.y(), stance.cog.z()}},
+          {"joints", joints},
+          {"links", links},
+          {"soles", soles_json(model)},
+          {"profiles", model.profile_names()},
+          {"gains", files.control.dtad},
+          {"warnings", notes},
+          {"assumptions", files.assumptions},
+          {"sha256", files.sha256}};
+}
+
+std::string padded(std::string text, size_t width) {
+  text.resize(std::max(text.size(), width), ' ');
+  return text;
+}
+
+std::string right_aligned(const std::string& text, size_t width) {
+  return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
+}
+
+std::string angle(const Dof& dof, double value) {
+  if (std::isinf(value)) return "-";
+  return dof.prismatic ? text::fixed(1000 * value, 1) : text::fixed(value / kDegree, 1);
+}
+
+std::string limit(double value) { return std::isinf(value) ? "-" : text::brief(value); }
+
+std::string joint_lines(const RobotModel& model) {
+  std::string text = "Joints [deg, sliders mm]; servo kp [N m/rad], kd [N m s/rad]\n  " +
+                     padded("", 20) + "   lower   upper    home     kp     kd  rotor  weight  " +
+                     "device  counts/deg\n";
+  for (int i = 0; i < model.dof_count(); ++i) {
+    const Dof& dof = model.dofs()[i];
+    const auto column = [&](const std::string& value, size_t width) {
+      text += right_aligned(value, width);
+    };
+    text += "  " + padded(dof.name, 20);
+    column(angle(dof, dof.lower), 8);
+    column(angle(dof, dof.upper), 8);
+    column(angle(dof, model.posture()[i]), 8);
+    column(text::brief(dof.servo.kp), 7);
+    column(text::brief(dof.servo.kd), 7);
+    column(text::brief(dof.servo.rotor_inertia), 7);
+    column(text::brief(model.joint_weight()[i]), 8);
+    column(dof.encoder.device ? std::to_string(dof.encoder.device) : "-", 8);
+    column(dof.encoder.device ? text::brief(dof.encoder.counts_per_degree) : "-", 12);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string profile_lines(const RobotModel& model) {
+  std::string text =
+      "Actuator limits: speed [rad/s], peak / continuous torque [N m]\n  " + padded("", 20);
+  for (const std::string& name : model.profile_names()) text += right_aligned(name, 22);
+  text += "\n";
+  for (int i = 0; i < model.dof_count(); ++i) {
+    text += "  " + padded(model.dofs()[i].name, 20);
+    for (const std::string& name : model.profile_names()) {
+      const ActuatorLimits& limits = model.limits(name);
+      text += right_aligned(limit(limits.speed[i]) + "  " + limit(limits.peak_torque[i]) + " / " +
+                                limit(limits.continuous_torque[i]),
+                            22);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string sole_lines(const RobotModel& model) {
+  if (!model.has_soles()) return "Soles: none\n";
+  std::string text = "Soles [mm, ahead of and left of the ankle]\n";
+  for (const Side side : {Side::left, Side::right}) {
+    text += "  " + padded(name_of(side), 7) +
+            padded(model.description().soles.at(name_of(side)).link, 14);
+    for (const Eigen::Vector2d& corner : model.sole(side).polygon)
+      text +=
+          " (" + text::fixed(1000 * corner.x(), 1) + ", " + text::fixed(1000 * corner.y(), 1) + ")";
+    text += "  " + text::brief(model.sole(side).stiffness) + " N/m\n";
+  }
+  return text;
+}
+
+std::string sensor_lines(const RobotModel& model) {
+  const SensorDescription& sensors = model.description().sensors;
+  const Eigen::Vector3d at = 1000 * sensors.imu_position;
+  std::string text =
+      "Sensors\n  IMU on " + (sensors.imu_link.empty() ? model.links()[0].name : sensors.imu_link) +
+      " at (" + text::brief(at.x()) + ", " + text::brief(at.y()) + ", " + text::brief(at.z()) +
+      ") mm: attitude noise " + text::brief(sensors.attitude_noise) + " rad, bias " +
+      text::brief(sensors.attitude_bias) + " rad, gyro noise " + text::brief(sensors.gyro_noise) +
+      " rad/s, accelerometer noise " + text::brief(sensors.accelerometer_noise) + " m/s^2\n";
+  text += "  load cells at the sole corners: noise " + text::brief(sensors.force_noise) +
+          " N, resolution " + text::brief(sensors.force_resolution) + " N\n";
+  return text + "  latency " + text::brief(1000 * sensors.latency) + " ms, servo period " +
+         text::brief(1000 * model.description().servo_period) + " ms, joint angles " +
+         (sensors.encoder_quantisation ? "rounded to counts" : "not rounded") + "\n";
+}
+
+std::string gain_lines(const RobotModel& model) {
+  if (model.description().control.dtad.empty()) return "";
+  std::string text = "DTAD gains:";
+  for (const auto& [name, value] : model.description().control.dtad)
+    text += " " + name + " " + text::brief(value);
+  return text + "\n";
+}
+
+std::string list_lines(const std::string& title, const std::vector<std::string>& items) {
+  std::string text = title + (items.empty() ? ": none\n" : "\n");
+  for (const std::string& item : items) text += "  - " + item + "\n";
+  return text;
+}
+
+std::string inspection_text(const RobotModel& model, const Stance& stance,
+                            const std::vector<ModelWarning>& warnings) {
+  std::vector<std::string> notes;
+  for (const ModelWarning& warning : warnings)
+    notes.push_back(warning.where + ": " + warning.message);
+  const Eigen::Vector3d cog = 1000 * stance.cog;
+  return model.name() + ": " + std::to_string(model.dof_count()) + " DOF, " +
+         text::fixed(model.mass(), 3) + " kg, " + text::fixed(1000 * stance.height, 0) +
+         " mm high (every joint at 0), " + std::to_string(model.bodies().size()) + " bodies, " +
+         std::to_string(model.links().size()) + " links\nCOG at home: x " +
+         text::fixed(cog.x(), 1) + ", y " + text::fixed(cog.y(), 1) + ", z " +
+         text::fixed(cog.z(), 1) + " mm from " +
+         (model.has_soles() ? "the middle between the sole frames" : "the root link") + "\n\n" +
+         joint_lines(model) + "\n" + profile_lines(model) + "\n" + sole_lines(model) +
+         sensor_lines(model) + gain_lines(model) + "\n" +
+         list_lines("Assumptions", model.description().assumptions) + list_lines("Warnings", notes);
+}
+
+void inspect(const Context& context, const std::string& robot) {
+  const RobotModel model = load_robot(robot, robot_search(context), {.meshes = true});
+  const Stance stance = stance_of(model);
+  const std::vector<ModelWarning> warnings = diagnose(model);
+  context.print(inspection_text(model, stance, warnings));
+  if (context.json) context.print_json(inspection_json(model, stance, warnings).dump(2));
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand(
+      "inspect", "everything known of a robot, and what is suspicious in its files");
+  command->footer(
+      "Examples:\n  ayumi inspect hoap1\n  ayumi inspect my_robot/robot.json --json\n"
+      "  ayumi inspect somebody.urdf        soles, servos and limits are inferred, and said so");
+  auto robot = std::make_shared<std::string>();
+  command->add_option("robot", *robot, "bundled name, folder, robot.json or .urdf")
+      ->required()
+      ->type_name("ROBOT");
+  command->callback([&context, robot] { inspect(context, *robot); });
+}
+
+}  // namespace ayumi::app

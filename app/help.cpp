@@ -1,0 +1,40 @@
+#include "help.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+std::string overview(const CLI::App& app) {
+  std::string text =
+      "Ayumi checks, stabilizes and exports motion patterns of humanoid robots.\n\n"
+      "  robot + pattern -> check -> repair -> simulate (DTAD, VIIP) -> tables, clips, plots\n\n"
+      "Usage: ayumi COMMAND ...     ayumi COMMAND --help shows examples first\n\n";
+  for (const CLI::App* command : app.get_subcommands(nullptr)) {
+    std::string line = "  " + command->get_name();
+    line.resize(std::max<size_t>(line.size() + 1, 14), ' ');
+    text += line + command->get_description() + "\n";
+  }
+  text += "\nEverywhere:\n";
+  for (const CLI::Option* option : app.get_options()) {
+    std::string line = "  " + option->get_name(false, true);
+    if (option->get_type_size() > 0) line += " " + option->get_type_name();
+    line.resize(std::max<size_t>(line.size() + 1, 26), ' ');
+    text += line + option->get_description() + "\n";
+  }
+  return text +
+         "\nExit status: 0 done, 1 verdict negative, 2 usage, 3 bad input, 4 solver failed, "
+         "5 internal\n";
+}
+
+}  // namespace
+
+std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
+                                     CLI::AppFormatMode mode) const {
+  if (!app->get_parent()) return overview(*app);
+  std::string text = app->get_description() + "\n\n";
+  if (!app->get_footer().empty()) text += app->get_footer() + "\n\n";
+  text += make_usage(app, name) + make_positionals(app) + make_groups(app, mode);
+  return text + "\nOptions that every command takes: ayumi --help\n";
+}
+
+}  // namespace ayumi::app

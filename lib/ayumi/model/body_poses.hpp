@@ -1,0 +1,32 @@
+#pragma once
+// Where the bodies are for given joint angles, the root at the origin. What the model's own checks
+// need; everything else uses dynamics/kinematics.hpp.
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+/// Pose of each body in the root body's frame at the joint angles `theta`.
+inline std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model,
+                                                 const Eigen::VectorXd& theta) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const Body& body : model.bodies()) {
+    if (body.parent < 0) {
+      poses.push_back(Eigen::Isometry3d::Identity());
+      continue;
+    }
+    const double q = body.ratio * theta[body.dof] + body.offset;
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    if (body.prismatic)
+      motion.translation() = q * body.axis;
+    else
+      motion.linear() = Eigen::AngleAxisd(q, body.axis).toRotationMatrix();
+    poses.push_back(poses[body.parent] * body.placement * motion);
+  }
+  return poses;
+}
+
+}  // namespace ayumi
