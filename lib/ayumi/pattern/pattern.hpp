@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/math/track.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/pattern/scenario.hpp"
 
@@ -21,8 +22,6 @@ inline bool supports(Support support, Side side) {
          support == (side == Side::left ? Support::left : Support::right);
 }
 
-/// How a track goes from one key to the next.
-enum class Interpolation { linear, cubic, minimum_jerk, hold, spline };
 const char* name_of(Interpolation interpolation);
 
 /// A foothold: pose of the sole frame in the world.

@@ -1,0 +1,169 @@
+// Footholds hang on a centre that moves along the walk: step i moves it by the stride (and sideways
+// with the leading foot) along the mean heading of the step and turns it; the swing foot lands
+// beside it at its home distance. The ZMP rests long enough at both ends for the COG to start from
+// rest: a bounded motion anticipates by exp(-w t).
+#include "ayumi/pattern/generate.hpp"
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/pattern/foot_plan.hpp"
+#include "ayumi/pattern/postures.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+// Of both ends, in units of 1/omega: the ZMP rests, then shifts onto the first foot.
+constexpr double kRest = 4.5, kShift = 2.6;
+
+double to_millisecond(double t) { return std::round(1e3 * t) / 1e3; }
+double to_tenth_millimetre(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
+double to_tenth_milliradian(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
+
+void require_range(const char* name, double value, double low, double high, const char* unit) {
+  if (value >= low && value <= high) return;
+  fail(ErrorCode::usage, std::string("walk: ") + name + " " + text::exact(value) + unit +
+                             " is out of range; it may be from " + text::brief(low) + " to " +
+                             text::brief(high) + unit);
+}
+
+// Sum of the link lengths from hip to sole with the leg straight [m].
+double leg_length(const RobotModel& model) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const auto& leg = model.leg(Side::left);
+  Vector3d from = data.pose(model.dofs()[leg.front()].body).translation();
+  double length = 0;
+  for (const int dof : leg) {
+    const Vector3d to = data.pose(model.dofs()[dof].body).translation();
+    length += (to - from).norm();
+    from = to;
+  }
+  return length + (sole_pose(model, data, Side::left).translation() - from).norm();
+}
+
+void check_parameters(const RobotModel& model, const WalkParameters& p) {
+  const double leg = leg_length(model);
+  require_range("steps", p.steps, 1, 10000, "");
+  require_range("stride", p.stride, -0.6 * leg, 0.6 * leg, " m");
+  require_range("period", p.period, 0.2, 10, " s");
+  require_range("double_support", p.double_support, 0.05, 0.8, "");
+  require_range("lift", p.lift, 0.01 * leg, 0.4 * leg, " m");
+  require_range("side", p.side, -0.4 * leg, 0.4 * leg, " m");
+  require_range("turn", p.turn, -0.6, 0.6, " rad");
+  if (p.cog_height != 0) require_range("cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
+}
+
+// Times and swings laid one after the other.
+struct Writer {
+  Pattern& pattern;
+  double t = 0;
+
+  void key(double at, ZmpKey::Place place) {
+    Keyframe key;
+    key.t = to_millisecond(at);
+    key.zmp = ZmpKey{place, Eigen::Vector2d::Zero()};
+    key.place = "keyframes/" + std::to_string(pattern.keyframes.size());
+    pattern.keyframes.push_back(key);
+  }
+  void phase(double length, Support support, std::optional<Swing> swing = {}) {
+    t += length;
+    pattern.phases.push_back({to_millisecond(t), support, swing});
+  }
+};
+
+ZmpKey::Place place_of(Side side) {
+  return side == Side::left ? ZmpKey::Place::left : ZmpKey::Place::right;
+}
+
+Foothold foothold(const Vector3d& center, double yaw, double beside) {
+  const Vector3d at = center + rpy_to_matrix({0, 0, yaw}) * Vector3d(0, beside, 0);
+  Foothold result;
+  result.position = {to_tenth_millimetre(at.x()), to_tenth_millimetre(at.y()),
+                     to_tenth_millimetre(at.z())};
+  result.rpy.z() = to_tenth_milliradian(yaw);
+  return result;
+}
+
+void write_step(Writer& writer, const WalkParameters& p, Side swing_foot, const Foothold& to) {
+  const double single = p.period * (1 - p.double_support);
+  const Side stance = other(swing_foot);
+  const ZmpKey::Place place = place_of(stance);
+  writer.key(writer.t, place);
+  writer.phase(single, stance == Side::left ? Support::left : Support::right,
+               Swing{swing_foot, to, to_tenth_millimetre(p.lift)});
+  writer.key(writer.t, place);
+}
+
+std::string title(const WalkParameters& p) {
+  std::string name =
+      "walk, " + std::to_string(p.steps) + " steps of " + text::brief(1e3 * p.stride) + " mm";
+  if (p.side != 0) name += ", " + text::brief(1e3 * p.side) + " mm sideways per pair";
+  if (p.turn != 0) name += ", turning " + text::brief(p.turn * 180 / M_PI) + " deg per step";
+  return name;
+}
+
+}  // namespace
+
+Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) {
+  const WalkParameters& p = parameters;
+  check_parameters(model, p);
+  Pattern pattern;
+  pattern.name = title(p);
+  pattern.robot = model.name();
+  pattern.cog_height = to_tenth_millimetre(p.cog_height);
+
+  const auto start = start_feet(model, pattern);
+  const double beside = 0.5 * (start[0].translation() - start[1].translation()).norm();
+  const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
+  const double rest = to_millisecond(0.01 * std::round(100 * kRest / omega));
+  const double shift = to_millisecond(0.01 * std::round(100 * kShift / omega));
+  const double both = p.period * p.double_support;
+
+  Writer writer{pattern};
+  writer.key(0, ZmpKey::Place::center);
+  writer.key(rest, ZmpKey::Place::center);
+  writer.phase(rest + shift, Support::both);
+  Vector3d center = Vector3d::Zero();
+  double yaw = 0;
+  Side swing = p.first_swing;
+  const Side leading = p.side > 0 ? Side::left : Side::right;
+  for (int i = 0; i <= p.steps; ++i) {
+    const bool closing = i == p.steps;
+    if (!closing) {
+      const double turned = yaw + p.turn;
+      const Vector3d move(p.stride, swing == leading ? p.side : 0.0, 0);
+      center += rpy_to_matrix({0, 0, 0.5 * (yaw + turned)}) * move;
+      yaw = turned;
+    }
+    write_step(writer, p, swing, foothold(center, yaw, swing == Side::left ? beside : -beside));
+    if (!closing) writer.phase(both, Support::both);
+    swing = other(swing);
+  }
+  writer.key(writer.t + shift, ZmpKey::Place::center);
+  writer.phase(rest + shift, Support::both);
+  return pattern;
+}
+
+Pattern stand_pattern(const RobotModel& model, double duration) {
+  if (!(duration >= 0.01 && duration <= 3600))
+    fail(ErrorCode::usage, "stand: duration " + text::exact(duration) +
+                               " s is out of range; it may be from 0.01 to 3600 s");
+  Pattern pattern;
+  pattern.name = "stand for " + text::brief(duration) + " s";
+  pattern.robot = model.name();
+  Writer writer{pattern};
+  writer.key(0, ZmpKey::Place::center);
+  writer.phase(duration, Support::both);
+  return pattern;
+}
+
+}  // namespace ayumi

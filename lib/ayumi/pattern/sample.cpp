@@ -1,0 +1,54 @@
+#include "ayumi/pattern/sample.hpp"
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/pattern/correction.hpp"
+#include "ayumi/pattern/postures.hpp"
+#include "ayumi/pattern/sample_job.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kMostSamples = 1e7;
+
+int sample_count(const Pattern& pattern, double duration, double dt) {
+  if (!(dt > 0) || !std::isfinite(dt))
+    fail(ErrorCode::usage, "sampling step " + text::exact(dt) + " s must be above 0");
+  const double steps = std::ceil(duration / dt - 1e-6);
+  if (steps < 5 || steps > kMostSamples)
+    fail(ErrorCode::bad_pattern, in_file(pattern, "phases") + ": " + text::exact(duration) +
+                                     " s at a step of " + text::exact(dt) +
+                                     " s is less than 5 or more than 1e7 samples");
+  return static_cast<int>(steps) + 1;
+}
+
+}  // namespace
+
+CommandSeries sample(const RobotModel& model, const Pattern& pattern, const SampleOptions& options,
+                     const Progress& progress) {
+  if (!model.has_soles())
+    fail(ErrorCode::bad_model, model.name() + ": the robot has no soles; name both in its sidecar");
+  const FootPlan feet(model, pattern);
+  const InverseKinematics ik(model, default_posture(model, pattern));
+  std::vector<bool> solved(model.dof_count());
+  for (int dof = 0; dof < model.dof_count(); ++dof) solved[dof] = ik.solves(dof);
+  const PatternTracks tracks = read_tracks(model, pattern, feet, solved);
+  const SampleJob job{model,
+                      pattern,
+                      feet,
+                      ik,
+                      tracks,
+                      options.dt,
+                      sample_count(pattern, feet.duration(), options.dt),
+                      progress};
+  CommandSeries series = tracks.joint_driven ? sample_joint_driven(job) : sample_body_driven(job);
+  series.joint_weight = tracks.weight;
+  if (pattern.correction) series = apply_correction(model, series, *pattern.correction);
+  report(progress, {"sample", 1.0, ""});
+  return series;
+}
+
+}  // namespace ayumi
