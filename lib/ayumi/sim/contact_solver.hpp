@@ -20,13 +20,13 @@ struct ContactProblem {
 };
 
 struct ContactSolution {
-  int iterations = 0;
+  int iterations = 0;   ///< sweeps
   double residual = 0;  ///< largest change of a shifted velocity in the last sweep [m/s]
 };
 
-/// Block Gauss-Seidel with the exact solution of each 3x3 contact, started from `impulse` (3n),
-/// which receives the answer [N s]. Stops when a sweep changes no shifted velocity by more than
-/// `tolerance`.
+/// Block Gauss-Seidel with the exact solution of each 3x3 contact, sped up by Newton steps on all
+/// closed contacts; started from `impulse` (3n), which receives the answer [N s]. Stops when a sweep
+/// changes no shifted velocity by more than `tolerance` [m/s].
 ContactSolution solve_contacts(const ContactProblem& problem, Eigen::VectorXd& impulse,
                                double tolerance = 1e-10, int max_iterations = 500);
 
