@@ -6,6 +6,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/io/robot_file.hpp"
 #include "tests/support/bus_robot.hpp"
 
 namespace ayumi {
@@ -100,6 +101,46 @@ TEST(Hoap, NeedsEncodersAndWholeMilliseconds) {
   ReferenceTrajectory table = sway();
   table.dt = 0.0015;
   EXPECT_THROW(hoap_csv(test::bus_robot(), table), Error);
+}
+
+// HOAP-1 swaying its hips and arms: 25 columns, inside every limit, back within one count.
+TEST(Hoap, TableOfHoap1) {
+  const RobotModel robot = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1/robot.json");
+  ReferenceTrajectory motion;
+  motion.joints = robot.dof_names();
+  const Eigen::VectorXd home = robot.posture();
+  for (int k = 0; k <= 4000; ++k) {
+    const double t = 0.001 * k, ease = 0.5 - 0.5 * std::cos(EIGEN_PI * t / 2);
+    ReferenceRow row;
+    row.theta = home;
+    for (int j = 0; j < robot.dof_count(); ++j) row.theta[j] += 0.05 * ease * std::sin(3 * t + j);
+    motion.rows.push_back(row);
+  }
+  for (size_t k = 3000; k <= 4000; ++k) motion.rows[k].theta = motion.rows[3000].theta;
+  for (ReferenceRow& row : motion.rows)
+    for (int j = 0; j < robot.dof_count(); ++j) {
+      const Dof& dof = robot.dofs()[static_cast<size_t>(j)];
+      row.theta[j] = std::clamp(row.theta[j], dof.lower, dof.upper);
+    }
+  const SafeTable safe = make_safe(robot, motion);
+  for (const SafetyViolation& violation : safe.report.violations)
+    EXPECT_NE(violation.kind, "position") << text_of(violation);
+  const std::string text = hoap_csv(robot, safe.table);
+  const std::string first = text.substr(0, text.find('\n'));
+  EXPECT_EQ(std::count(first.begin(), first.end(), ',') + 1, 25);
+  EXPECT_TRUE(first.starts_with("1,2,") && first.ends_with(",R,R,R"));
+  const fs::path path = fs::path(::testing::TempDir()) / "ayumi_hoap1.csv";
+  write_file(path, text);
+  const ReferenceTrajectory back = read_hoap(path, robot);
+  fs::remove(path);
+  ASSERT_EQ(back.rows.size(), safe.table.rows.size());
+  for (size_t k = 0; k < back.rows.size(); ++k)
+    for (int j = 0; j < robot.dof_count(); ++j) {
+      const Dof& dof = robot.dofs()[static_cast<size_t>(j)];
+      EXPECT_LT(std::abs(back.rows[k].theta[j] - safe.table.rows[k].theta[j]), kDegree / 209);
+      EXPECT_GE(back.rows[k].theta[j], dof.lower - 1e-9);
+      EXPECT_LE(back.rows[k].theta[j], dof.upper + 1e-9);
+    }
 }
 
 TEST(Hoap, ReadsRealSequences) {

@@ -9,6 +9,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "tests/support/json_schema.hpp"
 
 namespace ayumi {
 namespace {
@@ -142,8 +143,8 @@ struct Broken {
 
 TEST_F(PatternFile, SmallPatternIsReadable) { EXPECT_EQ(read(with("name", "\"x\"")).name, "x"); }
 
-TEST_F(PatternFile, EveryMistakeGetsOneClearMessage) {
-  const std::vector<Broken> cases = {
+const std::vector<Broken>& mistakes() {
+  static const std::vector<Broken> cases = {
       {"format", "\"ayumi.pattern/2\"", "/format: 'ayumi.pattern/2' is not readable here"},
       {"format", "", "the key 'format' is missing"},
       {"robot", "", "the key 'robot' is missing"},
@@ -237,7 +238,11 @@ TEST_F(PatternFile, EveryMistakeGetsOneClearMessage) {
       {"correction", R"({"begin": 0, "spacing": 1, "columns": ["base.x[m]"], "coefficients": []})",
        "/correction/columns: the column 'base.y[m]' is missing"},
   };
-  for (const Broken& each : cases) {
+  return cases;
+}
+
+TEST_F(PatternFile, EveryMistakeGetsOneClearMessage) {
+  for (const Broken& each : mistakes()) {
     const std::string text = message(with(each.key, each.value));
     EXPECT_NE(text.find(each.message), std::string::npos)
         << each.key << ": " << each.value << "\n  gave: " << text;
@@ -561,6 +566,61 @@ TEST_F(PatternFile, SchemaEnumerationsAreTheReaders) {
                   R"({"angle": )", "}");
   expect_accepted(defs.at("defaults").at("properties").at("cog_model").at("enum"), "defaults",
                   R"({"cog_model": )", "}");
+}
+
+nlohmann::json with_comments(const std::string& text) {
+  return nlohmann::json::parse(text, nullptr, true, true);
+}
+
+// Schema and reader agree: what is written fits, what the reader refuses for its form does not.
+TEST_F(PatternFile, SchemaAndReaderAgree) {
+  const test::JsonSchema schema(
+      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json")));
+  EXPECT_TRUE(schema.accepts(with_comments(kTwoSteps)));
+  for (unsigned seed = 0; seed < 60; ++seed)
+    EXPECT_TRUE(schema.accepts(with_comments(pattern_text(random_pattern(seed))))) << seed;
+  // Beyond a schema: order of times, meaning of names and expressions, other files, zero vectors.
+  const std::vector<std::string> beyond = {
+      "does not come after",  "carries the robot",     "is already set", "appears twice",
+      "unknown parameter",    "a parameter is",        "no such file",   "the direction is zero",
+      "a point needs a link", "'base.y[m]' is missing"};
+  int judged = 0;
+  for (const Broken& each : mistakes()) {
+    const std::string reason = message(with(each.key, each.value));
+    const auto part_of_reason = [&](const std::string& part) {
+      return reason.find(part) != std::string::npos;
+    };
+    if (std::any_of(beyond.begin(), beyond.end(), part_of_reason)) continue;
+    const auto document = nlohmann::json::parse(with(each.key, each.value), nullptr, false, true);
+    if (document.is_discarded()) continue;  // not even JSON
+    EXPECT_FALSE(schema.accepts(document)) << each.key << ": " << each.value;
+    ++judged;
+  }
+  EXPECT_GT(judged, 40);
+}
+
+TEST_F(PatternFile, BundledPatternsFitTheSchema) {
+  const test::JsonSchema schema(
+      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json")));
+  const fs::path folder = AYUMI_SOURCE_DIR "/patterns";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no patterns yet";
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".json") {
+      EXPECT_TRUE(schema.accepts(with_comments(read_file(entry.path())))) << entry.path();
+      EXPECT_NO_THROW(read_pattern(entry.path())) << entry.path();
+    }
+}
+
+TEST_F(PatternFile, ExampleOfTheDocumentationIsReadable) {
+  const std::string page = read_file(AYUMI_SOURCE_DIR "/docs/formats.md");
+  const size_t begin = page.find("```jsonc\n") + 9;
+  const Pattern p = read(page.substr(begin, page.find("```", begin) - begin));
+  EXPECT_EQ(p.phases.size(), 3u);
+  EXPECT_EQ(p.scenario.size(), 1u);
+  // Every key of the format is named on the page.
+  for (const auto& [kind, keys] : pattern_keys())
+    for (const std::string& key : keys)
+      EXPECT_NE(page.find(key), std::string::npos) << kind << "." << key;
 }
 
 }  // namespace
