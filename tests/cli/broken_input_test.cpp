@@ -1,0 +1,167 @@
+// Broken input of every kind: one clear complaint, exit 3, nothing written, no crash.
+
+#include <functional>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+struct Broken {
+  std::string name;
+  /// Puts the broken input into the folder and returns the command line.
+  std::function<std::vector<std::string>(const Folder&)> prepare;
+  std::string complaint;  ///< must be in the one line on stderr
+};
+std::ostream& operator<<(std::ostream& out, const Broken& broken) { return out << broken.name; }
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+std::string bundled(const std::string& file) { return contents(fs::path(AYUMI_SOURCE_DIR) / file); }
+
+const char* const kInertia =
+    "<inertial><mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' "
+    "izz='0.01'/></inertial>";
+
+/// Two links and a joint.
+std::string small_urdf() {
+  const std::string inertia = kInertia;
+  return "<robot name='small'><link name='trunk'>" + inertia + "</link><link name='arm'>" +
+         inertia +
+         "</link><joint name='elbow' type='revolute'><parent link='trunk'/><child link='arm'/>"
+         "<axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='5' effort='3'/></joint>"
+         "</robot>";
+}
+
+/// `inspect` of small_urdf() with one change.
+Broken urdf(const std::string& name, const std::string& from, const std::string& to,
+            const std::string& complaint) {
+  return {name,
+          [=](const Folder& folder) -> std::vector<std::string> {
+            write(folder / "robot.urdf", replaced(small_urdf(), from, to));
+            return {"inspect", "robot.urdf"};
+          },
+          complaint};
+}
+
+/// `inspect` of HOAP-1's sidecar with one change.
+Broken sidecar(const std::string& name, const std::string& from, const std::string& to,
+               const std::string& complaint) {
+  return {name,
+          [=](const Folder& folder) -> std::vector<std::string> {
+            fs::copy(fs::path(AYUMI_SOURCE_DIR) / "robots/hoap1", folder.path(),
+                     fs::copy_options::recursive);
+            write(folder / "robot.json", replaced(bundled("robots/hoap1/robot.json"), from, to));
+            return {"inspect", "robot.json"};
+          },
+          complaint};
+}
+
+/// `inspect` of a file with the given bytes.
+Broken robot_file(const std::string& name, const std::string& file, const std::string& bytes,
+                  const std::string& complaint) {
+  return {name,
+          [=](const Folder& folder) -> std::vector<std::string> {
+            write(folder / file, bytes);
+            return {"inspect", file};
+          },
+          complaint};
+}
+
+std::vector<Broken> broken_robots() {
+  const std::string inertia = kInertia;
+  return {
+      {"missing",
+       [](const Folder&) {
+         return std::vector<std::string>{"inspect", "no.urdf"};
+       },
+       "no.urdf"},
+      robot_file("empty_urdf", "a.urdf", "", "a.urdf"),
+      robot_file("no_xml", "a.urdf", "this is not a robot", "a.urdf"),
+      robot_file("cut_off_xml", "a.urdf", small_urdf().substr(0, 300), "a.urdf"),
+      robot_file("empty_sidecar", "a.json", "", "the file is empty"),
+      robot_file("cut_off_json", "a.json", "{\"name\": \"x\",", "a.json:1:"),
+      robot_file("array_as_sidecar", "a.json", "[]", "expected an object"),
+      robot_file("binary_sidecar", "a.json", std::string("\0\1\2\3\xff\xfe", 6), "a.json"),
+      {"folder_without_sidecar",
+       [](const Folder& folder) -> std::vector<std::string> {
+         fs::create_directories(folder / "empty");
+         return {"inspect", "empty"};
+       },
+       "empty"},
+      {"folder_named_like_a_file",
+       [](const Folder& folder) -> std::vector<std::string> {
+         fs::create_directories(folder / "robot.urdf");
+         return {"inspect", "robot.urdf"};
+       },
+       "robot.urdf"},
+      urdf("without_inertia", "<link name='arm'>" + inertia, "<link name='arm'>", "arm"),
+      urdf("zero_mass", "<mass value='1'/>", "<mass value='0'/>", "trunk"),
+      urdf("negative_mass", "<mass value='1'/>", "<mass value='-1'/>", "trunk"),
+      urdf("nan_mass", "<mass value='1'/>", "<mass value='nan'/>", "trunk"),
+      urdf("huge_mass", "<mass value='1'/>", "<mass value='1e300'/>", "trunk"),
+      urdf("word_as_mass", "<mass value='1'/>", "<mass value='heavy'/>", "trunk"),
+      urdf("impossible_inertia", "ixx='0.01'", "ixx='-0.01'", "trunk"),
+      urdf("loop", "<parent link='trunk'/><child link='arm'/>",
+           "<parent link='arm'/><child link='arm'/>", "arm"),
+      urdf("unknown_link", "<child link='arm'/>", "<child link='hand'/>", "hand"),
+      urdf("two_roots", "</robot>", "<link name='lonely'>" + inertia + "</link></robot>", "lonely"),
+      urdf("axis_of_length_zero", "xyz='0 1 0'", "xyz='0 0 0'", "elbow"),
+      urdf("limits_reversed", "lower='-1' upper='1'", "lower='1' upper='-1'", "elbow"),
+      urdf("unknown_joint_type", "type='revolute'", "type='wobbly'", "elbow"),
+      urdf("link_named_twice", "</robot>", "<link name='arm'>" + inertia + "</link></robot>",
+           "arm"),
+      sidecar("urdf_missing", "robot.urdf", "gone.urdf", "gone.urdf"),
+      sidecar("unknown_key", "\"joint_order\"", "\"joint_ordr\"", "did you mean 'joint_order'?"),
+      sidecar("wrong_foot_name", "\"l_foot\"", "\"l_foott\"", "did you mean 'l_foot'?"),
+      sidecar("unknown_joint", "\"r_hip_pitch\": -17.258", "\"r_hip_ptch\": -17.258",
+              "did you mean 'r_hip_pitch'?"),
+      sidecar("wrong_type", "\"servo_period\": 0.001", "\"servo_period\": \"fast\"",
+              "/servo_period"),
+      sidecar("key_twice", "\"servo_period\": 0.001", "\"servo_period\": 1, \"servo_period\": 1",
+              "servo_period"),
+      {"mesh_missing",
+       [](const Folder& folder) -> std::vector<std::string> {
+         write(folder / "robot.urdf",
+               replaced(small_urdf(), "<link name='arm'>",
+                        "<link name='arm'><visual><geometry><mesh filename='gone.stl'/></geometry>"
+                        "</visual>"));
+         return {"inspect", "robot.urdf"};
+       },
+       "gone.stl"},
+      {"no_permission",
+       [](const Folder& folder) -> std::vector<std::string> {
+         write(folder / "secret.urdf", small_urdf());
+         fs::permissions(folder / "secret.urdf", fs::perms::none);
+         return {"inspect", "secret.urdf"};
+       },
+       "secret.urdf"},
+  };
+}
+
+class BrokenInput : public testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenInput, IsRefusedWithOneClearLine) {
+  const Folder folder;
+  const std::vector<std::string> command = GetParam().prepare(folder);
+  if (GetParam().name == "no_permission" && ::geteuid() == 0)
+    GTEST_SKIP() << "root may read everything";
+  const std::vector<std::string> before = folder.files();
+  const Output output = run_program(command, folder.path());
+  EXPECT_EQ(output.exit_code, 3) << output.err;
+  EXPECT_EQ(output.out, "");
+  EXPECT_NE(output.err.find(GetParam().complaint), std::string::npos) << output.err;
+  EXPECT_EQ(line_count(output.err), 1) << output.err;
+  EXPECT_EQ(folder.files(), before) << "nothing is written";
+}
+
+std::string name_of_case(const testing::TestParamInfo<Broken>& info) { return info.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Robots, BrokenInput, testing::ValuesIn(broken_robots()), name_of_case);
+
+}  // namespace
+}  // namespace ayumi::test

@@ -1,0 +1,105 @@
+#pragma once
+// Runs the real program and collects what a person or a script would see.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace ayumi::test {
+
+namespace fs = std::filesystem;
+
+struct Output {
+  int exit_code = -1;  ///< 128 + signal when it was killed
+  std::string out, err;
+};
+
+inline std::string contents(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline void write(const fs::path& file, const std::string& bytes) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+/// Runs `program arguments…` in `folder`, its streams going to files that are read back.
+inline Output run_program(const std::vector<std::string>& arguments, const fs::path& folder,
+                          const std::string& program = AYUMI_PROGRAM) {
+  const fs::path streams =
+      fs::path(testing::TempDir()) / ("ayumi_streams_" + std::to_string(::getpid()));
+  fs::create_directories(streams);
+  const std::string out = streams / "out", err = streams / "err";
+  std::vector<std::string> words = {program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int out_file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const int err_file = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const int no_input = ::open("/dev/null", O_RDONLY);
+    if (::chdir(folder.c_str()) != 0 || ::dup2(no_input, 0) < 0 || ::dup2(out_file, 1) < 0 ||
+        ::dup2(err_file, 2) < 0)
+      ::_exit(126);
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  Output result;
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  result.out = contents(out);
+  result.err = contents(err);
+  fs::remove_all(streams);
+  return result;
+}
+
+/// A scratch folder of one test, removed with what it holds.
+class Folder {
+ public:
+  Folder() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = std::string(test->test_suite_name()) + "_" + test->name();
+    for (char& c : name)
+      if (c == '/') c = '_';
+    path_ = fs::path(testing::TempDir()) / ("ayumi_" + std::to_string(::getpid()) + "_" + name);
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  const fs::path& path() const { return path_; }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+  /// Every file below, relative, sorted: what a command left behind.
+  std::vector<std::string> files() const {
+    std::vector<std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(path_))
+      found.push_back(fs::relative(entry.path(), path_).string());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  fs::path path_;
+};
+
+inline int line_count(const std::string& text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace ayumi::test

@@ -1,0 +1,81 @@
+// What every call of the program has in common: help, version, mistakes, exit codes.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+class Usage : public testing::Test {
+ protected:
+  Output ayumi(const std::vector<std::string>& arguments) {
+    return run_program(arguments, folder.path());
+  }
+  void TearDown() override { EXPECT_TRUE(folder.files().empty()) << "left files behind"; }
+  Folder folder;
+};
+
+TEST_F(Usage, HelpIsOneScreen) {
+  const Output help = ayumi({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_LE(line_count(help.out), 50);
+  for (const char* word : {"inspect", "robots", "--json", "--force"})
+    EXPECT_NE(help.out.find(word), std::string::npos) << word;
+  EXPECT_EQ(help.err, "");
+}
+
+TEST_F(Usage, HelpOfACommandBeginsWithExamples) {
+  const Output help = ayumi({"inspect", "--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  const size_t example = help.out.find("ayumi inspect hoap1"), options = help.out.find("--json");
+  ASSERT_NE(example, std::string::npos) << help.out;
+  EXPECT_LT(example, options);
+}
+
+TEST_F(Usage, VersionNamesTheLibraries) {
+  const Output version = ayumi({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.out.find("ayumi 0."), 0u) << version.out;
+  EXPECT_NE(version.out.find("Eigen"), std::string::npos) << version.out;
+}
+
+TEST_F(Usage, MistypedWordsAreAnsweredWithTheNearest) {
+  const Output command = ayumi({"inspct", "hoap1"});
+  EXPECT_EQ(command.exit_code, 2);
+  EXPECT_EQ(command.out, "");
+  EXPECT_NE(command.err.find("did you mean 'inspect'?"), std::string::npos) << command.err;
+  const Output option = ayumi({"inspect", "hoap1", "--jsn"});
+  EXPECT_EQ(option.exit_code, 2);
+  EXPECT_NE(option.err.find("did you mean '--json'?"), std::string::npos) << option.err;
+}
+
+TEST_F(Usage, MissingWordsAreUsageErrors) {
+  EXPECT_EQ(ayumi({"inspect"}).exit_code, 2);
+  EXPECT_EQ(ayumi({"--threads", "many", "robots"}).exit_code, 2);
+  EXPECT_EQ(ayumi({"robots", "one", "two"}).exit_code, 2);
+}
+
+TEST_F(Usage, AnUnknownRobotIsBadInput) {
+  const Output output = ayumi({"inspect", "hoap7"});
+  EXPECT_EQ(output.exit_code, 3);
+  EXPECT_EQ(output.out, "");
+  EXPECT_NE(output.err.find("hoap7"), std::string::npos) << output.err;
+  EXPECT_NE(output.err.find("did you mean 'hoap1'?"), std::string::npos) << output.err;
+  EXPECT_EQ(line_count(output.err), 1) << output.err;
+}
+
+TEST_F(Usage, JsonIsOneObjectAndNothingElse) {
+  const Output output = ayumi({"inspect", "hoap1", "--json"});
+  EXPECT_EQ(output.exit_code, 0) << output.err;
+  const auto object = nlohmann::json::parse(output.out);
+  EXPECT_EQ(object.at("robot"), "hoap1");
+  EXPECT_EQ(object.at("dof"), 20);
+  EXPECT_NEAR(object.at("mass_kg"), 6.5, 1e-6);
+  EXPECT_NEAR(object.at("height_m"), 0.48, 0.01);
+  EXPECT_EQ(object.at("joints").size(), 20u);
+  EXPECT_EQ(object.at("soles").size(), 2u);
+}
+
+}  // namespace
+}  // namespace ayumi::test
