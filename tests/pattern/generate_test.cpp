@@ -1,0 +1,115 @@
+#include "ayumi/pattern/generate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ayumi/pattern/sample.hpp"
+#include "tests/support/biped.hpp"
+
+namespace ayumi {
+namespace {
+
+std::string message_of(const WalkParameters& parameters) {
+  try {
+    walk_pattern(test::biped(), parameters);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(WalkPattern, AlternatesFeetAndClosesThem) {
+  const RobotModel model = test::biped();
+  WalkParameters p;
+  p.steps = 4;
+  p.stride = 0.03;
+  const Pattern pattern = walk_pattern(model, p);
+  ASSERT_EQ(pattern.phases.size(), 1u + 2 * 5);
+  std::vector<Swing> swings;
+  double last = 0;
+  for (const Phase& phase : pattern.phases) {
+    EXPECT_GT(phase.until, last);
+    last = phase.until;
+    EXPECT_NEAR(phase.until * 1000, std::round(phase.until * 1000), 1e-9);
+    if (phase.swing) swings.push_back(*phase.swing);
+    EXPECT_EQ(phase.swing.has_value(), phase.support != Support::both);
+  }
+  ASSERT_EQ(swings.size(), 5u);
+  EXPECT_EQ(swings[0].foot, Side::right);
+  for (size_t i = 1; i < swings.size(); ++i) EXPECT_EQ(swings[i].foot, other(swings[i - 1].foot));
+  EXPECT_NEAR(swings[0].to.position.x(), 0.03, 1e-12);
+  EXPECT_NEAR(swings[3].to.position.x(), 0.12, 1e-12);
+  EXPECT_NEAR(swings[4].to.position.x(), 0.12, 1e-12);  // beside the last one
+  EXPECT_NEAR(swings[3].to.position.y(), 0.05, 1e-12);
+  EXPECT_NEAR(swings[4].to.position.y(), -0.05, 1e-12);
+}
+
+TEST(WalkPattern, SidewaysPerPairAndTurnPerStep) {
+  const RobotModel model = test::biped();
+  WalkParameters p;
+  p.steps = 4;
+  p.stride = 0;
+  p.side = 0.02;
+  const auto feet = [&](const WalkParameters& q) {
+    const CommandSeries series = sample(model, walk_pattern(model, q), {.dt = 0.005});
+    return series.samples.back().feet;
+  };
+  auto end = feet(p);
+  EXPECT_NEAR(end[0].translation().y(), 0.05 + 2 * 0.02, 1e-9);
+  EXPECT_NEAR(end[1].translation().y(), -0.05 + 2 * 0.02, 1e-9);
+  p.side = 0;
+  p.turn = 0.1;
+  end = feet(p);
+  for (const auto& foot : end)
+    EXPECT_NEAR(std::atan2(foot.linear()(1, 0), foot.linear()(0, 0)), 0.4, 1e-9);
+  EXPECT_NEAR((end[0].translation() - end[1].translation()).norm(), 0.10, 2e-4);
+}
+
+TEST(WalkPattern, StartsAndEndsAtRest) {
+  const RobotModel model = test::biped();
+  const CommandSeries series = sample(model, walk_pattern(model, {}));
+  for (const size_t k : {size_t{0}, series.samples.size() - 1}) {
+    EXPECT_LT(series.samples[k].dcog.norm(), 1e-4);
+    EXPECT_LT(series.samples[k].ddcog.norm(), 1e-2);
+  }
+  const Eigen::Vector3d middle = 0.5 * (series.samples.back().feet[0].translation() +
+                                        series.samples.back().feet[1].translation());
+  EXPECT_NEAR(series.samples.back().cog.y(), middle.y(), 1e-6);
+  // What the keys lose to the start from rest is small, and told when not.
+  EXPECT_LT((series.samples[700].zmp - series.samples[0].zmp).norm(), 1e-3);
+}
+
+TEST(WalkPattern, NamesTheParameterOutOfRange) {
+  const auto with = [](auto change) {
+    WalkParameters p;
+    change(p);
+    return message_of(p);
+  };
+  EXPECT_EQ(message_of({}), "");
+  EXPECT_NE(with([](auto& p) { p.steps = 0; }).find("steps 0 is out of range"), std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.stride = 2; }).find("stride 2 m is out of range"),
+            std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.stride = NAN; }).find("stride nan"), std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.period = 0.1; }).find("from 0.2 to 10 s"), std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.double_support = 0; }).find("double_support"), std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.lift = 0; }).find("lift"), std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.turn = 1; }).find("turn"), std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.side = -1; }).find("side"), std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.cog_height = 0.01; }).find("cog_height"), std::string::npos);
+}
+
+TEST(StandPattern, StandsStill) {
+  const RobotModel model = test::biped();
+  const CommandSeries series = sample(model, stand_pattern(model, 1.5));
+  EXPECT_EQ(series.samples.size(), 1501u);
+  for (const CommandSample& now : series.samples) {
+    EXPECT_LT((now.cog - series.samples[0].cog).norm(), 1e-12);
+    EXPECT_LT(now.state.velocity().norm(), 1e-9);
+  }
+  EXPECT_THROW(stand_pattern(model, 0), Error);
+}
+
+}  // namespace
+}  // namespace ayumi
