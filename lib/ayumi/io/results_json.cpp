@@ -65,11 +65,6 @@ OrderedJson json_of(const ConsistencyReport& report) {
           {"summary", json_of(report.summary)}};
 }
 
-OrderedJson json_of(const SafetyViolation& v) {
-  return {{"kind", v.kind},   {"joint", v.joint}, {"at_s", v.t},   {"value", figure(v.value)},
-          {"limit", v.limit}, {"unit", v.unit},   {"rows", v.rows}};
-}
-
 }  // namespace
 
 std::string check_json(const ConsistencyReport& report) { return text_of(json_of(report)); }
@@ -113,23 +108,6 @@ std::string simulation_json(const SimulationLog& log) {
                   {"max_foot_slip_m", figure(r.max_slip)},
                   {"events", events},
                   {"log_hash", log_hash(log)}});
-}
-
-std::string safety_json(const SafetyReport& report) {
-  OrderedJson violations = OrderedJson::array();
-  for (const SafetyViolation& violation : report.violations)
-    violations.push_back(json_of(violation));
-  return text_of({{"safe", report.safe},
-                  {"ramp_s", report.ramp},
-                  {"hold_s", report.hold},
-                  {"max_step_ratio", figure(report.max_step_ratio)},
-                  {"worst_joint", report.worst_joint},
-                  {"worst_at_s", report.worst_at},
-                  {"min_limit_margin_rad", figure(report.min_limit_margin)},
-                  {"margin_joint", report.margin_joint},
-                  {"start_speed_rad_s", figure(report.start_speed)},
-                  {"end_speed_rad_s", figure(report.end_speed)},
-                  {"violations", violations}});
 }
 
 }  // namespace ayumi

@@ -1,0 +1,213 @@
+// Joint tables for a robot or another program: the reference of a run, or of a pattern replayed
+// open loop, with ramp and hold around it. Unsafe tables are refused.
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/control/dtad.hpp"
+#include "ayumi/io/hoap.hpp"
+#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/results_json.hpp"
+#include "ayumi/io/run_folder.hpp"
+#include "ayumi/io/table.hpp"
+#include "ayumi/pattern/export_safety.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/sim/simulate.hpp"
+#include "commands.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportOptions {
+  std::string input, format, output, robot, log;
+  std::vector<std::string> set;
+  SafetyOptions safety;
+  bool force_unsafe = false;
+};
+
+struct Source {
+  RobotModel model;
+  ReferenceTrajectory reference;
+};
+
+std::map<std::string, double> set_parameters(const std::vector<std::string>& words) {
+  std::map<std::string, double> values;
+  for (const std::string& word : words) {
+    const size_t equals = word.find('=');
+    char* end = nullptr;
+    const std::string number = equals == std::string::npos ? "" : word.substr(equals + 1);
+    const double value = std::strtod(number.c_str(), &end);
+    if (number.empty() || *end != '\0')
+      fail(ErrorCode::usage, "--set " + word + ": NAME=NUMBER is needed");
+    values[word.substr(0, equals)] = value;
+  }
+  return values;
+}
+
+// What the servos receive when a pattern is replayed as it is.
+ReferenceTrajectory open_loop_reference(const RobotModel& model, const CommandSeries& series) {
+  const Eigen::VectorXd lead = servo_lead(model);
+  ReferenceTrajectory reference;
+  reference.dt = series.dt;
+  reference.joints = model.dof_names();
+  for (const CommandSample& sample : series.samples) {
+    ReferenceRow row;
+    row.theta = sample.state.theta + lead.cwiseProduct(sample.state.dtheta);
+    row.base = sample.state.base;
+    row.cog = sample.cog;
+    row.zmp = sample.zmp;
+    row.fz = sample.fz;
+    row.contact = {supports(sample.support, Side::left), supports(sample.support, Side::right)};
+    reference.rows.push_back(std::move(row));
+  }
+  return reference;
+}
+
+Source source_of_pattern(const ExportOptions& options, const Context& context) {
+  const Pattern pattern = read_pattern(options.input, set_parameters(options.set));
+  Source source{
+      load_robot(options.robot.empty() ? robot_of(pattern) : options.robot, robot_search(context)),
+      {}};
+  const CommandSeries series = sample(source.model, pattern, {}, context.progress());
+  source.reference = open_loop_reference(source.model, series);
+  source.reference.provenance = {
+      source.model.name(), source.model.description().sha256,         pattern.name,
+      pattern.sha256,      source.model.limits(pattern.profile).name, "none",
+      context.command_line};
+  return source;
+}
+
+Source source_of_table(const ExportOptions& options, const Context& context,
+                       ReferenceTrajectory reference) {
+  const Provenance& made = reference.provenance;
+  Source source{
+      load_robot(options.robot.empty() ? made.robot : options.robot, robot_search(context)),
+      std::move(reference)};
+  require_joints(source.reference, source.model.dof_names(), options.input);
+  if (!made.robot_sha256.empty() && made.robot_sha256 != source.model.description().sha256)
+    fail(ErrorCode::bad_file, options.input + ": robot '" + source.model.name() +
+                                  "' has changed since this was made; run the pattern again");
+  return source;
+}
+
+ReferenceTrajectory reference_of_run(const ExportOptions& options, const Context& context) {
+  if (options.log.empty() && fs::exists(fs::path(options.input) / "reference.csv"))
+    return read_reference(fs::path(options.input) / "reference.csv");
+  const SimulationLog log = read_run_log(options.input, options.log);
+  const RobotModel model = load_robot(options.robot.empty() ? log.provenance.robot : options.robot,
+                                      robot_search(context));
+  return extract_reference(model, log);
+}
+
+// A CSV, or JSON that says so at its head.
+bool is_reference_table(const std::string& path) {
+  return path.ends_with(".csv") ||
+         read_file(path).substr(0, 200).find("\"ayumi.reference/") != std::string::npos;
+}
+
+Source source_of(const ExportOptions& options, const Context& context) {
+  if (fs::is_directory(options.input))
+    return source_of_table(options, context, reference_of_run(options, context));
+  if (is_reference_table(options.input))
+    return source_of_table(options, context, read_reference(options.input));
+  return source_of_pattern(options, context);
+}
+
+std::string bytes_of(const std::string& format, const Source& source,
+                     const ReferenceTrajectory& table, const SafetyOptions& safety) {
+  if (format == "hoap") return hoap_csv(source.model, table, safety);
+  return format == "json" ? reference_json(table) : reference_csv(table);
+}
+
+std::string in_words(const ExportOptions& options, const SafeTable& safe, bool written) {
+  const SafetyReport& report = safe.report;
+  std::string text = written ? options.output + ": " + std::to_string(safe.table.rows.size()) +
+                                   " rows at " + text::brief(1 / safe.table.dt) + " Hz, " +
+                                   std::to_string(safe.table.joints.size()) + " joints (" +
+                                   options.format + ")\n"
+                             : options.output + ": not written, the table is unsafe\n";
+  text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) + " s";
+  if (!report.worst_joint.empty())
+    text += "; largest step " + text::fixed(100 * report.max_step_ratio, 1) + " % of the limit (" +
+            report.worst_joint + " at " + text::fixed(report.worst_at, 3) + " s)";
+  if (!report.margin_joint.empty())
+    text += "; " + text::brief(report.min_limit_margin * 180 / EIGEN_PI, 3) +
+            " deg inside the position limits (" + report.margin_joint + ")";
+  text += "\n";
+  for (const SafetyViolation& violation : report.violations)
+    text += "  unsafe: " + text_of(violation) + "\n";
+  if (!written) text += "  --force-unsafe writes it all the same\n";
+  return text;
+}
+
+std::string as_json(const ExportOptions& options, const SafeTable& safe, bool written) {
+  const nlohmann::ordered_json json = {
+      {"format", options.format},
+      {"output", written ? nlohmann::ordered_json(options.output) : nullptr},
+      {"rows", safe.table.rows.size()},
+      {"first_row", safe.first},
+      {"rate_hz", 1 / safe.table.dt},
+      {"joints", safe.table.joints},
+      {"safety", nlohmann::ordered_json::parse(safety_json(safe.report))}};
+  return json.dump(2);
+}
+
+void export_table(ExportOptions options, Context& context) {
+  if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
+    fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
+  const Source source = source_of(options, context);
+  if (options.safety.profile.empty()) options.safety.profile = source.reference.provenance.profile;
+  const SafeTable safe = make_safe(source.model, source.reference, options.safety);
+  const bool write = safe.report.safe || options.force_unsafe;
+  if (write)
+    write_file(options.output, bytes_of(options.format, source, safe.table, options.safety));
+  context.print(in_words(options, safe, write));
+  context.print_json(as_json(options, safe, write));
+  context.exit_code = write ? 0 : 1;
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Context& context) {
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = app.add_subcommand("export", "joint tables of a run or pattern for replay");
+  command->add_option("input", options->input, "a RUN folder, a pattern, or a reference table")
+      ->required()
+      ->type_name("RUN_OR_PATTERN");
+  command->add_option("--format", options->format, "csv, json or hoap")
+      ->required()
+      ->check(CLI::IsMember({"csv", "json", "hoap"}));
+  command->add_option("-o,--out", options->output, "file to write")->required()->type_name("FILE");
+  command->add_option("--ramp", options->safety.ramp, "approach ramp, at least this long [s]")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  command->add_option("--hold", options->safety.hold, "hold the end this long [s]")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  command
+      ->add_option("--from", options->safety.from,
+                   "posture the robot stands in before the ramp, or 'first'")
+      ->capture_default_str();
+  command->add_option("--profile", options->safety.profile, "actuator profile of the speed limits");
+  command->add_option("--log", options->log, "which log of the RUN, e.g. open_loop");
+  command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
+  command->add_option("--set", options->set, "parameter of the pattern")
+      ->type_name("NAME=NUMBER")
+      ->allow_extra_args(false);
+  command->add_flag("--force-unsafe", options->force_unsafe, "write even an unsafe table");
+  command->footer(
+      "Examples:\n"
+      "  ayumi export out/ --format hoap -o walk_hoap.csv\n"
+      "  ayumi export out/ --format csv --log open_loop -o open_loop.csv\n"
+      "  ayumi export patterns/hoap1_walk.json --format json --ramp 3 -o walk_table.json");
+  command->callback([options, &context] { export_table(*options, context); });
+}
+
+}  // namespace ayumi::app
