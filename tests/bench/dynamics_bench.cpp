@@ -4,6 +4,10 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
@@ -142,5 +146,34 @@ BENCHMARK(mujoco_cog)->Name("mujoco_cog_jacobian");
 
 #endif
 
+/// The usual table, then how many times faster than MuJoCo each kernel is.
+class RatioReporter : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs) {
+      const bool median = run.run_type == Run::RT_Aggregate && run.aggregate_name == "median";
+      if (median ||
+          (run.run_type == Run::RT_Iteration && !run.error_occurred && run.repetitions < 2))
+        times_[run.run_name.function_name] = run.GetAdjustedCPUTime();
+    }
+    ConsoleReporter::ReportRuns(runs);
+  }
+  void print_ratios() const {
+    for (const auto& [name, time] : times_)
+      if (const auto peer = times_.find("mujoco_" + name); peer != times_.end())
+        std::printf("MuJoCo / Ayumi, %-14s %.2f\n", name.c_str(), peer->second / time);
+  }
+
+ private:
+  std::map<std::string, double> times_;
+};
+
 }  // namespace
 }  // namespace ayumi
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  ayumi::RatioReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  reporter.print_ratios();
+}
