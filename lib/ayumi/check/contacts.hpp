@@ -1,0 +1,41 @@
+#pragma once
+// Contact intervals of a planned motion. A foot in contact does not move, so one pose stands for
+// the whole interval: the planned sole pose at its middle, where neither lift-off nor landing blurs
+// it.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <vector>
+
+#include "ayumi/pattern/command_series.hpp"
+
+namespace ayumi {
+
+/// Samples first..last (inclusive) during which one foot is planned on, or off, the ground.
+struct ContactInterval {
+  int first = 0, last = 0;
+  bool contact = false;
+  Eigen::Isometry3d sole = Eigen::Isometry3d::Identity();  ///< in contact: where it stands, world
+};
+
+/// The whole series cut into alternating intervals, in order of time.
+std::vector<ContactInterval> contact_intervals(const CommandSeries& series, Side side);
+
+/// By sample: index of its interval in contact_intervals().
+std::vector<int> interval_index(const std::vector<ContactInterval>& intervals);
+
+/// Both feet of a series, ready to be asked by sample.
+struct ContactPlan {
+  std::array<std::vector<ContactInterval>, 2> intervals;  ///< by Side
+  std::array<std::vector<int>, 2> index;                  ///< by Side, then sample
+
+  const ContactInterval& at(Side side, int sample) const {
+    const int s = static_cast<int>(side);
+    return intervals[s][index[s][sample]];
+  }
+  /// The support of a sample, from its intervals.
+  Support support(int sample) const;
+};
+ContactPlan contact_plan(const CommandSeries& series);
+
+}  // namespace ayumi

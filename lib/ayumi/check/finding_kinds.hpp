@@ -1,0 +1,40 @@
+#pragma once
+// The kinds of findings as numbers, for the inner loop of the check. Their names, units and default
+// tolerances are the table finding_kinds() in consistency.hpp, in the same order.
+
+#include <array>
+
+#include "ayumi/check/consistency.hpp"
+
+namespace ayumi {
+
+enum class Kind {
+  cog_residual,
+  zmp_residual,
+  fz_residual,
+  point_mass_gap,
+  support_margin,
+  friction,
+  unilateral,
+  yaw_moment,
+  ballistic,
+  angular_momentum,
+  foot_slip,
+  foot_penetration,
+  foot_float,
+  joint_position,
+  joint_speed,
+  joint_acceleration,
+  joint_torque,
+  continuous_torque,
+  servo_step,
+  self_collision,
+  landing_speed,
+};
+inline constexpr int kKindCount = 21;
+
+/// Tolerances by Kind: the defaults with the overrides. Throws Error(usage) for an unknown name or
+/// a tolerance that is not a finite number.
+std::array<double, kKindCount> tolerances(const CheckOptions& options);
+
+}  // namespace ayumi

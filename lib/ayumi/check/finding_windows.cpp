@@ -1,0 +1,31 @@
+#include "ayumi/check/finding_windows.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace ayumi {
+
+void FindingWindows::add(const Violation& v) {
+  std::vector<FindingWindow>& windows = windows_[{static_cast<int>(v.kind), v.item}];
+  if (windows.empty() || v.sample - windows.back().last > gap_) {
+    windows.push_back({v, v.sample, v.sample});
+    return;
+  }
+  FindingWindow& window = windows.back();
+  window.last = std::max(window.last, v.sample);
+  const bool graver = v.severity < window.worst.severity;
+  const bool same = v.severity == window.worst.severity;
+  if (graver || (same && v.excess > window.worst.excess)) window.worst = v;
+}
+
+std::vector<FindingWindow> FindingWindows::finish() const {
+  std::vector<FindingWindow> result;
+  for (const auto& entry : windows_)
+    result.insert(result.end(), entry.second.begin(), entry.second.end());
+  std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.worst.severity, a.first) < std::tie(b.worst.severity, b.first);
+  });
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,42 @@
+#pragma once
+// Samples that violate something, gathered into windows: what the user reads as one finding.
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "ayumi/check/finding_kinds.hpp"
+
+namespace ayumi {
+
+/// One sample of one kind at one item (joint, foot, pair, ...).
+struct Violation {
+  Kind kind = Kind::cog_residual;
+  int item = 0;  ///< meaning depends on the kind
+  int sample = 0;
+  Severity severity = Severity::error;
+  double value = 0, limit = 0;  ///< in the unit of the finding
+  double excess = 0;            ///< how bad, for choosing the worst sample
+  int detail = 0;               ///< carried along from the worst sample
+};
+
+struct FindingWindow {
+  Violation worst;
+  int first = 0, last = 0;  ///< samples
+};
+
+/// Violations of one kind and item at most `gap` samples apart are one window. Severity is that of
+/// the worst sample. Violations of a kind and item must come in order of time.
+class FindingWindows {
+ public:
+  explicit FindingWindows(int gap) : gap_(gap) {}
+  void add(const Violation& violation);
+  /// All windows, errors first, then by time, kind and item.
+  std::vector<FindingWindow> finish() const;
+
+ private:
+  int gap_;
+  std::map<std::pair<int, int>, std::vector<FindingWindow>> windows_;  ///< by kind and item
+};
+
+}  // namespace ayumi

@@ -1,0 +1,76 @@
+#include "ayumi/check/self_collision.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "ayumi/dynamics/kinematics.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kHousingGap = 0.005;  // [m]
+constexpr int kHousingJoints = 3;
+
+int joints_between(const RobotModel& model, int a, int b) {
+  int steps = 0;
+  // Bodies are sorted parents first: climbing from the larger index meets at the common ancestor.
+  while (a != b) {
+    if (a > b)
+      a = model.bodies()[a].parent;
+    else
+      b = model.bodies()[b].parent;
+    ++steps;
+  }
+  return steps;
+}
+
+std::set<std::pair<int, int>> ignored_pairs(const RobotModel& model) {
+  std::set<std::pair<int, int>> result;
+  for (const auto& [first, second] : model.description().collision_ignore) {
+    const int a = model.find_link(first), b = model.find_link(second);
+    if (a >= 0 && b >= 0) result.insert(std::minmax(model.links()[a].body, model.links()[b].body));
+  }
+  return result;
+}
+
+}  // namespace
+
+CollisionModel::CollisionModel(const RobotModel& model) : shapes_(model.bodies().size()) {
+  for (const Link& link : model.links())
+    for (const PlacedShape& shape : link.collisions)
+      shapes_[link.body].push_back({Collider(shape.shape), link.pose * shape.pose});
+
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const auto ignored = ignored_pairs(model);
+  const int n = static_cast<int>(shapes_.size());
+  for (int a = 0; a < n; ++a) {
+    for (int b = a + 1; b < n; ++b) {
+      if (shapes_[a].empty() || shapes_[b].empty() || ignored.count({a, b})) continue;
+      const int joints = joints_between(model, a, b);
+      if (joints < 2) continue;
+      const double home = clearance({a, b}, data, kHousingGap);
+      if (home > (joints <= kHousingJoints ? kHousingGap : 0)) pairs_.push_back({a, b});
+    }
+  }
+}
+
+double CollisionModel::clearance(const Pair& pair, const RobotData& data, double skip) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  const Eigen::Isometry3d A = data.pose(pair.a), B = data.pose(pair.b);
+  for (const PlacedCollider& a : shapes_[pair.a]) {
+    const Eigen::Isometry3d pose_a = A * a.pose;
+    for (const PlacedCollider& b : shapes_[pair.b]) {
+      const Eigen::Isometry3d pose_b = B * b.pose;
+      const double bound = clearance_bound(a.collider, pose_a, b.collider, pose_b);
+      if (bound >= nearest) continue;
+      nearest = std::min(
+          nearest, bound > skip ? bound : ayumi::clearance(a.collider, pose_a, b.collider, pose_b));
+    }
+  }
+  return nearest;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,112 @@
+#include "ayumi/geometry/distance.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/random_robot.hpp"
+
+using namespace ayumi;
+using namespace ayumi::test;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+Isometry3d random_pose(Random& random, double reach) {
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() = random.vector(reach);
+  pose.linear() = exp_rotation(random.vector(3)).toRotationMatrix();
+  return pose;
+}
+
+}  // namespace
+
+TEST(Distance, SegmentsAgainstSampling) {
+  Random random(1);
+  for (int i = 0; i < 50; ++i) {
+    const Vector3d a0 = random.vector(), a1 = random.vector(), b0 = random.vector(),
+                   b1 = random.vector();
+    double nearest = 1e9;
+    for (int s = 0; s <= 200; ++s)
+      for (int t = 0; t <= 200; ++t)
+        nearest =
+            std::min(nearest, (a0 + s / 200.0 * (a1 - a0) - b0 - t / 200.0 * (b1 - b0)).norm());
+    const double d = segment_distance(a0, a1, b0, b1);
+    EXPECT_LE(d, nearest + 1e-12);
+    EXPECT_GE(d, nearest - 0.03);
+  }
+  const Vector3d X = Vector3d::UnitX(), Y = Vector3d::UnitY();
+  EXPECT_NEAR(segment_distance({0, 0, 0}, X, Y, X + Y), 1, 1e-15);       // parallel
+  EXPECT_NEAR(segment_distance({0, 0, 0}, X, 3 * X, 2 * X), 1, 1e-15);   // in line
+  EXPECT_NEAR(segment_distance(Y, Y, {-1, 0, 0}, {1, 0, 0}), 1, 1e-15);  // a point
+}
+
+TEST(Distance, BoxesFaceToFace) {
+  const Collider a(Box{{0.2, 0.1, 0.1}}), b(Box{{0.1, 0.1, 0.1}});
+  Isometry3d A = Isometry3d::Identity(), B = A;
+  B.translation().x() = 0.18;
+  EXPECT_NEAR(clearance(a, A, b, B), 0.03, 1e-6);
+  B.translation().x() = 0.14;
+  EXPECT_NEAR(clearance(a, A, b, B), -0.01, 1e-4);
+}
+
+// A sphere against a box: distance of a point to a box in closed form, minus the radius.
+TEST(Distance, SphereAndBoxInClosedForm) {
+  Random random(2);
+  const Vector3d half(0.1, 0.05, 0.07);
+  const Collider box(Box{2 * half}), sphere(Sphere{0.03});
+  for (int i = 0; i < 100; ++i) {
+    const Isometry3d A = random_pose(random, 0.2), B = random_pose(random, 0.2);
+    const Vector3d p = A.inverse() * B.translation();
+    const double outside = (p.cwiseAbs() - half).cwiseMax(0).norm();
+    if (outside <= 0.03) continue;
+    EXPECT_NEAR(clearance(box, A, sphere, B), outside - 0.03, 1e-5);
+  }
+}
+
+// Capsules go the closed-form way, cylinders the library's: a thin capsule and a thin cylinder of
+// the same length are nearly one shape.
+TEST(Distance, CapsulesAgreeWithTheLibrary) {
+  Random random(3);
+  const Collider capsule(Capsule{0.001, 0.2}), cylinder(Cylinder{0.001, 0.2}),
+      other(Capsule{0.02, 0.1});
+  for (int i = 0; i < 100; ++i) {
+    const Isometry3d A = random_pose(random, 0.2), B = random_pose(random, 0.2);
+    const double closed = clearance(capsule, A, other, B);
+    if (closed < 0) continue;
+    EXPECT_NEAR(closed, clearance(cylinder, A, other, B), 0.0012);
+  }
+}
+
+TEST(Distance, BoundIsNeverAboveTheClearance) {
+  Random random(4);
+  MeshShape mesh;
+  mesh.mesh.parts.emplace_back();
+  for (int i = 0; i < 20; ++i)
+    mesh.mesh.parts[0].vertices.push_back((random.vector(0.1) + Vector3d(0.2, 0, 0)).cast<float>());
+  std::vector<Collider> shapes;
+  shapes.emplace_back(Box{{0.1, 0.2, 0.05}});
+  shapes.emplace_back(Sphere{0.06});
+  shapes.emplace_back(Cylinder{0.05, 0.2});
+  shapes.emplace_back(Capsule{0.05, 0.2});
+  shapes.emplace_back(mesh);
+  for (int i = 0; i < 300; ++i) {
+    const Collider& a = shapes[i % 5];
+    const Collider& b = shapes[(i / 5) % 5];
+    const Isometry3d A = random_pose(random, 0.4), B = random_pose(random, 0.4);
+    const double d = clearance(a, A, b, B);
+    EXPECT_LE(clearance_bound(a, A, b, B), d + 1e-9);
+    EXPECT_NEAR(d, clearance(b, B, a, A), 1e-4);
+  }
+}
+
+TEST(Distance, MeshIsItsBox) {
+  MeshShape mesh;
+  mesh.mesh.parts.emplace_back();
+  for (float x : {0.f, 0.1f})
+    for (float y : {0.f, 0.1f})
+      for (float z : {0.f, 0.1f}) mesh.mesh.parts[0].vertices.emplace_back(x, y, z);
+  const Collider a(Shape{mesh}), b(Sphere{0.01});
+  Isometry3d A = Isometry3d::Identity(), B = A;
+  B.translation() = Vector3d(0.15, 0.05, 0.05);
+  EXPECT_NEAR(clearance(a, A, b, B), 0.04, 1e-6);
+}
