@@ -143,6 +143,96 @@ std::vector<Broken> broken_robots() {
   };
 }
 
+/// A step of HOAP-1 that is in order.
+const char* const kPattern = R"({
+  "format": "ayumi.pattern/1",
+  "robot": "hoap1",
+  "units": { "angle": "deg" },
+  "phases": [
+    { "until": 0.8, "support": "both" },
+    { "until": 1.2, "support": "left", "swing": { "foot": "right", "to": [0.02, -0.039] } },
+    { "until": 2.0, "support": "both" }
+  ],
+  "keyframes": [
+    { "t": 0.0, "zmp": "center" },
+    { "t": 0.8, "zmp": "left" },
+    { "t": 1.2, "zmp": "left" },
+    { "t": 1.6, "zmp": "center", "posture": { "l_elbow": -30 } }
+  ],
+  "controller": { "type": "dtad", "gains": { "q": 0.25 } },
+  "scenario": [
+    { "type": "impulse", "at": 1.0, "duration": 0.02, "direction": [0, -1, 0], "impulse": 0.3 }
+  ]
+})";
+
+/// `export` of kPattern with one change.
+Broken pattern(const std::string& name, const std::string& from, const std::string& to,
+               const std::string& complaint) {
+  return {name,
+          [=](const Folder& folder) -> std::vector<std::string> {
+            write(folder / "p.json", replaced(kPattern, from, to));
+            return {"export", "--quiet", "p.json", "--format", "csv", "-o", "out.csv"};
+          },
+          complaint};
+}
+
+std::vector<Broken> broken_patterns() {
+  return {
+      {"missing",
+       [](const Folder&) {
+         return std::vector<std::string>{"export", "--quiet", "no.json", "--format",
+                                         "csv",    "-o",      "out.csv"};
+       },
+       "no.json"},
+      {"folder",
+       [](const Folder& folder) -> std::vector<std::string> {
+         fs::create_directories(folder / "p.json");
+         return {"export", "--quiet", "p.json", "--format", "csv", "-o", "out.csv"};
+       },
+       "p.json"},
+      {"empty",
+       [](const Folder& folder) -> std::vector<std::string> {
+         write(folder / "p.json", "");
+         return {"export", "--quiet", "p.json", "--format", "csv", "-o", "out.csv"};
+       },
+       "p.json: the file is empty"},
+      pattern("bad_json", "\"robot\": \"hoap1\",", "\"robot\": \"hoap1\"", "p.json:4:9: "),
+      pattern("unknown_format", "ayumi.pattern/1", "ayumi.pattern/9", "/format"),
+      pattern("unknown_robot", "hoap1", "hoap7", "did you mean 'hoap1'?"),
+      pattern("unknown_key", "\"keyframes\"", "\"keyframe\"", "/keyframe: "),
+      pattern("unknown_joint", "l_elbow", "l_elbw",
+              "/keyframes/3: the robot 'hoap1' has no joint 'l_elbw'; did you mean 'l_elbow'?"),
+      pattern("unknown_posture", "{ \"l_elbow\": -30 }", "\"hoem\"", "/keyframes/3"),
+      pattern("time_not_increasing", "\"t\": 1.2", "\"t\": 0.8", "/keyframes/2/t"),
+      pattern("phases_not_increasing", "\"until\": 1.2", "\"until\": 0.5", "/phases/1/until"),
+      pattern("not_a_number", "\"t\": 1.6", "\"t\": NaN", "p.json:14:12: "),
+      pattern("infinite", "\"t\": 1.6", "\"t\": 1e999", "p.json"),
+      pattern("huge_number", "[0.02, -0.039]", "[2e30, -0.039]", "/phases/1/swing/to"),
+      pattern("out_of_reach", "[0.02, -0.039]", "[2, -0.039]", "the right foot is out of reach"),
+      pattern("wrong_unit", "\"angle\": \"deg\"", "\"angle\": \"grad\"", "/units/angle"),
+      pattern("wrong_length_unit", "\"angle\": \"deg\"", "\"angle\": \"deg\", \"length\": \"mm\"",
+              "/units/length"),
+      pattern("number_with_unit", "\"until\": 2.0", "\"until\": \"2 s\"", "/phases/2/until"),
+      pattern("wrong_type", "\"scenario\": [", "\"scenario\": {}, \"world\": [", "expected an"),
+      pattern("empty_phases", R"("phases": [
+    { "until": 0.8, "support": "both" },
+    { "until": 1.2, "support": "left", "swing": { "foot": "right", "to": [0.02, -0.039] } },
+    { "until": 2.0, "support": "both" }
+  ])",
+              "\"phases\": []", "/phases"),
+      pattern("unknown_foot", "\"foot\": \"right\"", "\"foot\": \"middle\"",
+              "/phases/1/swing/foot"),
+      pattern("swing_of_a_supporting_foot", "\"foot\": \"right\"", "\"foot\": \"left\"",
+              "/phases/1/swing"),
+      pattern("unknown_controller", "\"dtad\"", "\"dtda\"", "/controller/type"),
+      pattern("direction_of_length_zero", "[0, -1, 0]", "[0, 0, 0]", "/scenario/0/direction"),
+      pattern("negative_duration", "\"duration\": 0.02", "\"duration\": -0.02",
+              "/scenario/0/duration"),
+      pattern("table_missing", "\"controller\"", "\"table\": \"gone.csv\", \"controller\"",
+              "gone.csv: no such file"),
+  };
+}
+
 class BrokenInput : public testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenInput, IsRefusedWithOneClearLine) {
@@ -162,6 +252,17 @@ TEST_P(BrokenInput, IsRefusedWithOneClearLine) {
 std::string name_of_case(const testing::TestParamInfo<Broken>& info) { return info.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(Robots, BrokenInput, testing::ValuesIn(broken_robots()), name_of_case);
+
+INSTANTIATE_TEST_SUITE_P(Patterns, BrokenInput, testing::ValuesIn(broken_patterns()), name_of_case);
+
+// The pattern that the cases above change is in order itself.
+TEST(SoundInput, IsChecked) {
+  const Folder folder;
+  write(folder / "p.json", kPattern);
+  const Output output = run_program(
+      {"export", "--quiet", "p.json", "--format", "csv", "-o", "out.csv"}, folder.path());
+  EXPECT_LE(output.exit_code, 1) << output.err;
+}
 
 }  // namespace
 }  // namespace ayumi::test
