@@ -55,7 +55,7 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   require_range("steps", p.steps, 1, 10000, "");
   require_range("stride", p.stride, -0.6 * leg, 0.6 * leg, " m");
   require_range("period", p.period, 0.2, 10, " s");
-  require_range("double_support", p.double_support, 0.05, 0.8, "");
+  require_range("double_support", p.double_support, 0.05, 0.6, "");
   require_range("lift", p.lift, 0.01 * leg, 0.4 * leg, " m");
   require_range("side", p.side, -0.4 * leg, 0.4 * leg, " m");
   require_range("turn", p.turn, -0.6, 0.6, " rad");

@@ -61,25 +61,90 @@ VectorXd omega_squared_of(const SampleJob& job, const CogPlan& plan, const Grid&
   return w2;
 }
 
-std::vector<CommandSample> start_samples(const SampleJob& job, const Grid& grid) {
-  std::vector<CommandSample> samples(grid.n + 1);
-  for (CommandSample& sample : samples) sample.state = job.model.rest_state();
-  return samples;
+// COG and bumps while they are being corrected, on the grid.
+struct CogSolver {
+  const SampleJob& job;
+  CogPlan& plan;
+  Grid grid;
+  VectorXd w2;
+  std::array<VectorXd, 3> cog;
+
+  void read_tracks();
+  void add_solution(int axis, const VectorXd& z);
+  void solve_postures(bool first, std::vector<CommandSample>& samples) const;
+  double measure(std::vector<CommandSample>& samples, std::array<VectorXd, 2>& error) const;
+  void correct();
+};
+
+void CogSolver::read_tracks() {
+  for (int axis = 0; axis < 3; ++axis) {
+    cog[axis] = VectorXd::Zero(grid.n + 1);
+    if (axis < 2 && plan.solved[axis]) continue;
+    for (int k = 0; k <= grid.n; ++k) cog[axis][k] = plan.cog[axis].at(grid.t(k)).value;
+  }
 }
 
-void solve_grid(const SampleJob& job, const Grid& grid, const std::array<VectorXd, 3>& cog,
-                bool first, std::vector<CommandSample>& samples) {
+void CogSolver::add_solution(int axis, const VectorXd& z) {
+  const RestToRest motion = rest_to_rest_cog(z, w2, grid.h);
+  cog[axis] += motion.x;
+  plan.bump[0][axis] += motion.begin;
+  plan.bump[1][axis] += motion.end;
+}
+
+void CogSolver::solve_postures(bool first, std::vector<CommandSample>& samples) const {
   RobotData data(job.model);
   for (int k = 0; k <= grid.n; ++k) {
     CommandSample& sample = samples[k];
-    if (first && k > 0) sample.state = samples[k - 1].state;
-    if (first && k == 0) sample.state.theta = job.ik.start();
-    const Vector3d moved = Vector3d(cog[0][k], cog[1][k], cog[2][k]) - sample.cog;
-    if (!first) sample.state.base.position += moved;
-    sample.cog += moved;
+    if (first) {
+      sample.state = k > 0 ? samples[k - 1].state : job.model.rest_state();
+      if (k == 0) sample.state.theta = job.ik.start();
+    }
+    const Vector3d wanted(cog[0][k], cog[1][k], cog[2][k]);
+    if (!first) sample.state.base.position += wanted - sample.cog;
+    sample.cog = wanted;
     solve_posture(job, grid.t(k), sample, data);
   }
   fill_rates(samples, grid.h, true);
+}
+
+// cmd ZMP - full-model ZMP in the solved axes; returns the largest.
+double CogSolver::measure(std::vector<CommandSample>& samples,
+                          std::array<VectorXd, 2>& error) const {
+  RobotData data(job.model);
+  error = {VectorXd::Zero(grid.n + 1), VectorXd::Zero(grid.n + 1)};
+  for (int k = 0; k <= grid.n; ++k) {
+    samples[k].zmp = plan.zmp_at(grid.t(k));
+    const Vector3d full = full_model_reaction(job.model, samples[k], data).zmp;
+    for (int axis = 0; axis < 2; ++axis)
+      if (plan.solved[axis]) error[axis][k] = samples[k].zmp[axis] - full[axis];
+  }
+  return std::max(error[0].cwiseAbs().maxCoeff(), error[1].cwiseAbs().maxCoeff());
+}
+
+// Keeps the best pass: where the keys jump the error cannot vanish and passes may stop improving.
+void CogSolver::correct() {
+  std::vector<CommandSample> samples(grid.n + 1);
+  std::array<VectorXd, 2> error;
+  double best = INFINITY;
+  auto best_cog = cog;
+  auto best_bump = plan.bump;
+  int worse = 0;
+  for (int pass = 0; pass <= kMostIterations && worse < 2; ++pass) {
+    report(job.progress, {"solve the COG", static_cast<double>(pass) / kMostIterations, ""});
+    solve_postures(pass == 0, samples);
+    const double worst = measure(samples, error);
+    worse = worst < best ? 0 : worse + 1;
+    if (worse == 0) {
+      best = worst;
+      best_cog = cog;
+      best_bump = plan.bump;
+    }
+    if (worst <= kGoodEnough) break;
+    for (int axis = 0; axis < 2; ++axis)
+      if (plan.solved[axis]) add_solution(axis, error[axis]);
+  }
+  cog = best_cog;
+  plan.bump = best_bump;
 }
 
 }  // namespace
@@ -105,50 +170,18 @@ CogPlan plan_cog(const SampleJob& job) {
   }
   if (!plan.solved[0] && !plan.solved[1]) return plan;
 
-  const VectorXd w2 = omega_squared_of(job, plan, grid);
-  plan.omega = {std::sqrt(w2[0]), std::sqrt(w2[grid.n])};
-  std::array<VectorXd, 3> cog;
-  for (int axis = 0; axis < 3; ++axis) {
-    cog[axis].resize(grid.n + 1);
-    for (int k = 0; k <= grid.n; ++k) cog[axis][k] = plan.cog[axis].at(grid.t(k)).value;
-  }
-  const auto add_solution = [&](int axis, const VectorXd& z, bool first) {
-    const RestToRest motion = rest_to_rest_cog(z, w2, grid.h);
-    cog[axis] = first ? motion.x : VectorXd(cog[axis] + motion.x);
-    plan.bump[0][axis] += motion.begin;
-    plan.bump[1][axis] += motion.end;
-  };
+  CogSolver solver{job, plan, grid, omega_squared_of(job, plan, grid), {}};
+  plan.omega = {std::sqrt(solver.w2[0]), std::sqrt(solver.w2[grid.n])};
+  solver.read_tracks();
   for (int axis = 0; axis < 2; ++axis) {
     if (!plan.solved[axis]) continue;
     VectorXd z(grid.n + 1);
     for (int k = 0; k <= grid.n; ++k) z[k] = plan.zmp[axis].at(grid.t(k)).value;
-    add_solution(axis, z, true);
+    solver.add_solution(axis, z);
   }
-  if (job.pattern.full_model) {
-    std::vector<CommandSample> samples = start_samples(job, grid);
-    RobotData data(job.model);
-    for (int pass = 0; pass < kMostIterations; ++pass) {
-      report(job.progress, {"solve the COG", static_cast<double>(pass) / kMostIterations, ""});
-      solve_grid(job, grid, cog, pass == 0, samples);
-      std::array<VectorXd, 2> error = {VectorXd::Zero(grid.n + 1), VectorXd::Zero(grid.n + 1)};
-      double worst = 0;
-      for (int k = 0; k <= grid.n; ++k) {
-        samples[k].zmp = plan.zmp_at(grid.t(k));
-        const Vector3d full = full_model_reaction(job.model, samples[k], data).zmp;
-        for (int axis = 0; axis < 2; ++axis) {
-          if (!plan.solved[axis]) continue;
-          error[axis][k] = samples[k].zmp[axis] - full[axis];
-          worst = std::max(worst, std::abs(error[axis][k]));
-        }
-      }
-      plan.iterations = pass;
-      if (worst <= kGoodEnough) break;
-      for (int axis = 0; axis < 2; ++axis)
-        if (plan.solved[axis]) add_solution(axis, error[axis], false);
-    }
-  }
+  if (job.pattern.full_model) solver.correct();
   for (int axis = 0; axis < 2; ++axis)
-    if (plan.solved[axis]) plan.cog[axis] = spline_through(grid, cog[axis]);
+    if (plan.solved[axis]) plan.cog[axis] = spline_through(grid, solver.cog[axis]);
   return plan;
 }
 

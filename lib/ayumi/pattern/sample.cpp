@@ -12,7 +12,7 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kMostSamples = 1e7;
+constexpr double kMostSamples = 4e6;  // more than an hour at 1 kHz
 
 int sample_count(const Pattern& pattern, double duration, double dt) {
   if (!(dt > 0) || !std::isfinite(dt))
@@ -21,7 +21,7 @@ int sample_count(const Pattern& pattern, double duration, double dt) {
   if (steps < 5 || steps > kMostSamples)
     fail(ErrorCode::bad_pattern, in_file(pattern, "phases") + ": " + text::exact(duration) +
                                      " s at a step of " + text::exact(dt) +
-                                     " s is less than 5 or more than 1e7 samples");
+                                     " s is less than 5 or more than 4e6 samples");
   return static_cast<int>(steps) + 1;
 }
 

@@ -38,7 +38,6 @@ struct CogPlan {
                                          Eigen::Vector2d::Zero()};  ///< [begin, end](axis) [m]
   std::array<double, 2> omega = {1, 1};                             ///< at begin and end [1/s]
   double duration = 0;                                              ///< [s]
-  int iterations = 0;  ///< of the full-model correction
 
   /// Commanded ZMP: the keys, moved where a start from rest asks for it.
   Eigen::Vector3d zmp_at(double t) const;
