@@ -1,0 +1,145 @@
+// `ayumi export` as a person or a script meets it.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+const char* const kArmUp = R"({
+  "format": "ayumi.pattern/1", "name": "arm up", "robot": "hoap1", "units": { "angle": "deg" },
+  "parameters": { "lifted": 60 },
+  "phases": [{ "until": 2, "support": "both" }],
+  "keyframes": [
+    { "t": 0, "posture": "home" },
+    { "t": 1.5, "posture": { "l_shoulder_pitch": "${lifted}" } }
+  ]
+})";
+
+class Export : public testing::Test {
+ protected:
+  void SetUp() override { write(folder.path() / "p.json", kArmUp); }
+  Output ayumi(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"export", "-q"});
+    return run_program(arguments, folder.path());
+  }
+  std::vector<std::string> lines(const std::string& file) {
+    std::vector<std::string> result;
+    std::istringstream stream(contents(folder.path() / file));
+    for (std::string line; std::getline(stream, line);) result.push_back(line);
+    return result;
+  }
+  static std::vector<std::string> cells(const std::string& line) {
+    std::vector<std::string> result;
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) result.push_back(cell);
+    return result;
+  }
+  Folder folder;
+};
+
+TEST_F(Export, HoapSequenceKeepsTheSpeedCapFromHomeToHold) {
+  const Output output = ayumi({"p.json", "--format", "hoap", "-o", "h.csv", "--json"});
+  ASSERT_EQ(output.exit_code, 0) << output.err;
+  const auto json = nlohmann::json::parse(output.out);
+  const auto rows = lines("h.csv");
+  EXPECT_EQ(json.at("format"), "hoap");
+  EXPECT_EQ(json.at("rows"), rows.size());
+  EXPECT_EQ(json.at("rate_hz"), 1000);
+  EXPECT_EQ(json.at("joints").size(), 20u);
+  EXPECT_EQ(json.at("safety").at("safe"), true);
+  EXPECT_EQ(json.at("safety").at("ramp_s"), 2);
+  EXPECT_EQ(json.at("safety").at("hold_s"), 0.5);
+  EXPECT_EQ(rows.size(), 2000u + 2001 + 500);
+  std::vector<std::string> before = cells(rows.front());
+  int largest = 0;
+  for (const std::string& row : rows) {
+    const std::vector<std::string> now = cells(row);
+    ASSERT_EQ(now.size(), 25u);
+    for (size_t i = 2; i < 22; ++i)
+      largest = std::max(largest, std::abs(std::stoi(now[i]) - std::stoi(before[i])));
+    before = now;
+  }
+  EXPECT_GT(largest, 0);
+  EXPECT_LE(largest, 57);
+  for (size_t k = rows.size() - 500; k < rows.size(); ++k) EXPECT_EQ(rows[k], rows.back());
+}
+
+TEST_F(Export, TablesOfTablesAgree) {
+  ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--ramp", "0"}).exit_code, 0);
+  ASSERT_EQ(
+      ayumi({"a.csv", "--format", "json", "-o", "a.json", "--ramp", "0", "--hold", "0"}).exit_code,
+      0);
+  ASSERT_EQ(ayumi({"a.json", "--format", "hoap", "-o", "a.hoap", "--hold", "0"}).exit_code, 0);
+  ASSERT_EQ(ayumi({"a.csv", "--format", "hoap", "-o", "b.hoap", "--hold", "0"}).exit_code, 0);
+  EXPECT_EQ(lines("a.hoap"), lines("b.hoap"));
+}
+
+TEST_F(Export, SameBytesForAnyNumberOfThreads) {
+  ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--threads", "1"}).exit_code, 0);
+  ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "b.csv", "--threads", "2"}).exit_code, 0);
+  EXPECT_EQ(contents(folder.path() / "a.csv"), contents(folder.path() / "b.csv"));
+}
+
+TEST_F(Export, UnsafeTablesAreRefused) {
+  ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--ramp", "0"}).exit_code, 0);
+  std::string text;
+  for (const std::string& line : lines("a.csv"))  // r_hip_yaw jumps by 0.1 rad at 0.5 s
+    text +=
+        line.starts_with("0.5,") ? "0.5,0.1" + line.substr(line.find(',', 4)) + "\n" : line + "\n";
+  write(folder.path() / "bad.csv", text);
+  const Output refused = ayumi({"bad.csv", "--format", "hoap", "-o", "h.csv", "--json"});
+  EXPECT_EQ(refused.exit_code, 1) << refused.err;
+  EXPECT_FALSE(fs::exists(folder.path() / "h.csv"));
+  const auto violation = nlohmann::json::parse(refused.out).at("safety").at("violations").at(0);
+  EXPECT_EQ(violation.at("kind"), "step");
+  EXPECT_EQ(violation.at("joint"), "r_hip_yaw");
+  EXPECT_NEAR(violation.at("at_s").get<double>(), 2.5, 1e-9);
+  EXPECT_EQ(violation.at("limit"), 57);
+  const Output forced = ayumi({"bad.csv", "--format", "hoap", "-o", "h.csv", "--force-unsafe"});
+  EXPECT_EQ(forced.exit_code, 0);
+  EXPECT_NE(forced.out.find("unsafe: r_hip_yaw at 2.500 s"), std::string::npos) << forced.out;
+  EXPECT_TRUE(fs::exists(folder.path() / "h.csv"));
+}
+
+TEST_F(Export, ParametersAndExistingFiles) {
+  ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--set", "lifted=70"}).exit_code, 0);
+  const Output again = ayumi({"p.json", "--format", "csv", "-o", "a.csv"});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_NE(again.err.find("exists already; --force overwrites it"), std::string::npos);
+  EXPECT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--force"}).exit_code, 0);
+  const Output typo = ayumi({"p.json", "--format", "csv", "-o", "b.csv", "--set", "lift=1"});
+  EXPECT_EQ(typo.exit_code, 2);
+  EXPECT_NE(typo.err.find("did you mean 'lifted'?"), std::string::npos) << typo.err;
+}
+
+TEST_F(Export, BrokenPatternsAreOneLineAndExit3) {
+  struct Case {
+    std::string from, to, complaint;
+  };
+  for (const Case& each : std::vector<Case>{
+           {"\"deg\"", "\"grad\"", "/units/angle: 'grad' is not one of deg, rad"},
+           {"1.5", "0", "/keyframes/1/t: 0 s does not come after 0 s; times must increase"},
+           {"1.5", "NaN", "bad.json:7:"},
+           {"1.5", "1e999", "bad.json"},
+           {"l_shoulder_pitch", "l_shoulder", "l_shoulder"},
+           {"\"hoap1\"", "\"hoap9\"", "hoap9"},
+           {"keyframes", "keyframe", "did you mean 'keyframes'?"},
+           {"\"both\"", "\"none\"", "none"},
+           {"pattern/1", "pattern/2", "this version reads 'ayumi.pattern/1'"},
+           {"${lifted}", "${lift}", "unknown parameter 'lift'; did you mean 'lifted'?"}}) {
+    std::string text = kArmUp;
+    text.replace(text.find(each.from), each.from.size(), each.to);
+    write(folder.path() / "bad.json", text);
+    const Output output = ayumi({"bad.json", "--format", "csv", "-o", "x.csv"});
+    EXPECT_EQ(output.exit_code, 3) << each.to << "\n" << output.err;
+    EXPECT_EQ(line_count(output.err), 1) << output.err;
+    EXPECT_NE(output.err.find(each.complaint), std::string::npos) << output.err;
+    EXPECT_EQ(output.out, "");
+    EXPECT_FALSE(fs::exists(folder.path() / "x.csv"));
+  }
+}
+
+}  // namespace
+}  // namespace ayumi::test

@@ -1,0 +1,199 @@
+#pragma once
+// Patterns as text, whole and broken, and a folder to read them from.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/io/pattern_file.hpp"
+
+namespace ayumi::test {
+
+namespace fs = std::filesystem;
+
+inline constexpr double kDegree = EIGEN_PI / 180;
+
+class PatternFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::path(::testing::TempDir()) /
+        ("ayumi_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path put(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+  Pattern read(const std::string& text, const std::map<std::string, double>& set = {}) const {
+    return read_pattern(put("p.json", text), set);
+  }
+  std::string message(const std::string& text,
+                      const std::map<std::string, double>& set = {}) const {
+    try {
+      read(text, set);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  fs::path folder_;
+};
+
+inline const char* const kTwoSteps = R"({
+  // comments are welcome
+  "format": "ayumi.pattern/1",
+  "name": "two steps forward, pushed from the left",
+  "robot": "hoap1",
+  "units": { "angle": "deg" },
+  "parameters": { "stride": 0.04 },
+  "defaults": { "interpolation": "cubic", "posture": "home", "cog_height": 0.24, "cog_model": "point_mass" },
+  "start": { "left": [0, 0.039], "right": [0.01, -0.039, 0, 5] },
+  "phases": [
+    { "until": 0.80, "support": "both" },
+    { "until": 1.25, "support": "left", "swing": { "foot": "right", "to": ["${stride}", -0.039], "lift": 0.01 } },
+    { "until": 3.00, "support": "both" }
+  ],
+  "keyframes": [
+    { "t": 0, "zmp": "center" },
+    { "t": 0.80, "zmp": "left", "interpolation": "linear" },
+    { "t": 1.50, "posture": { "l_shoulder_pitch": 70 }, "torso": { "pitch": 3 } },
+    { "t": 2.40, "zmp": ["(${stride} + 0.02)/2", 0], "cog": { "height": 0.235 }, "fz": 60 },
+    { "t": 3.00, "posture": "home", "joints": { "l_knee": 90 }, "weights": { "l_knee": 2 },
+      "feet": { "left": { "position": [0, 0.04, 0.01], "rpy": [0, -10, 0] } } }
+  ],
+  "world": { "friction": 0.7, "ground": { "pitch": 2 } },
+  "controller": { "type": "dtad", "gains": { "q": 0.25 } },
+  "scenario": [
+    { "type": "impulse", "at": 1.55, "duration": 0.020, "on": "cog", "direction": [0, -2, 0], "impulse": 1.1 }
+  ],
+  "tolerances": { "foot_slip": 0.002 }
+})";
+
+// Small pattern with one piece replaced.
+inline std::string with(const std::string& key, const std::string& value) {
+  const std::map<std::string, std::string> parts = {
+      {"format", "\"ayumi.pattern/1\""},
+      {"robot", "\"hoap1\""},
+      {"units", R"({"angle": "deg"})"},
+      {"phases", R"([{"until": 1, "support": "both"}])"},
+      {"keyframes", R"([{"t": 0, "posture": "home"}])"}};
+  std::string text = "{\n";
+  for (const auto& [name, standard] : parts) {
+    const std::string& piece = name == key ? value : standard;
+    if (!piece.empty()) text += "\"" + name + "\": " + piece + ",\n";
+  }
+  if (!parts.contains(key)) text += "\"" + key + "\": " + value + ",\n";
+  text.erase(text.size() - 2);
+  return text + "}\n";
+}
+
+struct Broken {
+  const char *key, *value, *message;
+};
+
+inline const std::vector<Broken>& mistakes() {
+  static const std::vector<Broken> cases = {
+      {"format", "\"ayumi.pattern/2\"", "/format: 'ayumi.pattern/2' is not readable here"},
+      {"format", "", "the key 'format' is missing"},
+      {"robot", "", "the key 'robot' is missing"},
+      {"robot", "\"\"", "/robot: is empty"},
+      {"robot", "3", "/robot: expected a string, found the number 3"},
+      {"phases", "", "the key 'phases' is missing"},
+      {"phases", "[]", "/phases: is empty"},
+      {"phases", "{}", "/phases: expected an array"},
+      {"keyframes", "", "the key 'keyframes' is missing"},
+      {"keyframes", "[]", "/keyframes: is empty"},
+      {"keyframes", "[3]", "/keyframes/0: expected an object"},
+      {"keyframe", "[]", "/keyframe: unknown key; did you mean 'keyframes'?"},
+      {"phases", R"([{"until": 1, "suport": "both"}])",
+       "/phases/0/suport: unknown key; did you mean"},
+      {"phases", R"([{"until": 1, "support": "bth"}])", "/phases/0/support: 'bth' is not one of"},
+      {"phases", R"([{"until": 0, "support": "both"}])",
+       "/phases/0/until: 0 s does not come after 0 s"},
+      {"phases", R"([{"until": 2, "support": "both"}, {"until": 1, "support": "both"}])",
+       "/phases/1/until: 1 s does not come after 2 s; times must increase"},
+      {"phases", R"([{"until": -1, "support": "both"}])", "-1 is below the least allowed, 0"},
+      {"phases", R"([{"until": 5000, "support": "both"}])",
+       "5000 is above the largest allowed, 3600"},
+      {"phases", R"([{"until": 1, "support": "left", "swing": {"foot": "left", "to": [0,0]}}])",
+       "/phases/0/swing/foot: the left foot carries the robot"},
+      {"phases", R"([{"until": 1, "support": "left", "swing": {"foot": "right", "to": [0]}}])",
+       "/phases/0/swing/to: expected [x, y], [x, y, z] or [x, y, z, yaw], found an array of 1"},
+      {"keyframes", R"([{"t": 1, "zmp": "left"}, {"t": 1, "zmp": "left"}])",
+       "/keyframes/1/t: 1 s does not come after 1 s"},
+      {"keyframes", R"([{"t": "nan"}])", "expected a number (or an expression"},
+      {"keyframes", R"([{"t": "1 s"}])", "/keyframes/0/t: expected a number"},
+      {"keyframes", R"([{"t": null}])", "/keyframes/0/t: expected a number, found null"},
+      {"keyframes", R"([{"t": true}])", "/keyframes/0/t: expected a number, found true"},
+      {"keyframes", R"([{"t": 1e999}])", "p.json"},
+      {"keyframes", R"([{"t": NaN}])", "p.json:3:"},
+      {"keyframes", R"([{"t": 1, "fz": 1e7}])", "is beyond any sensible value"},
+      {"keyframes", R"([{"t": 1, "fz": -1}])", "/keyframes/0/fz: -1 is below the least allowed, 0"},
+      {"keyframes", R"([{"t": 1, "zmp": "middle"}])", "'middle' is not one of left, right, center"},
+      {"keyframes", R"([{"t": 1, "zmp": [1]}])",
+       "/keyframes/0/zmp: expected [x, y], found an array of 1"},
+      {"keyframes", R"([{"t": 1, "zmp": 3}])",
+       "expected \"left\", \"right\", \"center\" or [x, y]"},
+      {"keyframes", R"([{"t": 1, "cog": {"z": 1}}])", "/keyframes/0/cog/z: unknown key"},
+      {"keyframes", R"([{"t": 1, "cog": {}}])", "/keyframes/0/cog: no coordinate is named"},
+      {"keyframes", R"([{"t": 1, "torso": {}}])", "/keyframes/0/torso: no angle is named"},
+      {"keyframes", R"([{"t": 1, "posture": 3}])", "expected the name of a posture"},
+      {"keyframes", R"([{"t": 1, "posture": {"l_knee": "9O"}}])",
+       "/keyframes/0/posture/l_knee: expected a number"},
+      {"keyframes", R"([{"t": 1, "posture": {"l_knee": 1}, "joints": {"l_knee": 2}}])",
+       "/keyframes/0/joints/l_knee: the joint is already set"},
+      {"keyframes", R"([{"t": 1, "interpolation": "minimum jerk"}])",
+       "did you mean 'minimum_jerk'?"},
+      {"keyframes", R"([{"t": 1, "weights": {"l_knee": 0}}])", "a weight must be above 0"},
+      {"keyframes", R"([{"t": 1, "t": 2}])", "'t' appears twice"},
+      {"units", R"({"angle": "grad"})", "/units/angle: 'grad' is not one of deg, rad"},
+      {"units", R"({"angle": "deg", "length": "mm"})", "/units/length: 'mm' is not one of m"},
+      {"start", R"({"middle": [0, 0]})", "/start/middle: unknown key"},
+      {"defaults", R"({"cog_height": 0})", "/defaults/cog_height: must be above 0"},
+      {"defaults", R"({"cog_model": "point"})",
+       "/defaults/cog_model: 'point' is not one of full, point_mass"},
+      {"world", R"({"friction": -0.1})", "/world/friction: -0.1 is below"},
+      {"world", R"({"ground": "hilly"})", "/world/ground: 'hilly' is not one of flat"},
+      {"controller", R"({"type": "pid"})",
+       "/controller/type: 'pid' is not one of none, dtad, dtad-literal"},
+      {"controller", R"({"type": "dtad", "gains": {"q": 1, "k": 2, "d": 1}})", "q sets k and d"},
+      {"controller", R"({"type": "dtad", "gains": {"k": 2}})", "k and d go together"},
+      {"scenario", R"([{"type": "kick"}])",
+       "/scenario/0/type: 'kick' is not one of impulse, force, torque"},
+      {"scenario",
+       R"([{"type": "force", "at": 1, "duration": 1, "direction": [1,0,0], "impulse": 1}])",
+       "/scenario/0/impulse: the type is \"force\""},
+      {"scenario", R"([{"type": "force", "at": 1, "duration": 1, "direction": [1,0,0]}])",
+       "/scenario/0: the key 'force' is missing"},
+      {"scenario",
+       R"([{"type": "force", "at": 1, "duration": 1, "direction": [0,0,0], "force": 1}])",
+       "/scenario/0/direction: the direction is zero"},
+      {"scenario",
+       R"([{"type": "force", "at": 1, "duration": -1, "direction": [1,0,0], "force": 1}])",
+       "/scenario/0/duration: -1 is below"},
+      {"scenario",
+       R"([{"type": "force", "at": 1, "duration": 1, "direction": [1,0,0], "force": 1, "point": [0,0,0]}])",
+       "/scenario/0/point: a point needs a link"},
+      {"parameters", R"({"a": "1"})", "/parameters/a: expected a number"},
+      {"tolerances", R"({"foot_slip": -1})", "/tolerances/foot_slip: -1 is below"},
+      {"keyframes", R"([{"t": "${a}"}])", "unknown parameter 'a'"},
+      {"keyframes", R"([{"t": "${a"}])",
+       "/keyframes/0/t: expression \"${a\": a parameter is written ${name}"},
+      {"table", "\"absent.csv\"", "absent.csv: no such file"},
+      {"include", "\"absent.json\"", "absent.json: no such file"},
+      {"correction", R"({"begin": 0, "spacing": 0, "columns": [], "coefficients": []})",
+       "/correction/spacing: must be above 0"},
+      {"correction", R"({"begin": 0, "spacing": 1, "columns": ["base.x[m]"], "coefficients": []})",
+       "/correction/columns: the column 'base.y[m]' is missing"},
+  };
+  return cases;
+}
+
+}  // namespace ayumi::test

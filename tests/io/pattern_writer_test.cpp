@@ -1,0 +1,116 @@
+#include "tests/io/pattern_texts.hpp"
+#include "tests/support/random_pattern.hpp"
+
+namespace ayumi::test {
+namespace {
+
+class PatternWriter : public PatternFolder {};
+
+void expect_same(const std::optional<Foothold>& a, const std::optional<Foothold>& b) {
+  ASSERT_EQ(a.has_value(), b.has_value());
+  if (!a) return;
+  EXPECT_EQ(a->position, b->position);
+  EXPECT_EQ(a->rpy, b->rpy);
+}
+
+void expect_same(const Keyframe& a, const Keyframe& b) {
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.interpolation, b.interpolation);
+  EXPECT_EQ(a.posture, b.posture);
+  EXPECT_EQ(a.joints, b.joints);
+  ASSERT_EQ(a.zmp.has_value(), b.zmp.has_value());
+  if (a.zmp) {
+    EXPECT_EQ(a.zmp->place, b.zmp->place);
+    EXPECT_EQ(a.zmp->point, b.zmp->point);
+  }
+  EXPECT_EQ(a.cog_x, b.cog_x);
+  EXPECT_EQ(a.cog_y, b.cog_y);
+  EXPECT_EQ(a.cog_height, b.cog_height);
+  EXPECT_EQ(a.fz, b.fz);
+  EXPECT_EQ(a.torso, b.torso);
+  expect_same(a.feet[0], b.feet[0]);
+  expect_same(a.feet[1], b.feet[1]);
+  EXPECT_EQ(a.weights, b.weights);
+}
+
+void expect_same(const Disturbance& a, const Disturbance& b) {
+  EXPECT_EQ(a.type, b.type);
+  EXPECT_EQ(a.at, b.at);
+  EXPECT_EQ(a.duration, b.duration);
+  EXPECT_EQ(a.on, b.on);
+  EXPECT_EQ(a.point, b.point);
+  EXPECT_EQ(a.frame, b.frame);
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.magnitude, b.magnitude);
+  EXPECT_EQ(a.shape, b.shape);
+}
+
+void expect_same(const Pattern& a, const Pattern& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.robot, b.robot);
+  EXPECT_EQ(a.profile, b.profile);
+  EXPECT_EQ(a.degrees, b.degrees);
+  EXPECT_EQ(a.interpolation, b.interpolation);
+  EXPECT_EQ(a.default_posture, b.default_posture);
+  EXPECT_EQ(a.full_model, b.full_model);
+  EXPECT_EQ(a.cog_height, b.cog_height);
+  expect_same(a.start_feet[0], b.start_feet[0]);
+  expect_same(a.start_feet[1], b.start_feet[1]);
+  EXPECT_EQ(a.postures, b.postures);
+  ASSERT_EQ(a.phases.size(), b.phases.size());
+  for (size_t i = 0; i < a.phases.size(); ++i) {
+    EXPECT_EQ(a.phases[i].until, b.phases[i].until);
+    EXPECT_EQ(a.phases[i].support, b.phases[i].support);
+    ASSERT_EQ(a.phases[i].swing.has_value(), b.phases[i].swing.has_value());
+    if (!a.phases[i].swing) continue;
+    EXPECT_EQ(a.phases[i].swing->foot, b.phases[i].swing->foot);
+    expect_same(a.phases[i].swing->to, b.phases[i].swing->to);
+    EXPECT_EQ(a.phases[i].swing->lift, b.phases[i].swing->lift);
+  }
+  ASSERT_EQ(a.keyframes.size(), b.keyframes.size());
+  for (size_t i = 0; i < a.keyframes.size(); ++i) expect_same(a.keyframes[i], b.keyframes[i]);
+  EXPECT_EQ(a.world.friction, b.world.friction);
+  EXPECT_EQ(a.world.slope, b.world.slope);
+  EXPECT_EQ(a.controller.type, b.controller.type);
+  EXPECT_EQ(a.controller.gains, b.controller.gains);
+  ASSERT_EQ(a.scenario.size(), b.scenario.size());
+  for (size_t i = 0; i < a.scenario.size(); ++i) expect_same(a.scenario[i], b.scenario[i]);
+  EXPECT_EQ(a.tolerances, b.tolerances);
+  ASSERT_EQ(a.correction.has_value(), b.correction.has_value());
+  if (!a.correction) return;
+  EXPECT_EQ(a.correction->begin, b.correction->begin);
+  EXPECT_EQ(a.correction->spacing, b.correction->spacing);
+  EXPECT_EQ(a.correction->joints, b.correction->joints);
+  EXPECT_EQ(a.correction->coefficients, b.correction->coefficients);
+}
+
+TEST_F(PatternWriter, WritingAndReadingIsTheIdentity) {
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    const Pattern pattern = random_pattern(seed);
+    const std::string text = pattern_text(pattern, {"made at random"});
+    const Pattern back = read(text);
+    expect_same(pattern, back);
+    EXPECT_EQ(pattern_text(back, {"made at random"}), text);
+    if (HasFailure()) break;
+  }
+}
+
+TEST_F(PatternWriter, WritesWhatAPersonReads) {
+  Pattern p = read(kTwoSteps);
+  const std::string text = pattern_text(p, {"Two steps."});
+  EXPECT_TRUE(
+      text.starts_with("// Two steps.\n// Written with the parameters stride = 0.04.\n{\n"
+                       "  \"format\": \"ayumi.pattern/1\",\n"))
+      << text;
+  EXPECT_NE(text.find("    { \"until\": 0.8, \"support\": \"both\" },\n"
+                      "    { \"until\": 1.25, \"support\": \"left\", \"swing\": { \"foot\": "
+                      "\"right\", \"to\": [0.04, -0.039], \"lift\": 0.01 } },\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("{ \"t\": 1.5, \"posture\": { \"l_shoulder_pitch\": 70 }"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ayumi::test

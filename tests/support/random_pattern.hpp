@@ -1,0 +1,115 @@
+#pragma once
+// Patterns with every kind of content, made from a seed.
+
+#include <random>
+
+#include "ayumi/pattern/pattern.hpp"
+
+namespace ayumi::test {
+
+inline constexpr double kDegreeInRadians = EIGEN_PI / 180;
+
+class PatternDice {
+ public:
+  explicit PatternDice(unsigned seed) : engine_(seed) {}
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_()) / 4294967296.0;
+  }
+  bool coin() { return engine_() % 2 == 0; }
+  int pick(int count) { return static_cast<int>(engine_() % static_cast<unsigned>(count)); }
+  // An angle the file's unit can hold: any double in rad, a rounded number in degrees.
+  double angle(bool degrees) {
+    return degrees ? std::round(uniform(-180, 180) * 1e4) / 1e4 * kDegreeInRadians : uniform(-3, 3);
+  }
+  Foothold foothold(bool degrees) {
+    Foothold foot;
+    foot.position = {uniform(-1, 1), uniform(-1, 1), coin() ? 0 : uniform(-1, 1)};
+    if (coin()) foot.rpy.z() = angle(degrees);
+    if (coin()) foot.rpy.x() = angle(degrees);
+    return foot;
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+inline Keyframe random_keyframe(PatternDice& random, bool degrees, double t) {
+  Keyframe key;
+  key.t = t;
+  if (random.coin()) key.interpolation = static_cast<Interpolation>(random.pick(5));
+  if (random.coin()) key.posture = "home";
+  if (random.coin())
+    key.joints = {{"a", random.angle(degrees)}, {"b \"c\"", random.angle(degrees)}};
+  if (random.coin()) {
+    key.zmp.emplace();
+    key.zmp->place = static_cast<ZmpKey::Place>(random.pick(4));
+    if (key.zmp->place == ZmpKey::Place::point) key.zmp->point.setConstant(random.uniform(-1, 1));
+  }
+  if (random.coin()) key.cog_x = random.uniform(-1, 1);
+  if (random.coin()) key.cog_height = random.uniform(0, 1);
+  if (random.coin()) key.fz = random.uniform(0, 100);
+  if (random.coin()) key.torso = Eigen::Vector3d(0, random.angle(degrees), random.angle(degrees));
+  if (random.coin()) key.feet[1] = random.foothold(degrees);
+  if (random.coin()) key.weights = {{"a", random.uniform(0.1, 9)}};
+  return key;
+}
+
+inline Disturbance random_push(PatternDice& random) {
+  Disturbance push;
+  push.type = static_cast<DisturbanceType>(random.pick(3));
+  push.at = random.uniform(0, 3);
+  push.duration = random.uniform(0, 1);
+  push.direction = Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0.1).normalized();
+  push.magnitude = random.uniform(0, 10);
+  push.shape = static_cast<DisturbanceShape>(random.pick(2));
+  if (random.coin()) {
+    push.on = "torso";
+    push.frame = DisturbanceFrame::link;
+    push.point.setConstant(random.uniform(-1, 1));
+  }
+  return push;
+}
+
+inline Pattern random_pattern(unsigned seed) {
+  PatternDice random(seed);
+  Pattern p;
+  p.degrees = random.coin();
+  p.robot = "hoap1";
+  if (random.coin()) p.name = "random \xc3\xa9 \\ name";
+  if (random.coin()) p.profile = "strong";
+  p.interpolation = static_cast<Interpolation>(random.pick(5));
+  p.full_model = random.coin();
+  if (random.coin()) p.cog_height = random.uniform(0.1, 0.3);
+  if (random.coin()) p.start_feet[0] = random.foothold(p.degrees);
+  if (random.coin()) p.postures["low"] = {{"l_knee", random.angle(p.degrees)}};
+  double t = 0;
+  for (int i = 0; i <= random.pick(5); ++i) {
+    Phase phase;
+    phase.until = t += random.uniform(0.1, 1);
+    phase.support = static_cast<Support>(random.pick(4));
+    if (phase.support == Support::left)
+      phase.swing = Swing{Side::right, random.foothold(p.degrees), random.uniform(0, 0.1)};
+    p.phases.push_back(phase);
+  }
+  t = 0;
+  for (int i = 0; i <= random.pick(8); ++i)
+    p.keyframes.push_back(random_keyframe(random, p.degrees, t += random.uniform(0.1, 1)));
+  p.world.friction = random.uniform(0, 2);
+  if (random.coin()) p.world.slope.y() = random.angle(p.degrees) / 4;
+  if (p.degrees)
+    p.world.slope.y() = std::round(p.world.slope.y() / kDegreeInRadians) * kDegreeInRadians;
+  if (random.coin()) p.controller.gains = {{"ka", random.uniform(0, 3)}, {"q", 0.25}};
+  for (int i = 0; i < random.pick(3); ++i) p.scenario.push_back(random_push(random));
+  if (random.coin()) p.tolerances["foot_slip"] = random.uniform(0, 1);
+  if (random.coin()) {
+    p.correction.emplace();
+    p.correction->begin = random.uniform(-1, 1);
+    p.correction->spacing = random.uniform(0.01, 0.1);
+    p.correction->joints = {"l_knee", "r_knee"};
+    p.correction->coefficients.resize(random.pick(4), 8);
+    for (double& value : p.correction->coefficients.reshaped()) value = random.uniform(-1, 1);
+  }
+  return p;
+}
+
+}  // namespace ayumi::test
