@@ -51,7 +51,8 @@ inline const std::set<std::string>& data_headers() {
   return headers;
 }
 
-/// Headers that show a third party other than Eigen: not installed, for their own room alone.
+/// Headers that are not installed: they show a third party other than Eigen, or are nobody else's
+/// business.
 inline const std::set<std::string>& private_headers() {
   static const std::set<std::string> headers = [] {
     std::ifstream list(fs::path(AYUMI_SOURCE_DIR) / "lib/cmake/private_headers.txt");
@@ -68,7 +69,7 @@ struct ThirdParty {
 
 inline const std::vector<ThirdParty>& third_parties() {
   static const std::vector<ThirdParty> table = {
-      {"Eigen", std::regex("Eigen/.*"), {}},
+      {"Eigen", std::regex("(unsupported/)?Eigen/.*"), {}},
       {"FCL", std::regex("fcl/.*"), {"geometry"}},
       {"Ipopt", std::regex("Ip[A-Z].*|coin(-or)?/.*"), {"optimize"}},
       {"urdfdom", std::regex("(urdf|console_bridge|tinyxml).*"), {"io"}},
@@ -92,9 +93,8 @@ inline std::string room_rule(const std::string& room, bool public_header,
   const std::string target = header.substr(0, header.find('/'));
   const auto to = rooms().find(target);
   if (to == rooms().end()) return "there is no room '" + target + "'";
-  const bool is_private = private_headers().contains(header);
-  if (is_private && (room != target || public_header))
-    return "ayumi/" + header + " is private to the sources of its room";
+  if (public_header && private_headers().contains(header))
+    return "ayumi/" + header + " is not installed; a public header may not include it";
   if (room == target) return "";
   const Room& from = rooms().at(room);
   if (from.also.contains(target)) return "";
