@@ -144,7 +144,8 @@ fs::path data_folder(const std::string& name) {
 RobotSearch robot_search(const Context& context) {
   RobotSearch search;
   for (const std::string& folder : context.robot_path) {
-    if (!fs::is_directory(folder))
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored))
       fail(ErrorCode::bad_file, folder + ": --robot-path needs a folder");
     search.folders.emplace_back(folder);
   }

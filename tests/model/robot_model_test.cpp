@@ -152,7 +152,7 @@ TEST(RobotModel, SolesHaveCentroidAndConstants) {
   EXPECT_TRUE(model.sole(Side::left).center.isApprox(Eigen::Vector2d(0.1, 0.1)));
   EXPECT_TRUE(model.sole(Side::right).center.isApprox(Eigen::Vector2d(0.01, 0.0), 1e-12));
   EXPECT_DOUBLE_EQ(model.sole(Side::left).stiffness, 1000);
-  EXPECT_NEAR(model.mass() * 9.80665 / model.sole(Side::right).stiffness, 0.0005, 1e-12);
+  EXPECT_NEAR(model.mass() * 9.80665 / model.sole(Side::right).stiffness, 0.0001, 1e-12);
   const Eigen::Isometry3d expected =
       biped().joints.back().origin * Eigen::Translation3d(0, 0, -0.02);
   EXPECT_TRUE(model.sole(Side::left).frame.isApprox(expected));

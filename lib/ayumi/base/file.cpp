@@ -16,6 +16,8 @@ namespace fs = std::filesystem;
 std::string read_file(const fs::path& path, size_t max_bytes) {
   std::error_code status_error;
   const fs::file_status status = fs::status(path, status_error);
+  if (!fs::status_known(status))
+    fail(ErrorCode::bad_file, path.string() + ": cannot be read (" + status_error.message() + ")");
   if (!fs::exists(status)) fail(ErrorCode::bad_file, path.string() + ": no such file");
   if (fs::is_directory(status))
     fail(ErrorCode::bad_file, path.string() + ": is a directory, a file is needed");
@@ -35,12 +37,12 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
 void write_file_with(const fs::path& path, const std::function<void(const fs::path&)>& produce) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(folder))
-    fail(ErrorCode::bad_file, path.string() + ": the folder " + folder.string() +
-                                  " does not exist; create it first");
+    fail(ErrorCode::bad_file,
+         path.string() + ": the folder " + folder.string() + " does not exist; create it first");
   if (fs::is_directory(path))
     fail(ErrorCode::bad_file, path.string() + ": is a directory, a file name is needed");
-  const fs::path temporary = folder / (path.stem().string() + ".part" +
-                                       std::to_string(getpid()) + path.extension().string());
+  const fs::path temporary = folder / (path.stem().string() + ".part" + std::to_string(getpid()) +
+                                       path.extension().string());
   try {
     produce(temporary);
     fs::rename(temporary, path);

@@ -20,9 +20,10 @@ constexpr const char* kSidecarName = "robot.json";
 
 // The robot.json or the only URDF of a folder.
 fs::path file_in_folder(const fs::path& folder) {
-  if (fs::is_regular_file(folder / kSidecarName)) return folder / kSidecarName;
+  std::error_code ignored;
+  if (fs::is_regular_file(folder / kSidecarName, ignored)) return folder / kSidecarName;
   std::vector<fs::path> urdfs;
-  for (const auto& entry : fs::directory_iterator(folder))
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
     if (entry.path().extension() == ".urdf") urdfs.push_back(entry.path());
   if (urdfs.size() == 1) return urdfs[0];
   fail(ErrorCode::bad_file, folder.string() + ": holds neither a " + kSidecarName +
@@ -32,9 +33,10 @@ fs::path file_in_folder(const fs::path& folder) {
 fs::path find_file(const std::string& name, const RobotSearch& search) {
   const fs::path path = name;
   const std::string extension = path.extension().string();
-  if (fs::is_directory(path) && extension != ".urdf" && extension != ".json")
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored) && extension != ".urdf" && extension != ".json")
     return file_in_folder(path);
-  if (fs::exists(path) || extension == ".urdf" || extension == ".json") return path;
+  if (fs::exists(path, ignored) || extension == ".urdf" || extension == ".json") return path;
   std::vector<std::string> known;
   for (const RobotEntry& entry : find_robots(search)) {
     if (entry.name == name) return entry.sidecar;
@@ -90,7 +92,8 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
   const bool sidecar = file.extension() != ".urdf";
   RobotDescription robot = sidecar ? read_sidecar(file) : read_urdf(file);
   if (options.meshes) fill_meshes(robot);
-  if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName))
+  std::error_code ignored;
+  if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))
     robot.assumptions.push_back("the " + std::string(kSidecarName) +
                                 " beside the URDF is not used; name the folder to use it");
   infer_missing(robot);

@@ -214,7 +214,6 @@ void read_lists(const JsonNode& root, RobotDescription& robot) {
 
 const std::vector<std::string> kKeys = {"$schema",
                                         "format",
-                                        "version",
                                         "name",
                                         "urdf",
                                         "joint_order",
@@ -264,9 +263,7 @@ RobotDescription read_sidecar(const std::filesystem::path& file) {
   const Json document = parse_json(bytes, file.string(), ErrorCode::bad_file);
   const JsonNode root = root_of(document, file.string(), ErrorCode::bad_file);
   root.only_keys(kKeys);
-  root.at("format").one_of({"ayumi-robot"});
-  if (root.at("version").integer() != 1)
-    root.at("version").complain("this version of the format is not known; 1 is");
+  root.at("format").one_of({"ayumi.robot/1"});
   const std::filesystem::path urdf = file.parent_path() / root.at("urdf").string();
   const std::string urdf_bytes = read_file(urdf);
   RobotDescription robot = parse_urdf(urdf_bytes, urdf);

@@ -66,10 +66,12 @@ bool names_package(const fs::path& package_xml, const std::string& name) {
 
 // The folder of a package, looked for in `folder` and upwards; empty when there is none.
 fs::path package_folder(fs::path folder, const std::string& name) {
+  std::error_code ignored;
   for (folder = fs::absolute(folder).lexically_normal();; folder = folder.parent_path()) {
     if (folder.filename() == name) return folder;
-    if (fs::is_directory(folder / name)) return folder / name;
-    if (fs::is_regular_file(folder / "package.xml") && names_package(folder / "package.xml", name))
+    if (fs::is_directory(folder / name, ignored)) return folder / name;
+    if (fs::is_regular_file(folder / "package.xml", ignored) &&
+        names_package(folder / "package.xml", name))
       return folder;
     if (folder == folder.root_path()) return {};
   }
@@ -91,7 +93,8 @@ std::string resolve_mesh(const RobotDescription& robot, const fs::path& urdf,
                                "package or name the mesh relative to the URDF");
     file = folder / rest.substr(std::min(slash + 1, rest.size()));
   }
-  if (!fs::is_regular_file(file))
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored))
     complain_urdf(robot, "link " + link + ": mesh " + name + ": there is no file " +
                              file.lexically_normal().string() + "; add it or correct the name");
   return file.lexically_normal().string();

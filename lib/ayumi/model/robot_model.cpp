@@ -135,23 +135,28 @@ void require_masses(const RobotDescription& robot, const std::vector<Body>& bodi
   std::vector<double> beyond(bodies.size(), 0);
   for (size_t i = bodies.size() - 1; i > 0; --i)
     beyond[bodies[i].parent] += beyond[i] + bodies[i].inertia.mass;
+  std::vector<std::string> massless;
   for (size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].inertia.mass > 0) continue;
     const bool shaped = std::any_of(links.begin(), links.end(), [&](const Link& link) {
       return link.body == static_cast<int>(i) &&
              (!link.visuals.empty() || !link.collisions.empty());
     });
-    if (i > 0 && !shaped && beyond[i] > 0) continue;
-    const auto description =
-        std::find_if(robot.links.begin(), robot.links.end(),
-                     [&](const LinkDescription& link) { return link.name == bodies[i].name; });
-    complain_urdf(robot,
-                  "link " + bodies[i].name + ": " +
-                      (description->has_inertial ? "its mass is 0" : "it has no <inertial>") +
-                      (i == 0 ? " although it is the root of a robot that moves"
-                              : " although a joint moves it") +
-                      "; give it a mass and an inertia");
+    if (i == 0 || shaped || beyond[i] == 0) massless.push_back(bodies[i].name);
   }
+  if (massless.empty()) return;
+  const std::string first = massless[0];
+  const auto description =
+      std::find_if(robot.links.begin(), robot.links.end(),
+                   [&](const LinkDescription& link) { return link.name == first; });
+  massless.erase(massless.begin());
+  complain_urdf(robot,
+                "link " + first + ": " +
+                    (description->has_inertial ? "its mass is 0" : "it has no <inertial>") +
+                    (first == bodies[0].name ? " although it is the root of a robot that moves"
+                                             : " although a joint moves it") +
+                    "; give it a mass and an inertia" +
+                    (massless.empty() ? "" : " (the same: " + text::join(massless, ", ") + ")"));
 }
 
 double value_or(const std::map<std::string, double>& map, const std::string& key, double other) {

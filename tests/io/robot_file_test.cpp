@@ -1,0 +1,159 @@
+#include "ayumi/io/robot_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/sha256.hpp"
+#include "ayumi/io/urdf.hpp"
+#include "tests/support/json_schema.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace ayumi {
+namespace {
+
+using test::TemporaryFolder;
+
+constexpr double kDegree = std::numbers::pi / 180;
+const std::string kRobots = AYUMI_SOURCE_DIR "/robots";
+
+TEST(Hoap1, HasTheFiguresOfItsReadme) {
+  const RobotModel model = load_robot("hoap1", {{kRobots}}, {.meshes = true});
+  EXPECT_EQ(model.dof_count(), 20);
+  EXPECT_NEAR(model.mass(), 6.5, 1e-9);
+  EXPECT_EQ(model.dof_names().front(), "r_hip_yaw");
+  EXPECT_EQ(model.dof_names().back(), "l_elbow");
+  EXPECT_EQ(model.leg(Side::right), (std::vector<int>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(model.leg(Side::left), (std::vector<int>{10, 11, 12, 13, 14, 15}));
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(model.dofs()[i].encoder.device, i + 1);
+    EXPECT_EQ(std::abs(model.dofs()[i].encoder.counts_per_degree), 209);
+  }
+  const Dof& knee = model.dofs()[model.find_dof("l_knee")];
+  EXPECT_NEAR(knee.upper, 120 * kDegree, 1e-12);
+  EXPECT_EQ(knee.servo.kp, 300);
+  EXPECT_EQ(model.limits().peak_torque[model.find_dof("l_knee")], 4.5);
+  EXPECT_EQ(model.limits().peak_torque[model.find_dof("l_hip_pitch")], 3);
+  EXPECT_EQ(model.limits("hoap1-strong").speed[0], 25);
+  EXPECT_EQ(model.joint_weight()[model.find_dof("r_elbow")], 10);
+  EXPECT_TRUE(model.sole(Side::left).center.isApprox(Eigen::Vector2d(0.007, 0)));
+}
+
+TEST(Hoap1, StandsAtHomeOverTheMiddleOfItsSoles) {
+  const RobotModel model = load_robot("hoap1", {{kRobots}});
+  RobotData data(model);
+  RobotState state = model.rest_state();
+  update_positions(model, state, data);
+  anchor_base(model, Side::left, Eigen::Isometry3d::Identity(), state, data);
+  EXPECT_TRUE(state.base.attitude.toRotationMatrix().isIdentity(1e-12));  // upright
+  const Eigen::Isometry3d right = sole_pose(model, data, Side::right);
+  EXPECT_TRUE(right.linear().isIdentity(1e-12));
+  EXPECT_TRUE(right.translation().isApprox(Eigen::Vector3d(0, -0.078, 0), 1e-12));
+  EXPECT_NEAR(data.cog.x(), 0.007, 1e-5);
+  EXPECT_NEAR(data.cog.y(), -0.039, 1e-9);
+  EXPECT_NEAR(data.cog.z(), 0.245, 1e-5);
+}
+
+TEST(Hoap1, IsTheSameByNameFolderAndFile) {
+  const RobotDescription named = load_robot_description("hoap1", {{kRobots}});
+  EXPECT_EQ(load_robot_description(kRobots + "/hoap1").sha256, named.sha256);
+  EXPECT_EQ(load_robot_description(kRobots + "/hoap1/robot.json").sha256, named.sha256);
+  EXPECT_EQ(named.sha256, sha256(read_file(kRobots + "/hoap1/robot.urdf") +
+                                 read_file(kRobots + "/hoap1/robot.json")));
+}
+
+// The bare URDF: what is inferred is close to what the sidecar says, and said.
+TEST(Hoap1, BareUrdfIsInferred) {
+  const RobotModel model = load_robot(kRobots + "/hoap1/robot.urdf");
+  const RobotModel full = load_robot("hoap1", {{kRobots}});
+  for (const Side side : {Side::left, Side::right}) {
+    EXPECT_EQ(model.bodies()[model.sole(side).body].name, full.bodies()[full.sole(side).body].name);
+    ASSERT_EQ(model.sole(side).polygon.size(), 4u);
+    for (int i = 0; i < 4; ++i)
+      EXPECT_LT((model.sole(side).polygon[i] - full.sole(side).polygon[i]).norm(), 1e-4);
+  }
+  EXPECT_NEAR(model.dofs()[0].servo.kp, 300, 60);
+  EXPECT_NEAR(model.dofs()[0].servo.rotor_inertia, 0.003, 0.0015);
+  EXPECT_GE(model.description().assumptions.size(), 4u);
+}
+
+TEST(RobotFile, AnEarlierFolderHidesALaterOne) {
+  const TemporaryFolder folder;
+  folder.write("hoap1/robot.json", read_file(kRobots + "/hoap1/robot.json"));
+  const auto found = find_robots({{folder.path(), kRobots}});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].sidecar, folder.path() / "hoap1/robot.json");
+  EXPECT_THROW(load_robot("hoap2", {{kRobots}}), Error);
+}
+
+TEST(Urdf, TurnsInertiaIntoLinkAxesAndKeepsOrder) {
+  const RobotDescription robot = parse_urdf(
+      "<robot name=\"r\"><link name=\"z\"><inertial><origin xyz=\"1 2 3\" "
+      "rpy=\"0 0 1.5707963267948966\"/><mass value=\"2\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
+      "iyy=\"2\" iyz=\"0\" izz=\"2.5\"/></inertial></link><link name=\"a\"/>"
+      "<joint name=\"j\" type=\"fixed\"><parent link=\"z\"/><child link=\"a\"/></joint></robot>",
+      "r.urdf");
+  EXPECT_EQ(robot.links[0].name, "z");
+  EXPECT_TRUE(robot.links[0].inertia.com.isApprox(Eigen::Vector3d(1, 2, 3)));
+  EXPECT_TRUE(robot.links[0].inertia.about_com.diagonal().isApprox(Eigen::Vector3d(2, 1, 2.5)));
+  EXPECT_FALSE(robot.links[1].has_inertial);
+}
+
+TEST(Urdf, UnstatedLimitsAreUnlimited) {
+  const std::string inertial =
+      "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "
+      "izz=\"1\"/></inertial>";
+  const RobotModel model(
+      parse_urdf("<robot name=\"r\"><link name=\"a\">" + inertial + "</link><link name=\"b\">" +
+                     inertial + "</link><link name=\"c\">" + inertial +
+                     "</link><joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child "
+                     "link=\"b\"/></joint>"
+                     "<joint name=\"k\" type=\"revolute\"><parent link=\"b\"/><child link=\"c\"/>"
+                     "<limit lower=\"-0.5\" upper=\"1\"/></joint></robot>",
+                 "r.urdf"));
+  EXPECT_FALSE(model.dofs()[0].limited);
+  EXPECT_TRUE(model.dofs()[1].limited);
+  EXPECT_EQ(model.dofs()[1].lower, -0.5);
+  EXPECT_TRUE(std::isinf(model.limits().peak_torque[1]));
+}
+
+TEST(Sidecar, LocksJoints) {
+  const TemporaryFolder folder;
+  folder.write("robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));
+  std::filesystem::create_directory_symlink(kRobots + "/hoap1/meshes", folder.path() / "meshes");
+  folder.write("robot.json", R"({"format": "ayumi.robot/1", "urdf": "robot.urdf",
+                                 "locked_joints": ["l_elbow", "r_elbow"]})");
+  const RobotModel model = load_robot(folder.path().string());
+  EXPECT_EQ(model.dof_count(), 18);
+  EXPECT_NEAR(model.mass(), 6.5, 1e-9);
+}
+
+// The published schema takes the bundled sidecar, and refuses what the reader refuses.
+TEST(Sidecar, FitsItsSchema) {
+  const auto json = [](const std::string& file) {
+    return nlohmann::json::parse(read_file(file), nullptr, true, true);
+  };
+  const test::JsonSchema schema(json(AYUMI_SOURCE_DIR "/docs/schemas/robot-1.schema.json"));
+  const nlohmann::json good = json(kRobots + "/hoap1/robot.json");
+  EXPECT_TRUE(schema.accepts(good));
+  for (const char* patch :
+       {R"({"sole": {}})", R"({"format": "ayumi.robot/2"})", R"({"urdf": 3})",
+        R"({"soles": {"left": {"link": "l_foot"}}})", R"({"servos": [{"kp": 300}]})",
+        R"({"servos": [{"joints": ["*"], "kp": -1}]})",
+        R"({"encoders": {"r_knee": {"device": 0}}})",
+        R"({"control": {"joint_weight": [{"joints": ["*"], "weight": 0}]}})"}) {
+    nlohmann::json bad = good;
+    bad.update(nlohmann::json::parse(patch));
+    EXPECT_FALSE(schema.accepts(bad)) << patch;
+    const TemporaryFolder folder;
+    folder.write("robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));
+    std::filesystem::create_directory_symlink(kRobots + "/hoap1/meshes", folder.path() / "meshes");
+    folder.write("robot.json", bad.dump());
+    EXPECT_THROW(load_robot(folder.path().string()), Error) << patch;
+  }
+}
+
+}  // namespace
+}  // namespace ayumi

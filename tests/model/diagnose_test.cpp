@@ -1,0 +1,129 @@
+#include "ayumi/model/diagnose.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "ayumi/io/robot_file.hpp"
+
+namespace ayumi {
+namespace {
+
+RobotDescription hoap1() {
+  return load_robot_description("hoap1", {{AYUMI_SOURCE_DIR "/robots"}}, {.meshes = true});
+}
+
+LinkDescription& link(RobotDescription& robot, const std::string& name) {
+  for (LinkDescription& each : robot.links)
+    if (each.name == name) return each;
+  throw std::runtime_error(name);
+}
+
+JointDescription& joint(RobotDescription& robot, const std::string& name) {
+  for (JointDescription& each : robot.joints)
+    if (each.name == name) return each;
+  throw std::runtime_error(name);
+}
+
+// What the doctor says of HOAP-1 after a change, one warning a line.
+std::string findings(const std::function<void(RobotDescription&)>& spoil) {
+  RobotDescription robot = hoap1();
+  spoil(robot);
+  std::string text;
+  for (const ModelWarning& warning : diagnose(RobotModel(robot)))
+    text += warning.where + ": " + warning.message + "\n";
+  return text;
+}
+
+bool mentions(const std::string& text, const std::string& where, const std::string& what) {
+  const size_t at = text.find(where + ": ");
+  return at != std::string::npos && text.find(what, at) != std::string::npos;
+}
+
+TEST(Diagnose, FindsNothingWrongWithHoap1) {
+  EXPECT_EQ(findings([](auto&) {}), "");
+}
+
+TEST(Diagnose, NamesImplausibleInertias) {
+  EXPECT_TRUE(mentions(
+      findings([](auto& r) { link(r, "l_shank").inertia.about_com = Eigen::Matrix3d::Identity(); }),
+      "link l_shank", "a placeholder?"));
+  EXPECT_TRUE(mentions(findings([](auto& r) {
+                         link(r, "l_shank").inertia.about_com =
+                             Eigen::Vector3d(1e-4, 1e-4, 3e-4).asDiagonal();
+                       }),
+                       "link l_shank", "exceeds the sum of the other two"));
+  EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "torso").inertia.com.z() = -0.2; }),
+                       "link torso", "outside its shape"));
+  EXPECT_TRUE(mentions(findings([](auto& r) {
+                         const Eigen::Matrix3d same = link(r, "l_foot").inertia.about_com;
+                         for (const char* name : {"l_shank", "r_foot", "r_shank"})
+                           link(r, name).inertia.about_com = same;
+                       }),
+                       "links r_shank, r_foot, l_shank, l_foot",
+                       "one and the same inertia tensor"));
+  EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "l_foot").inertia.mass = 10; }),
+                       "link l_foot", "heavier than lead"));
+}
+
+TEST(Diagnose, NamesAsymmetry) {
+  EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "l_foot").inertia.mass *= 1.1; }),
+                       "links l_foot, r_foot", "left and right masses differ"));
+  EXPECT_TRUE(mentions(findings([](auto& r) { joint(r, "l_hip_yaw").lower = -1.2; }),
+                       "joints l_hip_yaw, r_hip_yaw", "left and right limits differ"));
+  EXPECT_TRUE(
+      mentions(findings([](auto& r) { joint(r, "l_hip_yaw").origin.translation().y() = 0.059; }),
+               "joints l_hip_yaw, r_hip_yaw", "no mirror images"));
+}
+
+TEST(Diagnose, NamesAnEncoderWhoseSignDisagrees) {
+  const std::string text =
+      findings([](auto& r) { r.encoders.at("l_knee").counts_per_degree = 209; });
+  EXPECT_TRUE(mentions(text, "joints l_knee/r_knee", "otherwise than on the 9 other pairs"));
+}
+
+TEST(Diagnose, NamesMissingAndPlaceholderLimits) {
+  EXPECT_TRUE(mentions(findings([](auto& r) { joint(r, "l_knee").has_limits = false; }),
+                       "joint l_knee", "no position limits"));
+  EXPECT_TRUE(mentions(findings([](auto& r) { r.profiles[0].speed["l_knee"] = 1000; }),
+                       "joint l_knee", "faster than servos are"));
+  EXPECT_TRUE(mentions(findings([](auto& r) {
+                         for (auto& [name, torque] : r.profiles[0].peak_torque) torque = 100;
+                       }),
+                       "limits", "every joint has the torque limit 100 N m"));
+  EXPECT_TRUE(mentions(findings([](auto& r) { r.servos.erase("l_knee"); }), "joint l_knee",
+                       "no servo constants"));
+  EXPECT_TRUE(mentions(findings([](auto& r) { r.encoders.erase("l_knee"); }), "joint l_knee",
+                       "no encoder entry"));
+}
+
+TEST(Diagnose, NamesAHomePostureThatCannotStand) {
+  EXPECT_TRUE(mentions(findings([](auto& r) { r.postures["home"]["l_ankle_pitch"] = 0; }),
+                       "posture home", "not on one plane"));
+  EXPECT_TRUE(mentions(findings([](auto& r) {
+                         for (const char* side : {"l_", "r_"}) {
+                           r.postures["home"][std::string(side) + "hip_pitch"] -= 0.9;
+                           r.postures["home"][std::string(side) + "ankle_pitch"] += 0.9;
+                         }
+                       }),
+                       "posture home", "outside the soles"));
+}
+
+TEST(Diagnose, NamesLinksWithoutCollisionShape) {
+  EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "l_foot").collisions.clear(); }),
+                       "links l_foot", "no collision shape"));
+}
+
+TEST(Diagnose, ExaminesAnUnknownUrdf) {
+  const std::string file = AYUMI_SOURCE_DIR "/../shared/data/choreonoid/SR1/SR1.urdf";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the SR1 model is not there";
+  const std::vector<ModelWarning> warnings = diagnose(load_robot(file));
+  const auto names_waist = [](const ModelWarning& w) {
+    return w.where == "link WAIST" && w.message.find("placeholder") != std::string::npos;
+  };
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), names_waist));
+}
+
+}  // namespace
+}  // namespace ayumi
