@@ -69,21 +69,6 @@ OrderedJson json_of(const ConsistencyReport& report) {
 
 std::string check_json(const ConsistencyReport& report) { return text_of(json_of(report)); }
 
-std::string repair_json(const RepairResult& result) {
-  return text_of({{"status", name_of(result.status)},
-                  {"moved",
-                   {{"max_joint_rad", figure(result.max_joint_change)},
-                    {"max_cog_m", figure(result.max_cog_change)},
-                    {"where", result.where},
-                    {"at_s", result.at}}},
-                  {"variables", result.variables},
-                  {"constraints", result.constraints},
-                  {"iterations", result.iterations},
-                  {"constraint_violation", figure(result.constraint_violation)},
-                  {"reasons", result.reasons},
-                  {"check", json_of(result.check)}});
-}
-
 std::string simulation_json(const SimulationLog& log) {
   const SimulationResult& r = log.result;
   OrderedJson events = OrderedJson::array();

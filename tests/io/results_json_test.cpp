@@ -1,0 +1,82 @@
+#include "ayumi/io/results_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/io/simulation_log_file.hpp"
+
+namespace ayumi {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(ResultsJson, CheckHasTheKeysOfTheCommandLine) {
+  ConsistencyReport report;
+  report.profile = "hoap1";
+  report.findings = {{.kind = "support_margin",
+                      .severity = Severity::error,
+                      .begin = 1,
+                      .end = 2,
+                      .at = 1.5,
+                      .worst = -0.003,
+                      .limit = 0,
+                      .unit = "m",
+                      .where = "left",
+                      .hint = "move the ZMP \"in\""}};
+  report.summary.min_zmp_margin = -0.003;
+  report.summary.min_self_clearance = std::numeric_limits<double>::infinity();
+  const Json json = Json::parse(check_json(report));
+  EXPECT_EQ(json.at("verdict"), "inconsistent");
+  const Json& finding = json.at("findings").at(0);
+  EXPECT_EQ(finding.at("kind"), "support_margin");
+  EXPECT_EQ(finding.at("severity"), "error");
+  EXPECT_EQ(finding.at("at_s"), 1.5);
+  EXPECT_EQ(finding.at("worst"), -0.003);
+  EXPECT_EQ(finding.at("hint"), "move the ZMP \"in\"");
+  for (const char* const key :
+       {"min_zmp_margin_m", "max_cog_residual_m", "max_zmp_residual_m", "max_fz_residual_N",
+        "max_joint_position_ratio", "max_joint_speed_ratio", "max_torque_ratio",
+        "max_friction_ratio", "max_foot_slip_m", "min_self_clearance_m"})
+    EXPECT_TRUE(json.at("summary").contains(key)) << key;
+  EXPECT_EQ(json.at("summary").at("min_zmp_margin_m"), -0.003);
+  EXPECT_TRUE(json.at("summary").at("min_self_clearance_m").is_null());
+  report.consistent = true;
+  EXPECT_EQ(Json::parse(check_json(report)).at("verdict"), "consistent");
+}
+
+TEST(ResultsJson, SimulationHasTheKeysOfTheCommandLine) {
+  SimulationLog log;
+  log.controller = "dtad";
+  log.result = {.outcome = Outcome::fell, .fell_at = 2.25, .max_tilt = 0.9, .steps = 3};
+  log.events = {{2.25, "fell", "on its side"}};
+  Json json = Json::parse(simulation_json(log));
+  EXPECT_EQ(json.at("outcome"), "fell");
+  EXPECT_EQ(json.at("fell_at_s"), 2.25);
+  EXPECT_EQ(json.at("max_tilt_rad"), 0.9);
+  EXPECT_EQ(json.at("steps"), 3);
+  EXPECT_EQ(json.at("events").at(0).at("kind"), "fell");
+  EXPECT_EQ(json.at("log_hash"), log_hash(log));
+  for (const char* const key : {"final_cog_error_m", "zmp_tracking_rms_m", "flight_s", "apex_m"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  log.result = {.outcome = Outcome::stands};
+  json = Json::parse(simulation_json(log));
+  EXPECT_EQ(json.at("outcome"), "stands");
+  EXPECT_TRUE(json.at("fell_at_s").is_null());
+}
+
+TEST(ResultsJson, SafetyNamesEveryViolation) {
+  SafetyReport report;
+  report.safe = false;
+  report.ramp = 2;
+  report.violations = {{"step", "l_knee", 1.234, 61, 57, "counts", 3}};
+  const Json json = Json::parse(safety_json(report));
+  EXPECT_EQ(json.at("safe"), false);
+  EXPECT_EQ(json.at("ramp_s"), 2);
+  EXPECT_EQ(json.at("violations").at(0).at("joint"), "l_knee");
+  EXPECT_EQ(json.at("violations").at(0).at("rows"), 3);
+}
+
+}  // namespace
+}  // namespace ayumi
