@@ -1,0 +1,67 @@
+#include "ayumi/preview/robot_surface.hpp"
+
+#include <algorithm>
+
+namespace ayumi {
+namespace {
+
+void add_surface(BodySurface& body, Triangles surface, const Eigen::Isometry3d& pose) {
+  Triangles& target = orient(surface) == SurfaceKind::closed ? body.closed : body.open;
+  append(target, surface, pose);
+}
+
+void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isometry3d& link_pose) {
+  const Eigen::Isometry3d pose = link_pose * placed.pose;
+  const auto* mesh = std::get_if<MeshShape>(&placed.shape);
+  if (!mesh) {
+    add_surface(body, tessellate(placed.shape, placed.color), pose);
+    return;
+  }
+  for (const MeshPart& part : mesh->mesh.parts) {
+    const Eigen::Vector4f color =
+        placed.has_color || !part.has_color ? placed.color : part.color;
+    add_surface(body, tessellate(part, color), pose);
+  }
+}
+
+}  // namespace
+
+std::vector<BodySurface> robot_surface(const RobotModel& model) {
+  const bool any_visual = std::any_of(model.links().begin(), model.links().end(),
+                                      [](const Link& link) { return !link.visuals.empty(); });
+  std::vector<BodySurface> surface(model.bodies().size());
+  for (const Link& link : model.links())
+    for (const PlacedShape& placed : any_visual ? link.visuals : link.collisions)
+      add_shape(surface[size_t(link.body)], placed, link.pose);
+  return surface;
+}
+
+std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state) {
+  std::vector<Eigen::Isometry3d> poses(model.bodies().size());
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const Body& body = model.bodies()[i];
+    if (body.parent < 0) {
+      poses[i] = Eigen::Translation3d(state.base.position) * state.base.attitude.normalized();
+      continue;
+    }
+    const double joint = body.ratio * state.theta[body.dof] + body.offset;
+    poses[i] = poses[size_t(body.parent)] * body.placement;
+    if (body.prismatic)
+      poses[i].translate(joint * body.axis);
+    else
+      poses[i].rotate(Eigen::AngleAxisd(joint, body.axis));
+  }
+  return poses;
+}
+
+Eigen::AlignedBox3d robot_bounds(const std::vector<BodySurface>& surface,
+                                 const std::vector<Eigen::Isometry3d>& poses) {
+  Eigen::AlignedBox3d box;
+  for (size_t i = 0; i < surface.size(); ++i)
+    for (const Triangles* part : {&surface[i].closed, &surface[i].open})
+      for (const RenderVertex& vertex : part->vertices)
+        box.extend((poses[i] * vertex.position.cast<double>()).eval());
+  return box;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,29 @@
+#pragma once
+// The robot as triangles per body, and where its bodies are.
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/preview/triangles.hpp"
+
+namespace ayumi {
+
+/// What is seen of one body, in the body frame.
+struct BodySurface {
+  Triangles closed;  ///< outside counter-clockwise; back faces need no drawing
+  Triangles open;    ///< to be seen from both sides
+};
+
+/// One per body: the visuals of its links, or the collision shapes of a robot without any visual.
+/// A colour set on a visual goes before the mesh's own; grey where neither is stated.
+std::vector<BodySurface> robot_surface(const RobotModel& model);
+
+/// Body frames in the world, one per body.
+std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state);
+
+/// Axis-aligned bounds in the world [m].
+Eigen::AlignedBox3d robot_bounds(const std::vector<BodySurface>& surface,
+                                 const std::vector<Eigen::Isometry3d>& poses);
+
+}  // namespace ayumi

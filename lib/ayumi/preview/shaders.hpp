@@ -1,0 +1,142 @@
+#pragma once
+// The renderer's shader programs (GLSL 3.30). Colours are linear inside, sRGB at the end.
+
+namespace ayumi::shaders {
+
+inline constexpr const char* kCommon = R"(#version 330 core
+// Close to the sRGB curve, by square roots only.
+vec3 to_srgb(vec3 c) {
+  vec3 a = sqrt(clamp(c, 0.0, 1.0));
+  vec3 b = sqrt(a);
+  return 0.585122381 * a + 0.783140355 * b - 0.368262736 * sqrt(b);
+}
+vec3 to_linear(vec3 c) { return c * (c * (c * 0.305306011 + 0.682171111) + 0.012522878); }
+)";
+
+inline constexpr const char* kSolidVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 color;
+uniform mat4 model;
+uniform mat4 view_projection;
+out vec3 world_position;
+out vec3 world_normal;
+out vec4 base_color;
+void main() {
+  vec4 world = model * vec4(position, 1.0);
+  world_position = world.xyz;
+  world_normal = mat3(model) * normal;
+  base_color = vec4(to_linear(color.rgb), color.a);
+  gl_Position = view_projection * world;
+}
+)";
+
+// Light from the whole sky, brighter from above; the sun; a dull highlight. A face seen from behind
+// is lit as if it were the front. A zero normal means an unlit mark.
+inline constexpr const char* kSolidFragment = R"(
+in vec3 world_position;
+in vec3 world_normal;
+in vec4 base_color;
+uniform vec3 eye;
+uniform vec3 sun;
+uniform vec3 up;
+uniform float opacity;
+out vec4 pixel;
+void main() {
+  float size = dot(world_normal, world_normal);
+  vec3 n = world_normal * inversesqrt(max(size, 1e-12));
+  vec3 v = normalize(eye - world_position);
+  n = dot(n, v) < 0.0 ? -n : n;
+  float direct = max(dot(n, sun), 0.0);
+  vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.62, 0.65, 0.70), 0.5 + 0.5 * dot(n, up));
+  float shine = max(dot(n, normalize(v + sun)), 0.0);
+  shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;
+  vec3 lit = base_color.rgb * (0.62 * ambient + 0.72 * direct) + 0.10 * shine * direct;
+  pixel = vec4(to_srgb(size < 1e-6 ? base_color.rgb : lit), base_color.a * opacity);
+}
+)";
+
+// The ground plane as one large square; plane coordinates in metres.
+inline constexpr const char* kGroundVertex = R"(
+layout(location = 0) in vec2 corner;
+uniform mat4 view_projection;
+uniform vec3 axis_u;
+uniform vec3 axis_v;
+uniform vec2 center;
+uniform float reach;
+out vec2 plane;
+void main() {
+  plane = center + reach * corner;
+  gl_Position = view_projection * vec4(plane.x * axis_u + plane.y * axis_v, 1.0);
+}
+)";
+
+inline constexpr const char* kGroundFragment = R"(
+in vec2 plane;
+uniform vec2 center;
+uniform float fade;
+uniform vec3 horizon;
+out vec4 pixel;
+float grid(vec2 p, vec2 footprint, float spacing, float width) {
+  vec2 away = abs(fract(p / spacing - 0.5) - 0.5) * spacing;
+  vec2 wide = max(vec2(width), footprint);
+  vec2 cover = clamp(0.5 + (0.5 * wide - away) / footprint, 0.0, 1.0) * (width / wide);
+  cover = mix(cover, vec2(width / spacing), smoothstep(0.3, 0.8, footprint / spacing));
+  return max(cover.x, cover.y);
+}
+void main() {
+  vec2 footprint = max(fwidth(plane), vec2(1e-6));
+  vec3 color = vec3(0.60, 0.605, 0.60);
+  color = mix(color, vec3(0.36, 0.37, 0.38), 0.55 * grid(plane, footprint, 0.1, 0.0022));
+  color = mix(color, vec3(0.20, 0.21, 0.23), 0.80 * grid(plane, footprint, 1.0, 0.006));
+  vec2 d = (plane - center) / fade;
+  float haze = 1.0 - 1.0 / (1.0 + dot(d, d) * dot(d, d));
+  pixel = vec4(to_srgb(mix(color, horizon, haze)), 1.0);
+}
+)";
+
+inline constexpr const char* kSkyVertex = R"(
+layout(location = 0) in vec2 corner;
+out float height;
+void main() {
+  height = corner.y;
+  gl_Position = vec4(corner, 1.0, 1.0);
+}
+)";
+
+inline constexpr const char* kSkyFragment = R"(
+in float height;
+uniform vec3 horizon;
+out vec4 pixel;
+void main() {
+  vec3 zenith = vec3(0.50, 0.60, 0.72);
+  pixel = vec4(to_srgb(mix(horizon, zenith, clamp(height, 0.0, 1.0))), 1.0);
+}
+)";
+
+// The robot flattened along the sun onto the ground, as coverage.
+inline constexpr const char* kFlatVertex = R"(
+layout(location = 0) in vec3 position;
+uniform mat4 flatten;
+void main() { gl_Position = flatten * vec4(position, 1.0); }
+)";
+
+inline constexpr const char* kFlatFragment = R"(
+out vec4 pixel;
+void main() { pixel = vec4(1.0); }
+)";
+
+inline constexpr const char* kShadowFragment = R"(
+in vec2 plane;
+uniform vec2 center;
+uniform float reach;
+uniform sampler2D coverage;
+uniform float strength;
+out vec4 pixel;
+void main() {
+  float cover = texture(coverage, 0.5 + 0.5 * (plane - center) / reach).r;
+  pixel = vec4(0.03, 0.04, 0.07, strength * cover);
+}
+)";
+
+}  // namespace ayumi::shaders
