@@ -107,8 +107,8 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   write_file(path, encode_png(image));
 }
 
-void draw_text(Image& image, double x, double y, const std::string& text, const TextStyle& style) {
-  if (text.empty()) return;
+int draw_text(Image& image, double x, double y, const std::string& text, const TextStyle& style) {
+  if (text.empty()) return 0;
   const SurfacePointer surface = render_text(text, style);
   const int width = cairo_image_surface_get_width(surface.get());
   const int height = cairo_image_surface_get_height(surface.get());
@@ -117,6 +117,7 @@ void draw_text(Image& image, double x, double y, const std::string& text, const 
                                                             : 1.0;
   compose(image, surface.get(), static_cast<int>(std::lround(x - share * width)),
           static_cast<int>(std::lround(y - 0.5 * height)));
+  return width;
 }
 
 }  // namespace ayumi

@@ -35,7 +35,7 @@ struct TextStyle {
 };
 
 /// Writes one line of text; (x, y) is its anchor on the vertical middle of the line [pixel]. Parts
-/// outside the picture are left out.
-void draw_text(Image& image, double x, double y, const std::string& text, const TextStyle& style);
+/// outside the picture are left out. Returns the width it takes [pixel].
+int draw_text(Image& image, double x, double y, const std::string& text, const TextStyle& style);
 
 }  // namespace ayumi

@@ -405,7 +405,7 @@ void Renderer::Parts::draw_overlay(const Scene& scene, const Matrix4f& view_proj
   const Range all = {static_cast<GLsizei>(scene.overlay.indices.size()), 0};
   gl.Enable(GL_CULL_FACE);
   gl.Enable(GL_BLEND);
-  set(solid, "opacity", 0.4);
+  set(solid, "opacity", 0.6);
   gl.DepthMask(GL_FALSE);
   gl.DepthFunc(GL_GREATER);
   draw(all);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ayumi/dynamics/kinematics.hpp"
+
 namespace ayumi {
 namespace {
 
@@ -37,20 +39,11 @@ std::vector<BodySurface> robot_surface(const RobotModel& model) {
 }
 
 std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state) {
-  std::vector<Eigen::Isometry3d> poses(model.bodies().size());
-  for (size_t i = 0; i < poses.size(); ++i) {
-    const Body& body = model.bodies()[i];
-    if (body.parent < 0) {
-      poses[i] = Eigen::Translation3d(state.base.position) * state.base.attitude.normalized();
-      continue;
-    }
-    const double joint = body.ratio * state.theta[body.dof] + body.offset;
-    poses[i] = poses[size_t(body.parent)] * body.placement;
-    if (body.prismatic)
-      poses[i].translate(joint * body.axis);
-    else
-      poses[i].rotate(Eigen::AngleAxisd(joint, body.axis));
-  }
+  RobotData data(model);
+  update_positions(model, state, data);
+  std::vector<Eigen::Isometry3d> poses;
+  for (size_t i = 0; i < model.bodies().size(); ++i)
+    poses.push_back(data.pose(static_cast<int>(i)));
   return poses;
 }
 

@@ -1,0 +1,92 @@
+#include "ayumi/preview/log_reading.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/math/rotation.hpp"
+
+namespace ayumi {
+namespace {
+
+/// a towards b by `share`; vectors of different sizes (an empty one) stay a.
+template <typename Vector>
+Vector mix(const Vector& a, const Vector& b, double share) {
+  if (a.size() != b.size()) return a;
+  return a + share * (b - a);
+}
+
+BasePose mix(const BasePose& a, const BasePose& b, double share) {
+  return {mix(a.position, b.position, share), a.attitude.slerp(share, b.attitude)};
+}
+
+}  // namespace
+
+double duration(const SimulationLog& log) {
+  if (log.samples.empty())
+    fail(ErrorCode::usage, "the run's log has no samples: there is nothing to show");
+  return log.dt * static_cast<double>(log.samples.size() - 1);
+}
+
+SimulationSample sample_at(const SimulationLog& log, double t) {
+  const double position = std::clamp(t, 0.0, duration(log)) / log.dt;
+  // A time within a millionth of a tick is that tick's.
+  const double nearest = std::round(position);
+  const double before = std::abs(position - nearest) < 1e-6 ? nearest : std::floor(position);
+  const auto index = static_cast<size_t>(before);
+  const double share = std::max(0.0, position - before);
+  if (share < 1e-6 || index + 1 >= log.samples.size()) return log.samples[index];
+  SimulationSample sample = log.samples[index];
+  const SimulationSample& next = log.samples[index + 1];
+  sample.state.base = mix(sample.state.base, next.state.base, share);
+  sample.reference_base = mix(sample.reference_base, next.reference_base, share);
+  const auto blend = [&](auto& value, const auto& after) { value = mix(value, after, share); };
+  blend(sample.state.theta, next.state.theta);
+  blend(sample.reference_theta, next.reference_theta);
+  blend(sample.cog, next.cog);
+  blend(sample.zmp, next.zmp);
+  blend(sample.command_cog, next.command_cog);
+  blend(sample.command_zmp, next.command_zmp);
+  blend(sample.reference_cog, next.reference_cog);
+  blend(sample.reference_zmp, next.reference_zmp);
+  sample.fz += share * (next.fz - sample.fz);
+  for (size_t side = 0; side < 2; ++side) {
+    blend(sample.foot_force[side], next.foot_force[side]);
+    blend(sample.foot_cop[side], next.foot_cop[side]);
+  }
+  return sample;
+}
+
+Eigen::Vector3d ground_normal(const World& world) {
+  return exp_rotation({world.slope.x(), world.slope.y(), 0}) * Eigen::Vector3d::UnitZ();
+}
+
+std::vector<PushRecord> pushes(const SimulationLog& log) {
+  std::vector<PushRecord> records;
+  bool active = false;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const SimulationSample& sample = log.samples[k];
+    if (sample.push_force.squaredNorm() == 0) {
+      active = false;
+      continue;
+    }
+    const double t = static_cast<double>(k) * log.dt;
+    if (!active)
+      records.push_back({.begin = t, .end = t, .point = sample.push_point,
+                         .from_cog = sample.push_point - sample.cog});
+    active = true;
+    PushRecord& record = records.back();
+    record.end = t + log.dt;
+    record.impulse += sample.push_force * log.dt;
+    if (sample.push_force.norm() > record.peak.norm()) record.peak = sample.push_force;
+  }
+  return records;
+}
+
+std::string push_text(const PushRecord& push) {
+  return push.end - push.begin <= 0.2 + 1e-9 ? text::brief(push.impulse.norm(), 3) + " N s"
+                                             : text::brief(push.peak.norm(), 3) + " N";
+}
+
+}  // namespace ayumi

@@ -1,0 +1,36 @@
+#pragma once
+// A run's log as pictures and plots need it: the sample at any time, the pushes, the ground.
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "ayumi/sim/simulation_log.hpp"
+
+namespace ayumi {
+
+/// Last time of the log [s]. Throws Error(usage) when the log has no samples.
+double duration(const SimulationLog& log);
+
+/// The sample at `t` (held within the log), continuous quantities interpolated between ticks;
+/// contacts and push as of the tick before.
+SimulationSample sample_at(const SimulationLog& log, double t);
+
+/// Unit normal of the ground in the world.
+Eigen::Vector3d ground_normal(const World& world);
+
+/// A stretch of ticks with an external force.
+struct PushRecord {
+  double begin = 0, end = 0;                               ///< [s]; end excluded
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();         ///< at its start, world [m]
+  Eigen::Vector3d from_cog = Eigen::Vector3d::Zero();      ///< the same from the COG [m]
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();       ///< time integral of the force [N s]
+  Eigen::Vector3d peak = Eigen::Vector3d::Zero();          ///< largest force [N]
+};
+
+/// Pushes in the order of time.
+std::vector<PushRecord> pushes(const SimulationLog& log);
+
+/// Its value for people: "1.1 N s" for a short push (up to 0.2 s), "12 N" for a long one.
+std::string push_text(const PushRecord& push);
+
+}  // namespace ayumi
