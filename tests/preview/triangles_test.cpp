@@ -44,6 +44,7 @@ TEST(Triangles, PrimitivesHaveTheirVolumeAndFaceOutwards) {
     Triangles surface = tessellate(c.shape, kWhite);
     EXPECT_NEAR(volume(surface) / c.expected, 1, 0.02) << c.shape.index();
     expect_outward(surface);
+    EXPECT_EQ(orient(surface), SurfaceKind::closed);
   }
 }
 

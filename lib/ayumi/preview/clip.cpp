@@ -170,8 +170,8 @@ ClipRenderer::ClipRenderer(const RobotModel& model, const SimulationLog& log,
       options_((check(model, log, options), options)),
       pushes_(pushes(log)),
       height_(robot_height(robot_surface(model), model, log)),
-      path_(make_path(log, options, height_)),
-      renderer_(robot_surface(model), options.picture) {}
+      renderer_(robot_surface(model), options.picture),
+      path_(make_path(log, options, height_)) {}
 
 Image ClipRenderer::frame(double t) {
   const SimulationSample sample = sample_at(log_, t);

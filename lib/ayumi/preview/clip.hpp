@@ -47,8 +47,8 @@ class ClipRenderer {
   ClipOptions options_;
   std::vector<PushRecord> pushes_;
   double height_;  ///< of the robot [m]
-  CameraPath path_;
   Renderer renderer_;
+  CameraPath path_;
 
   void write_caption(Image& image, double t) const;
 };

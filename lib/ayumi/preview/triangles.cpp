@@ -44,7 +44,7 @@ void add_turned(Triangles& target, const std::vector<ProfilePoint>& profile, int
   const auto first = static_cast<std::uint32_t>(target.vertices.size());
   for (const ProfilePoint& point : profile) {
     for (int i = 0; i <= segments; ++i) {
-      const double angle = kTurn * i / segments;
+      const double angle = kTurn * (i % segments) / segments;  // the seam closes exactly
       const double c = std::cos(angle), s = std::sin(angle);
       add_vertex(target, {point.radius * c, point.radius * s, point.z},
                  {point.normal_radius * c, point.normal_radius * s, point.normal_z}, color);

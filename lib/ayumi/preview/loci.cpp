@@ -1,0 +1,227 @@
+#include "ayumi/preview/loci.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/preview/loci_parts.hpp"
+
+namespace ayumi {
+namespace {
+
+using namespace plot;
+using Eigen::Vector2d;
+using Eigen::Vector4f;
+using Value = std::function<double(const SimulationSample&)>;
+
+constexpr double kGap = 12;  // between panels [pixel]
+
+struct PanelPlan {
+  std::string name;   ///< with unit
+  Value run;          ///< of every run
+  Value command;      ///< of the last run; the command is the same for all
+  Value reference;    ///< of the last run; empty: none
+  double least = 0;   ///< span of the axis at least
+  bool spikes = false;  ///< landings may exceed the range
+};
+
+Value component(Eigen::Vector3d SimulationSample::* quantity, int index) {
+  return [quantity, index](const SimulationSample& s) { return (s.*quantity)[index]; };
+}
+
+std::vector<PanelPlan> plan_panels(const LociOptions& options) {
+  std::vector<PanelPlan> panels;
+  using S = SimulationSample;
+  const char* axis[] = {"x", "y", "z"};
+  if (options.cog)
+    for (int i = 0; i < 3; ++i)
+      panels.push_back({std::string("COG ") + axis[i] + " [m]", component(&S::cog, i),
+                        component(&S::command_cog, i), {}, 0.01, false});
+  if (options.zmp)
+    for (int i = 0; i < 2; ++i)
+      panels.push_back({std::string("ZMP ") + axis[i] + " [m]", component(&S::zmp, i),
+                        component(&S::command_zmp, i), component(&S::reference_zmp, i), 0.02,
+                        false});
+  if (options.fz)
+    panels.push_back({"f_z [N]", [](const S& s) { return s.fz; },
+                      [](const S& s) { return s.command_fz; }, {}, 10, true});
+  return panels;
+}
+
+std::vector<Vector2d> series(const SimulationLog& log, const Value& value, const Interval& time) {
+  std::vector<Vector2d> points;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const double t = static_cast<double>(k) * log.dt;
+    if (t >= time.low - 1e-9 && t <= time.high + 1e-9)
+      points.emplace_back(t, value(log.samples[k]));
+  }
+  return points;
+}
+
+void extend(std::vector<double>& values, const std::vector<Vector2d>& points) {
+  for (const Vector2d& point : points)
+    if (std::isfinite(point.y())) values.push_back(point.y());
+}
+
+/// Range of the command and the runs that stand, with a margin; a wide one where none stands.
+Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
+                     const Interval& time) {
+  std::vector<double> values;
+  extend(values, series(*runs.back().log, panel.command, time));
+  for (const LociRun& run : runs)
+    if (!has_fallen(*run.log)) extend(values, series(*run.log, panel.run, time));
+  if (values.empty()) return {0, 1};
+  std::sort(values.begin(), values.end());
+  const size_t skip = panel.spikes ? values.size() / 500 : 0;
+  Interval range = {values[skip], values[values.size() - 1 - skip]};
+  const double missing = std::max(0.0, panel.least - range.span()) / 2;
+  const bool standing = std::any_of(runs.begin(), runs.end(),
+                                    [](const LociRun& run) { return !has_fallen(*run.log); });
+  const double margin =
+      (standing ? 0.1 : 0.5) * std::max(range.span(), panel.least) + missing;
+  return {range.low - margin, range.high + margin};
+}
+
+// ---- support phases
+
+struct Phase {
+  double begin, end;
+  std::array<bool, 2> contact;
+};
+
+std::vector<Phase> phases(const SimulationLog& log, const Interval& time) {
+  std::vector<Phase> out;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const double t = static_cast<double>(k) * log.dt;
+    if (t < time.low - 1e-9 || t > time.high + 1e-9) continue;
+    if (out.empty() || out.back().contact != log.samples[k].planned_contact) {
+      if (!out.empty()) out.back().end = t;
+      out.push_back({t, time.high, log.samples[k].planned_contact});
+    }
+    out.back().end = std::min(t + log.dt, time.high);
+  }
+  return out;
+}
+
+void draw_phases(Drawing& drawing, const Axes& axes, const std::vector<Phase>& list, bool names) {
+  for (const Phase& phase : list) {
+    const bool left = phase.contact[0], right = phase.contact[1];
+    const double from = axes.px(phase.begin), to = axes.px(phase.end);
+    const double bottom = axes.top + axes.height;
+    if (left == right)
+      drawing.items.push_back(DrawnPath{
+          .points = {{from, axes.top}, {to, axes.top}, {to, bottom}, {from, bottom}},
+          .closed = true,
+          .stroke = {0, 0, 0, 0},
+          .fill = left ? Vector4f(0.90f, 0.90f, 0.915f, 1) : Vector4f(0.98f, 0.95f, 0.80f, 1)});
+    if (!names) continue;
+    const std::vector<std::string> words =
+        left && right ? std::vector<std::string>{"both", ""}
+        : left        ? std::vector<std::string>{"left", "L", ""}
+        : right       ? std::vector<std::string>{"right", "R", ""}
+                      : std::vector<std::string>{"flight", "F", ""};
+    for (const std::string& word : words) {
+      if (text_width(word, 10) + 2 > to - from) continue;
+      drawing.items.push_back(DrawnText{.position = {(from + to) / 2, axes.top - 4},
+                                        .text = word,
+                                        .size = 10,
+                                        .anchor = TextAnchor::center,
+                                        .color = {0.4f, 0.4f, 0.44f, 1}});
+      break;
+    }
+  }
+}
+
+// ---- marks and words
+
+void draw_pushes(Drawing& drawing, const Axes& axes, const std::vector<PushRecord>& list,
+                 bool names) {
+  for (const PushRecord& push : list) {
+    const double x = axes.px(push.begin), bottom = axes.top + axes.height;
+    drawing.items.push_back(DrawnPath{.points = {{x, axes.top - (names ? 16 : 0)}, {x, bottom}},
+                                      .stroke = kPushColor,
+                                      .width = 1.4});
+    if (!names) continue;
+    const bool leftward = x > axes.left + 0.8 * axes.width;
+    drawing.items.push_back(
+        DrawnText{.position = {x + (leftward ? -4 : 4), axes.top - 17},
+                  .text = "push " + push_text(push) + " at " + text::brief(push.begin) + " s",
+                  .size = 11.5,
+                  .anchor = leftward ? TextAnchor::right : TextAnchor::left,
+                  .color = kPushColor});
+  }
+}
+
+/// A sentence for each thing that the ranges leave out.
+std::string range_note(const std::vector<LociRun>& runs) {
+  std::string names;
+  for (const LociRun& run : runs)
+    if (has_fallen(*run.log)) names += (names.empty() ? "" : ", ") + run.label;
+  if (names.empty()) return "";
+  return "Ranges follow the command and the runs that stand; " + names +
+         " is cut off where its fall leaves them (cross: the instant of the fall).";
+}
+
+void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
+                const std::vector<LociRun>& runs) {
+  const SimulationLog& last = *runs.back().log;
+  if (panel.reference)
+    draw_line(drawing, axes, series(last, panel.reference, axes.x), kReferenceStyle);
+  for (size_t i = 0; i < runs.size(); ++i) {
+    const LineStyle style = run_style(i, runs.size());
+    draw_line(drawing, axes, series(*runs[i].log, panel.run, axes.x), style);
+    const double fell_at = runs[i].log->result.fell_at;
+    if (has_fallen(*runs[i].log) && fell_at >= axes.x.low && fell_at <= axes.x.high)
+      draw_cross(drawing, axes, {fell_at, panel.run(sample_at(*runs[i].log, fell_at))},
+                 style.color);
+  }
+  draw_line(drawing, axes, series(last, panel.command, axes.x), kCommandStyle);
+}
+
+}  // namespace
+
+Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) {
+  const Interval time = time_range(runs, options);
+  const std::vector<PanelPlan> panels = plan_panels(options);
+  if (panels.empty()) fail(ErrorCode::usage, "plot: every panel is switched off");
+  Drawing drawing = start_drawing(runs, options, "Loci against time");
+  const std::vector<PushRecord> pushed = all_pushes(runs, time);
+  const std::vector<Phase> supports = phases(*runs.back().log, time);
+  double top = draw_legend(drawing, legend(runs, options.zmp), 44) + (pushed.empty() ? 20 : 38);
+  for (size_t i = 0; i < panels.size(); ++i) {
+    const Axes axes = {kLeft, top, drawing.width - kLeft - kRight, options.panel, time,
+                       value_range(panels[i], runs, time)};
+    draw_phases(drawing, axes, supports, i == 0);
+    draw_axes(drawing, axes, panels[i].name, i + 1 == panels.size());
+    draw_pushes(drawing, axes, pushed, i == 0);
+    draw_panel(drawing, axes, panels[i], runs);
+    top += options.panel + kGap;
+  }
+  drawing.items.push_back(DrawnText{.position = {(kLeft + drawing.width - kRight) / 2, top + 22},
+                                    .text = "time [s]",
+                                    .size = 13,
+                                    .anchor = TextAnchor::center});
+  const std::string note = range_note(runs);
+  if (!note.empty())
+    drawing.items.push_back(DrawnText{.position = {kLeft, top + 44},
+                                      .text = note,
+                                      .size = 11,
+                                      .color = {0.35f, 0.35f, 0.38f, 1}});
+  drawing.height = top + (note.empty() ? 34 : 56);
+  return drawing;
+}
+
+void write_loci(const std::vector<LociRun>& runs, const std::filesystem::path& path,
+                const LociOptions& options) {
+  write_drawing(path, draw_loci(runs, options), options.png_scale);
+}
+
+std::vector<std::string> loci_series(const LociOptions& options) {
+  std::vector<std::string> names;
+  for (const PanelPlan& panel : plan_panels(options)) names.push_back(panel.name);
+  return names;
+}
+
+}  // namespace ayumi
