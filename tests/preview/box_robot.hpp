@@ -49,17 +49,17 @@ inline JointDescription hinge(const std::string& name, const std::string& parent
 inline RobotModel box_robot() {
   RobotDescription d;
   d.name = "box_robot";
-  d.links.push_back(box_link("trunk", 3, placed(Box{{0.08, 0.14, 0.16}}, {0, 0, 0.06},
-                                                {0.85f, 0.86f, 0.90f, 1})));
+  d.links.push_back(box_link(
+      "trunk", 3, placed(Box{{0.08, 0.14, 0.16}}, {0, 0, 0.06}, {0.85f, 0.86f, 0.90f, 1})));
   d.links.push_back(
       box_link("head", 0.3, placed(Sphere{0.045}, {0, 0, 0}, {0.10f, 0.25f, 0.80f, 1})));
   d.joints.push_back(hinge("neck", "trunk", "head", {0, 0, 0.135 + 0.045}));
   for (const auto& [side, y] : {std::pair<std::string, double>{"left", 0.04}, {"right", -0.04}}) {
     d.links.push_back(box_link(side + "_thigh", 0.6,
                                placed(Capsule{0.02, 0.10}, {0, 0, -0.07}, {0.9f, 0.5f, 0.1f, 1})));
-    d.links.push_back(box_link(side + "_foot", 0.6,
-                               placed(Box{{0.09, 0.05, 0.16}}, {0.01, 0, -0.08},
-                                      {0.15f, 0.6f, 0.3f, 1})));
+    d.links.push_back(
+        box_link(side + "_foot", 0.6,
+                 placed(Box{{0.09, 0.05, 0.16}}, {0.01, 0, -0.08}, {0.15f, 0.6f, 0.3f, 1})));
     d.joints.push_back(hinge(side + "_hip", "trunk", side + "_thigh", {0, y, 0}));
     d.joints.push_back(hinge(side + "_knee", side + "_thigh", side + "_foot", {0, 0, -0.14}));
     SoleDescription sole;

@@ -46,8 +46,7 @@ TEST(Camera, LookingStraightDownIsFinite) {
 
 std::vector<Vector3d> walk() {
   std::vector<Vector3d> cog;
-  for (int k = 0; k <= 400; ++k)
-    cog.emplace_back(0.002 * k, 0.03 * std::sin(0.06 * k), 0.25);
+  for (int k = 0; k <= 400; ++k) cog.emplace_back(0.002 * k, 0.03 * std::sin(0.06 * k), 0.25);
   return cog;
 }
 

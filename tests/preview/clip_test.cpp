@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 class Clip : public testing::Test {
  protected:
   Clip() {
-    folder = fs::temp_directory_path() /
-             ("ayumi_clip_" + std::to_string(getpid()) + "_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder =
+        fs::temp_directory_path() / ("ayumi_clip_" + std::to_string(getpid()) + "_" +
+                                     testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder);
     options.picture = {.width = 160, .height = 120, .antialias = false};
   }
@@ -129,8 +129,14 @@ TEST_F(Clip, CaptionAndMarksCanBeSwitchedOff) {
 }
 
 TEST_F(Clip, ThePushStaysVisibleForAWhile) {
-  options.overlay = {.cog = false, .zmp = false, .reference_zmp = false, .support = false,
-                     .forces = false, .push = true, .trails = false, .caption = false};
+  options.overlay = {.cog = false,
+                     .zmp = false,
+                     .reference_zmp = false,
+                     .support = false,
+                     .forces = false,
+                     .push = true,
+                     .trails = false,
+                     .caption = false};
   const auto pink = [](const Image& image) {
     int count = 0;
     for (size_t i = 0; i < image.rgb.size(); i += 3)

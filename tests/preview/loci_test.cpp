@@ -95,8 +95,7 @@ TEST(Loci, TheLineGoesThroughTheSamples) {
 
 TEST(Loci, FilesAreTheSameEveryTimeAndValid) {
   const TwoRuns runs;
-  const fs::path folder =
-      fs::temp_directory_path() / ("ayumi_loci_" + std::to_string(getpid()));
+  const fs::path folder = fs::temp_directory_path() / ("ayumi_loci_" + std::to_string(getpid()));
   fs::create_directories(folder);
   for (const std::string name : {"a.svg", "a.png"}) {
     write_loci(runs.both(), folder / name, {.png_scale = 0.5});

@@ -71,7 +71,7 @@ TEST(Overlay, EveryMarkCanBeSwitchedOff) {
         .triangles.indices.size();
   };
   const size_t all = count({});
-  for (bool OverlayOptions::* flag :
+  for (bool OverlayOptions::*flag :
        {&OverlayOptions::cog, &OverlayOptions::zmp, &OverlayOptions::reference_zmp,
         &OverlayOptions::support, &OverlayOptions::forces, &OverlayOptions::push,
         &OverlayOptions::trails}) {

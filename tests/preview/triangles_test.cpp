@@ -12,8 +12,8 @@ const Eigen::Vector4f kWhite = {1, 1, 1, 1};
 double volume(const Triangles& s) {
   double sum = 0;
   for (size_t i = 0; i < s.indices.size(); i += 3)
-    sum += s.vertices[s.indices[i]].position.dot(s.vertices[s.indices[i + 1]].position.cross(
-               s.vertices[s.indices[i + 2]].position)) /
+    sum += s.vertices[s.indices[i]].position.dot(
+               s.vertices[s.indices[i + 1]].position.cross(s.vertices[s.indices[i + 2]].position)) /
            6;
   return sum;
 }

@@ -107,8 +107,7 @@ void draw_axes(Drawing& drawing, const Axes& axes, const std::string& y_name, bo
   }
   for (const double tick : x_ticks) {
     const double x = axes.px(tick);
-    drawing.items.push_back(
-        DrawnPath{.points = {{x, axes.top}, {x, bottom}}, .stroke = kGrid});
+    drawing.items.push_back(DrawnPath{.points = {{x, axes.top}, {x, bottom}}, .stroke = kGrid});
     if (x_numbers)
       drawing.items.push_back(DrawnText{.position = {x, bottom + 1.4 * kNumbers},
                                         .text = text::fixed(tick, tick_digits(x_ticks)),
@@ -152,10 +151,10 @@ void draw_cross(Drawing& drawing, const Axes& axes, const Vector2d& value, const
   center.x() = std::clamp(center.x(), axes.left, axes.left + axes.width);
   center.y() = std::clamp(center.y(), axes.top + kArm, axes.top + axes.height - kArm);
   for (const double turn : {-1.0, 1.0})
-    drawing.items.push_back(DrawnPath{.points = {center - Vector2d(kArm, turn * kArm),
-                                                 center + Vector2d(kArm, turn * kArm)},
-                                      .stroke = color,
-                                      .width = 2.2});
+    drawing.items.push_back(DrawnPath{
+        .points = {center - Vector2d(kArm, turn * kArm), center + Vector2d(kArm, turn * kArm)},
+        .stroke = color,
+        .width = 2.2});
 }
 
 }  // namespace ayumi

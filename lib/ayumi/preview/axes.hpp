@@ -32,8 +32,8 @@ struct Axes {
 
 struct LineStyle {
   Eigen::Vector4f color = {0, 0, 0, 1};
-  double width = 1.4;                ///< [pixel]
-  std::vector<double> dashes = {};   ///< [pixel]
+  double width = 1.4;               ///< [pixel]
+  std::vector<double> dashes = {};  ///< [pixel]
 };
 
 /// Grid, tick numbers, frame, and the name of y to the left; x numbers when asked for.

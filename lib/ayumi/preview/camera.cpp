@@ -52,8 +52,8 @@ Matrix4d projection_matrix(const Camera& camera, double aspect) {
 }
 
 Vector3d project(const Camera& camera, int width, int height, const Vector3d& point) {
-  const Eigen::Vector4d clip = projection_matrix(camera, double(width) / height) *
-                               view_matrix(camera) * point.homogeneous();
+  const Eigen::Vector4d clip =
+      projection_matrix(camera, double(width) / height) * view_matrix(camera) * point.homogeneous();
   return {(clip.x() / clip.w() + 1) / 2 * width, (1 - clip.y() / clip.w()) / 2 * height, clip.w()};
 }
 
@@ -109,8 +109,7 @@ Camera CameraPath::at(double t) const {
   // The robot takes two thirds of the height; a path that is wide moves the fixed camera away.
   const double tall = 1.5 * height_;
   const double wide = (1.2 * height_ + reach_) / std::max(aspect_, 0.1);
-  const double distance =
-      std::max(tall, wide) / (2 * std::tan(kFieldOfView / 2)) / options_.zoom;
+  const double distance = std::max(tall, wide) / (2 * std::tan(kFieldOfView / 2)) / options_.zoom;
   const double azimuth =
       azimuth_ + (options_.mode == CameraMode::orbit ? options_.orbit_rate * t : 0.0);
   camera.eye = camera.target + distance * Vector3d(std::cos(azimuth) * std::cos(elevation_),

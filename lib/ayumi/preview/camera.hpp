@@ -31,10 +31,10 @@ enum class CameraMode {
 
 struct CameraOptions {
   CameraMode mode = CameraMode::follow;
-  std::string view = "iso";     ///< "front", "side", "iso", "back" or "top"
-  double zoom = 1;              ///< 2 shows the robot twice as large
-  double orbit_rate = 0.5;      ///< [rad/s]
-  double smoothing = 0.6;       ///< half width of the window that smooths the target [s]
+  std::string view = "iso";  ///< "front", "side", "iso", "back" or "top"
+  double zoom = 1;           ///< 2 shows the robot twice as large
+  double orbit_rate = 0.5;   ///< [rad/s]
+  double smoothing = 0.6;    ///< half width of the window that smooths the target [s]
 };
 
 /// Names that CameraOptions::view takes.

@@ -33,14 +33,14 @@ void check(const RobotModel& model, const SimulationLog& log, const ClipOptions&
        "fps: " + text::exact(options.fps) + " is not between 0 and 1000");
   need(options.speed > 0 && std::isfinite(options.speed),
        "speed: " + text::exact(options.speed) + " is not above 0");
-  need(options.begin >= 0 && options.begin <= last,
-       "begin: " + text::exact(options.begin) + " s is outside the run (0 to " +
-           text::brief(last) + " s)");
+  need(options.begin >= 0 && options.begin <= last, "begin: " + text::exact(options.begin) +
+                                                        " s is outside the run (0 to " +
+                                                        text::brief(last) + " s)");
   need(options.end < 0 || options.end >= options.begin,
        "end: " + text::exact(options.end) + " s is before the beginning");
-  need(options.at >= 0 && options.at <= last + 1e-9,
-       "at: " + text::exact(options.at) + " s is outside the run (0 to " + text::brief(last) +
-           " s)");
+  need(options.at >= 0 && options.at <= last + 1e-9, "at: " + text::exact(options.at) +
+                                                         " s is outside the run (0 to " +
+                                                         text::brief(last) + " s)");
 }
 
 double robot_height(const std::vector<BodySurface>& surface, const RobotModel& model,
@@ -142,8 +142,8 @@ void write_folder(const fs::path& path, const std::function<void(const fs::path&
     fail(ErrorCode::bad_file, path.string() + ": exists already; remove it or choose another");
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(parent))
-    fail(ErrorCode::bad_file, path.string() + ": the folder " + parent.string() +
-                                  " does not exist; create it first");
+    fail(ErrorCode::bad_file,
+         path.string() + ": the folder " + parent.string() + " does not exist; create it first");
   const fs::path temporary = parent / (path.filename().string() + ".part");
   std::error_code ignored;
   try {
@@ -187,7 +187,9 @@ Image ClipRenderer::frame(double t) {
   for (const Label& label : overlay.labels) {
     const Vector3d at = project(scene.camera, image.width, image.height, label.position);
     const auto opacity = static_cast<float>(label.opacity);
-    const TextStyle style = {.size = size, .bold = true, .anchor = TextAnchor::center,
+    const TextStyle style = {.size = size,
+                             .bold = true,
+                             .anchor = TextAnchor::center,
                              .color = {0.45f, 0.08f, 0.33f, opacity},
                              .plate = {1, 1, 1, 0.75f * opacity}};
     if (at.z() > 0) draw_text(image, at.x(), at.y(), label.text, style);

@@ -144,10 +144,11 @@ double text_width(const std::string& text, double size, bool bold) {
 
 std::string to_svg(const Drawing& drawing) {
   const std::string width = number(drawing.width), height = number(drawing.height);
-  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                    "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width +
-                    "\" height=\"" + height + "\" viewBox=\"0 0 " + width + " " + height +
-                    "\" role=\"img\" font-family=\"" + kFont + ", Verdana, sans-serif\">\n";
+  std::string out =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
+      width + "\" height=\"" + height + "\" viewBox=\"0 0 " + width + " " + height +
+      "\" role=\"img\" font-family=\"" + kFont + ", Verdana, sans-serif\">\n";
   out += "<title>" + escaped(drawing.title) + "</title>\n";
   out += "<desc>" + escaped(drawing.description) + "</desc>\n";
   out += "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";

@@ -16,17 +16,17 @@ struct DrawnPath {
   bool closed = false;
   Eigen::Vector4f stroke = {0, 0, 0, 1};
   Eigen::Vector4f fill = {0, 0, 0, 0};
-  double width = 1;                  ///< of the stroke [pixel]
-  std::vector<double> dashes = {};   ///< on, off, ... [pixel]; empty: solid
+  double width = 1;                 ///< of the stroke [pixel]
+  std::vector<double> dashes = {};  ///< on, off, ... [pixel]; empty: solid
 };
 
 struct DrawnText {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< anchor on the base line [pixel]
   std::string text;
-  double size = 12;                                    ///< [pixel]
+  double size = 12;  ///< [pixel]
   TextAnchor anchor = TextAnchor::left;
   bool bold = false;
-  bool upwards = false;                                ///< turned to read from below
+  bool upwards = false;  ///< turned to read from below
   Eigen::Vector4f color = {0.1f, 0.1f, 0.12f, 1};
 };
 

@@ -30,20 +30,32 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
                                std::to_string(height) + ": " + extension +
                                " needs an even width and height");
   // Full-range RGB to the matrix and range that players assume for video of this size.
-  const Arguments color = {"-vf", "scale=out_color_matrix=bt709:out_range=tv", "-sws_flags",
-                           "accurate_rnd+bitexact+area", "-pix_fmt", "yuv420p",
-                           "-colorspace", "bt709", "-color_primaries", "bt709",
-                           "-color_trc", "bt709", "-color_range", "tv"};
+  const Arguments color = {"-vf",
+                           "scale=out_color_matrix=bt709:out_range=tv",
+                           "-sws_flags",
+                           "accurate_rnd+bitexact+area",
+                           "-pix_fmt",
+                           "yuv420p",
+                           "-colorspace",
+                           "bt709",
+                           "-color_primaries",
+                           "bt709",
+                           "-color_trc",
+                           "bt709",
+                           "-color_range",
+                           "tv"};
   Arguments arguments;
   if (extension == ".mp4") {
-    arguments = {"-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-x264-params",
-                 "threads=1:lookahead-threads=1", "-movflags", "+faststart"};
+    arguments = {"-c:v",      "libx264",   "-preset",      "veryfast",
+                 "-crf",      "20",        "-x264-params", "threads=1:lookahead-threads=1",
+                 "-movflags", "+faststart"};
   } else if (extension == ".webm") {
-    arguments = {"-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "6", "-crf", "30",
-                 "-b:v", "0", "-threads", "1"};
+    arguments = {"-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "6",
+                 "-crf", "30",         "-b:v",      "0",        "-threads",  "1"};
   } else if (extension == ".gif") {
-    return {"-vf", "split[a][b];[a]palettegen=stats_mode=single[p];"
-                   "[b][p]paletteuse=new=1:dither=bayer:bayer_scale=4"};
+    return {"-vf",
+            "split[a][b];[a]palettegen=stats_mode=single[p];"
+            "[b][p]paletteuse=new=1:dither=bayer:bayer_scale=4"};
   } else {
     fail(ErrorCode::usage, path.string() + ": the format '" + extension +
                                "' is not one of .mp4, .webm, .gif, .png, or a folder for PNG "
@@ -55,10 +67,25 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
 
 Arguments all_arguments(const std::string& program, const std::filesystem::path& path, int width,
                         int height, double fps) {
-  Arguments all = {program, "-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-f",
-                   "rawvideo", "-pix_fmt", "rgb24", "-s:v",
-                   std::to_string(width) + "x" + std::to_string(height), "-framerate",
-                   text::exact(fps), "-i", "pipe:0", "-an", "-filter_threads", "1"};
+  Arguments all = {program,
+                   "-nostdin",
+                   "-hide_banner",
+                   "-loglevel",
+                   "error",
+                   "-y",
+                   "-f",
+                   "rawvideo",
+                   "-pix_fmt",
+                   "rgb24",
+                   "-s:v",
+                   std::to_string(width) + "x" + std::to_string(height),
+                   "-framerate",
+                   text::exact(fps),
+                   "-i",
+                   "pipe:0",
+                   "-an",
+                   "-filter_threads",
+                   "1"};
   const Arguments format = format_arguments(path, width, height);
   all.insert(all.end(), format.begin(), format.end());
   for (const char* word : {"-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"})
@@ -101,8 +128,8 @@ ClipEncoder::ClipEncoder(const std::filesystem::path& path, int width, int heigh
   process_ = -1;
   close(pipe_);
   close(log_);
-  fail(ErrorCode::bad_file, path.string() + ": the program '" + program +
-                                "' cannot be started (" + std::strerror(error) +
+  fail(ErrorCode::bad_file, path.string() + ": the program '" + program + "' cannot be started (" +
+                                std::strerror(error) +
                                 "); install ffmpeg, or write PNG frames into a folder instead");
 }
 

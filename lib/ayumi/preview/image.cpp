@@ -16,8 +16,7 @@ using SurfacePointer = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_
 using ContextPointer = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
 SurfacePointer make_surface(cairo_format_t format, int width, int height) {
-  SurfacePointer surface(cairo_image_surface_create(format, width, height),
-                         cairo_surface_destroy);
+  SurfacePointer surface(cairo_image_surface_create(format, width, height), cairo_surface_destroy);
   require(cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS,
           "a picture could not be set up for drawing");
   return surface;

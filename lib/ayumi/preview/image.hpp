@@ -27,11 +27,11 @@ void write_png(const std::filesystem::path& path, const Image& image);
 enum class TextAnchor { left, center, right };
 
 struct TextStyle {
-  double size = 16;                                      ///< font size [pixel]
+  double size = 16;  ///< font size [pixel]
   bool bold = false;
   TextAnchor anchor = TextAnchor::left;
-  Eigen::Vector4f color = {0.1f, 0.1f, 0.12f, 1.0f};     ///< sRGB and alpha
-  Eigen::Vector4f plate = {1.0f, 1.0f, 1.0f, 0.0f};      ///< box behind the text; alpha 0: none
+  Eigen::Vector4f color = {0.1f, 0.1f, 0.12f, 1.0f};  ///< sRGB and alpha
+  Eigen::Vector4f plate = {1.0f, 1.0f, 1.0f, 0.0f};   ///< box behind the text; alpha 0: none
 };
 
 /// Writes one line of text; (x, y) is its anchor on the vertical middle of the line [pixel]. Parts

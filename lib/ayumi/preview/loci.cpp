@@ -19,15 +19,15 @@ using Value = std::function<double(const SimulationSample&)>;
 constexpr double kGap = 12;  // between panels [pixel]
 
 struct PanelPlan {
-  std::string name;   ///< with unit
-  Value run;          ///< of every run
-  Value command;      ///< of the last run; the command is the same for all
-  Value reference;    ///< of the last run; empty: none
-  double least = 0;   ///< span of the axis at least
+  std::string name;     ///< with unit
+  Value run;            ///< of every run
+  Value command;        ///< of the last run; the command is the same for all
+  Value reference;      ///< of the last run; empty: none
+  double least = 0;     ///< span of the axis at least
   bool spikes = false;  ///< landings may exceed the range
 };
 
-Value component(Eigen::Vector3d SimulationSample::* quantity, int index) {
+Value component(Eigen::Vector3d SimulationSample::*quantity, int index) {
   return [quantity, index](const SimulationSample& s) { return (s.*quantity)[index]; };
 }
 
@@ -37,16 +37,24 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
   const char* axis[] = {"x", "y", "z"};
   if (options.cog)
     for (int i = 0; i < 3; ++i)
-      panels.push_back({std::string("COG ") + axis[i] + " [m]", component(&S::cog, i),
-                        component(&S::command_cog, i), {}, 0.01, false});
+      panels.push_back({std::string("COG ") + axis[i] + " [m]",
+                        component(&S::cog, i),
+                        component(&S::command_cog, i),
+                        {},
+                        0.01,
+                        false});
   if (options.zmp)
     for (int i = 0; i < 2; ++i)
       panels.push_back({std::string("ZMP ") + axis[i] + " [m]", component(&S::zmp, i),
                         component(&S::command_zmp, i), component(&S::reference_zmp, i), 0.02,
                         false});
   if (options.fz)
-    panels.push_back({"f_z [N]", [](const S& s) { return s.fz; },
-                      [](const S& s) { return s.command_fz; }, {}, 10, true});
+    panels.push_back({"f_z [N]",
+                      [](const S& s) { return s.fz; },
+                      [](const S& s) { return s.command_fz; },
+                      {},
+                      10,
+                      true});
   return panels;
 }
 
@@ -79,8 +87,7 @@ Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
   const double missing = std::max(0.0, panel.least - range.span()) / 2;
   const bool standing = std::any_of(runs.begin(), runs.end(),
                                     [](const LociRun& run) { return !has_fallen(*run.log); });
-  const double margin =
-      (standing ? 0.1 : 0.5) * std::max(range.span(), panel.least) + missing;
+  const double margin = (standing ? 0.1 : 0.5) * std::max(range.span(), panel.least) + missing;
   return {range.low - margin, range.high + margin};
 }
 
@@ -117,11 +124,10 @@ void draw_phases(Drawing& drawing, const Axes& axes, const std::vector<Phase>& l
           .stroke = {0, 0, 0, 0},
           .fill = left ? Vector4f(0.90f, 0.90f, 0.915f, 1) : Vector4f(0.98f, 0.95f, 0.80f, 1)});
     if (!names) continue;
-    const std::vector<std::string> words =
-        left && right ? std::vector<std::string>{"both", ""}
-        : left        ? std::vector<std::string>{"left", "L", ""}
-        : right       ? std::vector<std::string>{"right", "R", ""}
-                      : std::vector<std::string>{"flight", "F", ""};
+    const std::vector<std::string> words = left && right ? std::vector<std::string>{"both", ""}
+                                           : left        ? std::vector<std::string>{"left", "L", ""}
+                                           : right ? std::vector<std::string>{"right", "R", ""}
+                                                   : std::vector<std::string>{"flight", "F", ""};
     for (const std::string& word : words) {
       if (text_width(word, 10) + 2 > to - from) continue;
       drawing.items.push_back(DrawnText{.position = {(from + to) / 2, axes.top - 4},
@@ -191,8 +197,8 @@ Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) 
   const std::vector<Phase> supports = phases(*runs.back().log, time);
   double top = draw_legend(drawing, legend(runs, options.zmp), 44) + (pushed.empty() ? 20 : 38);
   for (size_t i = 0; i < panels.size(); ++i) {
-    const Axes axes = {kLeft, top, drawing.width - kLeft - kRight, options.panel, time,
-                       value_range(panels[i], runs, time)};
+    const Axes axes = {kLeft,         top,  drawing.width - kLeft - kRight,
+                       options.panel, time, value_range(panels[i], runs, time)};
     draw_phases(drawing, axes, supports, i == 0);
     draw_axes(drawing, axes, panels[i].name, i + 1 == panels.size());
     draw_pushes(drawing, axes, pushed, i == 0);

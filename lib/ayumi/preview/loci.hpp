@@ -1,6 +1,6 @@
 #pragma once
-// Loci of runs against time: COG x, y, z with the command, ZMP x, y with the reference ZMP, and f_z,
-// several runs of one pattern together (open loop and closed loop). And the same from above.
+// Loci of runs against time: COG x, y, z with the command, ZMP x, y with the reference ZMP, and
+// f_z, several runs of one pattern together (open loop and closed loop). And the same from above.
 
 #include <filesystem>
 #include <string>
@@ -13,24 +13,24 @@
 namespace ayumi {
 
 struct LociRun {
-  std::string label;          ///< as the legend names it
-  const SimulationLog* log;   ///< must outlive the call
+  std::string label;         ///< as the legend names it
+  const SimulationLog* log;  ///< must outlive the call
 };
 
 struct LociOptions {
-  std::string title = {};   ///< empty: the pattern's name
+  std::string title = {};                  ///< empty: the pattern's name
   bool cog = true, zmp = true, fz = true;  ///< panels
-  double width = 1000;      ///< [pixel]
-  double panel = 132;       ///< height of one panel [pixel]
-  double begin = 0;         ///< first time shown [s]
-  double end = -1;          ///< last; negative: of the longest run [s]
-  double png_scale = 1.5;   ///< picture pixels per pixel of the drawing
+  double width = 1000;                     ///< [pixel]
+  double panel = 132;                      ///< height of one panel [pixel]
+  double begin = 0;                        ///< first time shown [s]
+  double end = -1;                         ///< last; negative: of the longest run [s]
+  double png_scale = 1.5;                  ///< picture pixels per pixel of the drawing
 };
 
-/// Stacked panels against time. Support phases shaded after the plan of the last run, pushes marked,
-/// a fall marked by a cross. Ranges follow the command and the runs that do not fall; a fallen run
-/// that leaves them is cut off, and the plot says so. Throws Error(usage) when there is no run, a
-/// run has no samples, more than six runs, or nothing to show between begin and end.
+/// Stacked panels against time. Support phases shaded after the plan of the last run, pushes
+/// marked, a fall marked by a cross. Ranges follow the command and the runs that do not fall; a
+/// fallen run that leaves them is cut off, and the plot says so. Throws Error(usage) when there is
+/// no run, a run has no samples, more than six runs, or nothing to show between begin and end.
 Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options);
 
 /// The ground from above: COG and ZMP paths, reference ZMP, and the soles where the last run

@@ -14,8 +14,8 @@ constexpr double kLegend = 12.5;  // font size [pixel]
 
 // Told apart also without colour vision: dark, vermilion, blue, green, purple, sky, yellow.
 const Eigen::Vector4f kRunColors[] = {{0.84f, 0.37f, 0.00f, 1}, {0.00f, 0.45f, 0.70f, 1},
-                               {0.00f, 0.62f, 0.45f, 1}, {0.80f, 0.47f, 0.65f, 1},
-                               {0.34f, 0.71f, 0.91f, 1}, {0.72f, 0.66f, 0.05f, 1}};
+                                      {0.00f, 0.62f, 0.45f, 1}, {0.80f, 0.47f, 0.65f, 1},
+                                      {0.34f, 0.71f, 0.91f, 1}, {0.72f, 0.66f, 0.05f, 1}};
 constexpr size_t kMostRuns = 6;
 
 std::string title_of(const std::vector<LociRun>& runs, const LociOptions& options) {
@@ -62,10 +62,10 @@ std::vector<PushRecord> all_pushes(const std::vector<LociRun>& runs, const Inter
 
 std::string legend_name(const LociRun& run) {
   const SimulationResult& result = run.log->result;
-  return run.label + (has_fallen(*run.log)
-                          ? " (fell at " + text::fixed(result.fell_at, 2) + " s)"
-                          : std::string(result.outcome == Outcome::stands ? " (stands)"
-                                                                          : " (unsettled)"));
+  return run.label +
+         (has_fallen(*run.log)
+              ? " (fell at " + text::fixed(result.fell_at, 2) + " s)"
+              : std::string(result.outcome == Outcome::stands ? " (stands)" : " (unsettled)"));
 }
 
 double draw_legend(Drawing& drawing, const Legend& entries, double top) {
@@ -107,10 +107,11 @@ Drawing start_drawing(const std::vector<LociRun>& runs, const LociOptions& optio
   drawing.width = options.width;
   drawing.title = title_of(runs, options);
   drawing.description = what + ":";
-  for (const LociRun& run : runs) drawing.description.append(" ").append(legend_name(run)).append(";");
+  for (const LociRun& run : runs)
+    drawing.description.append(" ").append(legend_name(run)).append(";");
   drawing.description.back() = '.';
-  drawing.items.push_back(DrawnText{
-      .position = {kLeft, 24}, .text = drawing.title, .size = 16, .bold = true});
+  drawing.items.push_back(
+      DrawnText{.position = {kLeft, 24}, .text = drawing.title, .size = 16, .bold = true});
   return drawing;
 }
 

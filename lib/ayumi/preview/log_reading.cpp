@@ -73,7 +73,9 @@ std::vector<PushRecord> pushes(const SimulationLog& log) {
     }
     const double t = static_cast<double>(k) * log.dt;
     if (!active)
-      records.push_back({.begin = t, .end = t, .point = sample.push_point,
+      records.push_back({.begin = t,
+                         .end = t,
+                         .point = sample.push_point,
                          .from_cog = sample.push_point - sample.cog});
     active = true;
     PushRecord& record = records.back();

@@ -20,11 +20,11 @@ Eigen::Vector3d ground_normal(const World& world);
 
 /// A stretch of ticks with an external force.
 struct PushRecord {
-  double begin = 0, end = 0;                               ///< [s]; end excluded
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();         ///< at its start, world [m]
-  Eigen::Vector3d from_cog = Eigen::Vector3d::Zero();      ///< the same from the COG [m]
-  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();       ///< time integral of the force [N s]
-  Eigen::Vector3d peak = Eigen::Vector3d::Zero();          ///< largest force [N]
+  double begin = 0, end = 0;                           ///< [s]; end excluded
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();     ///< at its start, world [m]
+  Eigen::Vector3d from_cog = Eigen::Vector3d::Zero();  ///< the same from the COG [m]
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();   ///< time integral of the force [N s]
+  Eigen::Vector3d peak = Eigen::Vector3d::Zero();      ///< largest force [N]
 };
 
 /// Pushes in the order of time.

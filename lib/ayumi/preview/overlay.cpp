@@ -42,12 +42,12 @@ void add_support(Triangles& target, std::vector<Vector3d> corners, const Plane& 
   add_polygon(target, corners, faded(overlay_color::kSupport, 0.22));
   for (Vector3d& corner : corners) corner += plane.normal * (0.0008 * plane.size);
   add_band(target, corners,
-           std::vector<Vector4f>(corners.size(), faded(overlay_color::kSupport, 0.9)),
-           plane.normal, 0.006 * plane.size, true);
+           std::vector<Vector4f>(corners.size(), faded(overlay_color::kSupport, 0.9)), plane.normal,
+           0.006 * plane.size, true);
 }
 
 void add_trail(Triangles& target, const SimulationLog& log, double t, const OverlayOptions& options,
-               const Plane& plane, Vector3d SimulationSample::* quantity, const Vector4f& color,
+               const Plane& plane, Vector3d SimulationSample::*quantity, const Vector4f& color,
                int layer) {
   std::vector<Vector3d> points;
   std::vector<Vector4f> colors;
@@ -55,8 +55,8 @@ void add_trail(Triangles& target, const SimulationLog& log, double t, const Over
   for (int k = steps; k >= 0; --k) {
     const double age = options.trail * k / steps;
     if (t - age < 0) continue;
-    const auto index = std::min(log.samples.size() - 1,
-                                static_cast<size_t>(std::llround((t - age) / log.dt)));
+    const auto index =
+        std::min(log.samples.size() - 1, static_cast<size_t>(std::llround((t - age) / log.dt)));
     const Vector3d point = plane.drop(log.samples[index].*quantity, layer);
     if (!points.empty() && (point - points.back()).norm() < 1e-5) {
       colors.back() = faded(color, 1 - age / options.trail);
@@ -100,8 +100,7 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
     if (t < push.begin - 1e-9 || t >= last) continue;
     const double fade_from = std::max(push.end, push.begin + 0.6 * options.push_hold);
     const double opacity = t <= fade_from ? 1.0 : (last - t) / (last - fade_from);
-    const Vector3d direction =
-        (push.impulse.norm() > 0 ? push.impulse : push.peak).normalized();
+    const Vector3d direction = (push.impulse.norm() > 0 ? push.impulse : push.peak).normalized();
     // The arrow's tip touches the robot there; it goes on with the COG while it fades.
     const Vector3d tip = sample.cog + push.from_cog;
     const Vector3d tail = tip - 0.6 * size * direction;

@@ -23,27 +23,33 @@ using Eigen::Matrix4f;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-#define AYUMI_GL_FUNCTIONS(X)                                                                    \
-  X(ACTIVETEXTURE, ActiveTexture) X(ATTACHSHADER, AttachShader) X(BINDBUFFER, BindBuffer)        \
-  X(BINDFRAMEBUFFER, BindFramebuffer) X(BINDRENDERBUFFER, BindRenderbuffer)                      \
-  X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNC, BlendFunc)        \
-  X(BLITFRAMEBUFFER, BlitFramebuffer) X(BUFFERDATA, BufferData)                                  \
-  X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEAR, Clear) X(CLEARCOLOR, ClearColor)    \
-  X(COMPILESHADER, CompileShader) X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader)  \
-  X(DELETESHADER, DeleteShader) X(DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask)                  \
-  X(DISABLE, Disable) X(DRAWARRAYS, DrawArrays) X(DRAWELEMENTS, DrawElements)                    \
-  X(ENABLE, Enable) X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray)                          \
-  X(FRAMEBUFFERRENDERBUFFER, FramebufferRenderbuffer) X(GENBUFFERS, GenBuffers)                  \
-  X(GENFRAMEBUFFERS, GenFramebuffers) X(GENRENDERBUFFERS, GenRenderbuffers)                      \
-  X(GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays)                                \
-  X(GETPROGRAMINFOLOG, GetProgramInfoLog) X(GETPROGRAMIV, GetProgramiv)                          \
-  X(GETUNIFORMLOCATION, GetUniformLocation) X(LINKPROGRAM, LinkProgram)                          \
-  X(PIXELSTOREI, PixelStorei) X(POLYGONOFFSET, PolygonOffset) X(READPIXELS, ReadPixels)          \
-  X(RENDERBUFFERSTORAGEMULTISAMPLE, RenderbufferStorageMultisample)                              \
-  X(SHADERSOURCE, ShaderSource) X(TEXIMAGE2D, TexImage2D) X(TEXPARAMETERI, TexParameteri)        \
-  X(UNIFORM1F, Uniform1f) X(UNIFORM2F, Uniform2f) X(UNIFORM3F, Uniform3f)                        \
-  X(UNIFORMMATRIX4FV, UniformMatrix4fv) X(USEPROGRAM, UseProgram)                                \
-  X(VERTEXATTRIBPOINTER, VertexAttribPointer) X(VIEWPORT, Viewport)
+#define AYUMI_GL_FUNCTIONS(X)                                                                      \
+  X(ACTIVETEXTURE, ActiveTexture)                                                                  \
+  X(ATTACHSHADER, AttachShader) X(BINDBUFFER, BindBuffer) X(BINDFRAMEBUFFER, BindFramebuffer) X(   \
+      BINDRENDERBUFFER, BindRenderbuffer) X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY,           \
+                                                                        BindVertexArray)           \
+      X(BLENDFUNC, BlendFunc) X(BLITFRAMEBUFFER, BlitFramebuffer) X(BUFFERDATA, BufferData) X(     \
+          CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEAR, Clear)                          \
+          X(CLEARCOLOR, ClearColor) X(COMPILESHADER, CompileShader) X(                             \
+              CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader)                          \
+              X(DELETESHADER, DeleteShader) X(DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask) X(     \
+                  DISABLE, Disable) X(DRAWARRAYS, DrawArrays) X(DRAWELEMENTS, DrawElements)        \
+                  X(ENABLE, Enable) X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(         \
+                      FRAMEBUFFERRENDERBUFFER, FramebufferRenderbuffer) X(GENBUFFERS, GenBuffers)  \
+                      X(GENFRAMEBUFFERS, GenFramebuffers) X(GENRENDERBUFFERS, GenRenderbuffers) X( \
+                          GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays)            \
+                          X(GETPROGRAMINFOLOG, GetProgramInfoLog) X(GETPROGRAMIV, GetProgramiv) X( \
+                              GETUNIFORMLOCATION, GetUniformLocation) X(LINKPROGRAM, LinkProgram)  \
+                              X(PIXELSTOREI, PixelStorei) X(POLYGONOFFSET, PolygonOffset)          \
+                                  X(READPIXELS, ReadPixels) X(RENDERBUFFERSTORAGEMULTISAMPLE,      \
+                                                              RenderbufferStorageMultisample)      \
+                                      X(SHADERSOURCE, ShaderSource) X(TEXIMAGE2D, TexImage2D)      \
+                                          X(TEXPARAMETERI, TexParameteri) X(UNIFORM1F, Uniform1f)  \
+                                              X(UNIFORM2F, Uniform2f) X(UNIFORM3F, Uniform3f)      \
+                                                  X(UNIFORMMATRIX4FV, UniformMatrix4fv) X(         \
+                                                      USEPROGRAM, UseProgram)                      \
+                                                      X(VERTEXATTRIBPOINTER, VertexAttribPointer)  \
+                                                          X(VIEWPORT, Viewport)
 
 struct Gl {
 #define AYUMI_GL_MEMBER(TYPE, name) PFNGL##TYPE##PROC name;
@@ -126,8 +132,8 @@ struct Renderer::Parts {
   Gl gl;
   GLuint solid, ground, sky, flat, shadow;
   Mesh robot, overlay, square;
-  std::vector<std::pair<Range, Range>> ranges;     // closed and open triangles of each body
-  std::vector<Eigen::AlignedBox3d> boxes;          // of each body, body frame
+  std::vector<std::pair<Range, Range>> ranges;  // closed and open triangles of each body
+  std::vector<Eigen::AlignedBox3d> boxes;       // of each body, body frame
   Target drawn, resolved, flattened;
   GLuint coverage = 0;
 
@@ -172,10 +178,9 @@ Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOpti
   gl.BufferData(GL_ARRAY_BUFFER, sizeof corners, corners, GL_STATIC_DRAW);
   gl.EnableVertexAttribArray(0);
   gl.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
-  drawn = make_target(options.width, options.height, options.antialias ? kSamples : 0, GL_RGBA8,
-                      true);
-  if (options.antialias)
-    resolved = make_target(options.width, options.height, 0, GL_RGBA8, false);
+  drawn =
+      make_target(options.width, options.height, options.antialias ? kSamples : 0, GL_RGBA8, true);
+  if (options.antialias) resolved = make_target(options.width, options.height, 0, GL_RGBA8, false);
   flattened = make_target(kShadowSize, kShadowSize, 0, GL_R8, false);
   gl.GenTextures(1, &coverage);
   gl.BindTexture(GL_TEXTURE_2D, coverage);
@@ -197,8 +202,8 @@ GLuint Renderer::Parts::compile(GLenum kind, const char* source) {
 
 GLuint Renderer::Parts::link(const char* vertex, const char* fragment) {
   const GLuint program = gl.CreateProgram();
-  for (const GLuint shader : {compile(GL_VERTEX_SHADER, vertex),
-                              compile(GL_FRAGMENT_SHADER, fragment)}) {
+  for (const GLuint shader :
+       {compile(GL_VERTEX_SHADER, vertex), compile(GL_FRAGMENT_SHADER, fragment)}) {
     gl.AttachShader(program, shader);
     gl.DeleteShader(shader);
   }
@@ -241,8 +246,7 @@ void Renderer::Parts::fill(const Mesh& mesh, const Triangles& triangles, GLenum 
                 triangles.indices.data(), usage);
 }
 
-Target Renderer::Parts::make_target(int width, int height, int samples, GLenum format,
-                                    bool depth) {
+Target Renderer::Parts::make_target(int width, int height, int samples, GLenum format, bool depth) {
   Target target;
   target.width = width;
   target.height = height;
@@ -285,8 +289,7 @@ void Renderer::Parts::set(GLuint program, const char* name, const Vector3d& valu
   gl.Uniform3f(gl.GetUniformLocation(program, name), f[0], f[1], f[2]);
 }
 void Renderer::Parts::set(GLuint program, const char* name, double x, double y) {
-  gl.Uniform2f(gl.GetUniformLocation(program, name), static_cast<float>(x),
-               static_cast<float>(y));
+  gl.Uniform2f(gl.GetUniformLocation(program, name), static_cast<float>(x), static_cast<float>(y));
 }
 void Renderer::Parts::set(GLuint program, const char* name, double value) {
   gl.Uniform1f(gl.GetUniformLocation(program, name), static_cast<float>(value));

@@ -21,10 +21,10 @@ struct RenderOptions {
 };
 
 struct Scene {
-  std::vector<Eigen::Isometry3d> poses;                       ///< one per body, world
+  std::vector<Eigen::Isometry3d> poses;  ///< one per body, world
   Camera camera;
-  Eigen::Vector3d ground_normal = Eigen::Vector3d::UnitZ();   ///< of the plane through the origin
-  Triangles overlay;                                          ///< world frame
+  Eigen::Vector3d ground_normal = Eigen::Vector3d::UnitZ();  ///< of the plane through the origin
+  Triangles overlay;                                         ///< world frame
 };
 
 /// Holds the OpenGL context and the robot's surface in it. One thread at a time; several renderers

@@ -20,8 +20,7 @@ void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isomet
     return;
   }
   for (const MeshPart& part : mesh->mesh.parts) {
-    const Eigen::Vector4f color =
-        placed.has_color || !part.has_color ? placed.color : part.color;
+    const Eigen::Vector4f color = placed.has_color || !part.has_color ? placed.color : part.color;
     add_surface(body, tessellate(part, color), pose);
   }
 }

@@ -22,8 +22,8 @@ std::vector<Foothold> footholds(const RobotModel& model, const SimulationLog& lo
   std::vector<Foothold> out;
   if (!model.has_soles()) return out;
   const auto first = static_cast<size_t>(std::max(0.0, std::round(time.low / log.dt)));
-  const auto last = std::min(log.samples.size(),
-                             static_cast<size_t>(std::round(time.high / log.dt)) + 1);
+  const auto last =
+      std::min(log.samples.size(), static_cast<size_t>(std::round(time.high / log.dt)) + 1);
   for (const Side side : {Side::left, Side::right}) {
     const auto planned = [&](size_t k) {
       return log.samples[k].planned_contact[static_cast<size_t>(side)];
@@ -48,7 +48,7 @@ std::vector<Foothold> footholds(const RobotModel& model, const SimulationLog& lo
 }
 
 std::vector<Vector2d> path_of(const SimulationLog& log, const Interval& time,
-                              Vector3d SimulationSample::* quantity) {
+                              Vector3d SimulationSample::*quantity) {
   std::vector<Vector2d> points;
   for (size_t k = 0; k < log.samples.size(); ++k) {
     const double t = static_cast<double>(k) * log.dt;
@@ -68,8 +68,7 @@ Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const I
     for (const auto quantity : {&SimulationSample::cog, &SimulationSample::zmp})
       if (!has_fallen(*run.log))
         for (const Vector2d& point : path_of(*run.log, time, quantity)) box.extend(point);
-  for (const Vector2d& point :
-       path_of(*runs.back().log, time, &SimulationSample::command_cog))
+  for (const Vector2d& point : path_of(*runs.back().log, time, &SimulationSample::command_cog))
     box.extend(point);
   const Vector2d middle = box.center();
   const Vector2d half = 0.55 * box.sizes().cwiseMax(0.1);
@@ -137,11 +136,11 @@ Drawing draw_support(const RobotModel& model, const std::vector<LociRun>& runs,
   }
   draw_line(drawing, axes, path_of(last, time, &SimulationSample::reference_zmp), kReferenceStyle);
   draw_line(drawing, axes, path_of(last, time, &SimulationSample::command_cog), kCommandStyle);
-  drawing.items.push_back(DrawnText{.position = {axes.left + axes.width / 2,
-                                                 axes.top + axes.height + 36},
-                                    .text = "x [m]",
-                                    .size = 13,
-                                    .anchor = TextAnchor::center});
+  drawing.items.push_back(
+      DrawnText{.position = {axes.left + axes.width / 2, axes.top + axes.height + 36},
+                .text = "x [m]",
+                .size = 13,
+                .anchor = TextAnchor::center});
   drawing.height = axes.top + axes.height + 48;
   return drawing;
 }

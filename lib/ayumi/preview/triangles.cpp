@@ -258,7 +258,8 @@ void add_arrow(Triangles& target, const Vector3d& from, const Vector3d& to, doub
   Triangles arrow;
   add_turned(arrow, {{radius, neck, 1, 0}, {radius, 0, 1, 0}}, 16, color);
   add_turned(arrow, {{radius, 0, 0, -1}, {0, 0, 0, -1}}, 16, color);
-  add_turned(arrow, {{0, length, head / slope, wide / slope}, {wide, neck, head / slope, wide / slope}},
+  add_turned(arrow,
+             {{0, length, head / slope, wide / slope}, {wide, neck, head / slope, wide / slope}},
              16, color);
   add_turned(arrow, {{wide, neck, 0, -1}, {0, neck, 0, -1}}, 16, color);
   append(target, arrow, frame_along(from, to - from));
