@@ -80,6 +80,8 @@ Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
   extend(values, series(*runs.back().log, panel.command, time));
   for (const LociRun& run : runs)
     if (!has_fallen(*run.log)) extend(values, series(*run.log, panel.run, time));
+  if (panel.reference && !has_fallen(*runs.back().log))
+    extend(values, series(*runs.back().log, panel.reference, time));
   if (values.empty()) return {0, 1};
   std::sort(values.begin(), values.end());
   const size_t skip = panel.spikes ? values.size() / 500 : 0;
@@ -146,7 +148,7 @@ void draw_pushes(Drawing& drawing, const Axes& axes, const std::vector<PushRecor
                  bool names) {
   for (const PushRecord& push : list) {
     const double x = axes.px(push.begin), bottom = axes.top + axes.height;
-    drawing.items.push_back(DrawnPath{.points = {{x, axes.top - (names ? 16 : 0)}, {x, bottom}},
+    drawing.items.push_back(DrawnPath{.points = {{x, axes.top}, {x, bottom}},
                                       .stroke = kPushColor,
                                       .width = 1.4});
     if (!names) continue;
