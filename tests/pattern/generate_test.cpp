@@ -81,6 +81,16 @@ TEST(WalkPattern, StartsAndEndsAtRest) {
   EXPECT_LT((series.samples[700].zmp - series.samples[0].zmp).norm(), 1e-3);
 }
 
+TEST(WalkPattern, BendsTheLegsOfARobotThatStandsStraight) {
+  RobotDescription straight = test::biped_description();
+  straight.postures["home"] = {};
+  const RobotModel model(straight);
+  const Pattern pattern = walk_pattern(model, {});
+  EXPECT_GT(pattern.cog_height, 0.1);
+  EXPECT_GT(sample(model, pattern, {.dt = 0.005}).samples.size(), 100u);
+  EXPECT_EQ(walk_pattern(test::biped(), {}).cog_height, 0);  // home's, already bent
+}
+
 TEST(WalkPattern, NamesTheParameterOutOfRange) {
   const auto with = [](auto change) {
     WalkParameters p;

@@ -54,6 +54,32 @@ TEST(InverseKinematics, TrunkAboveAWaistJoint) {
   expect_round_trip(test::biped({.waist = true}), 2);
 }
 
+// A seventh joint in each leg: reached as well, by damped least squares.
+TEST(InverseKinematics, SevenJointLegs) {
+  RobotDescription robot = test::biped_description();
+  for (const std::string s : {"l_", "r_"}) {
+    for (JointDescription& joint : robot.joints)
+      if (joint.name == s + "hip_pitch") joint.child = s + "hip3";
+    robot.links.push_back(test::box_link(s + "hip3", 0.05, {0, 0, 0}, {0.02, 0.02, 0.02}));
+    robot.joints.push_back(
+        test::hinge(s + "thigh_twist", s + "hip3", s + "thigh", {0, 0, 0}, {0, 0, 1}, -1, 1));
+  }
+  const RobotModel model(robot);
+  const InverseKinematics ik(model, model.posture());
+  EXPECT_EQ(ik.leg(Side::left).size(), 7u);
+  RobotData data(model);
+  RobotState state = model.rest_state();
+  update_positions(model, state, data);
+  PostureTarget target;
+  for (const Side side : kSides) target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
+  target.cog = data.cog + Eigen::Vector3d(0.01, 0.02, -0.01);
+  target.feet[0].translation() += Eigen::Vector3d(0.03, 0.01, 0.02);
+  target.trunk = rpy_to_matrix({0, 0, 0.1});
+  const PostureSolution solution = ik.solve(target, state, data);
+  EXPECT_TRUE(solution.reached);
+  EXPECT_LT(solution.error, 1e-10);
+}
+
 TEST(InverseKinematics, SolvesLegsOnly) {
   const RobotModel model = test::biped({.waist = true});
   const InverseKinematics ik(model, model.posture());

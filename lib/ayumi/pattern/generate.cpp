@@ -21,6 +21,9 @@ using Eigen::Vector3d;
 
 namespace {
 
+// Legs longer than this share of their straight length are bent to the second one.
+constexpr double kStraightLeg = 0.97, kBentLeg = 0.94;
+
 // Of both ends, in units of 1/omega: the ZMP rests, then shifts onto the first foot.
 constexpr double kRest = 4.5, kShift = 2.6;
 
@@ -33,6 +36,16 @@ void require_range(const char* name, double value, double low, double high, cons
   fail(ErrorCode::usage, std::string("walk: ") + name + " " + text::exact(value) + unit +
                              " is out of range; it may be from " + text::brief(low) + " to " +
                              text::brief(high) + unit);
+}
+
+// Home's COG height, lowered where home's legs are too straight to step [m]; 0 keeps home's.
+double walking_height(const RobotModel& model, const Pattern& pattern, double leg) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const Vector3d hip = data.pose(model.dofs()[model.leg(Side::left).front()].body).translation();
+  const double reach = (sole_pose(model, data, Side::left).translation() - hip).norm();
+  if (reach < kStraightLeg * leg) return 0;
+  return to_tenth_millimetre(default_cog_height(model, pattern) - (reach - kBentLeg * leg));
 }
 
 // Sum of the link lengths from hip to sole with the leg straight [m].
@@ -120,6 +133,8 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   pattern.name = title(p);
   pattern.robot = model.name();
   pattern.cog_height = to_tenth_millimetre(p.cog_height);
+
+  if (p.cog_height == 0) pattern.cog_height = walking_height(model, pattern, leg_length(model));
 
   const auto start = start_feet(model, pattern);
   const double beside = 0.5 * (start[0].translation() - start[1].translation()).norm();

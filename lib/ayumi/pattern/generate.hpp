@@ -6,14 +6,14 @@
 namespace ayumi {
 
 struct WalkParameters {
-  int steps = 8;                   ///< steps that move; one closing step brings the feet together
-  double stride = 0.03;            ///< forward distance between successive footholds [m]
-  double period = 0.55;            ///< of one step: single + double support [s]
-  double double_support = 0.18;    ///< share of the period
-  double lift = 0.015;             ///< of the swing sole [m]
-  double cog_height = 0;           ///< 0: of the home posture [m]
-  double turn = 0;                 ///< yaw change per step, left positive [rad]
-  double side = 0;                 ///< sideways distance per pair of steps, left positive [m]
+  int steps = 8;                 ///< steps that move; one closing step brings the feet together
+  double stride = 0.03;          ///< forward distance between successive footholds [m]
+  double period = 0.55;          ///< of one step: single + double support [s]
+  double double_support = 0.18;  ///< share of the period
+  double lift = 0.015;           ///< of the swing sole [m]
+  double cog_height = 0;         ///< 0: of the home posture, lower if its legs are straight [m]
+  double turn = 0;               ///< yaw change per step, left positive [rad]
+  double side = 0;               ///< sideways distance per pair of steps, left positive [m]
   Side first_swing = Side::right;
 };
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kGridStep = 0.005;   // of the correction [s]
 constexpr double kGoodEnough = 1e-4;  // largest full-model ZMP error to stop at [m]
-constexpr int kMostIterations = 8;
+constexpr int kMostIterations = 12;
 
 // The plan on a uniform grid over the whole pattern.
 struct Grid {
@@ -130,9 +130,10 @@ void CogSolver::correct() {
   auto best_bump = plan.bump;
   int worse = 0;
   for (int pass = 0; pass <= kMostIterations && worse < 2; ++pass) {
-    report(job.progress, {"solve the COG", static_cast<double>(pass) / kMostIterations, ""});
     solve_postures(pass == 0, samples);
     const double worst = measure(samples, error);
+    report(job.progress, {"solve the COG", static_cast<double>(pass) / kMostIterations,
+                          "ZMP error " + millimetres(worst)});
     worse = worst < best ? 0 : worse + 1;
     if (worse == 0) {
       best = worst;
