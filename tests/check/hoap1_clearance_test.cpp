@@ -1,0 +1,95 @@
+// HOAP-1's collision shapes leave ordinary walking alone, and still notice a foot on a foot.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include "ayumi/check/self_collision.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot_file.hpp"
+
+namespace ayumi {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+class Hoap1Clearance : public testing::Test {
+ protected:
+  Hoap1Clearance()
+      : model(load_robot("hoap1", {{AYUMI_SOURCE_DIR "/robots"}})), collision(model), data(model) {}
+
+  // Least clearance over all pairs, and which pair it is.
+  std::pair<double, std::string> nearest(const RobotState& state) {
+    update_positions(model, state, data);
+    std::pair<double, std::string> best = {1e9, ""};
+    for (const CollisionModel::Pair& pair : collision.pairs()) {
+      const double distance = collision.clearance(pair, data, 0.05);
+      if (distance < best.first)
+        best = {distance, model.bodies()[pair.a].name + " - " + model.bodies()[pair.b].name};
+    }
+    return best;
+  }
+
+  void set(RobotState& state, const std::string& joint, double degrees) {
+    const int dof = model.find_dof(joint);
+    ASSERT_GE(dof, 0) << joint;
+    state.theta[dof] = degrees * kDegree;
+  }
+
+  RobotModel model;
+  CollisionModel collision;
+  RobotData data;
+};
+
+TEST_F(Hoap1Clearance, NoPairOfHousingsIsLeftOutUnseen) {
+  const auto [distance, pair] = nearest(model.rest_state());
+  EXPECT_GT(distance, 0.009) << pair;
+  const auto watched = [&](const char* a, const char* b) {
+    for (const CollisionModel::Pair& each : collision.pairs()) {
+      const std::string first = model.bodies()[each.a].name, second = model.bodies()[each.b].name;
+      if ((first == a && second == b) || (first == b && second == a)) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(watched("l_foot", "r_foot"));
+  EXPECT_TRUE(watched("l_shank", "r_shank"));
+  EXPECT_TRUE(watched("l_thigh", "torso"));
+  EXPECT_TRUE(watched("l_shank", "l_foot"));
+  EXPECT_TRUE(watched("l_forearm", "torso"));
+  EXPECT_TRUE(watched("l_forearm", "l_thigh"));
+}
+
+// Both legs swayed alike, each bent on its own, soles kept level, arms swinging a little.
+TEST_F(Hoap1Clearance, OrdinaryWalkingIsFree) {
+  std::mt19937 random(3);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (int trial = 0; trial < 500; ++trial) {
+    RobotState state = model.rest_state();
+    const double sway = between(-14, 14);
+    for (const std::string side : {"l_", "r_"}) {
+      const double hip = between(-50, -5), knee = between(5, 75);
+      set(state, side + "hip_roll", sway);
+      set(state, side + "ankle_roll", -sway);
+      set(state, side + "hip_pitch", hip);
+      set(state, side + "knee", knee);
+      set(state, side + "ankle_pitch", std::clamp(-hip - knee, -55.0, 30.0));
+      set(state, side + "shoulder_pitch", between(65, 110));
+      set(state, side + "elbow", between(-60, -10));
+    }
+    const auto [distance, pair] = nearest(state);
+    EXPECT_GT(distance, 0.003) << pair << ", trial " << trial;
+  }
+}
+
+TEST_F(Hoap1Clearance, FeetThatMeetAreSeen) {
+  RobotState state = model.rest_state();
+  set(state, "l_hip_roll", -6);
+  set(state, "l_ankle_roll", 6);
+  EXPECT_LT(nearest(state).first, 0);
+}
+
+}  // namespace
+}  // namespace ayumi
