@@ -1,0 +1,37 @@
+// A program of its own on the installed libraries, one call into each.
+
+#include <cstdio>
+#include <filesystem>
+
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/optimize/repair.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/preview/renderer.hpp"
+#include "ayumi/preview/robot_surface.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const std::filesystem::path data = argv[1];
+  ayumi::LoadOptions with_meshes;
+  with_meshes.meshes = true;
+  const ayumi::RobotModel robot =
+      ayumi::load_robot("hoap1", {{data / "robots"}}, with_meshes);  // ayumi::io
+  const ayumi::CommandSeries series =
+      ayumi::sample(robot, ayumi::stand_pattern(robot, 0.5));         // ayumi::core
+  const ayumi::RepairResult repaired = ayumi::repair(robot, series);  // ayumi::optimize
+
+  ayumi::Scene scene;
+  scene.poses = ayumi::body_poses(robot, series.samples.front().state);
+  ayumi::RenderOptions small;
+  small.width = 160;
+  small.height = 90;
+  ayumi::Renderer renderer(ayumi::robot_surface(robot), small);  // ayumi::preview
+  const ayumi::Image image = renderer.render(scene);
+
+  std::printf("%s: %.3f kg, %s, %zu bytes of picture\n", robot.name().c_str(), robot.mass(),
+              ayumi::name_of(repaired.status), image.rgb.size());
+  const bool good = repaired.status == ayumi::RepairStatus::already_consistent &&
+                    image.rgb.size() == 3u * 160u * 90u;
+  return good ? 0 : 1;
+}
