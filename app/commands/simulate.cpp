@@ -1,0 +1,64 @@
+// One closed-loop run in Ayumi's own integrator under the pattern's scenario.
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/results_json.hpp"
+#include "ayumi/io/run_folder.hpp"
+#include "pattern_input.hpp"
+#include "simulation.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+struct Options {
+  std::string pattern, out;
+  PatternOptions input;
+  SimulationChoice choice;
+};
+
+void simulate_pattern(Context& context, const Options& options) {
+  if (!options.out.empty()) refuse_overwriting(context, options.out);
+  const PatternInput input = load_pattern(context, options.pattern, options.input);
+  const auto begin = std::chrono::steady_clock::now();
+  const SimulationLog log = simulate_once(context, input, options.choice);
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+  context.print(options.pattern + ": " + outcome_text(log) + "\n");
+  if (!options.out.empty()) {
+    RunFolder run;
+    run.provenance = log.provenance;
+    run.logs["closed_loop"] = log;
+    run.reference = extract_reference(input.model, log);
+    run.sections.emplace_back("simulate", simulation_json(log));
+    write_run(options.out, run);
+    context.print("  written to " + options.out + "\n");
+  }
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(simulation_json(log));
+  json["realtime_factor"] = static_cast<double>(log.samples.size()) * log.dt / wall;
+  context.print_json(json.dump(2));
+  context.exit_code = log.result.outcome == Outcome::stands ? 0 : 1;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Context& context) {
+  CLI::App* command =
+      app.add_subcommand("simulate", "closed loop in the internal integrator, with disturbances");
+  command->footer(
+      "Examples:\n  ayumi simulate patterns/hoap1_walk.json -o out/walk\n"
+      "  ayumi simulate walk.json --controller none --scenario none\n"
+      "  ayumi simulate walk.json --profile hoap1-strong --gain ka=1 --json");
+  static Options options;
+  command->add_option("PATTERN", options.pattern, "pattern file")->required();
+  command->add_option("-o,--out", options.out, "folder for the run")->type_name("DIR");
+  add_pattern_options(*command, options.input);
+  add_simulation_options(*command, options.choice);
+  command->callback([&context] { simulate_pattern(context, options); });
+}
+
+}  // namespace ayumi::app

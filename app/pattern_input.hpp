@@ -1,0 +1,48 @@
+#pragma once
+// What every command that takes a PATTERN shares: reading it, its robot, and sampling it.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/sim/simulate.hpp"
+#include "commands.hpp"
+
+namespace ayumi::app {
+
+/// Options of a PATTERN argument.
+struct PatternOptions {
+  std::vector<std::string> set;  ///< "name=value" for declared parameters
+  std::string profile;           ///< actuator profile; "" = the pattern's, then the robot's default
+};
+void add_pattern_options(CLI::App& command, PatternOptions& options);
+
+struct PatternInput {
+  Pattern pattern;
+  RobotModel model;
+  CommandSeries series;
+  std::string profile;  ///< by name
+};
+
+/// Reads the pattern and its robot and samples it at the robot's servo period.
+PatternInput load_pattern(const Context& context, const std::filesystem::path& file,
+                          const PatternOptions& options, bool meshes = false);
+
+/// The pattern's own tolerances over the defaults, `overrides` ("kind=value") over both.
+CheckOptions check_options(const PatternInput& input,
+                           const std::vector<std::string>& overrides = {});
+
+Provenance provenance(const Context& context, const PatternInput& input,
+                      const std::string& controller);
+
+/// "name=value" pairs. Throws Error(usage) naming the option and the word.
+std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
+                                         const std::string& option);
+
+/// Throws Error(bad_file) when `path` exists and --force was not given.
+void refuse_overwriting(const Context& context, const std::filesystem::path& path);
+
+}  // namespace ayumi::app

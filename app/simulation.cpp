@@ -1,0 +1,67 @@
+#include "simulation.hpp"
+
+#include <numbers>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/pattern_file.hpp"
+
+namespace ayumi::app {
+
+void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
+  command
+      .add_option("--controller", choice.controller, "none, dtad, or dtad-literal (a demonstration)")
+      ->type_name("NAME");
+  command
+      .add_option("--scenario", choice.scenario,
+                  "none, or a pattern file whose scenario is used instead")
+      ->type_name("F");
+  command.add_option("--gain", choice.gains, "a controller gain, as NAME=VALUE")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command.add_flag("--noise", choice.noise, "sensor noise, bias and latency of the sidecar");
+  command.add_option("--substeps", choice.substeps, "integrator steps per servo period")
+      ->check(CLI::Range(1, 100).description(""))
+      ->type_name("N");
+}
+
+SimulationLog simulate_once(const Context& context, const PatternInput& input,
+                            const SimulationChoice& choice) {
+  SimulateOptions options;
+  options.controller = input.pattern.controller;
+  if (!choice.controller.empty() && choice.controller != options.controller.type)
+    options.controller = {choice.controller, {}};
+  for (const auto& [name, value] : read_pairs(choice.gains, "--gain"))
+    options.controller.gains.emplace_back(name, value);
+  options.profile = input.profile;
+  options.world = input.pattern.world;
+  options.scenario = input.pattern.scenario;
+  if (choice.scenario == "none")
+    options.scenario.clear();
+  else if (!choice.scenario.empty())
+    options.scenario = read_pattern(choice.scenario).scenario;
+  options.sensor_noise = choice.noise;
+  options.substeps = choice.substeps;
+  options.seed = context.seed;
+  SimulationLog log = simulate(input.model, input.series, options, context.progress());
+  log.provenance = provenance(context, input, options.controller.type);
+  return log;
+}
+
+std::string outcome_text(const SimulationLog& log) {
+  const SimulationResult& r = log.result;
+  std::string text = (log.controller == "none" ? "open loop" : log.controller) + " " +
+                     name_of(r.outcome);
+  if (r.outcome == Outcome::fell) {
+    text += " at " + text::fixed(r.fell_at, 2) + " s";
+    for (const SimulationEvent& event : log.events)
+      if (event.kind == "fell") text += " (" + event.text + ")";
+  } else {
+    text += ", final COG error " + text::fixed(1e3 * r.final_cog_error, 2) + " mm";
+  }
+  text += ", largest trunk tilt " + text::fixed(r.max_tilt * 180 / std::numbers::pi, 1) +
+          " deg, joint speed " + text::fixed(100 * r.max_speed_ratio, 0) + " % and torque " +
+          text::fixed(100 * r.max_torque_ratio, 0) + " % of the limits";
+  return text;
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,25 @@
+#pragma once
+// Simulating a pattern from the command line: choices over the pattern's own, and verdicts in words.
+
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+/// What the command line may change of a simulation.
+struct SimulationChoice {
+  std::string controller;            ///< "" = the pattern's
+  std::string scenario;              ///< "" = the pattern's, "none", or a pattern file whose it is
+  std::vector<std::string> gains;    ///< "name=value"
+  bool noise = false;                ///< sensor noise, bias and latency of the sidecar
+  int substeps = 1;                  ///< of the integrator per servo period
+};
+void add_simulation_options(CLI::App& command, SimulationChoice& choice);
+
+/// Runs the pattern; the log carries its provenance.
+SimulationLog simulate_once(const Context& context, const PatternInput& input,
+                            const SimulationChoice& choice);
+
+/// "DTAD stands: final COG error 0.2 mm, largest trunk tilt 1.3 deg, ..."
+std::string outcome_text(const SimulationLog& log);
+
+}  // namespace ayumi::app
