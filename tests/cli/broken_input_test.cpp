@@ -233,6 +233,35 @@ std::vector<Broken> broken_patterns() {
   };
 }
 
+/// `simulate` of kPattern with one change, or with more words.
+Broken simulation(const std::string& name, const std::string& from, const std::string& to,
+                  const std::string& complaint, const std::vector<std::string>& more = {}) {
+  return {name,
+          [=](const Folder& folder) -> std::vector<std::string> {
+            write(folder / "p.json", replaced(kPattern, from, to));
+            std::vector<std::string> words = {"simulate", "--quiet", "p.json", "-o", "out"};
+            words.insert(words.end(), more.begin(), more.end());
+            return words;
+          },
+          complaint};
+}
+
+std::vector<Broken> broken_simulations() {
+  return {
+      simulation("push_on_an_unknown_link", "\"type\": \"impulse\"",
+                 "\"on\": \"tail\", \"type\": \"impulse\"", "tail"),
+      simulation("unknown_profile", "", "", "known: hoap1, hoap1-strong", {"--profile", "hoap"}),
+      simulation("scenario_file_missing", "", "", "gone.json", {"--scenario", "gone.json"}),
+      {"output_folder_in_the_way",
+       [](const Folder& folder) -> std::vector<std::string> {
+         write(folder / "p.json", kPattern);
+         write(folder / "out", "a file");
+         return {"simulate", "--quiet", "p.json", "-o", "out"};
+       },
+       "out"},
+  };
+}
+
 class BrokenInput : public testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenInput, IsRefusedWithOneClearLine) {
@@ -254,6 +283,9 @@ std::string name_of_case(const testing::TestParamInfo<Broken>& info) { return in
 INSTANTIATE_TEST_SUITE_P(Robots, BrokenInput, testing::ValuesIn(broken_robots()), name_of_case);
 
 INSTANTIATE_TEST_SUITE_P(Patterns, BrokenInput, testing::ValuesIn(broken_patterns()), name_of_case);
+
+INSTANTIATE_TEST_SUITE_P(Simulations, BrokenInput, testing::ValuesIn(broken_simulations()),
+                         name_of_case);
 
 // The pattern that the cases above change is in order itself.
 TEST(SoundInput, IsChecked) {

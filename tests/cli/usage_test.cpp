@@ -56,6 +56,16 @@ TEST_F(Usage, MissingWordsAreUsageErrors) {
   EXPECT_EQ(ayumi({"robots", "one", "two"}).exit_code, 2);
 }
 
+TEST_F(Usage, GainsThatCannotWorkAreUsageErrors) {
+  const std::string pattern = AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json";
+  const Output unknown = ayumi({"simulate", "-q", pattern, "--gain", "qq=1"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("did you mean 'q'?"), std::string::npos) << unknown.err;
+  const Output weak = ayumi({"simulate", "-q", pattern, "--gain", "k=0.9", "d=1"});
+  EXPECT_EQ(weak.exit_code, 2);
+  EXPECT_NE(weak.err.find("K > 1 and D > 0"), std::string::npos) << weak.err;
+}
+
 TEST_F(Usage, AnUnknownRobotIsBadInput) {
   const Output output = ayumi({"inspect", "hoap7"});
   EXPECT_EQ(output.exit_code, 3);
