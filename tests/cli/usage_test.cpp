@@ -61,7 +61,7 @@ TEST_F(Usage, GainsThatCannotWorkAreUsageErrors) {
   const Output unknown = ayumi({"simulate", "-q", pattern, "--gain", "qq=1"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_NE(unknown.err.find("did you mean 'q'?"), std::string::npos) << unknown.err;
-  const Output weak = ayumi({"simulate", "-q", pattern, "--gain", "k=0.9", "d=1"});
+  const Output weak = ayumi({"simulate", "-q", pattern, "--gain", "k=0.9", "--gain", "d=1"});
   EXPECT_EQ(weak.exit_code, 2);
   EXPECT_NE(weak.err.find("K > 1 and D > 0"), std::string::npos) << weak.err;
 }
