@@ -1,0 +1,316 @@
+// Gram matrices of uniform cubic B-splines with knots h apart, by distance of the control points:
+//   integral B_i B_j     = h / 5040 (2416, 1191, 120, 1)
+//   integral B_i'' B_j'' = 1 / h^3 (8/3, -3/2, 0, 1/6).
+#include "ayumi/optimize/correction_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+
+namespace ayumi {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// One radian of a joint moves the robot by about a leg's half length; turning the whole trunk is
+// worth more than a joint.
+constexpr double kPositionWeight =
+    25.0;  // of base position [1/m^2] against joint weight 1 [1/rad^2]
+constexpr double kRotationWeight = 4.0;  // of base rotation
+constexpr double kSmoothTime = 0.05;     // tau [s]
+constexpr double kObjectiveScale = 100.0;
+
+constexpr double kValueGram[] = {2416.0 / 5040, 1191.0 / 5040, 120.0 / 5040, 1.0 / 5040};
+constexpr double kCurvatureGram[] = {8.0 / 3, -1.5, 0, 1.0 / 6};
+
+MatrixXd coefficients(const CorrectionTrack& zero,
+                      const std::vector<std::pair<int, int>>& variables, const VectorXd& x) {
+  MatrixXd result = zero.coefficients;
+  for (size_t i = 0; i < variables.size(); ++i)
+    result(variables[i].first, variables[i].second) = x[static_cast<Eigen::Index>(i)];
+  return result;
+}
+
+}  // namespace
+
+CorrectionProblem::CorrectionProblem(const RobotModel& model, const CommandSeries& series,
+                                     const CorrectionSpec& spec)
+    : model_(model), series_(series), spec_(spec) {
+  zero_.begin = 0;
+  const int intervals =
+      std::max(1, static_cast<int>(std::ceil(series.duration() / spec.spacing - 1e-9)));
+  zero_.spacing = std::max(series.duration(), series.dt) / intervals;
+  zero_.joints = model.dof_names();
+  zero_.coefficients = MatrixXd::Zero(intervals + 3, model.velocity_count());
+  place_variables();
+  place_instants(contact_plan(series));
+  place_constraints();
+  place_jacobian();
+  place_objective();
+}
+
+void CorrectionProblem::place_variables() {
+  const int rows = static_cast<int>(zero_.coefficients.rows());
+  const int columns = static_cast<int>(zero_.coefficients.cols());
+  index_.setConstant(rows, columns, -1);
+  for (int i = 3; i < rows - 3; ++i) {
+    const double begin = (i - 3) * zero_.spacing, end = (i + 1) * zero_.spacing;
+    const bool free = std::any_of(spec_.windows.begin(), spec_.windows.end(), [&](const auto& w) {
+      return begin >= w.first && end <= w.second;
+    });
+    if (!free) continue;
+    for (int j = 0; j < columns; ++j) {
+      if (j >= 6 && !spec_.locked.empty() && spec_.locked[j - 6]) continue;
+      index_(i, j) = static_cast<int>(variables_.size());
+      variables_.emplace_back(i, j);
+    }
+  }
+}
+
+bool CorrectionProblem::free_at(const SplineWeights& weights) const {
+  for (int i = 0; i < 4; ++i)
+    if (weights.value[i] > 0 && index_.row(weights.first + i).maxCoeff() >= 0) return true;
+  return false;
+}
+
+// Evenly, and at both ends of every contact interval: what must hold changes there.
+void CorrectionProblem::place_instants(const ContactPlan& plan) {
+  std::set<int> samples;
+  const int count = static_cast<int>(series_.samples.size());
+  const int stride = std::max(1, static_cast<int>(std::lround(spec_.sample_spacing / series_.dt)));
+  for (int k = 0; k < count; k += stride) samples.insert(k);
+  for (const auto& intervals : plan.intervals)
+    for (const ContactInterval& interval : intervals) {
+      samples.insert(interval.first);
+      samples.insert(interval.last);
+    }
+  for (int k : samples) {
+    Instant instant;
+    instant.sample = k;
+    instant.weights = correction_weights(zero_, k * series_.dt);
+    if (!free_at(instant.weights)) continue;
+    for (Side side : {Side::left, Side::right}) {
+      const int s = static_cast<int>(side);
+      const int i = plan.index[s][k];
+      instant.contact[s] = plan.intervals[s][i].contact;
+      const int last = static_cast<int>(plan.intervals[s].size()) - 1;
+      const ContactInterval& before = plan.intervals[s][std::max(0, i - 1)];
+      const ContactInterval& after = plan.intervals[s][std::min(last, i + 1)];
+      const bool lower = before.sole.translation().z() < after.sole.translation().z();
+      instant.ground[s] = instant.contact[s] ? plan.intervals[s][i].sole
+                          : lower            ? before.sole
+                                             : after.sole;
+    }
+    instant.plane = support_plane(model_, plan.support(k), instant.ground);
+    if (instant.plane.empty()) instant.plane.frame.translation() = series_.samples[k].cog;
+    instants_.push_back(std::move(instant));
+  }
+}
+
+void CorrectionProblem::add_block(ConstraintBlock block, double lower, double upper) {
+  block.row = static_cast<int>(lower_.size());
+  lower_.conservativeResize(block.row + block.rows);
+  upper_.conservativeResize(block.row + block.rows);
+  lower_.tail(block.rows).setConstant(lower);
+  upper_.tail(block.rows).setConstant(upper);
+  columns_.push_back(block_columns(model_, block));
+  blocks_.push_back(std::move(block));
+}
+
+void CorrectionProblem::place_constraints() {
+  for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
+    const Instant& instant = instants_[i];
+    const CommandSample& sample = series_.samples[instant.sample];
+    place_ground_blocks(i, sample);
+    for (int s = 0; s < 2; ++s) {
+      const bool stands = instant.contact[s];
+      ConstraintBlock block{stands ? ConstraintGroup::stance : ConstraintGroup::swing, i, s};
+      block.rows = stands ? 6 : static_cast<int>(model_.sole(static_cast<Side>(s)).polygon.size());
+      add_block(block, stands ? -spec_.sole_position : -spec_.sole_position,
+                stands ? spec_.sole_position : kNoBound);
+      if (!stands) continue;
+      lower_.tail<3>().setConstant(-spec_.sole_angle);
+      upper_.tail<3>().setConstant(spec_.sole_angle);
+    }
+    place_joint_blocks(i, sample);
+  }
+}
+
+void CorrectionProblem::place_ground_blocks(int instant, const CommandSample& sample) {
+  const SupportPlane& plane = instants_[instant].plane;
+  const double weight = model_.mass() * kGravity;
+  auto add = [&](ConstraintGroup group, const MatrixXd& rows, double lower, double upper) {
+    ConstraintBlock block{group, instant, 0};
+    block.rows = static_cast<int>(rows.rows());
+    block.wrench_rows = rows / weight;
+    add_block(std::move(block), lower, upper);
+  };
+  if (plane.empty()) {
+    add(ConstraintGroup::flight, MatrixXd::Identity(6, 6), -0.01, 0.01);
+    return;
+  }
+  MatrixXd rows = support_rows(plane);
+  rows.col(2).array() -= spec_.zmp_margin;
+  add(ConstraintGroup::support, rows, 0, kNoBound);
+  rows.setZero(1, 6);
+  rows(0, 2) = 1;
+  add(ConstraintGroup::unilateral, rows, spec_.force_share, kNoBound);
+  RobotData data(model_);
+  const Vector6d base_wrench =
+      inverse_dynamics(model_, sample.state, sample.acceleration, data).head<6>();
+  const GroundUse use = ground_use(
+      plane, plane_wrench(plane, sample.state.base.position, base_wrench), 0.02 * weight);
+  if (use.tangential_force < spec_.watched_share * spec_.friction * use.normal_force) return;
+  rows.setZero(8, 6);
+  for (int i = 0; i < 8; ++i) {
+    rows(i, 0) = -std::cos(i * M_PI / 4);
+    rows(i, 1) = -std::sin(i * M_PI / 4);
+    rows(i, 2) = spec_.friction * std::cos(M_PI / 8);
+  }
+  add(ConstraintGroup::friction, rows, 0, kNoBound);
+}
+
+void CorrectionProblem::place_joint_blocks(int instant, const CommandSample& sample) {
+  const ActuatorLimits& limits = model_.limits(spec_.profile);
+  const double soft = model_.description().soft_limit_margin + spec_.joint_margin;
+  for (int i = 0; i < model_.dof_count(); ++i) {
+    if (!spec_.locked.empty() && spec_.locked[i]) continue;
+    const Dof& dof = model_.dofs()[i];
+    if (dof.limited) {
+      const double lower = dof.lower + soft, upper = dof.upper - soft;
+      const double half = 0.5 * (upper - lower);
+      const double used = std::abs(sample.state.theta[i] - 0.5 * (lower + upper));
+      ConstraintBlock block{ConstraintGroup::position, instant, i, 0, 1};
+      if (used > spec_.watched_share * half) add_block(block, lower, upper);
+    }
+    const double most = limits.speed[i];
+    if (std::isfinite(most) && std::abs(sample.state.dtheta[i]) > spec_.watched_share * most) {
+      ConstraintBlock block{ConstraintGroup::speed, instant, i, 0, 1, 1 / most};
+      add_block(block, -spec_.speed_share, spec_.speed_share);
+    }
+  }
+}
+
+void CorrectionProblem::place_jacobian() {
+  for (size_t b = 0; b < blocks_.size(); ++b) {
+    const ConstraintBlock& block = blocks_[b];
+    const int first = instants_[block.instant].weights.first;
+    for (int i = 0; i < 4; ++i)
+      for (int column : columns_[b]) {
+        const int variable = index_(first + i, column);
+        if (variable < 0) continue;
+        for (int row = 0; row < block.rows; ++row) jacobian_.add(block.row + row, variable);
+      }
+  }
+}
+
+void CorrectionProblem::place_objective() {
+  VectorXd weight(model_.velocity_count());
+  weight.head<3>().setConstant(kPositionWeight);
+  weight.segment<3>(3).setConstant(kRotationWeight);
+  weight.tail(model_.dof_count()) = series_.joint_weight.size() == model_.dof_count()
+                                        ? series_.joint_weight
+                                        : model_.joint_weight();
+  const double h = zero_.spacing, smooth = std::pow(kSmoothTime, 4);
+  std::vector<double> values;
+  for (int v = 0; v < variable_count(); ++v) {
+    const auto [point, column] = variables_[v];
+    for (int d = 0; d < 4 && point - d >= 0; ++d) {
+      const int other = index_(point - d, column);
+      if (other < 0) continue;
+      hessian_.add(v, other);
+      values.push_back(kObjectiveScale * weight[column] *
+                       (h * kValueGram[d] + smooth / (h * h * h) * kCurvatureGram[d]));
+    }
+  }
+  hessian_values_ = Eigen::Map<VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+VectorXd CorrectionProblem::constraints(const VectorXd& x) const {
+  const MatrixXd c = coefficients(zero_, variables_, x);
+  VectorXd g(constraint_count());
+  RobotData data(model_);
+  InstantState state;
+  int at = -1;
+  for (const ConstraintBlock& block : blocks_) {
+    const Instant& instant = instants_[block.instant];
+    if (block.instant != at)
+      state = instant_state(model_, series_.samples[instant.sample], instant, c, false, data);
+    at = block.instant;
+    g.segment(block.row, block.rows) = block_values(model_, block, instant, state);
+  }
+  return g;
+}
+
+void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) const {
+  const MatrixXd c = coefficients(zero_, variables_, x);
+  RobotData data(model_);
+  InstantState state;
+  int at = -1;
+  Eigen::Index next = 0;
+  for (size_t b = 0; b < blocks_.size(); ++b) {
+    const ConstraintBlock& block = blocks_[b];
+    const Instant& instant = instants_[block.instant];
+    if (block.instant != at)
+      state = instant_state(model_, series_.samples[instant.sample], instant, c, true, data);
+    at = block.instant;
+    const auto by = block_derivatives(model_, block, instant, state);
+    const SplineWeights& w = instant.weights;
+    const Eigen::Vector4d* weights[] = {&w.value, &w.rate, &w.acceleration};
+    for (int i = 0; i < 4; ++i)
+      for (int column : columns_[b]) {
+        if (index_(w.first + i, column) < 0) continue;
+        for (int row = 0; row < block.rows; ++row) {
+          double sum = 0;
+          for (int k = 0; k < 3; ++k)
+            if (by[k].size() > 0) sum += (*weights[k])[i] * by[k](row, column);
+          values[next++] = sum;
+        }
+      }
+  }
+}
+
+Nlp CorrectionProblem::nlp() const {
+  Nlp nlp;
+  nlp.start = VectorXd::Zero(variable_count());
+  nlp.lower = VectorXd::Constant(variable_count(), -kNoBound);
+  nlp.upper = VectorXd::Constant(variable_count(), kNoBound);
+  nlp.constraint_lower = lower_;
+  nlp.constraint_upper = upper_;
+  nlp.jacobian = jacobian_;
+  nlp.hessian = hessian_;
+  auto gradient = [this](const VectorXd& x, VectorXd& g) {
+    g.setZero();
+    for (int i = 0; i < hessian_.size(); ++i) {
+      const int a = hessian_.rows[i], b = hessian_.columns[i];
+      g[a] += hessian_values_[i] * x[b];
+      if (a != b) g[b] += hessian_values_[i] * x[a];
+    }
+  };
+  nlp.gradient = gradient;
+  nlp.objective = [gradient](const VectorXd& x) {
+    VectorXd g(x.size());
+    gradient(x, g);
+    return 0.5 * g.dot(x);
+  };
+  nlp.constraints = [this](const VectorXd& x, VectorXd& g) { g = constraints(x); };
+  nlp.jacobian_values = [this](const VectorXd& x, VectorXd& values) { jacobian_values(x, values); };
+  nlp.hessian_values = [this](const VectorXd&, double scale, const VectorXd&, VectorXd& values) {
+    values = scale * hessian_values_;
+  };
+  return nlp;
+}
+
+CorrectionTrack CorrectionProblem::track(const VectorXd& x) const {
+  CorrectionTrack track = zero_;
+  track.coefficients = coefficients(zero_, variables_, x);
+  return track;
+}
+
+}  // namespace ayumi

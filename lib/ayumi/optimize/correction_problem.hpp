@@ -1,0 +1,86 @@
+#pragma once
+// The least correction of a motion as a nonlinear program. Unknowns: the free control points of a
+// uniform cubic B-spline over base position, base rotation vector and joints (CorrectionTrack);
+// the first and last three stay zero, so the motion starts and ends as it did. Objective:
+//   1/2 sum_columns w integral (d^2 + tau^4 d''^2) dt,
+// quadratic, by the Gram matrices of the splines. Constraints: correction_constraints.hpp at chosen
+// samples. Hessian: that of the objective (exact for it; the curvature of the constraints, second
+// order in a correction of a few hundredths of a radian, is left out: Gauss-Newton).
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ayumi/check/contacts.hpp"
+#include "ayumi/optimize/correction_constraints.hpp"
+#include "ayumi/optimize/nlp.hpp"
+
+namespace ayumi {
+
+/// What may move and what must hold.
+struct CorrectionSpec {
+  double spacing = 0.05;                           ///< of the knots [s]
+  double sample_spacing = 0.025;                   ///< of the constraints [s]
+  std::vector<std::pair<double, double>> windows;  ///< where control points are free [s]
+  std::vector<bool> locked;                        ///< by dof; empty: none
+  std::string profile;
+  double friction = 0.8;
+  double zmp_margin = 0.002;    ///< inside the support [m]
+  double joint_margin = 1e-4;   ///< inside the position limits [rad]
+  double speed_share = 0.999;   ///< of the speed limits that may be used
+  double force_share = 0.1;     ///< least normal force in contact over the weight
+  double sole_position = 2e-4;  ///< band a supporting sole stays in [m]
+  double sole_angle = 2e-3;     ///< [rad]
+  /// A joint or friction limit is constrained where the uncorrected motion uses more than this
+  /// share of it; the rest is looked at by the check of the result, and then asked for.
+  double watched_share = 0.7;
+};
+
+class CorrectionProblem {
+ public:
+  CorrectionProblem(const RobotModel& model, const CommandSeries& series,
+                    const CorrectionSpec& spec);
+
+  int variable_count() const { return static_cast<int>(variables_.size()); }
+  int constraint_count() const { return static_cast<int>(lower_.size()); }
+  const std::vector<ConstraintBlock>& blocks() const { return blocks_; }
+  const std::vector<Instant>& instants() const { return instants_; }
+  const Eigen::VectorXd& lower() const { return lower_; }  ///< of the constraints
+  const Eigen::VectorXd& upper() const { return upper_; }
+
+  Eigen::VectorXd constraints(const Eigen::VectorXd& x) const;
+
+  /// The program; it refers to this object, which must outlive it.
+  Nlp nlp() const;
+
+  /// The correction a point of the program stands for.
+  CorrectionTrack track(const Eigen::VectorXd& x) const;
+
+ private:
+  void place_variables();
+  void place_instants(const ContactPlan& plan);
+  void place_constraints();
+  void place_ground_blocks(int instant, const CommandSample& sample);
+  void place_joint_blocks(int instant, const CommandSample& sample);
+  void place_jacobian();
+  void place_objective();
+  void add_block(ConstraintBlock block, double lower, double upper);
+  bool free_at(const SplineWeights& weights) const;
+  void jacobian_values(const Eigen::VectorXd& x, Eigen::VectorXd& values) const;
+
+  const RobotModel& model_;
+  const CommandSeries& series_;
+  CorrectionSpec spec_;
+  CorrectionTrack zero_;                        ///< the track with zero coefficients
+  Eigen::MatrixXi index_;                       ///< variable of control point and column, or -1
+  std::vector<std::pair<int, int>> variables_;  ///< control point and column of a variable
+  std::vector<Instant> instants_;
+  std::vector<ConstraintBlock> blocks_;    ///< in order of their instants
+  std::vector<std::vector<int>> columns_;  ///< by block
+  Eigen::VectorXd lower_, upper_;
+  SparsePattern jacobian_, hessian_;
+  Eigen::VectorXd hessian_values_;
+};
+
+}  // namespace ayumi
