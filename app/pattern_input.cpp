@@ -54,7 +54,7 @@ CheckOptions check_options(const PatternInput& input, const std::vector<std::str
 
 Provenance provenance(const Context& context, const PatternInput& input,
                       const std::string& controller) {
-  return {.robot = input.model.name(),
+  return {.robot = input.pattern.robot,
           .robot_sha256 = input.model.description().sha256,
           .pattern = input.pattern.name,
           .pattern_sha256 = input.pattern.sha256,

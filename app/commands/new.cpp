@@ -1,6 +1,7 @@
 // Generators: write a keyframed pattern that a person can then edit.
 
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -76,7 +77,8 @@ void add_new(CLI::App& app, Context& context) {
       "Examples:\n  ayumi new walk -o walk.json\n"
       "  ayumi new walk --steps 12 --stride 0.02 --turn 5 -o turn.json\n"
       "  ayumi new stand --duration 4 -o stand.json");
-  static NewOptions options;
+  auto shared = std::make_shared<NewOptions>();
+  NewOptions& options = *shared;
 
   CLI::App* walk = command->add_subcommand("walk", "steps that start and end at rest");
   walk->footer("Examples:\n  ayumi new walk --steps 10 --stride 0.025 --period 0.6 -o walk.json");
@@ -103,14 +105,14 @@ void add_new(CLI::App& app, Context& context) {
   walk->add_option("--first", options.first, "foot that swings first")
       ->check(CLI::IsMember({"left", "right"}))
       ->capture_default_str();
-  walk->callback([&context] { new_walk(context, options); });
+  walk->callback([shared, &context] { new_walk(context, *shared); });
 
   CLI::App* stand = command->add_subcommand("stand", "both feet on the ground");
   add_common(*stand, options);
   stand->add_option("--duration", options.duration, "of the pattern")
       ->capture_default_str()
       ->type_name("S");
-  stand->callback([&context] { new_stand(context, options); });
+  stand->callback([shared, &context] { new_stand(context, *shared); });
 }
 
 }  // namespace ayumi::app

@@ -53,12 +53,12 @@ void add_simulate(CLI::App& app, Context& context) {
       "Examples:\n  ayumi simulate patterns/hoap1_walk.json -o out/walk\n"
       "  ayumi simulate walk.json --controller none --scenario none\n"
       "  ayumi simulate walk.json --profile hoap1-strong --gain ka=1 --json");
-  static Options options;
-  command->add_option("PATTERN", options.pattern, "pattern file")->required();
-  command->add_option("-o,--out", options.out, "folder for the run")->type_name("DIR");
-  add_pattern_options(*command, options.input);
-  add_simulation_options(*command, options.choice);
-  command->callback([&context] { simulate_pattern(context, options); });
+  auto options = std::make_shared<Options>();
+  command->add_option("PATTERN", options->pattern, "pattern file")->required();
+  command->add_option("-o,--out", options->out, "folder for the run")->type_name("DIR");
+  add_pattern_options(*command, options->input);
+  add_simulation_options(*command, options->choice);
+  command->callback([options, &context] { simulate_pattern(context, *options); });
 }
 
 }  // namespace ayumi::app

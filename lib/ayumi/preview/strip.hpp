@@ -1,0 +1,23 @@
+#pragma once
+// Snapshot strips: several instants of one run side by side in one picture, as the paper's Fig. 3.
+
+#include <filesystem>
+#include <vector>
+
+#include "ayumi/preview/clip.hpp"
+
+namespace ayumi {
+
+struct StripOptions {
+  ClipOptions clip;       ///< picture size is that of one snapshot
+  std::vector<double> times;  ///< [s]; empty: `count` evenly spaced over the run
+  int count = 8;
+  int columns = 4;
+};
+
+/// Writes a PNG of all snapshots in reading order, whole or not at all. Throws as ClipRenderer and
+/// write_png; Error(usage) for no snapshots or a picture beyond 16384 pixels.
+void write_strip(const RobotModel& model, const SimulationLog& log,
+                 const std::filesystem::path& path, const StripOptions& options);
+
+}  // namespace ayumi
