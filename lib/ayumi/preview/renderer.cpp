@@ -25,7 +25,8 @@ using Eigen::Vector3f;
 
 #define AYUMI_GL_FUNCTIONS(X)                                                                      \
   X(ACTIVETEXTURE, ActiveTexture)                                                                  \
-  X(ATTACHSHADER, AttachShader) X(BINDBUFFER, BindBuffer) X(BINDFRAMEBUFFER, BindFramebuffer) X(   \
+  X(ATTACHSHADER, AttachShader)                                                                    \
+  X(BINDBUFFER, BindBuffer) X(BINDFRAMEBUFFER, BindFramebuffer) X(                                 \
       BINDRENDERBUFFER, BindRenderbuffer) X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY,           \
                                                                         BindVertexArray)           \
       X(BLENDFUNC, BlendFunc) X(BLITFRAMEBUFFER, BlitFramebuffer) X(BUFFERDATA, BufferData) X(     \
@@ -103,6 +104,17 @@ Ground make_ground(const Vector3d& normal, const Eigen::AlignedBox3d& box, const
   ground.center = square.center();
   ground.reach = 0.5 * square.sizes().maxCoeff() * 1.1;
   return ground;
+}
+
+/// Where the ground vanishes straight ahead, -1 at the bottom of the picture, 1 at its top.
+double horizon_height(const Camera& camera, const Vector3d& normal, const Matrix4f& to_clip) {
+  const Vector3d ahead = camera.target - camera.eye;
+  const Vector3d level = ahead - normal * normal.dot(ahead);
+  if (level.norm() < 1e-3 * ahead.norm()) return 1;
+  const Eigen::Vector4f clip =
+      to_clip *
+      level.normalized().cast<float>().homogeneous().cwiseProduct(Eigen::Vector4f(1, 1, 1, 0));
+  return std::clamp(double(clip.y() / clip.w()), -1.0, 2.0);
 }
 
 /// Two passes of a box of 2 radius + 1 along rows and columns, in place.
@@ -386,6 +398,7 @@ void Renderer::Parts::draw_ground(const Scene& scene, const Matrix4f& view_proje
   }
   gl.UseProgram(sky);
   set(sky, "horizon", Vector3d(kHorizon[0], kHorizon[1], kHorizon[2]));
+  set(sky, "horizon_height", horizon_height(scene.camera, plane.normal, view_projection));
   gl.DepthMask(GL_FALSE);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   if (options.ground && options.shadow) {

@@ -31,8 +31,9 @@ void main() {
 }
 )";
 
-// Light from the whole sky, brighter from above; the sun; a dull highlight. A face seen from behind
-// is lit as if it were the front. A zero normal means an unlit mark.
+// Light from the whole sky, brighter from above; the sun; a dull highlight. A face seen from behind,
+// or with its normal turned away, is lit as if it were the front; a normal that is turned away just
+// so, at an outline, stays (turned, it would look down into the dark). Zero normal: an unlit mark.
 inline constexpr const char* kSolidFragment = R"(
 in vec3 world_position;
 in vec3 world_normal;
@@ -46,7 +47,7 @@ void main() {
   float size = dot(world_normal, world_normal);
   vec3 n = world_normal * inversesqrt(max(size, 1e-12));
   vec3 v = normalize(eye - world_position);
-  n = dot(n, v) < 0.0 ? -n : n;
+  n = dot(n, v) < (gl_FrontFacing ? -0.25 : 0.0) ? -n : n;
   float direct = max(dot(n, sun), 0.0);
   vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.62, 0.65, 0.70), 0.5 + 0.5 * dot(n, up));
   float shine = max(dot(n, normalize(v + sun)), 0.0);
@@ -107,10 +108,11 @@ void main() {
 inline constexpr const char* kSkyFragment = R"(
 in float height;
 uniform vec3 horizon;
+uniform float horizon_height;
 out vec4 pixel;
 void main() {
   vec3 zenith = vec3(0.50, 0.60, 0.72);
-  pixel = vec4(to_srgb(mix(horizon, zenith, clamp(height, 0.0, 1.0))), 1.0);
+  pixel = vec4(to_srgb(mix(horizon, zenith, clamp(height - horizon_height, 0.0, 1.0))), 1.0);
 }
 )";
 

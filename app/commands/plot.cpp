@@ -1,0 +1,116 @@
+// Loci of one or several runs: COG, ZMP and f_z against time, or from above.
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/run_folder.hpp"
+#include "ayumi/preview/loci.hpp"
+#include "commands.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PlotOptions {
+  std::vector<std::string> inputs;
+  std::string output, robot;
+  std::vector<std::string> logs;
+  LociOptions loci;
+  bool top = false;
+};
+
+struct LabelledLog {
+  std::string label;
+  SimulationLog log;
+};
+
+// "open_loop" as people read it, with the controller where one closed the loop.
+std::string label_of(const std::string& name, const SimulationLog& log) {
+  std::string label = name;
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return log.controller.empty() || log.controller == "none" ? label : label + ", " + log.controller;
+}
+
+// The logs of a RUN, open loop first so that the closed loop lies above it.
+std::vector<LabelledLog> logs_of(const PlotOptions& options) {
+  std::vector<LabelledLog> logs;
+  for (const std::string& input : options.inputs) {
+    const std::string prefix =
+        options.inputs.size() > 1 ? fs::path(input).lexically_normal().stem().string() + " " : "";
+    if (!is_run_folder(input)) {
+      SimulationLog log = read_run_log(input);
+      logs.push_back({fs::path(input).stem().string(), std::move(log)});
+      continue;
+    }
+    std::map<std::string, SimulationLog> all;
+    if (options.logs.empty())
+      all = read_run(input).logs;
+    else
+      for (const std::string& name : options.logs) all[name] = read_run_log(input, name);
+    const auto first = static_cast<std::ptrdiff_t>(logs.size());
+    for (auto& [name, log] : all) {
+      std::string label = prefix + label_of(name, log);
+      logs.push_back({std::move(label), std::move(log)});
+    }
+    std::stable_partition(logs.begin() + first, logs.end(),
+                          [](const LabelledLog& entry) { return entry.log.controller == "none"; });
+  }
+  return logs;
+}
+
+void plot(const PlotOptions& options, Context& context) {
+  if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
+    fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
+  const std::vector<LabelledLog> logs = logs_of(options);
+  std::vector<LociRun> runs;
+  for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});
+  if (runs.empty()) fail(ErrorCode::usage, "plot: the run holds no logs");
+  std::vector<std::string> series;
+  if (options.top) {
+    const std::string robot =
+        options.robot.empty() ? logs.back().log.provenance.robot : options.robot;
+    write_support_plot(load_robot(robot, robot_search(context)), runs, options.output,
+                       options.loci);
+    series = {"COG x, y [m]", "ZMP x, y [m]", "footholds [m]"};
+  } else {
+    write_loci(runs, options.output, options.loci);
+    series = loci_series(options.loci);
+  }
+  context.print(options.output + ": " + text::join(series, ", ") + "\n");
+  nlohmann::ordered_json json = {{"output", options.output}, {"series", series}};
+  for (const LociRun& run : runs) json["runs"].push_back(run.label);
+  context.print_json(json.dump(2));
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, Context& context) {
+  auto options = std::make_shared<PlotOptions>();
+  CLI::App* command = app.add_subcommand("plot", "loci of COG, ZMP and ground force of runs");
+  command->add_option("run", options->inputs, "RUN folders or log files")
+      ->required()
+      ->type_name("RUN");
+  command->add_option("-o,--out", options->output, ".svg or .png")->required()->type_name("FILE");
+  command->add_option("--log", options->logs, "only these logs of a RUN, e.g. closed_loop")
+      ->allow_extra_args(false);
+  command->add_flag("--top", options->top, "the ground from above, with the footholds");
+  command->add_option("--from", options->loci.begin, "first time [s]")->capture_default_str();
+  command->add_option("--to", options->loci.end, "last time [s]");
+  command->add_option("--title", options->loci.title, "heading");
+  command->add_option("--width", options->loci.width, "pixels")->capture_default_str();
+  command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
+  command->footer(
+      "Examples:\n"
+      "  ayumi plot out/ -o loci.svg            open loop, closed loop and command together\n"
+      "  ayumi plot out/ --top -o from_above.png\n"
+      "  ayumi plot before/ after/ --log closed_loop -o compare.svg");
+  command->callback([options, &context] { plot(*options, context); });
+}
+
+}  // namespace ayumi::app
