@@ -90,17 +90,15 @@ class LinkMesh {
 
   void turned(const std::string& material, Axis axis, const Vector3d& center,
               const std::vector<Turn>& turns) {
-    std::vector<Ring> rings;
+    std::vector<Ring> rings(turns.size());
     const int w = static_cast<int>(axis), u = (w + 1) % 3, v = (w + 2) % 3;
-    for (const Turn& turn : turns) {
-      Ring ring;
+    for (size_t k = 0; k < turns.size(); ++k)
       for (int i = 0; i < kCircleSteps; ++i) {
         const double angle = 2 * kPi * i / kCircleSteps;
-        ring.push_back(placed(axis, center[u] + turn.radius * std::cos(angle),
-                              center[v] + turn.radius * std::sin(angle), center[w] + turn.at));
+        rings[k].push_back(placed(axis, center[u] + turns[k].radius * std::cos(angle),
+                                  center[v] + turns[k].radius * std::sin(angle),
+                                  center[w] + turns[k].at));
       }
-      rings.push_back(ring);
-    }
     add(material, rings);
   }
 
@@ -143,8 +141,6 @@ class LinkMesh {
 
   std::vector<Part> parts_;
 };
-
-// ---------------------------------------------------------------------------------------- links
 
 LinkMesh torso() {
   LinkMesh mesh;
@@ -290,8 +286,6 @@ LinkMesh forearm() {
   return mesh;
 }
 
-// --------------------------------------------------------------------------------------- output
-
 const std::vector<std::pair<std::string, Vector3d>> kMaterials = {{"silver", {0.76, 0.78, 0.81}},
                                                                   {"blue", {0.17, 0.27, 0.55}},
                                                                   {"grey", {0.46, 0.48, 0.52}},
@@ -345,7 +339,7 @@ class ObjWriter {
 
   std::string text() const {
     return "# HOAP-1, made by app/tools/make_hoap1_meshes.cpp\nmtllib hoap1.mtl\n" +
-           listed(vertices_) + listed(normals_) + faces_;
+           vertices_.text + normals_.text + faces_;
   }
   int count() const { return count_; }
 
@@ -360,7 +354,6 @@ class ObjWriter {
     if (fresh) list.text += line;
     return found->second;
   }
-  static const std::string& listed(const List& list) { return list.text; }
 
   List vertices_, normals_;
   std::string faces_;

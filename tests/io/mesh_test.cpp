@@ -115,6 +115,15 @@ TEST(Mesh, AppliesColladaUnitsAndIgnoresItsUpAxis) {
   }
   EXPECT_NEAR(low, 0.5, 1e-6);  // the node's own shift, in the file's unit
   EXPECT_NEAR(high, 3.5, 1e-6);
+  std::string wrong = text;
+  wrong.replace(wrong.find("1 2 3 2 0 3"), 1, "-1");
+  try {
+    load_mesh(folder.write("u.dae", wrong));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("u.dae: '-1' is no count or index of this file"),
+              std::string::npos);
+  }
 }
 
 // The project's own meshes: closed, facing outwards, with normals that follow their faces.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -152,12 +153,39 @@ class Collector {
   size_t total_ = 0;
 };
 
+// assimp believes COLLADA's numbers and fills the memory for a wrong one: no count and no index can
+// exceed the number of bytes.
+void check_collada(const std::string& bytes, const fs::path& path) {
+  const auto check = [&](const char* at, const char* end) {
+    while (at != end) {
+      while (at != end && std::isspace(static_cast<unsigned char>(*at))) ++at;
+      const char* const stop =
+          std::find_if(at, end, [](unsigned char c) { return std::isspace(c) != 0; });
+      if (at == stop) break;
+      size_t value = 0;
+      const auto [last, error] = std::from_chars(at, stop, value);
+      if (error != std::errc() || last != stop || value > bytes.size())
+        fail(ErrorCode::bad_file, path.string() + ": '" + std::string(at, stop) +
+                                      "' is no count or index of this file; export it again");
+      at = stop;
+    }
+  };
+  for (const auto& [begin, end] : {std::pair{"<p>", "<"}, {"<vcount>", "<"}, {" count=\"", "\""}})
+    for (size_t at = bytes.find(begin); at != std::string::npos; at = bytes.find(begin, at)) {
+      at += std::strlen(begin);
+      const size_t stop = std::min(bytes.find(end, at), bytes.size());
+      check(bytes.data() + at, bytes.data() + stop);
+      at = stop;
+    }
+}
+
 }  // namespace
 
 TriangleMesh load_mesh(const fs::path& path, const Eigen::Vector3d& scale) {
   if (!scale.allFinite()) fail(ErrorCode::bad_file, path.string() + ": the scale is not finite");
-  if (read_file(path).empty())
-    fail(ErrorCode::bad_file, path.string() + ": the mesh file is empty");
+  const std::string bytes = read_file(path);
+  if (bytes.empty()) fail(ErrorCode::bad_file, path.string() + ": the mesh file is empty");
+  if (lower_extension(path) == ".dae") check_collada(bytes, path);
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngle);
