@@ -121,7 +121,7 @@ double cog_height(const RobotModel& model) {
 void infer_servos(const RobotModel& model, RobotDescription& robot) {
   const double z = cog_height(model), mass = model.mass();
   ServoDescription servo;
-  servo.kp = 20 * mass * kGravity * z;
+  servo.kp = 40 * mass * kGravity * z;
   servo.kd = 0.13 * std::sqrt(z / kGravity) * servo.kp;
   servo.rotor_inertia = 0.009 * mass * z * z;
   for (const Dof& dof : model.dofs()) {
