@@ -5,6 +5,7 @@
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "tests/support/block.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {
@@ -13,29 +14,9 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-RobotDescription block_description(const Vector3d& size, double mass) {
-  RobotDescription d;
-  d.name = "block";
-  LinkDescription link;
-  link.name = "block";
-  link.has_inertial = true;
-  link.inertia.mass = mass;
-  link.inertia.about_com =
-      (mass / 12.0 *
-       Vector3d(size.y() * size.y() + size.z() * size.z(),
-                size.x() * size.x() + size.z() * size.z(),
-                size.x() * size.x() + size.y() * size.y()))
-          .asDiagonal();
-  PlacedShape shape;
-  shape.shape = Box{size};
-  link.collisions.push_back(shape);
-  d.links.push_back(link);
-  return d;
-}
-
 struct BlockOnSlope {
   BlockOnSlope(double angle, double friction, const Vector3d& size = {0.2, 0.1, 0.04})
-      : model(block_description(size, 2.0)),
+      : model(test::block_description(size, 2.0)),
         plant(model, model.limits(), World{friction, {0, angle}}) {
     RobotState s = model.rest_state();
     s.base.attitude = exp_rotation({0, angle, 0});

@@ -1,17 +1,18 @@
 // One step of length h from (q, v), all rates at its end (implicit in servo and contact springs):
-//   (M + rotor + h(kd + b) + h^2 kp) v+ = (M + rotor) v + h (kp (target - theta) - bias + ext) + J' l
-//   q+ = q moved by h v+
+//   (M + rotor + h(kd + b) + h^2 kp) v+ = (M + rotor) v + h (kp (target - theta) - bias + ext) + J'
+//   l q+ = q moved by h v+
 // Contact point i with stiffness k, damping time T, gap g and tangential deflection d:
 //   u_n = J_n v+ + g/(h + T) + R l_n,   u_t = J_t v+ + d/(h + T) + R l_t,   R = 1/(h k (h + T)),
 // which is the implicit spring l/h = -k (g + h v) - k T v solved for the velocity (for g > 0 the
-// damping is left out, so that the point just arrives). u and l obey solve_contacts(). A joint whose
-// servo would pass its torque limit is given exactly the limit and the step is solved again.
+// damping is left out, so that the point just arrives). u and l obey solve_contacts(). A joint
+// whose servo would pass its torque limit is given exactly the limit and the step is solved again.
 #include "ayumi/sim/plant.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -25,9 +26,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kStaticSink = 2e-5;      // of a body on four of its points [m]
+constexpr double kStaticSink = 1e-7;      // of a body on four of its points [m]
 constexpr double kDampingTime = 0.004;    // contact damping / stiffness of bodies [s]
 constexpr double kStickRate = 1e-3;       // joint rate below which dry friction holds [rad/s]
+constexpr double kLargest = 1e6;          // number that is taken for one [SI]
 constexpr double kLimitStiffness = 20.0;  // of a joint's end stop, in servo stiffnesses
 
 /// Points of a body that may touch the ground besides the soles.
@@ -60,6 +62,15 @@ std::vector<std::pair<Vector3d, double>> touch_points(const PlacedShape& placed)
     if (low.x() <= high.x()) add_box(low, high);
   }
   return points;
+}
+
+/// Largest magnitude; NaN when any entry is.
+template <typename Vector>
+double largest(const Vector& v) {
+  double result = 0;
+  for (Eigen::Index i = 0; i < v.size() && !std::isnan(result); ++i)
+    if (!(std::abs(v[i]) <= result)) result = std::abs(v[i]);
+  return result;
 }
 
 }  // namespace
@@ -125,12 +136,47 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
 }
 
 void Plant::set_state(const RobotState& state) {
+  const std::string& name = model_->name();
+  auto check = [&](const char* what, double largest) {
+    if (!(largest < kLargest))
+      fail(ErrorCode::usage, name + ": " + what + " of the plant's state is " +
+                                 text::brief(largest) + "; numbers below 1e6 are expected");
+  };
+  if (state.theta.size() != model_->dof_count() || state.dtheta.size() != model_->dof_count())
+    fail(ErrorCode::usage,
+         name + ": the plant's state needs " + std::to_string(model_->dof_count()) + " joints");
+  check("base position", largest(state.base.position));
+  check("base attitude", largest(state.base.attitude.coeffs()));
+  check("base velocity", largest(state.base_velocity));
+  check("base angular velocity", largest(state.base_angular_velocity));
+  check("a joint position", largest(state.theta));
+  check("a joint rate", largest(state.dtheta));
+  time_ = 0;
   state_ = state;
   for (ContactPoint& point : points_) {
     point.impulse.setZero();
     point.deflection.setZero();
     point.touching = false;
   }
+}
+
+void Plant::check_input(const VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
+                        double dt) const {
+  auto complain = [&](const std::string& what) {
+    fail(ErrorCode::usage, model_->name() + ": " + what + ", " + text::fixed(time_, 3) +
+                               " s after the plant's start");
+  };
+  if (!(dt > 0 && dt < 1)) complain("step length " + text::brief(dt) + " s is not within 0..1 s");
+  if (targets.size() != model_->dof_count())
+    complain(std::to_string(targets.size()) + " servo targets for " +
+             std::to_string(model_->dof_count()) + " joints");
+  for (int j = 0; j < model_->dof_count(); ++j)
+    if (!(std::abs(targets[j]) < kLargest))
+      complain("servo target of " + model_->dofs()[j].name + " is " + text::brief(targets[j]));
+  for (const ExternalWrench& w : wrenches)
+    if (!(largest(w.force) < kLargest && largest(w.torque) < kLargest &&
+          largest(w.point) < kLargest))
+      complain("an external force is not a finite number below 1e6");
 }
 
 // A motor cannot push a joint beyond its speed limit: driving torque fades over the last tenth.
@@ -148,8 +194,7 @@ void Plant::collect_contacts(double dt) {
     ContactPoint& point = points_[i];
     const Vector3d offset =
         data_.position[point.body] + data_.rotation[point.body] * point.position;
-    const Vector3d position =
-        data_.base_position + offset - point.radius * normal;
+    const Vector3d position = data_.base_position + offset - point.radius * normal;
     const double gap = normal.dot(position);
     const double speed = normal.dot(point_velocity(data_, point.body, position));
     // Gravity and servos can change the approach within the step: keep what may arrive in three.
@@ -175,8 +220,8 @@ void Plant::assemble(const std::vector<ExternalWrench>& wrenches, double dt) {
     const int body = w.body < 0 ? model_->trunk_body() : w.body;
     const Vector3d point = w.body < 0 ? data_.cog : w.point;
     const Eigen::MatrixXd J = body_jacobian(*model_, data_, body, point);
-    momentum_ += dt * (J.topRows<3>().transpose() * w.force +
-                       J.bottomRows<3>().transpose() * w.torque);
+    momentum_ +=
+        dt * (J.topRows<3>().transpose() * w.force + J.bottomRows<3>().transpose() * w.torque);
     external_.linear += dt * w.force;
     external_.angular += dt * (w.torque + (point - data_.cog).cross(w.force));
   }
@@ -199,6 +244,7 @@ void Plant::assemble(const std::vector<ExternalWrench>& wrenches, double dt) {
 
 StepReport Plant::step(const VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
                        double dt) {
+  check_input(targets, wrenches, dt);
   assemble(wrenches, dt);
   Momentum momentum = centroidal_momentum(*model_, data_);
   const int n = model_->dof_count();
@@ -291,9 +337,8 @@ StepReport Plant::step(const VectorXd& targets, const std::vector<ExternalWrench
     point.impulse = l;
     point.touching = l[0] > 0;
     point.deflection =
-        point.touching
-            ? Vector2d(-l.tail<2>() / (dt * point.stiffness) - point.damping_time * slip)
-            : Vector2d(Vector2d::Zero());
+        point.touching ? Vector2d(-l.tail<2>() / (dt * point.stiffness) - point.damping_time * slip)
+                       : Vector2d(Vector2d::Zero());
     if (point.side >= 0) {
       SoleForce& sole = report.soles[point.side][point.vertex];
       sole.position = active_[i].position;
@@ -306,13 +351,17 @@ StepReport Plant::step(const VectorXd& targets, const std::vector<ExternalWrench
   }
   momentum.linear += external_.linear;
   momentum.angular += external_.angular;
+  if (!velocity.allFinite())
+    fail(ErrorCode::internal, model_->name() + ": the plant left the finite numbers " +
+                                  text::fixed(time_, 3) + " s after its start");
   advance(velocity, momentum, dt);
+  time_ += dt;
   return report;
 }
 
-// Joints move with their solved rates. The base then takes the velocity that gives the robot, in its
-// new posture, exactly the momentum the outside has left it: M(q) v changes along the step, and this
-// is what keeps momentum to rounding in flight and ground forces equal to its rate in contact.
+// Joints move with their solved rates. The base then takes the velocity that gives the robot, in
+// its new posture, exactly the momentum the outside has left it: M(q) v changes along the step, and
+// this is what keeps momentum to rounding in flight and ground forces equal to its rate in contact.
 void Plant::advance(const VectorXd& velocity, const Momentum& momentum, double dt) {
   const Vector3d cog = data_.cog;
   state_.dtheta = velocity.tail(model_->dof_count());
@@ -324,8 +373,7 @@ void Plant::advance(const VectorXd& velocity, const Momentum& momentum, double d
   update_velocities(*model_, state_, data_);
   const Momentum joints = centroidal_momentum(*model_, data_);
   const Vector3d cog_velocity = momentum.linear / model_->mass();
-  const Vector3d w =
-      locked_inertia(*model_, data_).llt().solve(momentum.angular - joints.angular);
+  const Vector3d w = locked_inertia(*model_, data_).llt().solve(momentum.angular - joints.angular);
   state_.base_angular_velocity = w;
   state_.base_velocity = cog_velocity - joints.linear / model_->mass() - w.cross(data_.cog_offset);
   state_.base.position = cog + dt * cog_velocity - data_.cog_offset;

@@ -14,7 +14,7 @@ namespace ayumi {
 
 /// A force or couple from outside during one step.
 struct ExternalWrench {
-  int body = -1;                                     ///< -1: through the whole-body COG, on the trunk
+  int body = -1;  ///< -1: through the whole-body COG, on the trunk
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< world [m]; unused for body -1
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< world [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< world [N m]
@@ -29,13 +29,13 @@ struct SoleForce {
 
 /// What a step did, averaged over its duration.
 struct StepReport {
-  Eigen::VectorXd torque;                        ///< of the servos [N m]
-  std::array<std::vector<SoleForce>, 2> soles;   ///< by Side, in the order of the sole's polygon
-  bool body_contact = false;                     ///< something but a sole touches the ground
-  std::vector<int> saturated;                    ///< dofs whose torque is at its limit
+  Eigen::VectorXd torque;                       ///< of the servos [N m]
+  std::array<std::vector<SoleForce>, 2> soles;  ///< by Side, in the order of the sole's polygon
+  bool body_contact = false;                    ///< something but a sole touches the ground
+  std::vector<int> saturated;                   ///< dofs whose torque is at its limit
   int contact_iterations = 0;
-  double contact_residual = 0;                   ///< [m/s]
-  double max_penetration = 0;                    ///< of a sole vertex [m]
+  double contact_residual = 0;  ///< [m/s]
+  double max_penetration = 0;   ///< of a sole vertex [m]
 };
 
 class Plant {
@@ -44,25 +44,29 @@ class Plant {
   Plant(const RobotModel& model, const ActuatorLimits& limits, const World& world);
 
   const RobotState& state() const { return state_; }
+  /// Puts the robot there and forgets contacts. Throws Error(usage) naming what is not a number.
   void set_state(const RobotState& state);
 
-  /// Advances by `dt` [s] with the servo targets held.
+  /// Advances by `dt` [s] with the servo targets held. Throws Error(usage) with place and time for
+  /// input that is not finite or beyond 1e6; the plant is then as before.
   StepReport step(const Eigen::VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
                   double dt);
 
  private:
   struct ContactPoint {
     int body = 0;
-    Eigen::Vector3d position;     // body frame
-    double radius = 0;            // of a sphere around it
-    double stiffness = 0;         // [N/m]
-    double damping_time = 0;      // [s]
-    int side = -1, vertex = -1;   // of a sole, else -1
+    Eigen::Vector3d position;                              // body frame
+    double radius = 0;                                     // of a sphere around it
+    double stiffness = 0;                                  // [N/m]
+    double damping_time = 0;                               // [s]
+    int side = -1, vertex = -1;                            // of a sole, else -1
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();     // of the last step: warm start
     Eigen::Vector2d deflection = Eigen::Vector2d::Zero();  // of the tangential spring [m]
     bool touching = false;
   };
 
+  void check_input(const Eigen::VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
+                   double dt) const;
   void collect_contacts(double dt);
   void assemble(const std::vector<ExternalWrench>& wrenches, double dt);
   void advance(const Eigen::VectorXd& velocity, const Momentum& momentum, double dt);
@@ -73,6 +77,7 @@ class Plant {
   World world_;
   Eigen::Matrix3d ground_;  // columns: normal, tangents
   RobotState state_;
+  double time_ = 0;  // since set_state() [s]
   RobotData data_;
   std::vector<ContactPoint> points_;
   Eigen::VectorXd kp_, kd_, rotor_, viscous_, coulomb_;
