@@ -37,8 +37,8 @@ PatternInput load_pattern(const Context& context, const std::filesystem::path& f
   RobotModel model = load_robot(robot_of(pattern), robot_search(context), {.meshes = meshes});
   const std::string wanted = options.profile.empty() ? pattern.profile : options.profile;
   const std::string profile = model.limits(wanted).name;
-  CommandSeries series = sample(model, pattern, {.dt = model.description().servo_period},
-                                context.progress());
+  CommandSeries series =
+      sample(model, pattern, {.dt = model.description().servo_period}, context.progress());
   return {std::move(pattern), std::move(model), std::move(series), profile};
 }
 

@@ -9,7 +9,8 @@ namespace ayumi::app {
 
 void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   command
-      .add_option("--controller", choice.controller, "none, dtad, or dtad-literal (a demonstration)")
+      .add_option("--controller", choice.controller,
+                  "none, dtad, or dtad-literal (a demonstration)")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,
@@ -49,8 +50,8 @@ SimulationLog simulate_once(const Context& context, const PatternInput& input,
 
 std::string outcome_text(const SimulationLog& log) {
   const SimulationResult& r = log.result;
-  std::string text = (log.controller == "none" ? "open loop" : log.controller) + " " +
-                     name_of(r.outcome);
+  std::string text =
+      (log.controller == "none" ? "open loop" : log.controller) + " " + name_of(r.outcome);
   if (r.outcome == Outcome::fell) {
     text += " at " + text::fixed(r.fell_at, 2) + " s";
     for (const SimulationEvent& event : log.events)

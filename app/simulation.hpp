@@ -1,5 +1,6 @@
 #pragma once
-// Simulating a pattern from the command line: choices over the pattern's own, and verdicts in words.
+// Simulating a pattern from the command line: choices over the pattern's own, and verdicts in
+// words.
 
 #include "pattern_input.hpp"
 
@@ -7,11 +8,11 @@ namespace ayumi::app {
 
 /// What the command line may change of a simulation.
 struct SimulationChoice {
-  std::string controller;            ///< "" = the pattern's
-  std::string scenario;              ///< "" = the pattern's, "none", or a pattern file whose it is
-  std::vector<std::string> gains;    ///< "name=value"
-  bool noise = false;                ///< sensor noise, bias and latency of the sidecar
-  int substeps = 1;                  ///< of the integrator per servo period
+  std::string controller;          ///< "" = the pattern's
+  std::string scenario;            ///< "" = the pattern's, "none", or a pattern file whose it is
+  std::vector<std::string> gains;  ///< "name=value"
+  bool noise = false;              ///< sensor noise, bias and latency of the sidecar
+  int substeps = 1;                ///< of the integrator per servo period
 };
 void add_simulation_options(CLI::App& command, SimulationChoice& choice);
 

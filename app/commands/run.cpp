@@ -52,8 +52,7 @@ class Workshop {
     folder_ = parent / (clean.filename().string() + ".part" + std::to_string(getpid()));
     fs::create_directory(folder_, error);
     if (error)
-      fail(ErrorCode::bad_file,
-           target.string() + ": cannot be made (" + error.message() + ")");
+      fail(ErrorCode::bad_file, target.string() + ": cannot be made (" + error.message() + ")");
   }
   ~Workshop() {
     std::error_code ignored;
@@ -180,8 +179,7 @@ bool MainJob::simulate(const PatternInput& input) {
 }
 
 void MainJob::export_tables(const PatternInput& input) {
-  const ReferenceTrajectory reference =
-      extract_reference(input.model, folder_.logs["closed_loop"]);
+  const ReferenceTrajectory reference = extract_reference(input.model, folder_.logs["closed_loop"]);
   folder_.reference = reference;
   write_file(workshop_.file("reference.json"), reference_json(reference));
   note_file("reference.json");

@@ -50,8 +50,7 @@ TEST_P(RandomTrees, KineticEnergyMatchesMassMatrix) {
   for (size_t i = 0; i < model.bodies().size(); ++i) {
     const Inertia& inertia = model.bodies()[i].inertia;
     const Vector3d w = data.angular_velocity[i];
-    const Vector3d v =
-        point_velocity(data, static_cast<int>(i), data.base_position + data.com[i]);
+    const Vector3d v = point_velocity(data, static_cast<int>(i), data.base_position + data.com[i]);
     const Vector3d local = data.rotation[i].transpose() * w;
     energy += 0.5 * inertia.mass * v.squaredNorm() + 0.5 * local.dot(inertia.about_com * local);
   }
@@ -119,17 +118,20 @@ TEST_P(RandomTrees, DerivativesMatchCentralDifferences) {
   for (int k = 0; k < n; ++k) {
     const VectorXd e = VectorXd::Unit(n, k);
     const VectorXd dq = (force(test::integrate(state, e, h), acceleration) -
-                         force(test::integrate(state, e, -h), acceleration)) / (2 * h);
+                         force(test::integrate(state, e, -h), acceleration)) /
+                        (2 * h);
     EXPECT_LT((dq - d.configuration.col(k)).norm(), 1e-7 * scale) << "configuration " << k;
     auto moved = [&](double step) {
       RobotState s = state;
-      if (k < 3) s.base_velocity[k] += step;
-      else if (k < 6) s.base_angular_velocity[k - 3] += step;
-      else s.dtheta[k - 6] += step;
+      if (k < 3)
+        s.base_velocity[k] += step;
+      else if (k < 6)
+        s.base_angular_velocity[k - 3] += step;
+      else
+        s.dtheta[k - 6] += step;
       return s;
     };
-    const VectorXd dv =
-        (force(moved(h), acceleration) - force(moved(-h), acceleration)) / (2 * h);
+    const VectorXd dv = (force(moved(h), acceleration) - force(moved(-h), acceleration)) / (2 * h);
     EXPECT_LT((dv - d.velocity.col(k)).norm(), 1e-7 * scale) << "velocity " << k;
     const VectorXd da =
         (force(state, acceleration + h * e) - force(state, acceleration - h * e)) / (2 * h);

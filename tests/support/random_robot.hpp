@@ -30,10 +30,10 @@ inline Inertia random_inertia(Random& random) {
   inertia.com = random.vector(0.05);
   // A solid box of random edges in a random attitude: always a possible body.
   const Eigen::Vector3d e = random.vector(0.05).cwiseAbs() + Eigen::Vector3d::Constant(0.02);
-  const Eigen::Vector3d d = inertia.mass / 12.0 *
-                            Eigen::Vector3d(e.y() * e.y() + e.z() * e.z(),
-                                            e.x() * e.x() + e.z() * e.z(),
-                                            e.x() * e.x() + e.y() * e.y());
+  const Eigen::Vector3d d =
+      inertia.mass / 12.0 *
+      Eigen::Vector3d(e.y() * e.y() + e.z() * e.z(), e.x() * e.x() + e.z() * e.z(),
+                      e.x() * e.x() + e.y() * e.y());
   const Eigen::Matrix3d R = exp_rotation(random.vector(3)).toRotationMatrix();
   inertia.about_com = R * d.asDiagonal() * R.transpose();
   return inertia;

@@ -15,8 +15,8 @@ namespace ayumi {
 struct RepairOptions {
   CheckOptions check;
   std::vector<std::string> locked_joints;
-  double knot_spacing = 0.05;   ///< of the B-splines [s]
-  double zmp_margin = 0.002;    ///< to keep inside the support polygon [m]
+  double knot_spacing = 0.05;  ///< of the B-splines [s]
+  double zmp_margin = 0.002;   ///< to keep inside the support polygon [m]
   int max_iterations = 100;
 };
 
@@ -25,16 +25,16 @@ const char* name_of(RepairStatus status);
 
 struct RepairResult {
   RepairStatus status = RepairStatus::not_converged;
-  CorrectionTrack correction;            ///< empty when already consistent
-  CommandSeries series;                  ///< the repaired command series, full rate
-  ConsistencyReport check;               ///< of `series`
-  double max_joint_change = 0;           ///< [rad]
-  double max_cog_change = 0;             ///< [m]
-  std::string where;                     ///< joint that moved most
-  double at = 0;                         ///< when [s]
+  CorrectionTrack correction;   ///< empty when already consistent
+  CommandSeries series;         ///< the repaired command series, full rate
+  ConsistencyReport check;      ///< of `series`
+  double max_joint_change = 0;  ///< [rad]
+  double max_cog_change = 0;    ///< [m]
+  std::string where;            ///< joint that moved most
+  double at = 0;                ///< when [s]
   int variables = 0, constraints = 0, iterations = 0;
-  double constraint_violation = 0;       ///< scaled, of the NLP
-  std::vector<std::string> reasons;      ///< when not repaired, in words, ranked
+  double constraint_violation = 0;   ///< scaled, of the NLP
+  std::vector<std::string> reasons;  ///< when not repaired, in words, ranked
 };
 
 RepairResult repair(const RobotModel& model, const CommandSeries& series,

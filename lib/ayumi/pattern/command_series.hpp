@@ -13,23 +13,23 @@
 namespace ayumi {
 
 struct CommandSample {
-  RobotState state;                                            ///< planned base and joints
-  Eigen::VectorXd acceleration;                                ///< [a_WB; dw_WB; ddtheta], world
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();               ///< cmd p_G, world [m]
-  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();              ///< [m/s]
-  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();             ///< [m/s^2]
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();               ///< cmd p_Z, world [m]
-  double fz = 0;                                               ///< cmd f_z [N]
+  RobotState state;                                 ///< planned base and joints
+  Eigen::VectorXd acceleration;                     ///< [a_WB; dw_WB; ddtheta], world
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();    ///< cmd p_G, world [m]
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();   ///< [m/s]
+  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< cmd p_Z, world [m]
+  double fz = 0;                                    ///< cmd f_z [N]
   Support support = Support::both;
   std::array<Eigen::Isometry3d, 2> feet = {Eigen::Isometry3d::Identity(),
                                            Eigen::Isometry3d::Identity()};  ///< planned sole frames
 };
 
 struct CommandSeries {
-  double dt = 0.001;                            ///< [s]
+  double dt = 0.001;  ///< [s]
   std::vector<CommandSample> samples;
-  std::map<std::string, std::string> origin;    ///< track -> where it came from, in words
-  Eigen::VectorXd joint_weight;                 ///< diagonal of W [dof]
+  std::map<std::string, std::string> origin;  ///< track -> where it came from, in words
+  Eigen::VectorXd joint_weight;               ///< diagonal of W [dof]
 
   double duration() const { return dt * static_cast<double>(samples.size() - 1); }
 };

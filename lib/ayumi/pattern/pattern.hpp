@@ -1,6 +1,7 @@
 #pragma once
-// What an author writes: keyframes on tracks, contact phases, controller and scenario. Plain data in
-// SI and radians (the file names its own angle unit). docs/formats.md is the file's specification.
+// What an author writes: keyframes on tracks, contact phases, controller and scenario. Plain data
+// in SI and radians (the file names its own angle unit). docs/formats.md is the file's
+// specification.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -47,67 +48,70 @@ struct Phase {
 /// A ZMP key: a place of the supporting feet, or a point on the ground.
 struct ZmpKey {
   enum class Place { left, right, center, point };
-  Place place = Place::point;                        ///< left/right: centre of that sole at that time
-  Eigen::Vector2d point = Eigen::Vector2d::Zero();   ///< world [m], for Place::point
+  Place place = Place::point;  ///< left/right: centre of that sole at that time
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< world [m], for Place::point
 };
 
 /// Sets what it names at time t and leaves every other track alone.
 struct Keyframe {
-  double t = 0;                                       ///< [s]
-  std::optional<Interpolation> interpolation;         ///< of the segment that ends here
-  std::optional<std::string> posture;                 ///< named posture of the robot
-  std::map<std::string, double> joints;               ///< by joint name [rad]
+  double t = 0;                                ///< [s]
+  std::optional<Interpolation> interpolation;  ///< of the segment that ends here
+  std::optional<std::string> posture;          ///< named posture of the robot
+  std::map<std::string, double> joints;        ///< by joint name [rad]
   std::optional<ZmpKey> zmp;
-  std::optional<double> cog_x, cog_y, cog_height;     ///< world [m]
-  std::optional<double> fz;                           ///< [N]
-  std::optional<Eigen::Vector3d> torso;               ///< roll, pitch, yaw in the world [rad]
-  std::array<std::optional<Foothold>, 2> feet;        ///< by Side, world
-  std::map<std::string, double> weights;              ///< diagonal of W by joint name
-  std::string place;                                  ///< where in the file, for messages
+  std::optional<double> cog_x, cog_y, cog_height;  ///< world [m]
+  std::optional<double> fz;                        ///< [N]
+  std::optional<Eigen::Vector3d> torso;            ///< roll, pitch, yaw in the world [rad]
+  std::array<std::optional<Foothold>, 2> feet;     ///< by Side, world
+  std::map<std::string, double> weights;           ///< diagonal of W by joint name
+  std::string place;                               ///< where in the file, for messages
 };
 
 /// A sampled motion beside the pattern: every column the file has, at a fixed rate.
 struct DenseTable {
-  std::string file;                        ///< as the pattern names it
-  double dt = 0.001;                       ///< [s]
-  std::vector<std::string> joints;         ///< columns of theta
-  Eigen::MatrixXd theta;                   ///< rows x joints [rad]
-  std::vector<BasePose> base;              ///< empty or one per row
-  std::vector<Eigen::Vector3d> cog, zmp;   ///< empty or one per row, world [m]
-  std::vector<double> fz;                  ///< empty or one per row [N]
+  std::string file;                       ///< as the pattern names it
+  double dt = 0.001;                      ///< [s]
+  std::vector<std::string> joints;        ///< columns of theta
+  Eigen::MatrixXd theta;                  ///< rows x joints [rad]
+  std::vector<BasePose> base;             ///< empty or one per row
+  std::vector<Eigen::Vector3d> cog, zmp;  ///< empty or one per row, world [m]
+  std::vector<double> fz;                 ///< empty or one per row [N]
 };
 
-/// A smooth change added to the sampled motion, what repair writes: uniform cubic B-splines in time.
-/// Column order: base x y z [m], base rotation vector (world axes, left-multiplied) [rad], joints.
+/// A smooth change added to the sampled motion, what repair writes: uniform cubic B-splines in
+/// time. Column order: base x y z [m], base rotation vector (world axes, left-multiplied) [rad],
+/// joints.
 struct CorrectionTrack {
-  double begin = 0;                        ///< [s]
-  double spacing = 0;                      ///< of the knots [s]
-  std::vector<std::string> joints;         ///< names of columns 6...
-  Eigen::MatrixXd coefficients;            ///< control points x (6 + joints)
+  double begin = 0;                 ///< [s]
+  double spacing = 0;               ///< of the knots [s]
+  std::vector<std::string> joints;  ///< names of columns 6...
+  Eigen::MatrixXd coefficients;     ///< control points x (6 + joints)
 };
 
 struct Pattern {
   std::string name;
-  std::string file;                        ///< where it came from, for messages
-  std::string sha256;                      ///< of its bytes, then those of includes and table
-  std::string schema;                      ///< "$schema" as written, for editors; may be empty
-  std::string robot;                       ///< name or path as written
-  std::string profile;                     ///< actuator profile; "" = the robot's default
-  bool degrees = true;                     ///< angle unit of the file; everything here is in rad
+  std::string file;     ///< where it came from, for messages
+  std::string sha256;   ///< of its bytes, then those of includes and table
+  std::string schema;   ///< "$schema" as written, for editors; may be empty
+  std::string robot;    ///< name or path as written
+  std::string profile;  ///< actuator profile; "" = the robot's default
+  bool degrees = true;  ///< angle unit of the file; everything here is in rad
   Interpolation interpolation = Interpolation::minimum_jerk;
   std::string default_posture = "home";
-  bool full_model = true;                  ///< COG from ZMP keys for the full model, else (14)(15)
-  double cog_height = 0;                   ///< level COG height when no key says one; 0: home's [m]
-  std::array<std::optional<Foothold>, 2> start_feet;  ///< by Side; else those of the default posture
+  bool full_model = true;  ///< COG from ZMP keys for the full model, else (14)(15)
+  double cog_height = 0;   ///< level COG height when no key says one; 0: home's [m]
+  std::array<std::optional<Foothold>, 2>
+      start_feet;  ///< by Side; else those of the default posture
   std::vector<Phase> phases;
   std::vector<Keyframe> keyframes;
-  std::map<std::string, std::map<std::string, double>> postures;  ///< the pattern's own, or those
-                                           ///< it includes; they come before the robot's [rad]
+  std::map<std::string, std::map<std::string, double>>
+      postures;  ///< the pattern's own, or those
+                 ///< it includes; they come before the robot's [rad]
   std::optional<DenseTable> table;
   std::optional<CorrectionTrack> correction;
-  std::map<std::string, double> parameters;           ///< declared ${names} with their values
-  std::map<std::string, double> tolerances;           ///< of the check, by finding kind
-  World world;                                        ///< that the robot meets
+  std::map<std::string, double> parameters;  ///< declared ${names} with their values
+  std::map<std::string, double> tolerances;  ///< of the check, by finding kind
+  World world;                               ///< that the robot meets
   ControllerSpec controller;
   std::vector<Disturbance> scenario;
 

@@ -16,18 +16,18 @@ struct Provenance {
 };
 
 struct ReferenceRow {
-  Eigen::VectorXd theta;                             ///< servo targets, joints order [rad]
-  BasePose base;                                     ///< planned or reference base, world
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();     ///< world [m]
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();     ///< world [m]
-  double fz = 0;                                     ///< [N]
-  std::array<bool, 2> contact = {true, true};        ///< left, right foot
+  Eigen::VectorXd theta;                          ///< servo targets, joints order [rad]
+  BasePose base;                                  ///< planned or reference base, world
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< world [m]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();  ///< world [m]
+  double fz = 0;                                  ///< [N]
+  std::array<bool, 2> contact = {true, true};     ///< left, right foot
 };
 
 struct ReferenceTrajectory {
-  double dt = 0.001;                     ///< [s]
-  std::vector<std::string> joints;       ///< columns of theta
-  std::vector<ReferenceRow> rows;        ///< row k at k dt
+  double dt = 0.001;                ///< [s]
+  std::vector<std::string> joints;  ///< columns of theta
+  std::vector<ReferenceRow> rows;   ///< row k at k dt
   Provenance provenance;
 };
 

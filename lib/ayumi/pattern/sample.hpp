@@ -1,9 +1,9 @@
 #pragma once
 // Pattern -> CommandSeries: interpolate what the author wrote, solve what was left out.
-// ZMP keys without COG keys: the bounded solution of (14)(15), corrected so that the ZMP of the full
-// model meets the keys. Feet and COG: legs and base by inverse kinematics. Joint keys or a table on
-// the legs: base from the planned support foot, COG from the posture. COG, ZMP, f_z not given: from
-// the full model.
+// ZMP keys without COG keys: the bounded solution of (14)(15), corrected so that the ZMP of the
+// full model meets the keys. Feet and COG: legs and base by inverse kinematics. Joint keys or a
+// table on the legs: base from the planned support foot, COG from the posture. COG, ZMP, f_z not
+// given: from the full model.
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/model/robot_model.hpp"

@@ -22,13 +22,13 @@ enum class DisturbanceFrame { world, link };
 /// them, at least one; an impulse is spread so that its time integral is exact.
 struct Disturbance {
   DisturbanceType type = DisturbanceType::impulse;
-  double at = 0;                                                ///< start [s]
-  double duration = 0;                                          ///< [s]
-  std::string on = "cog";                                       ///< "cog" or a link name
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();              ///< on that link, link frame [m]
-  DisturbanceFrame frame = DisturbanceFrame::world;             ///< of `direction`
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();         ///< normalised on loading
-  double magnitude = 0;                                         ///< [N s], [N] or [N m] by type
+  double at = 0;                                         ///< start [s]
+  double duration = 0;                                   ///< [s]
+  std::string on = "cog";                                ///< "cog" or a link name
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< on that link, link frame [m]
+  DisturbanceFrame frame = DisturbanceFrame::world;      ///< of `direction`
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< normalised on loading
+  double magnitude = 0;                                  ///< [N s], [N] or [N m] by type
   DisturbanceShape shape = DisturbanceShape::rectangle;
 };
 

@@ -148,9 +148,8 @@ void draw_pushes(Drawing& drawing, const Axes& axes, const std::vector<PushRecor
                  bool names) {
   for (const PushRecord& push : list) {
     const double x = axes.px(push.begin), bottom = axes.top + axes.height;
-    drawing.items.push_back(DrawnPath{.points = {{x, axes.top}, {x, bottom}},
-                                      .stroke = kPushColor,
-                                      .width = 1.4});
+    drawing.items.push_back(
+        DrawnPath{.points = {{x, axes.top}, {x, bottom}}, .stroke = kPushColor, .width = 1.4});
     if (!names) continue;
     const bool leftward = x > axes.left + 0.8 * axes.width;
     drawing.items.push_back(

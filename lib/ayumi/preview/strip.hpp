@@ -9,7 +9,7 @@
 namespace ayumi {
 
 struct StripOptions {
-  ClipOptions clip;       ///< picture size is that of one snapshot
+  ClipOptions clip;           ///< picture size is that of one snapshot
   std::vector<double> times;  ///< [s]; empty: `count` evenly spaced over the run
   int count = 8;
   int columns = 4;
