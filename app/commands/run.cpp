@@ -133,6 +133,7 @@ bool MainJob::check(PatternInput& input) {
       check_consistency(input.model, input.series, check_options(input));
   say("check", check_text(report));
   summary_["check"] = Json::parse(check_json(report));
+  summary_["repair"] = nullptr;  // stays so unless a repair was asked for and needed
   folder_.sections.emplace_back("check", check_json(report));
   if (report.consistent) return true;
   if (!options_.repair) {
