@@ -85,11 +85,13 @@ TEST(Loci, TheLineGoesThroughTheSamples) {
   std::vector<DrawnPath> lines;
   for (const auto& item : drawing.items)
     if (const auto* path = std::get_if<DrawnPath>(&item))
-      if (!path->closed && path->points.size() > 100) lines.push_back(*path);
+      if (path->width == 1.6 || path->width == 1.3) lines.push_back(*path);
   ASSERT_EQ(lines.size(), 6u) << "run and command in three panels";
   const auto rise = [](const DrawnPath& p) { return p.points.front().y() - p.points.back().y(); };
   EXPECT_NEAR(rise(lines[0]), rise(lines[1]), 1e-6);
   EXPECT_NEAR(rise(lines[0]), options.panel * 0.1 / 0.12, 0.5);
+  EXPECT_EQ(lines[0].points.size(), 2u) << "a straight line needs no more";
+  EXPECT_GT(lines[2].points.size(), 20u) << "a sway does";
   EXPECT_NEAR(lines[0].points.back().x(), options.width - 18, 1e-6);
 }
 

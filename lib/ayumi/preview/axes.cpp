@@ -35,6 +35,40 @@ std::vector<Vector2d> thinned(const std::vector<Vector2d>& points) {
   return out;
 }
 
+/// Leaves out points nearer than a tenth of a pixel to the line that remains (Ramer, Douglas and
+/// Peucker, with a stack of its own).
+std::vector<Vector2d> simplified(const std::vector<Vector2d>& points) {
+  if (points.size() < 3) return points;
+  std::vector<bool> keep(points.size(), false);
+  keep.front() = keep.back() = true;
+  std::vector<std::pair<size_t, size_t>> open = {{0, points.size() - 1}};
+  while (!open.empty()) {
+    const auto [first, last] = open.back();
+    open.pop_back();
+    const Vector2d chord = points[last] - points[first];
+    double worst = 0.1;
+    size_t at = 0;
+    for (size_t i = first + 1; i < last; ++i) {
+      const Vector2d away = points[i] - points[first];
+      const double share =
+          std::clamp(away.dot(chord) / std::max(chord.squaredNorm(), 1e-12), 0.0, 1.0);
+      const double distance = (away - share * chord).norm();
+      if (distance > worst) {
+        worst = distance;
+        at = i;
+      }
+    }
+    if (at == 0) continue;
+    keep[at] = true;
+    open.emplace_back(first, at);
+    open.emplace_back(at, last);
+  }
+  std::vector<Vector2d> out;
+  for (size_t i = 0; i < points.size(); ++i)
+    if (keep[i]) out.push_back(points[i]);
+  return out;
+}
+
 /// Narrows `share` to where a + share * step lies between low and high; high < low: nowhere.
 void narrow(Interval& share, double a, double step, double low, double high) {
   if (step == 0) {
@@ -129,7 +163,7 @@ void draw_line(Drawing& drawing, const Axes& axes, const std::vector<Vector2d>& 
                const LineStyle& style) {
   std::vector<Vector2d> run;
   const auto flush = [&] {
-    for (std::vector<Vector2d>& piece : cut(thinned(run), axes))
+    for (std::vector<Vector2d>& piece : cut(simplified(thinned(run)), axes))
       drawing.items.push_back(DrawnPath{.points = std::move(piece),
                                         .stroke = style.color,
                                         .width = style.width,

@@ -39,8 +39,8 @@ struct LineStyle {
 /// Grid, tick numbers, frame, and the name of y to the left; x numbers when asked for.
 void draw_axes(Drawing& drawing, const Axes& axes, const std::string& y_name, bool x_numbers);
 
-/// The polyline of (x, y) values, cut at the frame and thinned to what a quarter pixel shows (the
-/// extremes stay). Non-finite values leave a gap.
+/// The polyline of (x, y) values, cut at the frame and thinned to within a tenth of a pixel or so
+/// (the extremes stay). Non-finite values leave a gap.
 void draw_line(Drawing& drawing, const Axes& axes, const std::vector<Eigen::Vector2d>& values,
                const LineStyle& style);
 

@@ -1,14 +1,11 @@
 #include "ayumi/preview/renderer.hpp"
 
-#include <GL/glcorearb.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <string>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/preview/gl.hpp"
 #include "ayumi/preview/offscreen_context.hpp"
 #include "ayumi/preview/shaders.hpp"
 
@@ -21,67 +18,10 @@ namespace {
 
 using Eigen::Matrix4f;
 using Eigen::Vector3d;
-using Eigen::Vector3f;
-
-#define AYUMI_GL_FUNCTIONS(X)                                                                      \
-  X(ACTIVETEXTURE, ActiveTexture)                                                                  \
-  X(ATTACHSHADER, AttachShader)                                                                    \
-  X(BINDBUFFER, BindBuffer) X(BINDFRAMEBUFFER, BindFramebuffer) X(                                 \
-      BINDRENDERBUFFER, BindRenderbuffer) X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY,           \
-                                                                        BindVertexArray)           \
-      X(BLENDFUNC, BlendFunc) X(BLITFRAMEBUFFER, BlitFramebuffer) X(BUFFERDATA, BufferData) X(     \
-          CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEAR, Clear)                          \
-          X(CLEARCOLOR, ClearColor) X(COMPILESHADER, CompileShader) X(                             \
-              CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader)                          \
-              X(DELETESHADER, DeleteShader) X(DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask) X(     \
-                  DISABLE, Disable) X(DRAWARRAYS, DrawArrays) X(DRAWELEMENTS, DrawElements)        \
-                  X(ENABLE, Enable) X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(         \
-                      FRAMEBUFFERRENDERBUFFER, FramebufferRenderbuffer) X(GENBUFFERS, GenBuffers)  \
-                      X(GENFRAMEBUFFERS, GenFramebuffers) X(GENRENDERBUFFERS, GenRenderbuffers) X( \
-                          GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays)            \
-                          X(GETPROGRAMINFOLOG, GetProgramInfoLog) X(GETPROGRAMIV, GetProgramiv) X( \
-                              GETUNIFORMLOCATION, GetUniformLocation) X(LINKPROGRAM, LinkProgram)  \
-                              X(PIXELSTOREI, PixelStorei) X(POLYGONOFFSET, PolygonOffset)          \
-                                  X(READPIXELS, ReadPixels) X(RENDERBUFFERSTORAGEMULTISAMPLE,      \
-                                                              RenderbufferStorageMultisample)      \
-                                      X(SHADERSOURCE, ShaderSource) X(TEXIMAGE2D, TexImage2D)      \
-                                          X(TEXPARAMETERI, TexParameteri) X(UNIFORM1F, Uniform1f)  \
-                                              X(UNIFORM2F, Uniform2f) X(UNIFORM3F, Uniform3f)      \
-                                                  X(UNIFORMMATRIX4FV, UniformMatrix4fv) X(         \
-                                                      USEPROGRAM, UseProgram)                      \
-                                                      X(VERTEXATTRIBPOINTER, VertexAttribPointer)  \
-                                                          X(VIEWPORT, Viewport)
-
-struct Gl {
-#define AYUMI_GL_MEMBER(TYPE, name) PFNGL##TYPE##PROC name;
-  AYUMI_GL_FUNCTIONS(AYUMI_GL_MEMBER)
-#undef AYUMI_GL_MEMBER
-  Gl() {
-#define AYUMI_GL_LOAD(TYPE, name) \
-  name = reinterpret_cast<PFNGL##TYPE##PROC>(OffscreenContext::function("gl" #name));
-    AYUMI_GL_FUNCTIONS(AYUMI_GL_LOAD)
-#undef AYUMI_GL_LOAD
-  }
-};
 
 constexpr int kShadowSize = 512;
 constexpr int kSamples = 4;
 constexpr float kHorizon[3] = {0.74f, 0.77f, 0.80f};
-
-/// Part of the index buffer.
-struct Range {
-  GLsizei count = 0;
-  size_t first = 0;
-};
-
-struct Mesh {
-  GLuint array = 0, vertices = 0, indices = 0;
-};
-
-struct Target {
-  GLuint framebuffer = 0, color = 0, depth = 0;
-  int width = 0, height = 0;
-};
 
 /// Frame of the ground plane and the square of it that the robot's shadow falls on.
 struct Ground {
@@ -143,26 +83,15 @@ struct Renderer::Parts {
   OffscreenContext context;
   Gl gl;
   GLuint solid, ground, sky, flat, shadow;
-  Mesh robot, overlay, square;
-  std::vector<std::pair<Range, Range>> ranges;  // closed and open triangles of each body
-  std::vector<Eigen::AlignedBox3d> boxes;       // of each body, body frame
-  Target drawn, resolved, flattened;
+  GlMesh robot, overlay, square;
+  std::vector<std::pair<IndexRange, IndexRange>> ranges;  // closed and open triangles of each body
+  std::vector<Eigen::AlignedBox3d> boxes;                 // of each body, body frame
+  GlTarget drawn, resolved, flattened;
   GLuint coverage = 0;
 
   Parts(const std::vector<BodySurface>& surface, const RenderOptions& render_options);
 
-  GLuint compile(GLenum kind, const char* source);
-  GLuint link(const char* vertex, const char* fragment);
-  Mesh make_mesh();
-  void fill(const Mesh& mesh, const Triangles& triangles, GLenum usage);
-  Target make_target(int width, int height, int samples, GLenum format, bool depth);
   void upload(const std::vector<BodySurface>& surface);
-  void set(GLuint program, const char* name, const Matrix4f& value);
-  void set(GLuint program, const char* name, const Vector3d& value);
-  void set(GLuint program, const char* name, double x, double y);
-  void set(GLuint program, const char* name, double value);
-  void draw(const Range& range);
-
   Eigen::AlignedBox3d bounds_of(const std::vector<Eigen::Isometry3d>& poses) const;
   void draw_coverage(const Scene& scene, const Ground& plane, const Vector3d& sun);
   void draw_robot(const Scene& scene, const Matrix4f& view_projection, const Vector3d& sun);
@@ -174,13 +103,13 @@ struct Renderer::Parts {
 Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOptions& chosen)
     : options(chosen) {
   using namespace shaders;
-  solid = link(kSolidVertex, kSolidFragment);
-  ground = link(kGroundVertex, kGroundFragment);
-  sky = link(kSkyVertex, kSkyFragment);
-  flat = link(kFlatVertex, kFlatFragment);
-  shadow = link(kGroundVertex, kShadowFragment);
-  robot = make_mesh();
-  overlay = make_mesh();
+  solid = gl.link(kSolidVertex, kSolidFragment);
+  ground = gl.link(kGroundVertex, kGroundFragment);
+  sky = gl.link(kSkyVertex, kSkyFragment);
+  flat = gl.link(kFlatVertex, kFlatFragment);
+  shadow = gl.link(kGroundVertex, kShadowFragment);
+  robot = gl.make_mesh();
+  overlay = gl.make_mesh();
   upload(surface);
   gl.GenVertexArrays(1, &square.array);
   gl.BindVertexArray(square.array);
@@ -190,10 +119,11 @@ Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOpti
   gl.BufferData(GL_ARRAY_BUFFER, sizeof corners, corners, GL_STATIC_DRAW);
   gl.EnableVertexAttribArray(0);
   gl.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
-  drawn =
-      make_target(options.width, options.height, options.antialias ? kSamples : 0, GL_RGBA8, true);
-  if (options.antialias) resolved = make_target(options.width, options.height, 0, GL_RGBA8, false);
-  flattened = make_target(kShadowSize, kShadowSize, 0, GL_R8, false);
+  drawn = gl.make_target(options.width, options.height, options.antialias ? kSamples : 0, GL_RGBA8,
+                         true);
+  if (options.antialias)
+    resolved = gl.make_target(options.width, options.height, 0, GL_RGBA8, false);
+  flattened = gl.make_target(kShadowSize, kShadowSize, 0, GL_R8, false);
   gl.GenTextures(1, &coverage);
   gl.BindTexture(GL_TEXTURE_2D, coverage);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
@@ -204,113 +134,19 @@ Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOpti
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
 }
 
-GLuint Renderer::Parts::compile(GLenum kind, const char* source) {
-  const GLuint shader = gl.CreateShader(kind);
-  const char* sources[] = {shaders::kCommon, source};
-  gl.ShaderSource(shader, 2, sources, nullptr);
-  gl.CompileShader(shader);
-  return shader;
-}
-
-GLuint Renderer::Parts::link(const char* vertex, const char* fragment) {
-  const GLuint program = gl.CreateProgram();
-  for (const GLuint shader :
-       {compile(GL_VERTEX_SHADER, vertex), compile(GL_FRAGMENT_SHADER, fragment)}) {
-    gl.AttachShader(program, shader);
-    gl.DeleteShader(shader);
-  }
-  gl.LinkProgram(program);
-  GLint linked = GL_FALSE;
-  gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
-  if (linked) return program;
-  std::array<char, 1024> log{};
-  gl.GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
-  fail(ErrorCode::internal, std::string("off-screen rendering: a shader failed: ") + log.data());
-}
-
-Mesh Renderer::Parts::make_mesh() {
-  Mesh mesh;
-  gl.GenVertexArrays(1, &mesh.array);
-  gl.BindVertexArray(mesh.array);
-  gl.GenBuffers(1, &mesh.vertices);
-  gl.GenBuffers(1, &mesh.indices);
-  gl.BindBuffer(GL_ARRAY_BUFFER, mesh.vertices);
-  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices);
-  const auto attribute = [&](GLuint index, GLint size, GLenum type, size_t offset) {
-    gl.EnableVertexAttribArray(index);
-    gl.VertexAttribPointer(index, size, type, type == GL_UNSIGNED_BYTE, sizeof(RenderVertex),
-                           reinterpret_cast<const void*>(offset));
-  };
-  attribute(0, 3, GL_FLOAT, offsetof(RenderVertex, position));
-  attribute(1, 3, GL_FLOAT, offsetof(RenderVertex, normal));
-  attribute(2, 4, GL_UNSIGNED_BYTE, offsetof(RenderVertex, color));
-  return mesh;
-}
-
-void Renderer::Parts::fill(const Mesh& mesh, const Triangles& triangles, GLenum usage) {
-  gl.BindVertexArray(mesh.array);
-  gl.BindBuffer(GL_ARRAY_BUFFER, mesh.vertices);
-  gl.BufferData(GL_ARRAY_BUFFER,
-                static_cast<GLsizeiptr>(triangles.vertices.size() * sizeof(RenderVertex)),
-                triangles.vertices.data(), usage);
-  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
-                static_cast<GLsizeiptr>(triangles.indices.size() * sizeof(std::uint32_t)),
-                triangles.indices.data(), usage);
-}
-
-Target Renderer::Parts::make_target(int width, int height, int samples, GLenum format, bool depth) {
-  Target target;
-  target.width = width;
-  target.height = height;
-  gl.GenFramebuffers(1, &target.framebuffer);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-  const auto attach = [&](GLuint& name, GLenum storage, GLenum where) {
-    gl.GenRenderbuffers(1, &name);
-    gl.BindRenderbuffer(GL_RENDERBUFFER, name);
-    gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, storage, width, height);
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, name);
-  };
-  attach(target.color, format, GL_COLOR_ATTACHMENT0);
-  if (depth) attach(target.depth, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
-  if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    fail(ErrorCode::internal, "off-screen rendering: no picture of " + std::to_string(width) +
-                                  " x " + std::to_string(height) + " pixels to be had");
-  return target;
-}
-
 void Renderer::Parts::upload(const std::vector<BodySurface>& surface) {
   Triangles all;
   const auto add = [&](const Triangles& part) {
-    const Range range = {static_cast<GLsizei>(part.indices.size()), all.indices.size()};
+    const IndexRange range = {static_cast<GLsizei>(part.indices.size()), all.indices.size()};
     append(all, part);
     return range;
   };
   for (const BodySurface& body : surface) {
-    const Range closed = add(body.closed);
+    const IndexRange closed = add(body.closed);
     ranges.emplace_back(closed, add(body.open));
     boxes.push_back(bounds(body.closed).merged(bounds(body.open)));
   }
-  fill(robot, all, GL_STATIC_DRAW);
-}
-
-void Renderer::Parts::set(GLuint program, const char* name, const Matrix4f& value) {
-  gl.UniformMatrix4fv(gl.GetUniformLocation(program, name), 1, GL_FALSE, value.data());
-}
-void Renderer::Parts::set(GLuint program, const char* name, const Vector3d& value) {
-  const Vector3f f = value.cast<float>();
-  gl.Uniform3f(gl.GetUniformLocation(program, name), f[0], f[1], f[2]);
-}
-void Renderer::Parts::set(GLuint program, const char* name, double x, double y) {
-  gl.Uniform2f(gl.GetUniformLocation(program, name), static_cast<float>(x), static_cast<float>(y));
-}
-void Renderer::Parts::set(GLuint program, const char* name, double value) {
-  gl.Uniform1f(gl.GetUniformLocation(program, name), static_cast<float>(value));
-}
-
-void Renderer::Parts::draw(const Range& range) {
-  if (range.count > 0)
-    gl.DrawElements(GL_TRIANGLES, range.count, GL_UNSIGNED_INT,
-                    reinterpret_cast<const void*>(range.first * sizeof(std::uint32_t)));
+  gl.fill(robot, all, GL_STATIC_DRAW);
 }
 
 Eigen::AlignedBox3d Renderer::Parts::bounds_of(const std::vector<Eigen::Isometry3d>& poses) const {
@@ -339,9 +175,9 @@ void Renderer::Parts::draw_coverage(const Scene& scene, const Ground& plane, con
   gl.UseProgram(flat);
   gl.BindVertexArray(robot.array);
   for (size_t i = 0; i < ranges.size(); ++i) {
-    set(flat, "flatten", Matrix4f((flatten * scene.poses[i].matrix()).cast<float>()));
-    draw(ranges[i].first);
-    draw(ranges[i].second);
+    gl.set(flat, "flatten", Matrix4f((flatten * scene.poses[i].matrix()).cast<float>()));
+    gl.draw(ranges[i].first);
+    gl.draw(ranges[i].second);
   }
   std::vector<std::uint8_t> cover(size_t(kShadowSize) * kShadowSize);
   gl.ReadPixels(0, 0, kShadowSize, kShadowSize, GL_RED, GL_UNSIGNED_BYTE, cover.data());
@@ -354,20 +190,20 @@ void Renderer::Parts::draw_coverage(const Scene& scene, const Ground& plane, con
 void Renderer::Parts::draw_robot(const Scene& scene, const Matrix4f& view_projection,
                                  const Vector3d& sun) {
   gl.UseProgram(solid);
-  set(solid, "view_projection", view_projection);
-  set(solid, "eye", scene.camera.eye);
-  set(solid, "sun", sun);
-  set(solid, "up", scene.ground_normal.normalized());
-  set(solid, "opacity", 1.0);
+  gl.set(solid, "view_projection", view_projection);
+  gl.set(solid, "eye", scene.camera.eye);
+  gl.set(solid, "sun", sun);
+  gl.set(solid, "up", scene.ground_normal.normalized());
+  gl.set(solid, "opacity", 1.0);
   gl.BindVertexArray(robot.array);
   gl.Enable(GL_CULL_FACE);
   for (size_t i = 0; i < ranges.size(); ++i) {
     if (!ranges[i].first.count && !ranges[i].second.count) continue;
-    set(solid, "model", Matrix4f(scene.poses[i].matrix().cast<float>()));
-    draw(ranges[i].first);
+    gl.set(solid, "model", Matrix4f(scene.poses[i].matrix().cast<float>()));
+    gl.draw(ranges[i].first);
     if (!ranges[i].second.count) continue;
     gl.Disable(GL_CULL_FACE);
-    draw(ranges[i].second);
+    gl.draw(ranges[i].second);
     gl.Enable(GL_CULL_FACE);
   }
 }
@@ -379,31 +215,31 @@ void Renderer::Parts::draw_ground(const Scene& scene, const Matrix4f& view_proje
   const double distance = (scene.camera.eye - target).norm();
   const auto place = [&](GLuint program, const Eigen::Vector2d& at, double reach) {
     gl.UseProgram(program);
-    set(program, "view_projection", view_projection);
-    set(program, "axis_u", plane.u);
-    set(program, "axis_v", plane.v);
-    set(program, "center", at.x(), at.y());
-    set(program, "reach", reach);
+    gl.set(program, "view_projection", view_projection);
+    gl.set(program, "axis_u", plane.u);
+    gl.set(program, "axis_v", plane.v);
+    gl.set(program, "center", at.x(), at.y());
+    gl.set(program, "reach", reach);
   };
   gl.BindVertexArray(square.array);
   gl.Enable(GL_CULL_FACE);
   if (options.ground) {
     place(ground, center, 30 * distance);
-    set(ground, "fade", 4.5 * distance);
-    set(ground, "horizon", Vector3d(kHorizon[0], kHorizon[1], kHorizon[2]));
+    gl.set(ground, "fade", 4.5 * distance);
+    gl.set(ground, "horizon", Vector3d(kHorizon[0], kHorizon[1], kHorizon[2]));
     gl.Enable(GL_POLYGON_OFFSET_FILL);
     gl.PolygonOffset(1, 1);  // soles lie in the ground plane
     gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     gl.Disable(GL_POLYGON_OFFSET_FILL);
   }
   gl.UseProgram(sky);
-  set(sky, "horizon", Vector3d(kHorizon[0], kHorizon[1], kHorizon[2]));
-  set(sky, "horizon_height", horizon_height(scene.camera, plane.normal, view_projection));
+  gl.set(sky, "horizon", Vector3d(kHorizon[0], kHorizon[1], kHorizon[2]));
+  gl.set(sky, "horizon_height", horizon_height(scene.camera, plane.normal, view_projection));
   gl.DepthMask(GL_FALSE);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   if (options.ground && options.shadow) {
     place(shadow, plane.center, plane.reach);
-    set(shadow, "strength", 0.42);
+    gl.set(shadow, "strength", 0.42);
     gl.Enable(GL_BLEND);
     gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   }
@@ -413,22 +249,22 @@ void Renderer::Parts::draw_ground(const Scene& scene, const Matrix4f& view_proje
 void Renderer::Parts::draw_overlay(const Scene& scene, const Matrix4f& view_projection,
                                    const Vector3d& sun) {
   if (scene.overlay.indices.empty()) return;
-  fill(overlay, scene.overlay, GL_STREAM_DRAW);
+  gl.fill(overlay, scene.overlay, GL_STREAM_DRAW);
   gl.UseProgram(solid);
-  set(solid, "view_projection", view_projection);
-  set(solid, "model", Matrix4f(Matrix4f::Identity()));
-  set(solid, "sun", sun);
-  const Range all = {static_cast<GLsizei>(scene.overlay.indices.size()), 0};
+  gl.set(solid, "view_projection", view_projection);
+  gl.set(solid, "model", Matrix4f(Matrix4f::Identity()));
+  gl.set(solid, "sun", sun);
+  const IndexRange all = {static_cast<GLsizei>(scene.overlay.indices.size()), 0};
   gl.Enable(GL_CULL_FACE);
   gl.Enable(GL_BLEND);
-  set(solid, "opacity", 0.6);
+  gl.set(solid, "opacity", 0.6);
   gl.DepthMask(GL_FALSE);
   gl.DepthFunc(GL_GREATER);
-  draw(all);
-  set(solid, "opacity", 1.0);
+  gl.draw(all);
+  gl.set(solid, "opacity", 1.0);
   gl.DepthMask(GL_TRUE);
   gl.DepthFunc(GL_LEQUAL);
-  draw(all);
+  gl.draw(all);
   gl.Disable(GL_BLEND);
 }
 
