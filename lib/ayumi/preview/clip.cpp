@@ -136,6 +136,13 @@ std::string frame_name(int k) {
   return "frame_" + std::string(number.size() < 5 ? 5 - number.size() : 0, '0') + number + ".png";
 }
 
+/// A message with the name people gave instead of the temporary one.
+std::string with_name(std::string message, const std::string& temporary, const std::string& name) {
+  for (size_t at; (at = message.find(temporary)) != std::string::npos;)
+    message.replace(at, temporary.size(), name);
+  return message;
+}
+
 /// Fills a new folder beside `path`, then gives it that name.
 void write_folder(const fs::path& path, const std::function<void(const fs::path&)>& produce) {
   if (fs::exists(path) && !(fs::is_directory(path) && fs::is_empty(path)))
@@ -266,9 +273,13 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
     });
   } else {
     write_file_with(path, [&](const fs::path& temporary) {
-      ClipEncoder encoder(temporary, picture.width, picture.height, options.fps, options.encoder);
-      frames([&](int, const Image& image) { encoder.add(image); });
-      encoder.finish();
+      try {
+        ClipEncoder encoder(temporary, picture.width, picture.height, options.fps, options.encoder);
+        frames([&](int, const Image& image) { encoder.add(image); });
+        encoder.finish();
+      } catch (const Error& error) {
+        fail(error.code(), with_name(error.what(), temporary.string(), path.string()));
+      }
     });
   }
   report(progress, {"preview", 1.0, std::to_string(count) + " frames"});
