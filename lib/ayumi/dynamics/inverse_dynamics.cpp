@@ -1,8 +1,8 @@
 // Everything is written in world axes about the base origin, so parent and child share one frame
 // and the tree recursions are plain sums:
 //   w_i = w_p + s dq,  v_i = v_p + w_p x r,       alpha_i = alpha_p + s ddq + w_p x s dq,
-//   a_i = a_p + alpha_p x r + w_p x (w_p x r),    f = m (a_c + g z),  n = I alpha + w x I w + c x f,
-//   tau = s . (n_subtree - p x f_subtree).
+//   a_i = a_p + alpha_p x r + w_p x (w_p x r),    f = m (a_c + g z),  n = I alpha + w x I w + c x
+//   f, tau = s . (n_subtree - p x f_subtree).
 // A prismatic joint adds s ddq + 2 w_p x s dq to a_i in place of the angular terms.
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 
@@ -19,6 +19,13 @@ using Eigen::VectorXd;
 VectorXd inverse_dynamics(const RobotModel& model, const RobotState& state,
                           const VectorXd& acceleration, RobotData& data) {
   update_velocities(model, state, data);
+  VectorXd force;
+  newton_euler(model, state, acceleration, data, force);
+  return force;
+}
+
+void newton_euler(const RobotModel& model, const RobotState& state, const VectorXd& acceleration,
+                  RobotData& data, VectorXd& force) {
   const std::vector<Body>& bodies = model.bodies();
   auto& alpha = data.angular_acceleration;
   auto& a = data.acceleration;
@@ -46,24 +53,21 @@ VectorXd inverse_dynamics(const RobotModel& model, const RobotState& state,
     const Vector3d w_local = R.transpose() * w;
     const Matrix3d& I = body.inertia.about_com;
     data.force[i] = body.inertia.mass * (a[i] + alpha[i].cross(c) + w.cross(w.cross(c)));
-    data.moment[i] =
-        R * (I * (R.transpose() * alpha[i]) + w_local.cross(I * w_local)) +
-        data.com[i].cross(data.force[i]);
+    data.moment[i] = R * (I * (R.transpose() * alpha[i]) + w_local.cross(I * w_local)) +
+                     data.com[i].cross(data.force[i]);
   }
-  VectorXd force = VectorXd::Zero(model.velocity_count());
+  force.setZero(model.velocity_count());
   for (size_t i = bodies.size() - 1; i > 0; --i) {
     const Body& body = bodies[i];
     const Vector3d& f = data.force[i];
     force[6 + body.dof] +=
-        body.ratio * data.axis[i].dot(body.prismatic
-                                          ? f
-                                          : Vector3d(data.moment[i] - data.position[i].cross(f)));
+        body.ratio *
+        data.axis[i].dot(body.prismatic ? f : Vector3d(data.moment[i] - data.position[i].cross(f)));
     data.force[body.parent] += f;
     data.moment[body.parent] += data.moment[i];
   }
   force.head<3>() = data.force[0];
   force.segment<3>(3) = data.moment[0];
-  return force;
 }
 
 VectorXd bias_force(const RobotModel& model, const RobotState& state, RobotData& data) {
@@ -105,9 +109,7 @@ void mass_matrix(const RobotModel& model, RobotData& data, MatrixXd& M) {
     M(column, column) += v.dot(p) + w.dot(h);
     for (int i = body.parent; i > 0; i = bodies[i].parent) {
       const Vector3d si = bodies[i].ratio * data.axis[i];
-      const double value = bodies[i].prismatic
-                               ? si.dot(p)
-                               : si.dot(h - data.position[i].cross(p));
+      const double value = bodies[i].prismatic ? si.dot(p) : si.dot(h - data.position[i].cross(p));
       M(6 + bodies[i].dof, column) += value;
       M(column, 6 + bodies[i].dof) += value;
     }

@@ -13,6 +13,11 @@ namespace ayumi {
 Eigen::VectorXd inverse_dynamics(const RobotModel& model, const RobotState& state,
                                  const Eigen::VectorXd& acceleration, RobotData& data);
 
+/// The same into `force` where `data` already holds the velocities of `state`; allocates nothing
+/// when `force` has its size.
+void newton_euler(const RobotModel& model, const RobotState& state,
+                  const Eigen::VectorXd& acceleration, RobotData& data, Eigen::VectorXd& force);
+
 /// Coriolis, centrifugal and gravity forces: inverse_dynamics at zero acceleration.
 Eigen::VectorXd bias_force(const RobotModel& model, const RobotState& state, RobotData& data);
 

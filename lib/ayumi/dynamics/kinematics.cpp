@@ -1,5 +1,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 
+#include <cmath>
+
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -21,7 +23,27 @@ RobotData::RobotData(const RobotModel& model) {
     subtree_mass[i] += model.bodies()[i].inertia.mass;
     if (i > 0) subtree_mass[model.bodies()[i].parent] += subtree_mass[i];
   }
+  for (const Body& body : model.bodies()) {
+    int along = 0;
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(body.axis[k]) == 1) along = body.axis[k] > 0 ? k + 1 : -k - 1;
+    aligned.push_back(along);
+    turned.push_back(body.placement.linear() != Matrix3d::Identity());
+  }
 }
+
+namespace {
+
+// R turned by q about its own column |aligned| - 1: two columns mix.
+void turn_about_column(Matrix3d& R, int aligned, double q) {
+  const int k = std::abs(aligned) - 1, a = (k + 1) % 3, b = (k + 2) % 3;
+  const double c = std::cos(q), s = aligned > 0 ? std::sin(q) : -std::sin(q);
+  const Vector3d x = R.col(a), y = R.col(b);
+  R.col(a) = c * x + s * y;
+  R.col(b) = c * y - s * x;
+}
+
+}  // namespace
 
 void update_positions(const RobotModel& model, const RobotState& state, RobotData& data) {
   const std::vector<Body>& bodies = model.bodies();
@@ -35,15 +57,23 @@ void update_positions(const RobotModel& model, const RobotState& state, RobotDat
     const Body& body = bodies[i];
     const double q = body.ratio * state.theta[body.dof] + body.offset;
     const Matrix3d& R = data.rotation[body.parent];
-    const Matrix3d Rj = R * body.placement.linear();
+    Matrix3d& Ri = data.rotation[i];
+    if (data.turned[i])
+      Ri.noalias() = R * body.placement.linear();
+    else
+      Ri = R;
     data.position[i] = data.position[body.parent] + R * body.placement.translation();
-    data.axis[i] = Rj * body.axis;
-    if (body.prismatic) {
-      data.rotation[i] = Rj;
+    const int aligned = data.aligned[i];
+    if (aligned)
+      data.axis[i] = (aligned > 0 ? 1.0 : -1.0) * Ri.col(std::abs(aligned) - 1);
+    else
+      data.axis[i] = Ri * body.axis;
+    if (body.prismatic)
       data.position[i] += q * data.axis[i];
-    } else {
-      data.rotation[i] = Rj * Eigen::AngleAxisd(q, body.axis).toRotationMatrix();
-    }
+    else if (aligned)
+      turn_about_column(Ri, aligned, q);
+    else
+      Ri = (Ri * Eigen::AngleAxisd(q, body.axis).toRotationMatrix()).eval();
     data.com[i] = data.position[i] + data.rotation[i] * body.inertia.com;
     moment += body.inertia.mass * data.com[i];
   }
@@ -56,8 +86,8 @@ void update_velocities(const RobotModel& model, const RobotState& state, RobotDa
   const std::vector<Body>& bodies = model.bodies();
   data.velocity[0] = state.base_velocity;
   data.angular_velocity[0] = state.base_angular_velocity;
-  Vector3d momentum = bodies[0].inertia.mass *
-                      (data.velocity[0] + data.angular_velocity[0].cross(data.com[0]));
+  Vector3d momentum =
+      bodies[0].inertia.mass * (data.velocity[0] + data.angular_velocity[0].cross(data.com[0]));
   for (size_t i = 1; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     const double rate = body.ratio * state.dtheta[body.dof];
@@ -67,10 +97,34 @@ void update_velocities(const RobotModel& model, const RobotState& state, RobotDa
         data.velocity[body.parent] + w.cross(data.position[i] - data.position[body.parent]);
     (body.prismatic ? data.velocity[i] : data.angular_velocity[i]) += rate * data.axis[i];
     momentum += body.inertia.mass *
-                (data.velocity[i] +
-                 data.angular_velocity[i].cross(data.com[i] - data.position[i]));
+                (data.velocity[i] + data.angular_velocity[i].cross(data.com[i] - data.position[i]));
   }
   data.dcog = momentum / model.mass();
+}
+
+void move_base(const BasePose& base, RobotData& data) {
+  const Matrix3d attitude = base.attitude.toRotationMatrix();
+  const Matrix3d turn = attitude * data.rotation[0].transpose();
+  data.rotation[0] = attitude;
+  data.com[0] = turn * data.com[0];
+  for (size_t i = 1; i < data.rotation.size(); ++i) {
+    data.rotation[i] = (turn * data.rotation[i]).eval();
+    data.position[i] = (turn * data.position[i]).eval();
+    data.axis[i] = (turn * data.axis[i]).eval();
+    data.com[i] = (turn * data.com[i]).eval();
+  }
+  data.base_position = base.position;
+  data.cog_offset = (turn * data.cog_offset).eval();
+  data.cog = data.base_position + data.cog_offset;
+}
+
+void add_base_velocity(const Vector3d& velocity, const Vector3d& angular_velocity,
+                       RobotData& data) {
+  for (size_t i = 0; i < data.velocity.size(); ++i) {
+    data.angular_velocity[i] += angular_velocity;
+    data.velocity[i] += velocity + angular_velocity.cross(data.position[i]);
+  }
+  data.dcog += velocity + angular_velocity.cross(data.cog_offset);
 }
 
 Isometry3d link_pose(const RobotModel& model, const RobotData& data, int link) {
@@ -164,7 +218,7 @@ void anchor_base(const RobotModel& model, Side support, const Isometry3d& sole, 
   const Isometry3d moved = sole * sole_pose(model, data, support).inverse() * data.pose(0);
   state.base.position = moved.translation();
   state.base.attitude = Eigen::Quaterniond(moved.linear()).normalized();
-  update_positions(model, state, data);
+  move_base(state.base, data);
 }
 
 }  // namespace ayumi

@@ -12,22 +12,22 @@ namespace ayumi {
 
 /// Mass, first moment and second moment of a set of bodies, world axes, about the base origin.
 struct SpatialInertia {
-  double mass = 0;                                        ///< [kg]
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();       ///< mass * (com - p_WB) [kg m]
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();      ///< about the base origin [kg m^2]
+  double mass = 0;                                    ///< [kg]
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();   ///< mass * (com - p_WB) [kg m]
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the base origin [kg m^2]
 };
 
 struct RobotData {
   explicit RobotData(const RobotModel& model);
 
   // Filled by update_positions().
-  std::vector<Eigen::Matrix3d> rotation;   ///< R_WK of each body
-  std::vector<Eigen::Vector3d> position;   ///< p_WK - p_WB of each body origin [m]
-  std::vector<Eigen::Vector3d> axis;       ///< joint axis of each body (zero for the root)
-  std::vector<Eigen::Vector3d> com;        ///< of each body, from the base origin [m]
-  Eigen::Vector3d base_position;           ///< p_WB, copied from the state [m]
-  Eigen::Vector3d cog_offset;              ///< p_WG - p_WB [m]
-  Eigen::Vector3d cog;                     ///< p_WG, world [m]
+  std::vector<Eigen::Matrix3d> rotation;  ///< R_WK of each body
+  std::vector<Eigen::Vector3d> position;  ///< p_WK - p_WB of each body origin [m]
+  std::vector<Eigen::Vector3d> axis;      ///< joint axis of each body (zero for the root)
+  std::vector<Eigen::Vector3d> com;       ///< of each body, from the base origin [m]
+  Eigen::Vector3d base_position;          ///< p_WB, copied from the state [m]
+  Eigen::Vector3d cog_offset;             ///< p_WG - p_WB [m]
+  Eigen::Vector3d cog;                    ///< p_WG, world [m]
 
   // Filled by update_velocities().
   std::vector<Eigen::Vector3d> angular_velocity;  ///< w_WK [rad/s]
@@ -38,7 +38,11 @@ struct RobotData {
   std::vector<Eigen::Vector3d> angular_acceleration, acceleration;
   std::vector<Eigen::Vector3d> force, moment;  ///< of each subtree, moment about the base origin
   std::vector<SpatialInertia> composite;       ///< of each subtree
-  std::vector<double> subtree_mass;            ///< [kg], a constant of the model
+
+  // Constants of the model that save work.
+  std::vector<double> subtree_mass;  ///< [kg]
+  std::vector<int> aligned;          ///< joint axis 1, 2, 3 for x, y, z, negative reversed; else 0
+  std::vector<char> turned;          ///< the joint frame is turned against its parent's
 
   /// Pose of a body in the world.
   Eigen::Isometry3d pose(int body) const {
