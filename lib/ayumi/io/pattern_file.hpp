@@ -32,6 +32,13 @@ std::string pattern_text(const Pattern& pattern, const std::vector<std::string>&
 void write_pattern(const std::filesystem::path& path, const Pattern& pattern,
                    const std::vector<std::string>& comments = {});
 
+/// The value of the key "correction" as text.
+std::string correction_text(const CorrectionTrack& track);
+
+/// The text of a pattern file with its correction replaced or added; every other byte, comments and
+/// expressions included, stays as the author wrote it. `text` must be a pattern that reads.
+std::string with_correction(const std::string& text, const CorrectionTrack& track);
+
 /// Known keys of every kind of object in a pattern file, by the name the schema uses ("pattern",
 /// "phase", "keyframe", ...). The reader accepts exactly these.
 const std::map<std::string, std::vector<std::string>>& pattern_keys();

@@ -81,7 +81,7 @@ class Writer {
     add_list(top, "scenario", pattern_.scenario,
              [this](const Disturbance& each) { return disturbance(each); });
     add_tolerances(top);
-    if (pattern_.correction) top.add("correction", correction(*pattern_.correction));
+    if (pattern_.correction) top.add("correction", correction_text(*pattern_.correction));
     return top.lines('{', '}', "") + "\n";
   }
 
@@ -247,27 +247,6 @@ class Writer {
     if (!members.empty()) top.add("tolerances", members.object());
   }
 
-  static std::string correction(const CorrectionTrack& track) {
-    Members columns;
-    for (const char* const name :
-         {"base.x[m]", "base.y[m]", "base.z[m]", "base.rx[rad]", "base.ry[rad]", "base.rz[rad]"})
-      columns.item(quoted(name));
-    for (const std::string& joint : track.joints) columns.item(quoted("theta." + joint + "[rad]"));
-    Members rows;
-    for (Eigen::Index r = 0; r < track.coefficients.rows(); ++r) {
-      Members row;
-      for (Eigen::Index c = 0; c < track.coefficients.cols(); ++c)
-        row.item(number(track.coefficients(r, c)));
-      rows.item(row.array());
-    }
-    Members members;
-    members.add("begin", number(track.begin)).add("spacing", number(track.spacing));
-    members.add("columns", columns.array());
-    members.add("coefficients",
-                track.coefficients.rows() == 0 ? "[]" : rows.lines('[', ']', "    "));
-    return members.lines('{', '}', "  ");
-  }
-
   const Pattern& pattern_;
 };
 
@@ -280,6 +259,27 @@ std::string rebased(const std::string& name, const fs::path& from, const fs::pat
 }
 
 }  // namespace
+
+std::string correction_text(const CorrectionTrack& track) {
+  Members columns;
+  for (const char* const name :
+       {"base.x[m]", "base.y[m]", "base.z[m]", "base.rx[rad]", "base.ry[rad]", "base.rz[rad]"})
+    columns.item(quoted(name));
+  for (const std::string& joint : track.joints) columns.item(quoted("theta." + joint + "[rad]"));
+  Members rows;
+  for (Eigen::Index r = 0; r < track.coefficients.rows(); ++r) {
+    Members row;
+    for (Eigen::Index c = 0; c < track.coefficients.cols(); ++c)
+      row.item(number(track.coefficients(r, c)));
+    rows.item(row.array());
+  }
+  Members members;
+  members.add("begin", number(track.begin)).add("spacing", number(track.spacing));
+  members.add("columns", columns.array());
+  members.add("coefficients",
+              track.coefficients.rows() == 0 ? "[]" : rows.lines('[', ']', "    "));
+  return members.lines('{', '}', "  ");
+}
 
 std::string pattern_text(const Pattern& pattern, const std::vector<std::string>& comments) {
   std::string text;

@@ -28,7 +28,8 @@ namespace {
 
 constexpr int kRounds = 5;
 constexpr double kPad = 0.5;  // free time around a finding, doubled when it is not enough [s]
-constexpr double kRoundMargin = 0.001;  // more ZMP margin each round [m]
+constexpr double kMarginBetween = 5e-4;  // of the ZMP, for what happens between constraints [m]
+constexpr double kRoundMargin = 0.001;   // more ZMP margin each round [m]
 
 std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
                                                       double pad) {
@@ -74,6 +75,35 @@ void note_changes(const RobotModel& model, const CommandSeries& before, RepairRe
     update_positions(model, b, data);
     result.max_cog_change = std::max(result.max_cog_change, (data.cog - cog).norm());
   }
+}
+
+// What is written to a file: numbers of nine decimals, and only the control points and joints that
+// move, with the three zero points before and after that a cubic spline needs to begin at rest.
+CorrectionTrack trimmed(const CorrectionTrack& track) {
+  const Eigen::MatrixXd c = (track.coefficients * 1e9).array().round() / 1e9;
+  Eigen::Index first = c.rows(), last = -1;
+  for (Eigen::Index i = 0; i < c.rows(); ++i) {
+    if (c.row(i).isZero(0)) continue;
+    first = std::min(first, i);
+    last = i;
+  }
+  CorrectionTrack result;
+  result.spacing = track.spacing;
+  if (last < 0) {
+    result.coefficients.setZero(4, 6);
+    return result;
+  }
+  first = std::max<Eigen::Index>(0, first - 3);
+  last = std::min(c.rows() - 1, last + 3);
+  result.begin = track.begin + track.spacing * static_cast<double>(first);
+  std::vector<Eigen::Index> columns = {0, 1, 2, 3, 4, 5};
+  for (Eigen::Index j = 6; j < c.cols(); ++j) {
+    if (c.col(j).isZero(0)) continue;
+    columns.push_back(j);
+    result.joints.push_back(track.joints[j - 6]);
+  }
+  result.coefficients = c(Eigen::seq(first, last), columns);
+  return result;
 }
 
 std::string subject(const RobotModel& model, const ConstraintBlock& block) {
@@ -143,7 +173,7 @@ class Repair {
     spec_.locked = locked_dofs(model, options.locked_joints);
     spec_.profile = options.check.profile;
     spec_.friction = options.check.friction;
-    spec_.zmp_margin = options.zmp_margin;
+    spec_.zmp_margin = options.zmp_margin + kMarginBetween;
   }
 
   RepairResult run() {
@@ -173,8 +203,8 @@ class Repair {
 
  private:
   void take(const CorrectionTrack& track) {
-    result_.correction = track;
-    result_.series = apply_correction(model_, series_, track);
+    result_.correction = trimmed(track);
+    result_.series = apply_correction(model_, series_, result_.correction);
     result_.check = check_consistency(model_, result_.series, options_.check);
   }
 

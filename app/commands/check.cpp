@@ -1,0 +1,89 @@
+// Is a pattern physically consistent?
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/results_json.hpp"
+#include "check_table.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::vector<std::string> patterns, tolerances;
+  PatternOptions input;
+  bool list_tolerances = false;
+};
+
+void print_tolerances(const Context& context) {
+  context.print(tolerance_table());
+  Json kinds = Json::array();
+  for (const FindingKind& kind : finding_kinds())
+    kinds.push_back({{"kind", kind.kind},
+                     {"tolerance", kind.tolerance},
+                     {"unit", kind.unit},
+                     {"meaning", kind.meaning}});
+  context.print_json(Json{{"tolerances", kinds}}.dump(2));
+}
+
+Json check_one(const Context& context, const Options& options, const std::string& file) {
+  const auto begin = std::chrono::steady_clock::now();
+  const PatternInput input = load_pattern(context, file, options.input);
+  const ConsistencyReport report =
+      check_consistency(input.model, input.series, check_options(input, options.tolerances));
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  context.print(file + ": " + (report.consistent ? "consistent" : "INCONSISTENT") + ", " +
+                text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
+                check_table(report));
+  Json json = {{"pattern", file}};
+  json.update(Json::parse(check_json(report)));
+  json["wall_s"] = wall;
+  return json;
+}
+
+void check(Context& context, const Options& options) {
+  if (options.list_tolerances) {
+    print_tolerances(context);
+    return;
+  }
+  if (options.patterns.empty()) fail(ErrorCode::usage, "check: name at least one PATTERN");
+  Json all = Json::array();
+  bool consistent = true;
+  for (const std::string& file : options.patterns) {
+    all.push_back(check_one(context, options, file));
+    consistent = consistent && all.back()["verdict"] == "consistent";
+  }
+  const Json many = {{"verdict", consistent ? "consistent" : "inconsistent"}, {"checks", all}};
+  context.print_json((all.size() == 1 ? all[0] : many).dump(2));
+  context.exit_code = consistent ? 0 : 1;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand(
+      "check", "posture, COG, ZMP and f_z against each other and the robot's limits");
+  command->footer(
+      "Examples:\n  ayumi check patterns/hoap1_walk.json\n"
+      "  ayumi check walk.json --profile hoap1-strong --tolerance support_margin=0.01\n"
+      "  ayumi check a.json b.json --json\n  ayumi check --tolerances");
+  static Options options;
+  command->add_option("PATTERN", options.patterns, "pattern files");
+  command
+      ->add_option("--tolerance", options.tolerances, "of one kind of finding, over the pattern's")
+      ->type_name("KIND=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("--tolerances", options.list_tolerances,
+                    "list all kinds of findings with their tolerances");
+  add_pattern_options(*command, options.input);
+  command->callback([&context] { check(context, options); });
+}
+
+}  // namespace ayumi::app
