@@ -1,5 +1,6 @@
 #include "ayumi/control/estimator.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ayumi/base/version.hpp"
@@ -22,51 +23,61 @@ constexpr double kContactShare = 0.05;  // of the weight below which there is no
 }  // namespace
 
 Estimator::Estimator(const RobotModel& model, double dt)
-    : model_(&model), data_(model), filter_(1.0 - std::exp(-dt / kLoadFilter)) {}
+    : model_(&model),
+      data_(model),
+      imu_(std::max(0, model.find_link(model.description().sensors.imu_link))),
+      filter_(1.0 - std::exp(-dt / kLoadFilter)) {}
 
-Estimate Estimator::update(const Measurement& m, const std::array<Isometry3d, 2>& feet) {
+const Estimate& Estimator::update(const Measurement& m, const std::array<Isometry3d, 2>& feet) {
   const double weight = model_->mass() * kGravity;
-  Estimate e = last_;
-  for (int i = 0; i < 2; ++i)
-    load_[i] += (first_ ? 1.0 : filter_) * (m.feet[i].fz - load_[i]);
+  Estimate& e = last_;
+  for (int i = 0; i < 2; ++i) load_[i] += (first_ ? 1.0 : filter_) * (m.feet[i].fz - load_[i]);
   const double total = load_[0] + load_[1];
   if (total > kContactShare * weight)
     for (Side side : {Side::left, Side::right})
       if (load_[static_cast<int>(side)] > kStanceShare * total) e.stance = side;
 
-  // Attitude of the base from the IMU, wherever on the robot it sits.
-  const int imu = std::max(0, model_->find_link(model_->description().sensors.imu_link));
-  const int imu_body = model_->links()[imu].body;
+  // All in base axes first (base at the origin, at rest), one pass over the tree.
   RobotState& s = e.state;
-  s = RobotState{};
+  s.base = BasePose{};
+  s.base_velocity.setZero();
+  s.base_angular_velocity.setZero();
   s.theta = m.theta;
   s.dtheta = m.dtheta;
   update_velocities(*model_, s, data_);
-  const Matrix3d imu_in_base = data_.rotation[imu_body] * model_->links()[imu].pose.linear();
+
+  // Attitude of the base from the IMU, wherever on the robot it sits.
+  const Link& imu = model_->links()[imu_];
+  const Matrix3d imu_in_base = data_.rotation[imu.body] * imu.pose.linear();
   const Matrix3d R = m.attitude.toRotationMatrix() * imu_in_base.transpose();
-  const Vector3d w = m.attitude * m.gyro - R * data_.angular_velocity[imu_body];
+  const Vector3d w = m.attitude * m.gyro - R * data_.angular_velocity[imu.body];
 
   // Heading has no absolute measurement in the plan frame: it is that of the planned stance foot.
   const int stance = static_cast<int>(e.stance);
-  const Matrix3d sole = R * sole_pose(*model_, data_, e.stance).linear();
-  const double yaw = matrix_to_rpy(feet[stance].linear()).z() - matrix_to_rpy(sole).z();
+  const Isometry3d sole_in_base = sole_pose(*model_, data_, e.stance);
+  const double yaw =
+      matrix_to_rpy(feet[stance].linear()).z() - matrix_to_rpy(R * sole_in_base.linear()).z();
   const Matrix3d turn = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix();
   s.base.attitude = Quaterniond(Matrix3d(turn * R)).normalized();
   s.base_angular_velocity = turn * w;
+  const Matrix3d attitude = s.base.attitude.toRotationMatrix();
 
+  // The loaded point of the sole is where the plan has it, and at rest.
   const Eigen::Vector2d cop = m.feet[stance].fz > kContactShare * weight
                                   ? m.feet[stance].cop
                                   : model_->sole(e.stance).center;
   const Vector3d local(cop.x(), cop.y(), 0);
-  update_velocities(*model_, s, data_);
-  const Vector3d support = sole_pose(*model_, data_, e.stance) * local;
+  const Vector3d support_in_base = sole_in_base * local;
+  const Vector3d support = attitude * support_in_base;
+  const Vector3d& rate = s.base_angular_velocity;
   s.base.position = feet[stance] * local - support;
-  s.base_velocity = -point_velocity(data_, model_->sole(e.stance).body, support);
-  update_velocities(*model_, s, data_);
-  e.cog = data_.cog;
-  e.dcog = data_.dcog;
-  const Matrix3d tilt =
-      sole_pose(*model_, data_, e.stance).linear() * feet[stance].linear().transpose();
+  s.base_velocity =
+      -attitude * point_velocity(data_, model_->sole(e.stance).body, support_in_base) -
+      rate.cross(support);
+  const Vector3d offset = attitude * data_.cog_offset;
+  e.cog = s.base.position + offset;
+  e.dcog = s.base_velocity + rate.cross(offset) + attitude * data_.dcog;
+  const Matrix3d tilt = attitude * sole_in_base.linear() * feet[stance].linear().transpose();
   e.foot_tilt = log_rotation(Quaterniond(tilt));
   e.foot_tilt.z() = 0;
 
@@ -75,12 +86,10 @@ Estimate Estimator::update(const Measurement& m, const std::array<Isometry3d, 2>
   if (e.contact) {
     Vector3d moment = Vector3d::Zero();
     for (int i = 0; i < 2; ++i)
-      moment += m.feet[i].fz *
-                (feet[i] * Vector3d(m.feet[i].cop.x(), m.feet[i].cop.y(), 0));
+      moment += m.feet[i].fz * (feet[i] * Vector3d(m.feet[i].cop.x(), m.feet[i].cop.y(), 0));
     e.zmp = moment / e.fz;
   }
   first_ = false;
-  last_ = e;
   return e;
 }
 

@@ -11,43 +11,46 @@ namespace ayumi {
 
 /// Load cells of one foot.
 struct FootLoad {
-  double fz = 0;                                     ///< sum of the cells [N]
-  Eigen::Vector2d cop = Eigen::Vector2d::Zero();     ///< centre of pressure, sole frame [m]
+  double fz = 0;                                  ///< sum of the cells [N]
+  Eigen::Vector2d cop = Eigen::Vector2d::Zero();  ///< centre of pressure, sole frame [m]
 };
 
 /// One frame of sensor data.
 struct Measurement {
-  Eigen::VectorXd theta, dtheta;                                   ///< encoders [rad], [rad/s]
-  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();    ///< of the IMU link, world
-  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();                  ///< IMU link axes [rad/s]
-  std::array<FootLoad, 2> feet;                                    ///< by Side
+  Eigen::VectorXd theta, dtheta;                                 ///< encoders [rad], [rad/s]
+  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();  ///< of the IMU link, world
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();                ///< IMU link axes [rad/s]
+  std::array<FootLoad, 2> feet;                                  ///< by Side
 };
 
 struct Estimate {
-  RobotState state;                                    ///< plan frame
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();       ///< plan frame [m]
-  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();      ///< [m/s]
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();       ///< plan frame, held in flight [m]
-  double fz = 0;                                       ///< [N]
-  bool contact = true;                                 ///< f_z at least 5 % of the weight
-  Side stance = Side::left;                            ///< foot that carries the robot
-  Eigen::Vector3d foot_tilt = Eigen::Vector3d::Zero(); ///< of the stance foot against the plan, as a
-                                                       ///< rotation vector without yaw [rad]
+  RobotState state;                                     ///< plan frame
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();        ///< plan frame [m]
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();       ///< [m/s]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();        ///< plan frame, held in flight [m]
+  double fz = 0;                                        ///< [N]
+  bool contact = true;                                  ///< f_z at least 5 % of the weight
+  Side stance = Side::left;                             ///< foot that carries the robot
+  Eigen::Vector3d foot_tilt = Eigen::Vector3d::Zero();  ///< of the stance foot against the plan, as
+                                                        ///< a rotation vector without yaw [rad]
 };
 
 class Estimator {
  public:
   Estimator(const RobotModel& model, double dt);
 
-  /// `feet`: planned sole frames. The stance foot is the one that carries more than 60 %; its centre
-  /// of pressure is put at its planned place on the ground and taken as the momentary point of
-  /// support, so a foot tipping on its edge does not spoil the estimate.
-  Estimate update(const Measurement& measurement, const std::array<Eigen::Isometry3d, 2>& feet);
+  /// `feet`: planned sole frames. The stance foot is the one that carries more than 60 %; its
+  /// centre of pressure is put at its planned place on the ground and taken as the momentary point
+  /// of support, so a foot tipping on its edge does not spoil the estimate. Holds until the next
+  /// update.
+  const Estimate& update(const Measurement& measurement,
+                         const std::array<Eigen::Isometry3d, 2>& feet);
 
  private:
   const RobotModel* model_;
   RobotData data_;
-  double filter_;                       // share of the new load taken per tick
+  int imu_;                              // link
+  double filter_;                        // share of the new load taken per tick
   std::array<double, 2> load_ = {0, 0};  // low-passed f_z of each foot [N]
   bool first_ = true;
   Estimate last_;

@@ -66,15 +66,27 @@ void TreeCholesky::solve_lower(VectorXd& y) const {
   }
 }
 
-void TreeCholesky::solve(VectorXd& x) const {
-  const int n = static_cast<int>(column_.size());
-  VectorXd& y = scratch_;
-  for (int k = 0; k < n; ++k) y[k] = x[column_at(k)];
-  for (int k = n - 1; k >= 0; --k) {
+void TreeCholesky::solve_upper(VectorXd& y) const {
+  for (int k = static_cast<int>(column_.size()) - 1; k >= 0; --k) {
     const double* row = L_.col(k).data();
     y[k] /= row[k];
     for (int j = parent(k); j >= 0; j = parent(j)) y[j] -= row[j] * y[k];
   }
+}
+
+void TreeCholesky::solve_chain(int last, Eigen::Vector3d* Y) const {
+  for (int k = last; k >= 0; k = parent(k)) {
+    const double* row = L_.col(k).data();
+    Y[k] /= row[k];
+    for (int j = parent(k); j >= 0; j = parent(j)) Y[j] -= row[j] * Y[k];
+  }
+}
+
+void TreeCholesky::solve(VectorXd& x) const {
+  const int n = static_cast<int>(column_.size());
+  VectorXd& y = scratch_;
+  for (int k = 0; k < n; ++k) y[k] = x[column_at(k)];
+  solve_upper(y);
   solve_lower(y);
   for (int k = 0; k < n; ++k) x[column_at(k)] = y[k];
 }

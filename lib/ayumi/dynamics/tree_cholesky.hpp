@@ -31,8 +31,13 @@ class TreeCholesky {
   /// The last place on the chain that moves a body.
   int last_place(int body) const { return body_place_[static_cast<size_t>(body)]; }
 
-  /// y <- L^-1 y, in place order.
+  /// y <- L^-T y and y <- L^-1 y, in place order.
+  void solve_upper(Eigen::VectorXd& y) const;
   void solve_lower(Eigen::VectorXd& y) const;
+
+  /// Y <- L^-T Y for three columns at once (Y: one entry per place) that are zero but on the chain
+  /// from `last` to the root, where they stay zero.
+  void solve_chain(int last, Eigen::Vector3d* Y) const;
 
  private:
   std::vector<int> place_, column_, parent_, body_place_;

@@ -73,79 +73,139 @@ Vector3d solve_one(const Matrix3d& D, const Vector3d& r, double mu) {
   return slide(D, r, mu);
 }
 
-/// One Gauss-Seidel sweep that goes `share` of the way; the largest change of a shifted velocity
-/// that the whole way would have made.
-double sweep(const ContactProblem& problem, Eigen::VectorXd& impulse, double share = 1.0) {
-  double change = 0;
-  const int n = static_cast<int>(problem.friction.size());
-  for (int i = 0; i < n; ++i) {
-    const auto rows = problem.A.middleCols<3>(3 * i);  // symmetric: columns are contiguous
-    const Matrix3d D = rows.middleRows<3>(3 * i);
-    const Vector3d old = impulse.segment<3>(3 * i);
-    const Vector3d r = rows.transpose() * impulse + problem.b.segment<3>(3 * i) - D * old;
-    const Vector3d next = solve_one(D, r, problem.friction[i]);
-    change = std::max(change, (D * (next - old)).cwiseAbs().maxCoeff());
-    impulse.segment<3>(3 * i) = share == 1.0 ? next : Vector3d(old + share * (next - old));
+/// x <- G^-1 x by elimination with row exchanges, in place; `m` rows, column-major. False when G is
+/// singular.
+bool eliminate(double* G, double* x, int m) {
+  for (int k = 0; k < m; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < m; ++i)
+      if (std::abs(G[i + m * k]) > std::abs(G[pivot + m * k])) pivot = i;
+    if (!(std::abs(G[pivot + m * k]) > 0)) return false;
+    if (pivot != k) {
+      for (int j = k; j < m; ++j) std::swap(G[k + m * j], G[pivot + m * j]);
+      std::swap(x[k], x[pivot]);
+    }
+    const double inverse = 1.0 / G[k + m * k];
+    double* column = G + m * k;
+    for (int i = k + 1; i < m; ++i) column[i] *= inverse;
+    for (int j = k + 1; j < m; ++j) {
+      const double factor = G[k + m * j];
+      if (factor == 0) continue;
+      double* target = G + m * j;
+      for (int i = k + 1; i < m; ++i) target[i] -= factor * column[i];
+    }
+    for (int i = k + 1; i < m; ++i) x[i] -= x[k] * column[i];
   }
-  return change;
-}
-
-/// Newton step on the contacts that are closed in `impulse`.
-Eigen::VectorXd newton_step(const ContactProblem& problem, const Eigen::VectorXd& impulse) {
-  const int n = static_cast<int>(problem.friction.size());
-  std::vector<int> closed;
-  for (int i = 0; i < n; ++i)
-    if (impulse[3 * i] > 0) closed.push_back(i);
-  const int m = static_cast<int>(closed.size());
-  Eigen::MatrixXd G(3 * m, 3 * m);
-  Eigen::VectorXd F(3 * m);
-  const Eigen::VectorXd u = problem.A * impulse + problem.b;
-  for (int a = 0; a < m; ++a) {
-    const int i = closed[a];
-    for (int c = 0; c < m; ++c)
-      G.block<3, 3>(3 * a, 3 * c) = problem.A.block<3, 3>(3 * i, 3 * closed[c]);
-    F.segment<3>(3 * a) = u.segment<3>(3 * i);
-    const double mu = problem.friction[i], normal = impulse[3 * i];
-    const Vector2d l = impulse.segment<2>(3 * i + 1), ut = u.segment<2>(3 * i + 1);
-    const double speed = ut.norm();
-    if (l.norm() < mu * normal * (1 - 1e-9) || speed < 1e-12) continue;  // sticks
-    const Vector2d e = ut / speed;
-    const Matrix2d turn = mu * normal / speed * (Matrix2d::Identity() - e * e.transpose());
-    G.middleRows<2>(3 * a + 1) = (turn * G.middleRows<2>(3 * a + 1)).eval();
-    G.block<2, 2>(3 * a + 1, 3 * a + 1) += Matrix2d::Identity();
-    G.block<2, 1>(3 * a + 1, 3 * a) += mu * e;
-    F.segment<2>(3 * a + 1) = l + mu * normal * e;
+  for (int k = m - 1; k >= 0; --k) {
+    x[k] /= G[k + m * k];
+    for (int i = 0; i < k; ++i) x[i] -= x[k] * G[i + m * k];
   }
-  const Eigen::VectorXd step = G.partialPivLu().solve(F);
-  Eigen::VectorXd next = impulse;
-  for (int a = 0; a < m; ++a) next.segment<3>(3 * closed[a]) -= step.segment<3>(3 * a);
-  return next;
+  return true;
 }
 
 }  // namespace
 
-ContactSolution solve_contacts(const ContactProblem& problem, Eigen::VectorXd& impulse,
-                               double tolerance, int max_iterations) {
+void ContactSolver::resize(int n) {
+  n_ = n;
+  const size_t rows = static_cast<size_t>(3 * n);
+  for (size_t k = 0; k < store_.size(); ++k) {
+    const size_t size = k == 0 || k == 4 ? rows * rows : rows;
+    if (store_[k].size() < size) store_[k].resize(size);
+  }
+  friction_.resize(static_cast<size_t>(n));
+}
+
+// One Gauss-Seidel sweep that goes `share` of the way; returns the largest change of a shifted
+// velocity that the whole way would have made.
+double ContactSolver::sweep(Vector l, double share) {
+  double change = 0;
+  const Matrix matrix = A();
+  const Vector offset = b();
+  for (int i = 0; i < n_; ++i) {
+    const auto rows = matrix.middleCols<3>(3 * i);  // symmetric: columns are contiguous
+    const Matrix3d D = rows.middleRows<3>(3 * i);
+    const Vector3d old = l.segment<3>(3 * i);
+    Vector3d r = offset.segment<3>(3 * i) - D * old;
+    for (int k = 0; k < 3; ++k) r[k] += rows.col(k).dot(l);
+    const Vector3d next = solve_one(D, r, friction_[i]);
+    change = std::max(change, (D * (next - old)).cwiseAbs().maxCoeff());
+    l.segment<3>(3 * i) = share == 1.0 ? next : Vector3d(old + share * (next - old));
+  }
+  return change;
+}
+
+// Newton step on the contacts that are closed in impulse(), into the candidate. False where it has
+// no answer.
+bool ContactSolver::newton_step() {
+  const Matrix matrix = A();
+  const Vector l = impulse();
+  closed_.clear();
+  for (int i = 0; i < n_; ++i)
+    if (l[3 * i] > 0) closed_.push_back(i);
+  const int m = static_cast<int>(closed_.size());
+  Matrix G(store_[4].data(), 3 * m, 3 * m);
+  Vector F(store_[5].data(), 3 * m), u(store_[6].data(), 3 * n_);
+  u = b();
+  for (int i : closed_)
+    for (int k = 0; k < 3; ++k) u += l[3 * i + k] * matrix.col(3 * i + k);
+  for (int a = 0; a < m; ++a) {
+    const int i = closed_[a];
+    for (int c = 0; c < m; ++c)
+      G.block<3, 3>(3 * a, 3 * c) = matrix.block<3, 3>(3 * i, 3 * closed_[c]);
+    F.segment<3>(3 * a) = u.segment<3>(3 * i);
+    const double mu = friction_[i], normal = l[3 * i];
+    const Vector2d lt = l.segment<2>(3 * i + 1), ut = u.segment<2>(3 * i + 1);
+    const double speed = ut.norm();
+    if (lt.norm() < mu * normal * (1 - 1e-9) || speed < 1e-12) continue;  // sticks
+    const Vector2d e = ut / speed;
+    const Matrix2d turn = mu * normal / speed * (Matrix2d::Identity() - e * e.transpose());
+    for (int column = 0; column < 3 * m; ++column)
+      G.block<2, 1>(3 * a + 1, column) = (turn * G.block<2, 1>(3 * a + 1, column)).eval();
+    G.block<2, 2>(3 * a + 1, 3 * a + 1) += Matrix2d::Identity();
+    G.block<2, 1>(3 * a + 1, 3 * a) += mu * e;
+    F.segment<2>(3 * a + 1) = lt + mu * normal * e;
+  }
+  if (!eliminate(store_[4].data(), store_[5].data(), 3 * m)) return false;
+  Vector next(store_[3].data(), 3 * n_);
+  next = l;
+  for (int a = 0; a < m; ++a) next.segment<3>(3 * closed_[a]) -= F.segment<3>(3 * a);
+  return next.allFinite();
+}
+
+ContactSolution ContactSolver::solve(double tolerance, int max_iterations) {
   ContactSolution result;
-  if (problem.friction.empty()) return result;
-  double change = sweep(problem, impulse);
+  if (n_ == 0) return result;
+  double change = sweep(impulse());
   int sweeps = 1;
+  Vector candidate(store_[3].data(), 3 * n_);
   while (change > tolerance && sweeps < max_iterations) {
-    Eigen::VectorXd candidate = newton_step(problem, impulse);
-    const double candidate_change = candidate.allFinite() ? sweep(problem, candidate) : change;
+    const double candidate_change = newton_step() ? sweep(candidate) : change;
     ++sweeps;
     if (candidate_change < change) {
-      impulse = candidate;
+      impulse() = candidate;
       change = candidate_change;
       continue;
     }
     // Sweeps that chase each other round a cycle are calmed by going part of the way.
     const double share = sweeps < 30 ? 1.0 : sweeps < 100 ? 0.6 : 0.25;
     for (int i = 0; i < 4 && change > tolerance; ++i, ++sweeps)
-      change = sweep(problem, impulse, i < 3 ? share : 1.0);
+      change = sweep(impulse(), i < 3 ? share : 1.0);
   }
   result.iterations = sweeps;
   result.residual = change;
+  return result;
+}
+
+ContactSolution solve_contacts(const ContactProblem& problem, Eigen::VectorXd& impulse,
+                               double tolerance, int max_iterations) {
+  ContactSolver solver;
+  solver.resize(static_cast<int>(problem.friction.size()));
+  solver.A() = problem.A;
+  solver.b() = problem.b;
+  solver.impulse() = impulse;
+  solver.friction() = problem.friction;
+  const ContactSolution result = solver.solve(tolerance, max_iterations);
+  impulse = solver.impulse();
   return result;
 }
 

@@ -3,6 +3,7 @@
 // Coulomb cones. docs/theory.md, "Contact and servo integration".
 
 #include <Eigen/Dense>
+#include <array>
 #include <vector>
 
 namespace ayumi {
@@ -14,8 +15,8 @@ namespace ayumi {
 /// A is the Delassus matrix with the compliance of each contact added on its diagonal (symmetric
 /// positive definite), so the solution does not depend on how many points share a load.
 struct ContactProblem {
-  Eigen::MatrixXd A;           ///< 3n x 3n [1/kg]
-  Eigen::VectorXd b;           ///< 3n [m/s]
+  Eigen::MatrixXd A;             ///< 3n x 3n [1/kg]
+  Eigen::VectorXd b;             ///< 3n [m/s]
   std::vector<double> friction;  ///< n
 };
 
@@ -25,8 +26,35 @@ struct ContactSolution {
 };
 
 /// Block Gauss-Seidel with the exact solution of each 3x3 contact, sped up by Newton steps on all
-/// closed contacts; started from `impulse` (3n), which receives the answer [N s]. Stops when a sweep
-/// changes no shifted velocity by more than `tolerance` [m/s].
+/// closed contacts. Keeps its workspace: it allocates nothing once it has met its largest problem.
+class ContactSolver {
+ public:
+  /// Room for n contacts; matrices and vectors below have 3n rows until the next resize().
+  void resize(int n);
+
+  using Matrix = Eigen::Map<Eigen::MatrixXd>;
+  using Vector = Eigen::Map<Eigen::VectorXd>;
+  int size() const { return n_; }
+  Matrix A() { return Matrix(store_[0].data(), 3 * n_, 3 * n_); }
+  Vector b() { return Vector(store_[1].data(), 3 * n_); }
+  Vector impulse() { return Vector(store_[2].data(), 3 * n_); }  ///< start, then answer [N s]
+  std::vector<double>& friction() { return friction_; }          ///< n
+
+  /// Stops when a sweep changes no shifted velocity by more than `tolerance` [m/s].
+  ContactSolution solve(double tolerance = 1e-10, int max_iterations = 500);
+
+ private:
+  double sweep(Vector impulse, double share = 1.0);
+  bool newton_step();
+
+  int n_ = 0;
+  // A, b, impulse, candidate, Newton matrix, Newton right side, velocities.
+  std::array<std::vector<double>, 7> store_;
+  std::vector<double> friction_;
+  std::vector<int> closed_;
+};
+
+/// The same for one problem; `impulse` (3n) is the start and receives the answer.
 ContactSolution solve_contacts(const ContactProblem& problem, Eigen::VectorXd& impulse,
                                double tolerance = 1e-10, int max_iterations = 500);
 

@@ -76,7 +76,7 @@ double largest(const Vector& v) {
 }  // namespace
 
 Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World& world)
-    : model_(&model), limits_(limits), world_(world), data_(model) {
+    : model_(&model), limits_(limits), world_(world), data_(model), factor_(model) {
   const int n = model.dof_count();
   kp_.resize(n);
   kd_.resize(n);
@@ -132,6 +132,28 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
       }
     }
   }
+  for (size_t i = 0; i < points_.size(); ++i) {
+    if (groups_.empty() || groups_.back().body != points_[i].body)
+      groups_.push_back({points_[i].body, static_cast<int>(i)});
+    ++groups_.back().count;
+  }
+  for (Group& group : groups_) {
+    const ContactPoint* first = &points_[static_cast<size_t>(group.first)];
+    for (int i = 0; i < group.count; ++i) group.center += first[i].position / group.count;
+    for (int i = 0; i < group.count; ++i)
+      group.radius =
+          std::max(group.radius, (first[i].position - group.center).norm() + first[i].radius);
+  }
+  const int columns = model.velocity_count();
+  still_ = velocity_ = lower_ = VectorXd::Zero(columns);
+  fixed_ = dry_ = report_.torque = VectorXd::Zero(n);
+  saturated_.resize(static_cast<size_t>(n));
+  sliding_.resize(static_cast<size_t>(n));
+  report_.saturated.reserve(static_cast<size_t>(n));
+  for (int side = 0; side < 2 && model.has_soles(); ++side)
+    report_.soles[side].resize(model.sole(static_cast<Side>(side)).polygon.size());
+  active_.reserve(points_.size());
+  last_active_.reserve(points_.size());
   set_state(model.rest_state());
 }
 
@@ -153,6 +175,7 @@ void Plant::set_state(const RobotState& state) {
   check("a joint rate", largest(state.dtheta));
   time_ = 0;
   state_ = state;
+  update_velocities(*model_, state_, data_);
   for (ContactPoint& point : points_) {
     point.impulse.setZero();
     point.deflection.setZero();
@@ -188,186 +211,282 @@ double Plant::torque_limit(int dof, double rate, double direction) const {
 }
 
 void Plant::collect_contacts(double dt) {
-  active_.clear();
+  for (const Active& active : active_) points_[static_cast<size_t>(active.point)].touching = false;
+  size_t kept = 0;
   const Vector3d normal = ground_.col(0);
-  for (size_t i = 0; i < points_.size(); ++i) {
-    ContactPoint& point = points_[i];
-    const Vector3d offset =
-        data_.position[point.body] + data_.rotation[point.body] * point.position;
-    const Vector3d position = data_.base_position + offset - point.radius * normal;
-    const double gap = normal.dot(position);
-    const double speed = normal.dot(point_velocity(data_, point.body, position));
-    // Gravity and servos can change the approach within the step: keep what may arrive in three.
-    if (gap + 3 * dt * std::min(speed, 0.0) > 1e-3) {
-      point.impulse.setZero();
-      point.deflection.setZero();
-      point.touching = false;
-      continue;
+  // Gravity and servos can change the approach within the step: keep what may arrive in three.
+  auto far = [&](double gap, double speed) { return gap + 3 * dt * std::min(speed, 0.0) > 1e-3; };
+  last_active_.swap(active_);
+  active_.clear();
+  for (const Group& group : groups_) {
+    const Matrix3d& R = data_.rotation[group.body];
+    const Vector3d offset = data_.position[group.body] + R * group.center;
+    const double height = normal.dot(data_.base_position + offset) - group.radius;
+    const double spread = group.radius * data_.angular_velocity[group.body].norm();
+    const Vector3d center = data_.base_position + offset;
+    if (far(height, normal.dot(point_velocity(data_, group.body, center)) - spread)) continue;
+    for (int i = group.first; i < group.first + group.count; ++i) {
+      const ContactPoint& point = points_[static_cast<size_t>(i)];
+      const Vector3d position = data_.base_position +
+                                (data_.position[group.body] + R * point.position) -
+                                point.radius * normal;
+      const double gap = normal.dot(position);
+      if (far(gap, normal.dot(point_velocity(data_, group.body, position)))) continue;
+      active_.push_back({i, gap, position});
     }
-    active_.push_back({static_cast<int>(i), gap, position});
+  }
+  // Points that have left forget their impulse.
+  for (const Active& last : last_active_) {
+    while (kept < active_.size() && active_[kept].point < last.point) ++kept;
+    if (kept < active_.size() && active_[kept].point == last.point) continue;
+    ContactPoint& point = points_[static_cast<size_t>(last.point)];
+    point.impulse.setZero();
+    point.deflection.setZero();
   }
 }
 
-// Fills M_ (with rotors), the momentum and bias terms, contact Jacobians and the fixed part of b.
+void Plant::push(const ExternalWrench& w, double dt) {
+  const int body = w.body < 0 ? model_->trunk_body() : w.body;
+  const Vector3d point = w.body < 0 ? data_.cog : w.point;
+  const Vector3d p = point - data_.base_position;
+  const Vector3d force = dt * w.force, torque = dt * w.torque;
+  momentum_.head<3>() += force;
+  momentum_.segment<3>(3) += p.cross(force) + torque;
+  for (int i = body; i > 0; i = model_->bodies()[i].parent) {
+    const Body& b = model_->bodies()[i];
+    momentum_[6 + b.dof] +=
+        b.ratio * data_.axis[i].dot(b.prismatic
+                                        ? force
+                                        : Vector3d((p - data_.position[i]).cross(force) + torque));
+  }
+  external_.linear += force;
+  external_.angular += torque + (point - data_.cog).cross(force);
+}
+
+// Fills M_ (with rotors), the momentum and bias terms and what the contact solve needs.
 void Plant::assemble(const std::vector<ExternalWrench>& wrenches, double dt) {
-  bias_ = bias_force(*model_, state_, data_);
+  newton_euler(*model_, state_, still_, data_, bias_);
   mass_matrix(*model_, data_, M_);
   M_.diagonal().tail(model_->dof_count()) += rotor_;
-  momentum_ = M_ * state_.velocity() - dt * bias_;
+  velocity_ << state_.base_velocity, state_.base_angular_velocity, state_.dtheta;
+  momentum_.noalias() = M_ * velocity_;
+  momentum_ -= dt * bias_;
   external_.linear = {0, 0, -dt * model_->mass() * kGravity};
   external_.angular.setZero();
-  for (const ExternalWrench& w : wrenches) {
-    const int body = w.body < 0 ? model_->trunk_body() : w.body;
-    const Vector3d point = w.body < 0 ? data_.cog : w.point;
-    const Eigen::MatrixXd J = body_jacobian(*model_, data_, body, point);
-    momentum_ +=
-        dt * (J.topRows<3>().transpose() * w.force + J.bottomRows<3>().transpose() * w.torque);
-    external_.linear += dt * w.force;
-    external_.angular += dt * (w.torque + (point - data_.cog).cross(w.force));
-  }
+  for (const ExternalWrench& w : wrenches) push(w, dt);
   collect_contacts(dt);
-  const int n = static_cast<int>(active_.size());
-  J_.resize(3 * n, model_->velocity_count());
-  problem_.friction.assign(static_cast<size_t>(n), world_.friction);
-  int last_body = -1;
-  Eigen::MatrixXd body_rows;
-  for (int i = 0; i < n; ++i) {
-    const ContactPoint& point = points_[active_[i].point];
-    const Vector3d origin = data_.base_position + data_.position[point.body];
-    if (point.body != last_body) body_rows = body_jacobian(*model_, data_, point.body, origin);
-    last_body = point.body;
-    const Vector3d r = active_[i].position - origin;
-    J_.middleRows<3>(3 * i) =
-        ground_.transpose() * (body_rows.topRows<3>() - skew(r) * body_rows.bottomRows<3>());
+  fill_contact_rows(dt);
+}
+
+void Plant::fill_contact_rows(double dt) {
+  const size_t n = active_.size(), columns = static_cast<size_t>(model_->velocity_count());
+  solver_.resize(static_cast<int>(n));
+  if (J_.size() < n * columns) {
+    J_.resize(n * columns);
+    Y_.resize(n * columns);
+  }
+  compliance_.resize(n);
+  shift_.resize(n);
+  const Matrix3d to_ground = ground_.transpose();
+  for (size_t i = 0; i < n; ++i) {
+    const ContactPoint& point = points_[static_cast<size_t>(active_[i].point)];
+    const double time = dt + point.damping_time, gap = active_[i].gap;
+    compliance_[i] = 1.0 / (dt * point.stiffness * time);
+    shift_[i] << (gap > 0 ? gap / dt : gap / time), point.deflection / time;
+    solver_.impulse().segment<3>(3 * static_cast<int>(i)) = point.impulse;
+    solver_.friction()[i] = world_.friction;
+
+    Vector3d* row = &J_[i * columns];
+    for (int k = factor_.last_place(point.body); k >= 0; k = factor_.parent(k)) row[k].setZero();
+    const Vector3d p = active_[i].position - data_.base_position;
+    for (int k = 0; k < 3; ++k) {
+      row[k] = to_ground.col(k);
+      row[3 + k] = to_ground * Vector3d::Unit(k).cross(p);
+    }
+    for (int b = point.body; b > 0; b = model_->bodies()[b].parent) {
+      const Body& body = model_->bodies()[b];
+      const Vector3d a = body.ratio * data_.axis[b];
+      row[factor_.place_of(6 + body.dof)] +=
+          to_ground * (body.prismatic ? a : Vector3d(a.cross(p - data_.position[b])));
+    }
   }
 }
 
-StepReport Plant::step(const VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
-                       double dt) {
+// A = Y' Y + compliance with Y = L^-T J'; b = Y' lower_ + shift, lower_ = L^-T right side.
+void Plant::fill_delassus() {
+  const size_t n = active_.size(), columns = static_cast<size_t>(model_->velocity_count());
+  auto A = solver_.A();
+  auto b = solver_.b();
+  for (size_t i = 0; i < n; ++i) {
+    const int last = factor_.last_place(points_[static_cast<size_t>(active_[i].point)].body);
+    const Vector3d* row = &J_[i * columns];
+    Vector3d* Yi = &Y_[i * columns];
+    for (int k = last; k >= 0; k = factor_.parent(k)) Yi[k] = row[k];
+    factor_.solve_chain(last, Yi);
+    Vector3d free = shift_[i];
+    for (int k = last; k >= 0; k = factor_.parent(k)) free += lower_[k] * Yi[k];
+    b.segment<3>(3 * static_cast<int>(i)) = free;
+    for (size_t j = 0; j <= i; ++j) {
+      const Vector3d* Yj = &Y_[j * columns];
+      int ki = last;
+      int kj = factor_.last_place(points_[static_cast<size_t>(active_[j].point)].body);
+      while (ki != kj) (ki > kj ? ki : kj) = factor_.parent(ki > kj ? ki : kj);
+      Matrix3d block = Matrix3d::Zero();
+      for (int k = ki; k >= 0; k = factor_.parent(k)) block += Yi[k] * Yj[k].transpose();
+      const int r = 3 * static_cast<int>(i), c = 3 * static_cast<int>(j);
+      A.block<3, 3>(r, c) = block;
+      A.block<3, 3>(c, r) = block.transpose();
+    }
+    A.block<3, 3>(3 * static_cast<int>(i), 3 * static_cast<int>(i)).diagonal().array() +=
+        compliance_[i];
+  }
+}
+
+// velocity_ and contact impulses with the joints' laws as they are decided now.
+void Plant::solve_velocity(const VectorXd& targets, double dt) {
+  const int n = model_->dof_count();
+  system_ = M_;
+  velocity_ = momentum_;
+  for (int j = 0; j < n; ++j) {
+    const double theta = state_.theta[j];
+    double& diagonal = system_(6 + j, 6 + j);
+    double& force = velocity_[6 + j];
+    diagonal += dt * viscous_[j];
+    if (saturated_[j]) {
+      force += dt * fixed_[j];
+    } else {
+      diagonal += dt * kd_[j] + dt * dt * kp_[j];
+      force += dt * kp_[j] * (targets[j] - theta);
+    }
+    if (coulomb_[j] > 0) {
+      if (sliding_[j])
+        force += dt * dry_[j];
+      else
+        diagonal += dt * coulomb_[j] / kStickRate;
+    }
+    const Dof& dof = model_->dofs()[j];
+    if (dof.limited && (theta < dof.lower || theta > dof.upper)) {
+      const double stop = kLimitStiffness * kp_[j];
+      diagonal += dt * dt * stop + dt * kLimitStiffness * kd_[j];
+      force += dt * stop * (std::clamp(theta, dof.lower, dof.upper) - theta);
+    }
+  }
+  const int columns = model_->velocity_count();
+  if (!factor_.factor(system_))
+    fail(ErrorCode::internal, model_->name() + ": the mass matrix is not positive " +
+                                  text::fixed(time_, 3) + " s after the plant's start");
+  for (int k = 0; k < columns; ++k) lower_[k] = velocity_[factor_.column_at(k)];
+  factor_.solve_upper(lower_);
+  if (!active_.empty()) {
+    fill_delassus();
+    const ContactSolution solution = solver_.solve();
+    report_.contact_iterations = solution.iterations;
+    report_.contact_residual = solution.residual;
+    for (size_t i = 0; i < active_.size(); ++i) {
+      const Vector3d l = solver_.impulse().segment<3>(3 * static_cast<int>(i));
+      const Vector3d* Y = &Y_[i * static_cast<size_t>(columns)];
+      const int last = factor_.last_place(points_[static_cast<size_t>(active_[i].point)].body);
+      for (int k = last; k >= 0; k = factor_.parent(k)) lower_[k] += Y[k].dot(l);
+    }
+  }
+  factor_.solve_lower(lower_);
+  for (int k = 0; k < columns; ++k) velocity_[factor_.column_at(k)] = lower_[k];
+}
+
+// Torques at the solved velocity; true when a joint has left its law, so that the step must be
+// solved again.
+bool Plant::limit_torques(const VectorXd& targets, double dt) {
+  bool changed = false;
+  for (int j = 0; j < model_->dof_count(); ++j) {
+    const double rate = velocity_[6 + j];
+    if (!saturated_[j]) {
+      double& torque = report_.torque[j];
+      torque = kp_[j] * (targets[j] - state_.theta[j] - dt * rate) - kd_[j] * rate;
+      const double limit = torque_limit(j, rate, torque > 0 ? 1.0 : -1.0);
+      if (std::abs(torque) > limit) {
+        saturated_[j] = changed = true;
+        fixed_[j] = torque = std::copysign(limit, torque);
+      }
+    }
+    if (coulomb_[j] > 0 && !sliding_[j] && std::abs(rate) > kStickRate) {
+      sliding_[j] = changed = true;
+      dry_[j] = -std::copysign(coulomb_[j], rate);
+    }
+  }
+  return changed;
+}
+
+void Plant::report_contacts(double dt) {
+  const size_t columns = static_cast<size_t>(model_->velocity_count());
+  for (std::vector<SoleForce>& sole : report_.soles)
+    for (SoleForce& cell : sole) cell = SoleForce{};
+  report_.body_contact = false;
+  report_.max_penetration = 0;
+  for (size_t i = 0; i < active_.size(); ++i) {
+    ContactPoint& point = points_[static_cast<size_t>(active_[i].point)];
+    const Vector3d l = solver_.impulse().segment<3>(3 * static_cast<int>(i));
+    const Vector3d force = ground_ * l;
+    external_.linear += force;
+    external_.angular += (active_[i].position - data_.cog).cross(force);
+    Vector3d motion = Vector3d::Zero();
+    for (int k = factor_.last_place(point.body); k >= 0; k = factor_.parent(k))
+      motion += velocity_[factor_.column_at(k)] * J_[i * columns + static_cast<size_t>(k)];
+    point.impulse = l;
+    point.touching = l[0] > 0;
+    point.deflection.setZero();
+    if (point.touching)
+      point.deflection =
+          -l.tail<2>() / (dt * point.stiffness) - point.damping_time * motion.tail<2>();
+    if (point.side >= 0) {
+      SoleForce& cell = report_.soles[point.side][static_cast<size_t>(point.vertex)];
+      cell.position = active_[i].position;
+      cell.force = force / dt;
+      cell.gap = active_[i].gap;
+      report_.max_penetration = std::max(report_.max_penetration, -active_[i].gap);
+    } else if (point.touching) {
+      report_.body_contact = true;
+    }
+  }
+}
+
+const StepReport& Plant::step(const VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
+                              double dt) {
   check_input(targets, wrenches, dt);
   assemble(wrenches, dt);
   Momentum momentum = centroidal_momentum(*model_, data_);
   const int n = model_->dof_count();
-  const int contacts = static_cast<int>(active_.size());
-  VectorXd compliance(3 * contacts), shift(3 * contacts), impulse(3 * contacts);
-  for (int i = 0; i < contacts; ++i) {
-    const ContactPoint& point = points_[active_[i].point];
-    const double gap = active_[i].gap;
-    const double time = dt + point.damping_time;
-    compliance.segment<3>(3 * i).setConstant(1.0 / (dt * point.stiffness * time));
-    shift.segment<3>(3 * i) << (gap > 0 ? gap / dt : gap / time), point.deflection / time;
-    impulse.segment<3>(3 * i) = point.impulse;
-  }
-
-  // fixed[j]: the torque of a joint that no longer follows its servo law in this step.
-  std::vector<bool> saturated(n, false), sliding(n, false);
-  VectorXd fixed = VectorXd::Zero(n), dry = VectorXd::Zero(n), torque(n), velocity;
-  StepReport report;
+  // A joint that has left its servo's law, or sticking friction, keeps to that within the step.
+  std::fill(saturated_.begin(), saturated_.end(), 0);
+  std::fill(sliding_.begin(), sliding_.end(), 0);
+  report_.contact_iterations = 0;
+  report_.contact_residual = 0;
   for (int pass = 0; pass <= 2 * n; ++pass) {
-    Eigen::MatrixXd system = M_;
-    VectorXd right = momentum_;
-    for (int j = 0; j < n; ++j) {
-      const double theta = state_.theta[j];
-      double& diagonal = system(6 + j, 6 + j);
-      double& force = right[6 + j];
-      diagonal += dt * viscous_[j];
-      if (saturated[j]) {
-        force += dt * fixed[j];
-      } else {
-        diagonal += dt * kd_[j] + dt * dt * kp_[j];
-        force += dt * kp_[j] * (targets[j] - theta);
-      }
-      if (coulomb_[j] > 0) {
-        if (sliding[j])
-          force += dt * dry[j];
-        else
-          diagonal += dt * coulomb_[j] / kStickRate;
-      }
-      const Dof& dof = model_->dofs()[j];
-      if (dof.limited && (theta < dof.lower || theta > dof.upper)) {
-        const double stop = kLimitStiffness * kp_[j];
-        diagonal += dt * dt * stop + dt * kLimitStiffness * kd_[j];
-        force += dt * stop * (std::clamp(theta, dof.lower, dof.upper) - theta);
-      }
-    }
-    const Eigen::LLT<Eigen::MatrixXd> factor(system);
-    velocity = factor.solve(right);
-    if (contacts > 0) {
-      MinvJt_ = factor.solve(J_.transpose());
-      problem_.A.noalias() = J_ * MinvJt_;
-      problem_.A.diagonal() += compliance;
-      problem_.b = J_ * velocity + shift;
-      const ContactSolution solution = solve_contacts(problem_, impulse);
-      report.contact_iterations = solution.iterations;
-      report.contact_residual = solution.residual;
-      velocity += MinvJt_ * impulse;
-    }
-    bool changed = false;
-    for (int j = 0; j < n; ++j) {
-      const double rate = velocity[6 + j];
-      if (!saturated[j]) {
-        torque[j] = kp_[j] * (targets[j] - state_.theta[j] - dt * rate) - kd_[j] * rate;
-        const double limit = torque_limit(j, rate, torque[j] > 0 ? 1.0 : -1.0);
-        if (std::abs(torque[j]) > limit) {
-          saturated[j] = changed = true;
-          fixed[j] = torque[j] = std::copysign(limit, torque[j]);
-        }
-      }
-      if (coulomb_[j] > 0 && !sliding[j] && std::abs(rate) > kStickRate) {
-        sliding[j] = changed = true;
-        dry[j] = -std::copysign(coulomb_[j], rate);
-      }
-    }
-    if (!changed) break;
+    solve_velocity(targets, dt);
+    if (!limit_torques(targets, dt)) break;
   }
-
-  report.torque = torque;
-  for (int j = 0; j < n; ++j)
-    if (saturated[j]) report.saturated.push_back(j);
-  for (int side = 0; side < 2 && model_->has_soles(); ++side)
-    report.soles[side].resize(model_->sole(static_cast<Side>(side)).polygon.size());
-  for (ContactPoint& point : points_) point.touching = false;
-  for (int i = 0; i < contacts; ++i) {
-    ContactPoint& point = points_[active_[i].point];
-    const Vector3d l = impulse.segment<3>(3 * i);
-    const Vector3d force = ground_ * l;
-    external_.linear += force;
-    external_.angular += (active_[i].position - data_.cog).cross(force);
-    const Vector2d slip = J_.middleRows<2>(3 * i + 1) * velocity;
-    point.impulse = l;
-    point.touching = l[0] > 0;
-    point.deflection =
-        point.touching ? Vector2d(-l.tail<2>() / (dt * point.stiffness) - point.damping_time * slip)
-                       : Vector2d(Vector2d::Zero());
-    if (point.side >= 0) {
-      SoleForce& sole = report.soles[point.side][point.vertex];
-      sole.position = active_[i].position;
-      sole.force = force / dt;
-      sole.gap = active_[i].gap;
-      report.max_penetration = std::max(report.max_penetration, -active_[i].gap);
-    } else if (point.touching) {
-      report.body_contact = true;
-    }
-  }
-  momentum.linear += external_.linear;
-  momentum.angular += external_.angular;
-  if (!velocity.allFinite())
+  if (!velocity_.allFinite())
     fail(ErrorCode::internal, model_->name() + ": the plant left the finite numbers " +
                                   text::fixed(time_, 3) + " s after its start");
-  advance(velocity, momentum, dt);
+  report_.saturated.clear();
+  for (int j = 0; j < n; ++j)
+    if (saturated_[j]) report_.saturated.push_back(j);
+  report_contacts(dt);
+  momentum.linear += external_.linear;
+  momentum.angular += external_.angular;
+  advance(momentum, dt);
   time_ += dt;
-  return report;
+  return report_;
 }
 
 // Joints move with their solved rates. The base then takes the velocity that gives the robot, in
 // its new posture, exactly the momentum the outside has left it: M(q) v changes along the step, and
 // this is what keeps momentum to rounding in flight and ground forces equal to its rate in contact.
-void Plant::advance(const VectorXd& velocity, const Momentum& momentum, double dt) {
+void Plant::advance(const Momentum& momentum, double dt) {
   const Vector3d cog = data_.cog;
-  state_.dtheta = velocity.tail(model_->dof_count());
+  state_.dtheta = velocity_.tail(model_->dof_count());
   state_.theta += dt * state_.dtheta;
   state_.base.attitude =
-      (exp_rotation(dt * velocity.segment<3>(3)) * state_.base.attitude).normalized();
+      (exp_rotation(dt * velocity_.segment<3>(3)) * state_.base.attitude).normalized();
   state_.base_velocity.setZero();
   state_.base_angular_velocity.setZero();
   update_velocities(*model_, state_, data_);
@@ -377,6 +496,9 @@ void Plant::advance(const VectorXd& velocity, const Momentum& momentum, double d
   state_.base_angular_velocity = w;
   state_.base_velocity = cog_velocity - joints.linear / model_->mass() - w.cross(data_.cog_offset);
   state_.base.position = cog + dt * cog_velocity - data_.cog_offset;
+  data_.base_position = state_.base.position;
+  data_.cog = data_.base_position + data_.cog_offset;
+  add_base_velocity(state_.base_velocity, w, data_);
 }
 
 }  // namespace ayumi

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/dynamics/tree_cholesky.hpp"
 #include "ayumi/pattern/scenario.hpp"
 #include "ayumi/sim/contact_solver.hpp"
 
@@ -44,13 +45,15 @@ class Plant {
   Plant(const RobotModel& model, const ActuatorLimits& limits, const World& world);
 
   const RobotState& state() const { return state_; }
+  const RobotData& data() const { return data_; }  ///< positions and velocities of state()
   /// Puts the robot there and forgets contacts. Throws Error(usage) naming what is not a number.
   void set_state(const RobotState& state);
 
   /// Advances by `dt` [s] with the servo targets held. Throws Error(usage) with place and time for
-  /// input that is not finite or beyond 1e6; the plant is then as before.
-  StepReport step(const Eigen::VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
-                  double dt);
+  /// input that is not finite or beyond 1e6; the plant is then as before. The report holds until
+  /// the next step.
+  const StepReport& step(const Eigen::VectorXd& targets,
+                         const std::vector<ExternalWrench>& wrenches, double dt);
 
  private:
   struct ContactPoint {
@@ -69,7 +72,13 @@ class Plant {
                    double dt) const;
   void collect_contacts(double dt);
   void assemble(const std::vector<ExternalWrench>& wrenches, double dt);
-  void advance(const Eigen::VectorXd& velocity, const Momentum& momentum, double dt);
+  void push(const ExternalWrench& wrench, double dt);
+  void fill_contact_rows(double dt);
+  void fill_delassus();
+  void solve_velocity(const Eigen::VectorXd& targets, double dt);
+  bool limit_torques(const Eigen::VectorXd& targets, double dt);
+  void report_contacts(double dt);
+  void advance(const Momentum& momentum, double dt);
   double torque_limit(int dof, double rate, double direction) const;
 
   const RobotModel* model_;
@@ -80,6 +89,13 @@ class Plant {
   double time_ = 0;  // since set_state() [s]
   RobotData data_;
   std::vector<ContactPoint> points_;
+  /// Consecutive points of one body and a sphere around them, body frame.
+  struct Group {
+    int body = 0, first = 0, count = 0;
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    double radius = 0;
+  };
+  std::vector<Group> groups_;
   Eigen::VectorXd kp_, kd_, rotor_, viscous_, coulomb_;
 
   // Workspace of step().
@@ -88,11 +104,20 @@ class Plant {
     double gap;
     Eigen::Vector3d position;
   };
-  std::vector<Active> active_;
-  Eigen::MatrixXd M_, J_, MinvJt_;
-  Eigen::VectorXd momentum_, bias_;
+  std::vector<Active> active_, last_active_;
+  Eigen::MatrixXd M_, system_;
+  TreeCholesky factor_;
+  /// Contact Jacobians (normal and tangents per velocity column) and L^-T times their transposes,
+  /// [contact * velocity_count + place]; filled along the chain of the contact's body only.
+  std::vector<Eigen::Vector3d> J_, Y_;
+  Eigen::VectorXd momentum_, bias_, still_, velocity_, lower_;
+  std::vector<double> compliance_;
+  std::vector<Eigen::Vector3d> shift_;
+  std::vector<char> saturated_, sliding_;
+  Eigen::VectorXd fixed_, dry_;
+  ContactSolver solver_;
   Momentum external_;  // linear and angular (about the COG) momentum from outside in this step
-  ContactProblem problem_;
+  StepReport report_;
 };
 
 }  // namespace ayumi

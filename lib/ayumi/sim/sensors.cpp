@@ -11,15 +11,18 @@ namespace ayumi {
 using Eigen::Vector3d;
 
 Sensors::Sensors(const RobotModel& model, double dt, bool noise, std::uint64_t seed)
-    : model_(&model), data_(model), dt_(dt), noise_(noise), random_(seed) {
-  if (noise)
-    delay_ = static_cast<size_t>(std::lround(model.description().sensors.latency / dt));
+    : model_(&model),
+      imu_(std::max(0, model.find_link(model.description().sensors.imu_link))),
+      dt_(dt),
+      noise_(noise),
+      random_(seed) {
+  const double latency = noise ? model.description().sensors.latency : 0.0;
+  ring_.resize(static_cast<size_t>(std::lround(latency / dt)) + 1);
 }
 
-Measurement Sensors::measure(const RobotState& state, const StepReport& report) {
+void Sensors::measure(const RobotState& state, const RobotData& truth, const StepReport& report,
+                      Measurement& m) {
   const SensorDescription& s = model_->description().sensors;
-  update_velocities(*model_, state, data_);
-  Measurement m;
   m.theta = state.theta;
   if (noise_ && s.encoder_quantisation) {
     for (int j = 0; j < model_->dof_count(); ++j) {
@@ -28,18 +31,18 @@ Measurement Sensors::measure(const RobotState& state, const StepReport& report) 
     }
   }
   // Rates are differences of successive readings; the integrator makes them exact without noise.
-  m.dtheta = previous_theta_.size() ? Eigen::VectorXd((m.theta - previous_theta_) / dt_)
-                                    : state.dtheta;
+  if (previous_theta_.size())
+    m.dtheta = (m.theta - previous_theta_) / dt_;
+  else
+    m.dtheta = state.dtheta;
   previous_theta_ = m.theta;
 
-  const int imu = std::max(0, model_->find_link(s.imu_link));
-  const Link& link = model_->links()[imu];
-  Eigen::Quaterniond attitude(
-      Eigen::Matrix3d(data_.rotation[link.body] * link.pose.linear()));
+  const Link& link = model_->links()[imu_];
+  Eigen::Quaterniond attitude(Eigen::Matrix3d(truth.rotation[link.body] * link.pose.linear()));
   auto noise = [&](double sigma) {
     return Vector3d(sigma * random_.normal(), sigma * random_.normal(), sigma * random_.normal());
   };
-  Vector3d w = attitude.conjugate() * data_.angular_velocity[link.body];
+  Vector3d w = attitude.conjugate() * truth.angular_velocity[link.body];
   if (noise_) {
     Vector3d error = noise(s.attitude_noise);
     error.head<2>().array() += s.attitude_bias;
@@ -53,8 +56,9 @@ Measurement Sensors::measure(const RobotState& state, const StepReport& report) 
     const std::vector<SoleForce>& cells = report.soles[side];
     const Sole& sole = model_->sole(static_cast<Side>(side));
     const Eigen::Matrix3d to_sole =
-        sole_pose(*model_, data_, static_cast<Side>(side)).linear().transpose();
+        sole_pose(*model_, truth, static_cast<Side>(side)).linear().transpose();
     FootLoad& load = m.feet[side];
+    load.fz = 0;
     Eigen::Vector2d moment = Eigen::Vector2d::Zero();
     for (size_t i = 0; i < cells.size(); ++i) {
       double f = (to_sole * cells[i].force).z();
@@ -68,13 +72,15 @@ Measurement Sensors::measure(const RobotState& state, const StepReport& report) 
     }
     load.cop = load.fz > 0 ? Eigen::Vector2d(moment / load.fz) : sole.center;
   }
-  return m;
 }
 
-Measurement Sensors::read(const RobotState& state, const StepReport& report) {
-  delayed_.push_back(measure(state, report));
-  while (delayed_.size() > delay_ + 1) delayed_.pop_front();
-  return delayed_.front();
+const Measurement& Sensors::read(const RobotState& state, const RobotData& truth,
+                                 const StepReport& report) {
+  newest_ = filled_ ? (newest_ + 1) % ring_.size() : 0;
+  measure(state, truth, report, ring_[newest_]);
+  filled_ = std::min(filled_ + 1, ring_.size());
+  // The oldest kept: the very first one until the latency has passed.
+  return ring_[(newest_ + ring_.size() - (filled_ - 1)) % ring_.size()];
 }
 
 }  // namespace ayumi

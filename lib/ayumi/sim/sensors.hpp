@@ -2,7 +2,7 @@
 // The robot's own sensors on top of the plant's truth: encoders, IMU, and load cells at the corners
 // of each sole, with the sidecar's noise, bias, resolution and latency when asked for.
 
-#include <deque>
+#include <vector>
 
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/math/random.hpp"
@@ -14,20 +14,23 @@ class Sensors {
  public:
   Sensors(const RobotModel& model, double dt, bool noise, std::uint64_t seed);
 
-  /// Reads after a plant step; `feet` soles' forces are those of that step.
-  Measurement read(const RobotState& state, const StepReport& report);
+  /// Reads after a plant step: `truth` holds positions and velocities of `state`, the forces are
+  /// those of that step. The measurement holds until the next reading.
+  const Measurement& read(const RobotState& state, const RobotData& truth,
+                          const StepReport& report);
 
  private:
-  Measurement measure(const RobotState& state, const StepReport& report);
+  void measure(const RobotState& state, const RobotData& truth, const StepReport& report,
+               Measurement& m);
 
   const RobotModel* model_;
-  RobotData data_;
+  int imu_;  // link
   double dt_;
   bool noise_;
   Random random_;
   Eigen::VectorXd previous_theta_;
-  std::deque<Measurement> delayed_;
-  size_t delay_ = 0;  // ticks
+  std::vector<Measurement> ring_;  // latency in ticks + 1 readings, the newest at newest_
+  size_t newest_ = 0, filled_ = 0;
 };
 
 }  // namespace ayumi

@@ -59,7 +59,6 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       sensors_(model, series.dt, options.sensor_noise, options.seed),
       estimator_(model, series.dt),
       judge_(model, limits_, options.world),
-      data_(model),
       lead_(servo_lead(model)) {
   model.sole(Side::left);  // says so when the robot has none
   const std::string& type = options.controller.type;
@@ -106,15 +105,15 @@ std::vector<ExternalWrench> Simulator::wrenches(long step) {
     if (step < push.first || step >= push.first + push.count) continue;
     const Disturbance& d = push.source;
     ExternalWrench w;
-    update_positions(*model_, plant_.state(), data_);
+    const RobotData& data = plant_.data();
     Vector3d direction = d.direction;
     if (push.body >= 0) {
-      const Eigen::Isometry3d pose = link_pose(*model_, data_, push.body);
+      const Eigen::Isometry3d pose = link_pose(*model_, data, push.body);
       w.body = model_->links()[push.body].body;
       w.point = pose * d.point;
       if (d.frame == DisturbanceFrame::link) direction = pose.linear() * direction;
     } else if (d.frame == DisturbanceFrame::link) {
-      direction = data_.rotation[model_->trunk_body()] * direction;
+      direction = data.rotation[model_->trunk_body()] * direction;
     }
     const Vector3d value =
         push.per_step * shape_factor(d, step - push.first, push.count) * direction;
@@ -140,9 +139,9 @@ SimulationSample Simulator::sample(const CommandSample& cmd, const Estimate& est
                                    const ControlOutput& out) {
   SimulationSample s;
   s.state = plant_.state();
-  update_velocities(*model_, s.state, data_);
-  s.cog = data_.cog;
-  s.dcog = data_.dcog;
+  const RobotData& data = plant_.data();
+  s.cog = data.cog;
+  s.dcog = data.dcog;
   s.target = out.target;
   s.torque = report_.torque;
   s.reference_base = out.reference.base;
@@ -167,7 +166,7 @@ SimulationSample Simulator::sample(const CommandSample& cmd, const Estimate& est
     }
     s.foot_cop[side] = vertical > 0
                            ? Vector3d(weighted / vertical)
-                           : sole_pose(*model_, data_, static_cast<Side>(side)).translation();
+                           : sole_pose(*model_, data, static_cast<Side>(side)).translation();
     s.planned_contact[side] = supports(cmd.support, static_cast<Side>(side));
     s.fz += vertical;
     moment += weighted;
@@ -187,7 +186,7 @@ void Simulator::note(double t, const std::vector<std::string>& texts) {
 void Simulator::step_once() {
   const double t = time();
   const CommandSample& cmd = command(tick_);
-  const Measurement measurement = sensors_.read(plant_.state(), report_);
+  const Measurement& measurement = sensors_.read(plant_.state(), plant_.data(), report_);
   estimate_ = estimator_.update(measurement, cmd.feet);
   const ControlOutput out = control(cmd, estimate_);
   last_ = sample(cmd, estimate_, out);

@@ -72,7 +72,6 @@ class Simulator {
   Sensors sensors_;
   Estimator estimator_;
   Judge judge_;
-  RobotData data_;
   Eigen::VectorXd lead_;
   std::vector<Push> pushes_;
   std::optional<Dtad> dtad_;
