@@ -1,0 +1,227 @@
+// Largest survivable impulse by gait phase and direction, beside open loop and the capture bound.
+
+#include "ayumi/study/push.hpp"
+
+#include <chrono>
+#include <memory>
+
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/control/dtad.hpp"
+#include "pattern_input.hpp"
+#include "push_results.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string pattern, out;
+  PatternOptions input;
+  std::vector<std::string> controllers, gains;
+  std::vector<double> times;
+  PushOptions push;
+};
+
+std::vector<ControllerSpec> chosen_controllers(const PatternInput& input, const Options& options) {
+  std::vector<ControllerSpec> specs;
+  for (const std::string& name : options.controllers) {
+    if (name == "none") continue;  // open loop is always there
+    specs.push_back({name, {}});
+    if (name == input.pattern.controller.type) specs.back() = input.pattern.controller;
+  }
+  if (options.controllers.empty())
+    specs = {input.pattern.controller.type == "none" ? ControllerSpec{"dtad", {}}
+                                                     : input.pattern.controller};
+  for (ControllerSpec& spec : specs) {
+    for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
+      spec.gains.emplace_back(name, value);
+    if (spec.type.starts_with("dtad")) dtad_params(input.model, spec);  // says what is wrong
+  }
+  return specs;
+}
+
+PushOptions push_options(const Context& context, const PatternInput& input,
+                         const Options& options) {
+  PushOptions push = options.push;
+  push.threads = context.threads;
+  push.simulate.profile = input.profile;
+  push.simulate.world = input.pattern.world;
+  push.simulate.seed = context.seed;
+  push.controllers = chosen_controllers(input, options);
+  for (double t : options.times)
+    push.phases.push_back({"t = " + text::fixed(t, 3) + " s", t, false});
+  if (push.phases.empty()) push.phases = default_push_phases(input.series);
+  return push;
+}
+
+/// What was asked, for the results file: the same answers only under the same of these.
+Json study_json(const PatternInput& input, const PushOptions& push) {
+  Json controllers = Json::array(), phases = Json::array();
+  for (const ControllerSpec& c : push.controllers) {
+    Json gains = Json::object();
+    for (const auto& [name, value] : c.gains) gains[name] = value;
+    controllers.push_back({{"type", c.type}, {"gains", gains}});
+  }
+  for (const PushPhase& p : push.phases)
+    phases.push_back({{"name", p.name}, {"at_s", p.at}, {"standing", p.standing}});
+  return {{"version", version()},
+          {"pattern_sha256", input.pattern.sha256},
+          {"parameters", input.pattern.parameters},
+          {"robot_sha256", input.model.description().sha256},
+          {"profile", input.profile},
+          {"controllers", controllers},
+          {"phases", phases},
+          {"directions", push.directions},
+          {"step", push.step},
+          {"cap", push.cap},
+          {"replicas", push.replicas},
+          {"duration_s", push.duration},
+          {"noise", push.simulate.sensor_noise},
+          {"substeps", push.simulate.substeps},
+          {"seed", push.simulate.seed}};
+}
+
+std::string padded(const std::string& text, size_t width) {
+  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
+}
+
+std::string ratio_text(const PushLimit& limit, double bound) {
+  return text::fixed(bound > 0 ? limit.impulse / bound : 0, 2) + (limit.capped ? "+" : "");
+}
+
+/// One block per phase: B in N s, then every law in shares of B, one column per direction.
+std::string table(const std::vector<PushCase>& cases, const PushOptions& push) {
+  constexpr size_t kLabel = 16, kCell = 7;
+  const size_t directions = static_cast<size_t>(push.directions);
+  std::string out;
+  for (size_t p = 0; p < cases.size() / directions; ++p) {
+    const PushCase* row = &cases[p * directions];
+    out += row->phase.name + ", push at " + text::fixed(row->phase.at, 3) + " s\n";
+    const auto line = [&](const std::string& label, const auto& cell) {
+      out += "  " + label + std::string(label.size() < kLabel ? kLabel - label.size() : 1, ' ');
+      for (size_t i = 0; i < directions; ++i) out += padded(cell(row[i]), kCell);
+      out += "\n";
+    };
+    line("direction, deg",
+         [](const PushCase& c) { return text::fixed(c.direction * 180 / M_PI, 0); });
+    line("B, N s", [](const PushCase& c) { return text::fixed(c.bound, 2); });
+    line("m w d_edge, N s", [](const PushCase& c) { return text::fixed(c.edge_bound, 2); });
+    line("open loop / B", [](const PushCase& c) { return ratio_text(c.open_loop, c.bound); });
+    for (size_t k = 0; k < push.controllers.size(); ++k)
+      line(push.controllers[k].type + " / B",
+           [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
+  }
+  for (size_t k = 0; k < push.controllers.size(); ++k)
+    for (const bool standing : {false, true}) {
+      const PushSummary s = summarize(cases, k, standing, push.step);
+      if (s.cases == 0) continue;
+      out += std::string(standing ? "standing" : "walking") + ": " + push.controllers[k].type +
+             " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
+             " B; open loop worst " + text::fixed(s.open_worst, 2) + " B, mean " +
+             text::fixed(s.open_mean, 2) + " B; below open loop in " +
+             std::to_string(s.below_open) + " of " + std::to_string(s.cases) + " cases\n";
+    }
+  return out;
+}
+
+Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, double wall) {
+  double worst = 0, sum = 0;
+  int count = 0, runs = 0;
+  for (const PushCase& c : cases) {
+    runs += c.open_loop.runs;
+    for (const PushLimit& limit : c.limits) runs += limit.runs;
+    if (c.limits.empty() || c.bound <= 0) continue;
+    const double ratio = c.limits.front().impulse / c.bound;
+    worst = count == 0 ? ratio : std::min(worst, ratio);
+    sum += ratio;
+    ++count;
+  }
+  return {{"thresholds", thresholds_json(cases, push.controllers)},
+          {"worst_ratio", worst},
+          {"mean_ratio", count ? sum / count : 0.0},
+          {"summary", summaries_json(cases, push)},
+          {"runs", runs},
+          {"wall_s", wall}};
+}
+
+void find_limits(Context& context, const Options& options) {
+  const PatternInput input = load_pattern(context, options.pattern, options.input);
+  const PushOptions push = push_options(context, input, options);
+  const Json study = study_json(input, push);
+  KnownCases known(push.phases.size() * static_cast<size_t>(push.directions));
+  if (!options.out.empty() && !context.force)
+    known = read_results(options.out, study, known.size());
+  const KnownCases before = known;
+  const auto begin = std::chrono::steady_clock::now();
+  const std::vector<PushCase> cases = push_limits(
+      input.model, input.series, push, before,
+      [&](size_t i, const PushCase& found) {
+        known[i] = found;
+        if (!options.out.empty()) write_file(options.out, results_text(study, known));
+      },
+      context.progress());
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  context.print(table(cases, push));
+  if (!options.out.empty()) context.print("  written to " + options.out + "\n");
+  context.print_json(result_json(cases, push, wall).dump(2));
+}
+
+}  // namespace
+
+void add_push(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand(
+      "push", "largest survivable push by gait phase and direction, against the capture bound");
+  command->footer(
+      "Examples:\n  ayumi push patterns/hoap1_walk.json -o out/push.json\n"
+      "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
+      "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
+      "A study that was stopped goes on from its results file. The pattern's own pushes are left "
+      "out.");
+  auto options = std::make_shared<Options>();
+  PushOptions& push = options->push;
+  command->add_option("PATTERN", options->pattern, "pattern file")->required();
+  command
+      ->add_option("-o,--out", options->out,
+                   "results as JSON; goes on with those of the same study")
+      ->type_name("F");
+  add_pattern_options(*command, options->input);
+  command->add_option("--controller", options->controllers, "beside open loop; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_option("--gain", options->gains, "a controller gain, as NAME=VALUE")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--directions", push.directions, "evenly spread, the first forward")
+      ->check(CLI::Range(1, 360).description(""))
+      ->type_name("N");
+  command
+      ->add_option("--times", options->times,
+                   "of the pushes [s], instead of standing and four gait phases")
+      ->type_name("T")
+      ->delimiter(',');
+  command->add_option("--step", push.step, "of the search, as a share of the bound")
+      ->check(CLI::Range(0.005, 1.0).description(""))
+      ->type_name("X");
+  command->add_option("--cap", push.cap, "largest push tried, as a share of the bound")
+      ->check(CLI::Range(0.1, 20.0).description(""))
+      ->type_name("X");
+  command->add_option("--replicas", push.replicas, "small variations of every push, all to survive")
+      ->check(CLI::Range(0, 100).description(""))
+      ->type_name("N");
+  command->add_option("--duration", push.duration, "of a push [s]")
+      ->check(CLI::Range(0.001, 1.0).description(""))
+      ->type_name("T");
+  command->add_flag("--noise", push.simulate.sensor_noise,
+                    "sensor noise, bias and latency of the sidecar");
+  command->add_option("--substeps", push.simulate.substeps, "integrator steps per servo period")
+      ->check(CLI::Range(1, 100).description(""))
+      ->type_name("N");
+  command->callback([options, &context] { find_limits(context, *options); });
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,134 @@
+#include "push_results.hpp"
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+
+namespace ayumi::app {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kFormat = "ayumi.push/1";
+
+Json limit_json(const PushLimit& limit) {
+  return {{"impulse_Ns", limit.impulse},
+          {"capped", limit.capped},
+          {"runs", limit.runs},
+          {"moderate",
+           {{"survives", limit.moderate.survives},
+            {"foot_tilt_s", limit.moderate.foot_tilt},
+            {"recovery_s", limit.moderate.recovery},
+            {"trunk_tilt_rad", limit.moderate.trunk_tilt}}}};
+}
+
+PushLimit limit_from(const Json& json) {
+  const Json& moderate = json.at("moderate");
+  return {.impulse = json.at("impulse_Ns"),
+          .capped = json.at("capped"),
+          .moderate = {.survives = moderate.at("survives"),
+                       .foot_tilt = moderate.at("foot_tilt_s"),
+                       .recovery = moderate.at("recovery_s"),
+                       .trunk_tilt = moderate.at("trunk_tilt_rad")},
+          .runs = json.at("runs")};
+}
+
+Json case_json(const PushCase& push) {
+  Json limits = Json::array();
+  for (const PushLimit& limit : push.limits) limits.push_back(limit_json(limit));
+  return {{"phase", push.phase.name},
+          {"at_s", push.phase.at},
+          {"standing", push.phase.standing},
+          {"direction_rad", push.direction},
+          {"bound_Ns", push.bound},
+          {"edge_bound_Ns", push.edge_bound},
+          {"open_loop", limit_json(push.open_loop)},
+          {"limits", limits}};
+}
+
+PushCase case_from(const Json& json) {
+  PushCase push;
+  push.phase = {json.at("phase"), json.at("at_s"), json.at("standing")};
+  push.direction = json.at("direction_rad");
+  push.bound = json.at("bound_Ns");
+  push.edge_bound = json.at("edge_bound_Ns");
+  push.open_loop = limit_from(json.at("open_loop"));
+  for (const Json& limit : json.at("limits")) push.limits.push_back(limit_from(limit));
+  return push;
+}
+
+Json summary_json(const PushSummary& s) {
+  return {{"cases", s.cases},
+          {"worst_ratio", s.worst},
+          {"mean_ratio", s.mean},
+          {"open_loop_worst_ratio", s.open_worst},
+          {"open_loop_mean_ratio", s.open_mean},
+          {"below_open_loop", s.below_open}};
+}
+
+}  // namespace
+
+Json thresholds_json(const std::vector<PushCase>& cases,
+                     const std::vector<ControllerSpec>& controllers) {
+  Json thresholds = Json::array();
+  for (const PushCase& push : cases)
+    for (size_t c = 0; c < controllers.size(); ++c) {
+      const Json limit = limit_json(push.limits[c]);
+      thresholds.push_back({{"phase", push.phase.name},
+                            {"direction_rad", push.direction},
+                            {"at_s", push.phase.at},
+                            {"controller", controllers[c].type},
+                            {"impulse_Ns", push.limits[c].impulse},
+                            {"open_loop_Ns", push.open_loop.impulse},
+                            {"bound_Ns", push.bound},
+                            {"edge_bound_Ns", push.edge_bound},
+                            {"capped", push.limits[c].capped},
+                            {"moderate", limit.at("moderate")},
+                            {"open_loop_moderate", limit_json(push.open_loop).at("moderate")}});
+    }
+  return thresholds;
+}
+
+Json summaries_json(const std::vector<PushCase>& cases, const PushOptions& options) {
+  Json summaries = Json::array();
+  for (size_t c = 0; c < options.controllers.size(); ++c)
+    summaries.push_back({{"controller", options.controllers[c].type},
+                         {"walking", summary_json(summarize(cases, c, false, options.step))},
+                         {"standing", summary_json(summarize(cases, c, true, options.step))}});
+  return summaries;
+}
+
+std::string results_text(const Json& study, const KnownCases& cases) {
+  Json list = Json::array();
+  for (size_t i = 0; i < cases.size(); ++i) {
+    if (!cases[i]) continue;
+    Json entry = {{"index", i}};
+    entry.update(case_json(*cases[i]));
+    list.push_back(entry);
+  }
+  const Json file = {{"format", kFormat}, {"study", study}, {"cases", list}};
+  return file.dump(1) + "\n";
+}
+
+KnownCases read_results(const std::filesystem::path& file, const Json& study, size_t count) {
+  KnownCases known(count);
+  if (!std::filesystem::exists(file)) return known;
+  const auto refuse = [&](const std::string& why) {
+    fail(ErrorCode::bad_file,
+         file.string() + ": " + why + "; choose another name, or --force to begin again");
+  };
+  const std::string bytes = read_file(file);
+  try {
+    const Json json = Json::parse(bytes);
+    if (json.at("format") != kFormat) refuse("is not a file of push results");
+    if (json.at("study") != study) refuse("holds the results of another study");
+    for (const Json& entry : json.at("cases")) known.at(entry.at("index")) = case_from(entry);
+  } catch (const Json::exception&) {
+    refuse("is not a file of push results");
+  } catch (const std::out_of_range&) {
+    refuse("has a case that this study does not have");
+  }
+  return known;
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,27 @@
+#pragma once
+// Push thresholds as JSON: the --json twin, and the results file a stopped study goes on from.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/study/push.hpp"
+
+namespace ayumi::app {
+
+/// The thresholds, one per case and controller, in the order of the cases.
+nlohmann::ordered_json thresholds_json(const std::vector<PushCase>& cases,
+                                       const std::vector<ControllerSpec>& controllers);
+
+/// Figures by controller, for walking and standing.
+nlohmann::ordered_json summaries_json(const std::vector<PushCase>& cases,
+                                      const PushOptions& options);
+
+/// The finished cases of a study. `study` says what was asked; it must be the same to go on.
+std::string results_text(const nlohmann::ordered_json& study, const KnownCases& cases);
+
+/// Cases of an earlier file; empty when there is none. Throws Error(bad_file) when the file is no
+/// results file or another study's.
+KnownCases read_results(const std::filesystem::path& file, const nlohmann::ordered_json& study,
+                        size_t count);
+
+}  // namespace ayumi::app

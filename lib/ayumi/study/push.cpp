@@ -1,0 +1,392 @@
+// One trunk per (phase, controller) runs up to just before the push and is copied for every push.
+// Level i is an impulse of i step B. A level survives when the nominal push and all its variations
+// do. Search: probe, narrow [survived, failed] to one step, then try levels below it that were left
+// out; a failure there moves the limit down (prefix rule). A run counts as survived as soon as xi
+// has stayed near the plan for a while; at the limit itself the nominal run goes to the end.
+#include "ayumi/study/push.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/control/capture_bound.hpp"
+#include "ayumi/math/random.hpp"
+#include "ayumi/sim/simulator.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kStandingPush = 0.5;   // [s] into the standing series
+constexpr double kStandingAfter = 2.5;  // of standing after the push [s]
+constexpr double kNear = 0.045;         // of xi to the plan, times z: 10 mm at z = 0.22 m
+constexpr double kSurelyAfter = 0.8;    // from the push; earlier nearness says nothing [s]
+constexpr double kNearTime = 0.3;       // xi must stay near this long [s]
+constexpr double kTiltedFoot = 2 * M_PI / 180;
+constexpr long kChunk = 10;  // ticks between looks at a run
+
+/// The first posture of the pattern, held.
+CommandSeries standing_series(const CommandSeries& series) {
+  CommandSeries stand;
+  stand.dt = series.dt;
+  stand.joint_weight = series.joint_weight;
+  const double duration = kStandingPush + kStandingAfter;
+  stand.samples.assign(static_cast<size_t>(std::lround(duration / series.dt)) + 1,
+                       series.samples.front());
+  return stand;
+}
+
+double divergence(const Simulator& run) {
+  const CommandSample& cmd = run.command(run.tick() - 1);
+  const Estimate& e = run.last_estimate();
+  const double w = std::sqrt(kGravity / (cmd.cog.z() - cmd.zmp.z()));
+  return ((e.cog - cmd.cog) + (e.dcog - cmd.dcog) / w).head<2>().norm();
+}
+
+double near_distance(const Simulator& run) {
+  const CommandSample& cmd = run.command(run.tick() - 1);
+  return kNear * (cmd.cog.z() - cmd.zmp.z());
+}
+
+/// A simulator up to just before the pushes of a phase, and whether it stands unpushed.
+struct Trunk {
+  std::optional<Simulator> simulator;
+  bool stands = false;
+};
+
+/// The search of one limit.
+class Search {
+ public:
+  Search(const Trunk& trunk, const PushOptions& options, const PushCase& push, double dt,
+         std::uint64_t seed, const std::atomic<bool>& stop)
+      : trunk_(trunk), options_(options), case_(push), dt_(dt), stop_(stop) {
+    Random random(seed);
+    const auto spread = [&](double width) { return width * (2 * random.uniform() - 1); };
+    variations_.push_back({0, 0});
+    for (int i = 0; i < options.replicas; ++i) {
+      const double time = spread(options.time_spread);
+      variations_.push_back({time, spread(options.direction_spread)});
+    }
+  }
+
+  PushLimit find(int guess);
+
+ private:
+  struct Variation {
+    double time, angle;
+  };
+  Simulator pushed(double impulse, const Variation& variation) const;
+  bool survives(double impulse, const Variation& variation, bool to_the_end);
+  bool survives(int level);
+  PushFigures figures();
+  double impulse(int level) const { return level * options_.step * case_.bound; }
+
+  const Trunk& trunk_;
+  const PushOptions& options_;
+  const PushCase& case_;
+  double dt_;
+  const std::atomic<bool>& stop_;
+  std::vector<Variation> variations_;
+  std::map<int, bool> tried_;
+  int runs_ = 0;
+};
+
+Simulator Search::pushed(double impulse, const Variation& variation) const {
+  Simulator run = *trunk_.simulator;
+  Disturbance d;
+  d.at = case_.phase.at + variation.time;
+  d.duration = options_.duration;
+  const double angle = case_.direction + variation.angle;
+  d.direction = Vector3d(std::cos(angle), std::sin(angle), 0);
+  d.magnitude = impulse;
+  run.set_scenario({d});
+  return run;
+}
+
+bool Search::survives(double impulse, const Variation& variation, bool to_the_end) {
+  Simulator run = pushed(impulse, variation);
+  ++runs_;
+  double near_since = -1;
+  while (run.advance(kChunk) && !run.fell()) {
+    if (stop_) throw Interrupted();
+    if (to_the_end || run.time() < case_.phase.at + kSurelyAfter) continue;
+    if (divergence(run) > near_distance(run))
+      near_since = -1;
+    else if (near_since < 0)
+      near_since = run.time();
+    else if (run.time() - near_since > kNearTime)
+      return true;
+  }
+  return !run.fell() && run.result().outcome == Outcome::stands;
+}
+
+bool Search::survives(int level) {
+  const auto found = tried_.find(level);
+  if (found != tried_.end()) return found->second;
+  bool all = true;
+  for (const Variation& variation : variations_)
+    all = all && survives(impulse(level), variation, false);
+  return tried_[level] = all;
+}
+
+PushFigures Search::figures() {
+  PushFigures f;
+  Simulator run = pushed(options_.reference_level * case_.bound, {0, 0});
+  ++runs_;
+  const double end = case_.phase.at + options_.duration;
+  double far = end;
+  while (run.advance(1) && !run.fell()) {
+    if (stop_) throw Interrupted();
+    if (run.last_estimate().foot_tilt.norm() > kTiltedFoot) f.foot_tilt += dt_;
+    if (divergence(run) > near_distance(run)) far = run.time();
+  }
+  f.survives = !run.fell() && run.result().outcome == Outcome::stands;
+  f.recovery = std::max(0.0, far - end);
+  f.trunk_tilt = run.result().max_tilt;
+  return f;
+}
+
+PushLimit Search::find(int guess) {
+  PushLimit limit;
+  if (!trunk_.stands || case_.bound <= 0) return limit;
+  const int cap = std::max(1, static_cast<int>(std::lround(options_.cap / options_.step)));
+  tried_[0] = true;
+  int probe = guess, stride = 3, verified = 0;
+  for (;;) {
+    int low = 0, high = cap + 1;
+    for (const auto& [level, survived] : tried_) {
+      if (!survived) {
+        high = level;
+        break;
+      }
+      low = level;
+    }
+    if (high - low > 1) {
+      const bool open = high == cap + 1;
+      if (probe <= low || probe >= high)
+        probe = open ? low + stride : low == 0 ? high - stride : (low + high) / 2;
+      if (open || low == 0) stride *= 2;
+      probe = std::clamp(probe, low + 1, high - 1);
+      survives(probe);
+      continue;
+    }
+    limit.impulse = impulse(low);
+    limit.capped = high == cap + 1;
+    if (low == 0) break;
+    if (verified != low) {
+      verified = low;
+      tried_[low] = survives(impulse(low), variations_[0], true);
+      if (!tried_[low]) continue;
+    }
+    bool prefix = true;
+    for (int level : {low - 1, 3 * low / 4, low / 2})
+      prefix = prefix && (level <= 0 || survives(level));
+    if (prefix) break;
+  }
+  limit.moderate = figures();
+  limit.runs = runs_;
+  return limit;
+}
+
+void check_options(const PushOptions& options, const CommandSeries& series) {
+  const auto refuse = [](const std::string& text) { fail(ErrorCode::usage, "push: " + text); };
+  if (series.samples.empty()) fail(ErrorCode::bad_pattern, "the command series is empty");
+  if (options.directions < 1 || options.directions > 360)
+    refuse("directions: " + std::to_string(options.directions) + "; give 1 to 360");
+  if (!(options.step > 0) || !(options.cap >= options.step))
+    refuse("the search step must be positive and not above the cap");
+  if (options.replicas < 0) refuse("replicas must not be negative");
+  for (const PushPhase& phase : options.phases)
+    if (!phase.standing && (phase.at < options.time_spread + series.dt ||
+                            phase.at + options.duration > series.duration()))
+      refuse("time " + text::brief(phase.at) + " s is outside the pattern (" +
+             text::brief(series.duration()) + " s)");
+}
+
+/// Runs job(0..count-1) on threads; the first exception stops all and is thrown on.
+template <typename Job>
+void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
+  std::atomic<size_t> next = 0;
+  std::exception_ptr error;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (size_t i = next++; i < count && !stop; i = next++) {
+      try {
+        job(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!error) error = std::current_exception();
+        stop = true;
+      }
+    }
+  };
+  const size_t all = threads > 0 ? static_cast<size_t>(threads)
+                                 : std::max(1u, std::thread::hardware_concurrency());
+  std::vector<std::thread> pool;
+  for (size_t i = 1; i < std::min(all, count); ++i) pool.emplace_back(work);
+  work();
+  for (std::thread& thread : pool) thread.join();
+  if (error) std::rethrow_exception(error);
+}
+
+/// The whole study: what its jobs share.
+struct Study {
+  const RobotModel& model;
+  const CommandSeries& series;
+  const PushOptions& options;
+  CommandSeries stand;
+  std::vector<PushPhase> phases;
+  std::vector<ControllerSpec> controllers;  // open loop first
+  std::vector<Trunk> trunks;                // phase by phase, controller by controller
+  std::atomic<bool> stop = false;
+
+  const CommandSeries& series_of(const PushPhase& phase) const {
+    return phase.standing ? stand : series;
+  }
+  void grow(size_t i);
+  PushCase plan(size_t i) const;
+  void search(size_t i, PushCase& found);
+};
+
+void Study::grow(size_t i) {
+  const PushPhase& phase = phases[i / controllers.size()];
+  SimulateOptions simulate = options.simulate;
+  simulate.controller = controllers[i % controllers.size()];
+  simulate.scenario.clear();
+  Simulator run(model, series_of(phase), simulate);
+  run.keep_samples(false);
+  const long before = static_cast<long>((phase.at - options.time_spread) / series.dt) - 1;
+  run.advance(before);
+  trunks[i].simulator = run;
+  while (run.advance(kChunk) && !run.fell())
+    if (stop) throw Interrupted();
+  trunks[i].stands = !run.fell() && run.result().outcome == Outcome::stands;
+}
+
+PushCase Study::plan(size_t i) const {
+  const size_t directions = static_cast<size_t>(options.directions);
+  PushCase result;
+  result.phase = phases[i / directions];
+  result.direction = 2 * M_PI * static_cast<double>(i % directions) / options.directions;
+  const Vector2d u(std::cos(result.direction), std::sin(result.direction));
+  const CommandSeries& plan = series_of(result.phase);
+  const long k = std::lround(result.phase.at / plan.dt);
+  result.bound = capture_bound(capture_region(model, plan, k), u);
+  result.edge_bound = edge_bound(model, plan, k, u);
+  return result;
+}
+
+void Study::search(size_t i, PushCase& found) {
+  const size_t phase = i / static_cast<size_t>(options.directions);
+  for (size_t c = 0; c < controllers.size(); ++c) {
+    const Trunk& trunk = trunks[phase * controllers.size() + c];
+    Search search(trunk, options, found, series.dt, options.simulate.seed + 1000 * i, stop);
+    const PushLimit limit =
+        search.find(static_cast<int>(std::lround((c == 0 ? 0.8 : 1.2) / options.step)));
+    if (c == 0)
+      found.open_loop = limit;
+    else
+      found.limits.push_back(limit);
+  }
+}
+
+}  // namespace
+
+std::vector<PushPhase> default_push_phases(const CommandSeries& series) {
+  const std::vector<CommandSample>& s = series.samples;
+  struct Interval {
+    size_t before, begin, end;  // start of the double support before it, its own start and end
+  };
+  std::vector<Interval> steps;
+  for (size_t k = 1; k < s.size(); ++k) {
+    if (s[k].support != Support::left || s[k - 1].support != Support::both) continue;
+    Interval step{k - 1, k, k};
+    while (step.before > 0 && s[step.before - 1].support == Support::both) --step.before;
+    while (step.end < s.size() && s[step.end].support == Support::left) ++step.end;
+    steps.push_back(step);
+  }
+  std::vector<PushPhase> phases = {{"standing", kStandingPush, true}};
+  if (steps.empty()) {
+    const double middle = series.dt * std::floor(static_cast<double>(s.size() - 1) / 2);
+    phases.push_back({"middle", middle, false});
+    return phases;
+  }
+  const Interval& step = steps[steps.size() / 2];
+  const auto time = [&](size_t from, size_t to, double share) {
+    return series.dt *
+           std::round(static_cast<double>(from) + share * static_cast<double>(to - from));
+  };
+  phases.push_back({"mid double support", time(step.before, step.begin, 0.5), false});
+  phases.push_back({"single support 11 %", time(step.begin, step.end, 0.11), false});
+  phases.push_back({"single support 44 %", time(step.begin, step.end, 0.44), false});
+  phases.push_back({"single support 78 %", time(step.begin, step.end, 0.78), false});
+  return phases;
+}
+
+std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& series,
+                                  const PushOptions& options, const KnownCases& known,
+                                  const PushCaseDone& done, const Progress& progress) {
+  check_options(options, series);
+  Study study{model, series, options, standing_series(series), options.phases, {{"none", {}}}, {}};
+  if (study.phases.empty()) study.phases = default_push_phases(series);
+  for (const ControllerSpec& c : options.controllers) study.controllers.push_back(c);
+  const size_t count = study.phases.size() * static_cast<size_t>(options.directions);
+  const bool all_known =
+      known.size() == count &&
+      std::all_of(known.begin(), known.end(), [](const auto& c) { return c.has_value(); });
+  std::mutex mutex;
+  size_t finished = 0;
+  const auto tell = [&](const std::string& what) {
+    report(progress, {"push", static_cast<double>(finished) / static_cast<double>(count), what});
+  };
+  if (!all_known) {
+    study.trunks.resize(study.phases.size() * study.controllers.size());
+    in_parallel(study.trunks.size(), options.threads, study.stop, [&](size_t i) {
+      study.grow(i);
+      const std::lock_guard lock(mutex);
+      tell("up to the pushes");
+    });
+  }
+  std::vector<PushCase> cases(count);
+  in_parallel(count, options.threads, study.stop, [&](size_t i) {
+    const bool have = i < known.size() && known[i];
+    cases[i] = have ? *known[i] : study.plan(i);
+    if (!have) study.search(i, cases[i]);
+    const std::lock_guard lock(mutex);
+    ++finished;
+    if (!have && done) done(i, cases[i]);
+    tell(std::to_string(finished) + " of " + std::to_string(count) + " cases");
+  });
+  return cases;
+}
+
+PushSummary summarize(const std::vector<PushCase>& cases, size_t c, bool standing, double step) {
+  PushSummary s;
+  s.worst = s.open_worst = std::numeric_limits<double>::infinity();
+  for (const PushCase& push : cases) {
+    if (push.phase.standing != standing || push.bound <= 0) continue;
+    const double ratio = push.limits.at(c).impulse / push.bound;
+    const double open = push.open_loop.impulse / push.bound;
+    s.worst = std::min(s.worst, ratio);
+    s.open_worst = std::min(s.open_worst, open);
+    s.mean += ratio;
+    s.open_mean += open;
+    s.below_open += ratio < open - 1.001 * step;
+    ++s.cases;
+  }
+  if (s.cases == 0) return {};
+  s.mean /= s.cases;
+  s.open_mean /= s.cases;
+  return s;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,125 @@
+// The search of push limits on a small study: two directions, coarse steps.
+#include "ayumi/study/push.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+
+namespace ayumi {
+namespace {
+
+struct Stand {
+  RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  CommandSeries series = sample(model, stand_pattern(model, 1.0));
+  PushOptions options;
+  Stand() {
+    options.phases = {{"standing", 0.5, true}};
+    options.controllers = {{"dtad", {}}};
+    options.directions = 2;
+    options.step = 0.4;
+    options.cap = 1.6;
+    options.replicas = 1;
+    options.threads = 1;
+  }
+};
+
+bool same(const PushCase& a, const PushCase& b) {
+  return a.direction == b.direction && a.bound == b.bound &&
+         a.open_loop.impulse == b.open_loop.impulse && a.open_loop.runs == b.open_loop.runs &&
+         a.limits[0].impulse == b.limits[0].impulse &&
+         a.limits[0].moderate.recovery == b.limits[0].moderate.recovery;
+}
+
+TEST(Push, LimitsAreLevelsAroundTheBoundAndDoNotDependOnThreads) {
+  Stand stand;
+  const std::vector<PushCase> one = push_limits(stand.model, stand.series, stand.options);
+  ASSERT_EQ(one.size(), 2u);
+  for (const PushCase& c : one) {
+    const double level = c.bound * stand.options.step;
+    EXPECT_NEAR(c.bound, c.edge_bound, 1e-6 * c.bound);
+    const double steps = c.limits[0].impulse / level;
+    EXPECT_NEAR(steps, std::round(steps), 1e-9);
+    // A pendulum's bound is met within a step by a robot that stands on stiff legs.
+    EXPECT_GE(c.limits[0].impulse, 0.79 * c.bound);
+    EXPECT_LE(c.limits[0].impulse, 1.21 * c.bound);
+    EXPECT_TRUE(c.limits[0].moderate.survives);
+    EXPECT_FALSE(c.limits[0].capped);
+  }
+  stand.options.threads = 3;
+  int told = 0;
+  const std::vector<PushCase> three =
+      push_limits(stand.model, stand.series, stand.options, {}, [&](size_t i, const PushCase& c) {
+        ++told;
+        EXPECT_TRUE(same(c, one[i]));
+      });
+  EXPECT_EQ(told, 2);
+  EXPECT_TRUE(same(one[1], three[1]));
+}
+
+TEST(Push, GoesOnFromKnownCases) {
+  Stand stand;
+  PushCase known;
+  known.bound = 7;
+  known.limits.resize(1);
+  known.limits[0].impulse = 3.5;
+  std::vector<size_t> worked;
+  const std::vector<PushCase> cases =
+      push_limits(stand.model, stand.series, stand.options, {known, std::nullopt},
+                  [&](size_t i, const PushCase&) { worked.push_back(i); });
+  EXPECT_EQ(worked, std::vector<size_t>{1});
+  EXPECT_EQ(cases[0].bound, 7);
+  EXPECT_GT(cases[1].limits[0].impulse, 0);
+}
+
+TEST(Push, DefaultPhasesAreThoseOfAMiddleStepOnTheLeftFoot) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const WalkParameters walk{.steps = 4};
+  const CommandSeries series = sample(model, walk_pattern(model, walk));
+  const std::vector<PushPhase> phases = default_push_phases(series);
+  ASSERT_EQ(phases.size(), 5u);
+  EXPECT_TRUE(phases[0].standing);
+  const auto support = [&](const PushPhase& p) {
+    return series.samples[static_cast<size_t>(std::lround(p.at / series.dt))].support;
+  };
+  EXPECT_EQ(support(phases[1]), Support::both);
+  for (int i = 2; i < 5; ++i) EXPECT_EQ(support(phases[i]), Support::left) << i;
+  const double single = (1 - walk.double_support) * walk.period;
+  EXPECT_NEAR(phases[4].at - phases[2].at, 0.67 * single, 0.003);
+  EXPECT_NEAR(phases[2].at - phases[1].at, 0.11 * single + 0.5 * walk.double_support * walk.period,
+              0.003);
+}
+
+TEST(Push, SummaryOfKnownNumbers) {
+  PushCase a, b, standing;
+  a.bound = 2, a.open_loop.impulse = 1, a.limits.resize(1), a.limits[0].impulse = 2.4;
+  b.bound = 1, b.open_loop.impulse = 0.7, b.limits.resize(1), b.limits[0].impulse = 0.6;
+  standing = b;
+  standing.phase.standing = true;
+  const PushSummary s = summarize({a, b, standing}, 0, false, 0.06);
+  EXPECT_EQ(s.cases, 2);
+  EXPECT_DOUBLE_EQ(s.worst, 0.6);
+  EXPECT_DOUBLE_EQ(s.mean, 0.9);
+  EXPECT_DOUBLE_EQ(s.open_worst, 0.5);
+  EXPECT_DOUBLE_EQ(s.open_mean, 0.6);
+  EXPECT_EQ(s.below_open, 1);
+  EXPECT_EQ(summarize({a, b}, 0, false, 0.2).below_open, 0);
+}
+
+TEST(Push, RefusesTimesOutsideThePattern) {
+  Stand stand;
+  stand.options.phases = {{"late", 5.0, false}};
+  try {
+    push_limits(stand.model, stand.series, stand.options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("time 5 s is outside the pattern (1 s)"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace ayumi
