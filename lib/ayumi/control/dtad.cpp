@@ -48,8 +48,8 @@ VectorXd servo_lead(const RobotModel& model) {
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   DtadParams p;
   const std::map<std::string, double*> fields = {
-      {"q", &p.q},         {"ka", &p.ka},           {"ks", &p.ks},   {"kd", &p.kd},
-      {"tau_z", &p.tau_z}, {"margin", &p.margin},   {"kz", &p.kz},   {"dz", &p.dz},
+      {"q", &p.q},         {"ka", &p.ka},           {"ks", &p.ks},      {"kd", &p.kd},
+      {"tau_z", &p.tau_z}, {"margin", &p.margin},   {"kz", &p.kz},      {"dz", &p.dz},
       {"kaz", &p.kaz},     {"washout", &p.washout}, {"ankle", &p.ankle}};
   std::vector<std::string> names = {"k", "d"};
   for (const auto& [name, field] : fields) names.push_back(name);
@@ -65,8 +65,8 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
       *found->second = value;
     else
       fail(ErrorCode::usage, where + ": dtad has no gain '" + name + "'" +
-                                 text::suggestion(name, names) + " (known: " +
-                                 text::join(names, ", ") + ")");
+                                 text::suggestion(name, names) +
+                                 " (known: " + text::join(names, ", ") + ")");
   };
   for (const auto& [name, value] : model.description().control.dtad)
     set(name, value, model.name() + " sidecar");
@@ -80,8 +80,8 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   if (p.k && q_given)
     fail(ErrorCode::usage, "controller gains: q sets K and D; give q, or k and d, not both");
   if (p.k && (*p.k <= 1 || *p.d <= 0))
-    fail(ErrorCode::usage, "controller gains: k = " + text::brief(*p.k) + ", d = " +
-                               text::brief(*p.d) +
+    fail(ErrorCode::usage, "controller gains: k = " + text::brief(*p.k) +
+                               ", d = " + text::brief(*p.d) +
                                " never bring the COG back; (18)(19) need K > 1 and D > 0");
   if (!p.k && p.q <= 0)
     fail(ErrorCode::usage, "controller gains: q must be positive (K = 1 + q must exceed 1)");
@@ -146,21 +146,26 @@ CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& e
       if (offset_.norm() > limit) offset_ *= limit / offset_.norm();
     }
   }
-  const Vector3d pull = p.ks * p.ks * w * w * (command.cog - data_.cog) +
-                        2 * p.kd * w * (command.dcog - dcog_);
+  const Vector3d pull =
+      p.ks * p.ks * w * w * (command.cog - data_.cog) + 2 * p.kd * w * (command.dcog - dcog_);
   ref.ddcog = command.ddcog + pull;
   ref.ddcog.head<2>() += p.ka * w2 * gap;
   if (estimate.contact) ref.ddcog.z() += p.kaz * (ref.fz - fz_filtered_) / m;
   return ref;
 }
 
-// A foot that has tipped is turned back flat by the two joints nearest to it.
-VectorXd Dtad::ankle_offsets(const Estimate& estimate) const {
+// A foot that has tipped is turned back flat by the two joints nearest to it. A tilt that lasts is
+// the ground's (or the sensor's) and is forgotten like a lasting offset of the ZMP: levelling a
+// foot that lies flat on a slope would lean the body downhill.
+VectorXd Dtad::ankle_offsets(const Estimate& estimate, double omega) {
+  if (params_.washout > 0)
+    slope_ += std::min(1.0, dt_ * omega / params_.washout) * (estimate.foot_tilt - slope_);
+  const Vector3d tilt = estimate.foot_tilt - slope_;
   VectorXd offsets = VectorXd::Zero(model_->dof_count());
   const std::vector<int>& leg = model_->leg(estimate.stance);
   for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i) {
     const int body = model_->dofs()[leg[i]].body;
-    offsets[leg[i]] = -params_.ankle * data_.axis[body].dot(estimate.foot_tilt);
+    offsets[leg[i]] = -params_.ankle * data_.axis[body].dot(tilt);
   }
   return offsets;
 }
@@ -184,15 +189,15 @@ ControlOutput Dtad::update(const CommandSample& command, const CommandSample& ne
   if (dcog_.norm() > speed) dcog_ *= speed / dcog_.norm();
   ref.dcog = dcog_;
 
-  const Resolution resolution = resolve(*model_, limits_, reference_, data_, anchor_, dcog_,
-                                        command, next, dt_, weight_);
+  const Resolution resolution =
+      resolve(*model_, limits_, reference_, data_, anchor_, dcog_, command, next, dt_, weight_);
   if (resolution.scale < 1)
     out.notes.push_back("speed limit of " + model_->dofs()[resolution.limiting_dof].name +
                         " slows the reference");
   for (int j : resolution.held)
     out.notes.push_back("position limit holds " + model_->dofs()[j].name);
 
-  const VectorXd offsets = ankle_offsets(estimate);
+  const VectorXd offsets = ankle_offsets(estimate, w);
   reference_.dtheta = resolution.dtheta;
   reference_.theta += dt_ * resolution.dtheta;
   out.reference = reference_;

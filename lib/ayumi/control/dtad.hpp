@@ -62,7 +62,7 @@ class Dtad {
 
  private:
   CogReference cog_reference(const CommandSample& command, const Estimate& estimate);
-  Eigen::VectorXd ankle_offsets(const Estimate& estimate) const;
+  Eigen::VectorXd ankle_offsets(const Estimate& estimate, double omega);
 
   const RobotModel* model_;
   ActuatorLimits limits_;
@@ -76,6 +76,7 @@ class Dtad {
   Eigen::Vector2d zmp_filtered_ = Eigen::Vector2d::Zero();   // z-hat [m]
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();         // washed-out offset z-hat_d [m]
   double fz_filtered_ = 0;                                   // [N]
+  Eigen::Vector3d slope_ = Eigen::Vector3d::Zero();  // lasting tilt of the stance foot [rad]
 };
 
 /// Time by which a servo target must lead so that the joint does not lag: kd / kp of each joint [s].

@@ -15,17 +15,19 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kFallTilt = 0.8;           // [rad]
-constexpr double kFallHeightShare = 0.6;    // of the commanded COG height
-constexpr double kRestTilt = 0.2;           // [rad]
-constexpr double kRestError = 0.09;         // times z
-constexpr double kRestSpeed = 0.054;        // times omega z
-constexpr double kTouchShare = 0.05;        // of the weight: a foot is on the ground
-constexpr double kMinFlightOfFoot = 0.03;   // off the ground before a touchdown counts [s]
+constexpr double kFallTilt = 0.8;          // [rad]
+constexpr double kFallHeightShare = 0.6;   // of the commanded COG height
+constexpr double kRestTilt = 0.2;          // [rad]
+constexpr double kRestError = 0.09;        // times z
+constexpr double kRestSpeed = 0.054;       // times omega z
+constexpr double kTouchShare = 0.05;       // of the weight: a foot is on the ground
+constexpr double kMinFlightOfFoot = 0.03;  // off the ground before a touchdown counts [s]
 
-/// Horizontal rigid motion that takes the planned soles onto the real ones: mean place and heading.
+/// Rigid motion that takes the planned soles onto the real ones and the level ground of the plan
+/// onto the real one: mean place, heading, slope. On a slope the feet lie in it, and the plan with
+/// them.
 Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
-                         const CommandSample& command) {
+                         const CommandSample& command, const Vector3d& normal) {
   Vector3d plan = Vector3d::Zero(), real = Vector3d::Zero();
   double sine = 0, cosine = 0;
   int count = 0;
@@ -41,8 +43,8 @@ Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
     ++count;
   }
   Isometry3d turn = Isometry3d::Identity();
-  turn.linear() =
-      Eigen::AngleAxisd(std::atan2(sine, cosine), Vector3d::UnitZ()).toRotationMatrix();
+  turn.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal).toRotationMatrix() *
+                  Eigen::AngleAxisd(std::atan2(sine, cosine), Vector3d::UnitZ()).toRotationMatrix();
   turn.translation() = real / count - turn.linear() * plan / count;
   return turn;
 }
@@ -51,9 +53,12 @@ Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
 
 const char* name_of(Outcome outcome) {
   switch (outcome) {
-    case Outcome::stands: return "stands";
-    case Outcome::unsettled: return "unsettled";
-    case Outcome::fell: return "fell";
+    case Outcome::stands:
+      return "stands";
+    case Outcome::unsettled:
+      return "unsettled";
+    case Outcome::fell:
+      return "fell";
   }
   return "";
 }
@@ -139,7 +144,7 @@ SimulationResult Judge::conclude(const CommandSample& command, const RobotState&
   update_velocities(*model_, state, data_);
   r.zmp_tracking_rms =
       zmp_count_ > 0 ? std::sqrt(zmp_square_sum_ / static_cast<double>(zmp_count_)) : 0.0;
-  const Vector3d cog = plan_to_world(*model_, data_, command).inverse() * data_.cog;
+  const Vector3d cog = plan_to_world(*model_, data_, command, normal_).inverse() * data_.cog;
   r.final_cog_error = (cog - command.cog).head<2>().norm();
   r.final_speed = data_.dcog.norm();
   if (r.fell_at >= 0) {
