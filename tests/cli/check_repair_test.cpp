@@ -99,14 +99,15 @@ TEST_F(CheckRepair, AZmpOutsideIsFoundAndRepaired) {
 }
 
 TEST_F(CheckRepair, WhatCannotBeRepairedWritesNothing) {
-  // The end posture itself is out of limits, and a repair keeps the ends.
+  // The first posture itself is out of limits, and a repair keeps it.
   plant("bad.json", R"({ "t": 0, "zmp": "center" })",
         R"({ "t": 0, "zmp": "center", "posture": { "l_elbow": -95 } })");
   const Output failed = ayumi({"repair", "bad.json", "-o", "out.json", "--json"});
   EXPECT_EQ(failed.exit_code, 4) << failed.out << failed.err;
   const Json json = Json::parse(failed.out);
   EXPECT_NE(json["status"], "repaired");
-  EXPECT_FALSE(json["reasons"].empty());
+  ASSERT_FALSE(json["reasons"].empty());
+  EXPECT_NE(std::string(json["reasons"][0]).find("l_elbow"), std::string::npos);
   EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.json"});
 }
 

@@ -58,7 +58,8 @@ TEST(WithCorrection, ReplacesAnOlderOne) {
 TEST(WithCorrection, ReplacesOneInTheMiddle) {
   const std::string text = with_correction(
       R"({"format":"ayumi.pattern/1","correction":{"begin":0,"spacing":1,"columns":[],)"
-      R"("coefficients":[]},"robot":"hoap1","phases":[{"until":1,"support":"both"}]})",
+      R"("coefficients":[]},"robot":"hoap1","phases":[{"until":1,"support":"both"}],)"
+      R"("keyframes":[{"t":0,"zmp":"center"}]})",
       small_track(0.125));
   const Pattern pattern = read_text(text);
   EXPECT_EQ(pattern.correction->coefficients(3, 6), 0.125);

@@ -185,23 +185,42 @@ class Repair {
     }
     // COG, ZMP and f_z of the full model: what is left is wrong with the motion itself.
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
+    if (wrong_at_an_end()) return result_;
     double pad = kPad;
-    for (int round = 0; round < kRounds && !result_.check.consistent; ++round) {
+    int unsolved = 0;
+    // Wider windows help once against a program without a solution; twice was never seen to.
+    for (int round = 0; round < kRounds && !result_.check.consistent && unsolved < 2; ++round) {
       const auto now = result_.check.findings;
       findings_.insert(findings_.end(), now.begin(), now.end());
       spec_.windows = windows_around(findings_, pad);
-      const NlpStatus status = solve_round(round);
+      last_status_ = solve_round(round);
+      if (last_status_ != NlpStatus::solved) ++unsolved;
       pad *= 2;
       spec_.zmp_margin += kRoundMargin;
       spec_.joint_margin += 5e-4;
       spec_.watched_share *= 0.5;
-      last_status_ = status;
     }
     conclude();
     return result_;
   }
 
  private:
+  // The first and last posture stay: no correction reaches what is wrong there.
+  bool wrong_at_an_end() {
+    for (const Finding& f : result_.check.findings) {
+      const bool begins = f.begin < spec_.spacing;
+      const bool ends = f.end > series_.duration() - spec_.spacing;
+      // The window of a mean torque says nothing of the posture at its end.
+      const bool mean = f.kind == "continuous_torque";
+      if (f.severity != Severity::error || mean || !(begins || ends)) continue;
+      result_.status = RepairStatus::infeasible;
+      result_.reasons.push_back(
+          std::string("a repair keeps the motion's ") + (begins ? "first" : "last") +
+          " posture, and that is where it is wrong; change it by hand: " + in_words(f));
+    }
+    return !result_.reasons.empty();
+  }
+
   void take(const CorrectionTrack& track) {
     result_.correction = trimmed(track);
     result_.series = apply_correction(model_, series_, result_.correction);
