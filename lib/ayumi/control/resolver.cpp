@@ -24,6 +24,14 @@ Vector3d rotation_between(const Matrix3d& from, const Matrix3d& to) {
   return log_rotation(Eigen::Quaterniond(Matrix3d(to * from.transpose())));
 }
 
+/// Rows of a floating Jacobian per joint rate while the base moves with them: [B C] [base; 1].
+template <typename Rows>
+MatrixXd anchored(const Rows& rows, const Eigen::Matrix<double, 6, Eigen::Dynamic>& base) {
+  MatrixXd result = rows.rightCols(base.cols());
+  result.noalias() += rows.template leftCols<6>().lazyProduct(base);
+  return result;
+}
+
 }  // namespace
 
 Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
@@ -34,7 +42,8 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
   const int n = model.dof_count();
   const Side free = other(anchor);
   const int a = static_cast<int>(anchor), f = static_cast<int>(free);
-  const MatrixXd map = anchored_velocity_map(model, data, anchor);
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> base =
+      anchored_velocity_map(model, data, anchor).topRows<6>();
 
   // Motion of the planned anchor, as the rigid motion it gives to the whole robot.
   const Vector3d anchor_velocity =
@@ -47,12 +56,12 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
 
   MatrixXd J(12, n);
   VectorXd u(12);
-  J.topRows<3>() = cog_jacobian_floating(model, data) * map;
+  J.topRows<3>() = anchored(cog_jacobian_floating(model, data), base);
   u.head<3>() = cog_velocity - carried(data.cog);
 
   const Isometry3d foot = sole_pose(model, data, free);
   const MatrixXd foot_rows =
-      body_jacobian(model, data, model.sole(free).body, foot.translation()) * map;
+      anchored(body_jacobian(model, data, model.sole(free).body, foot.translation()), base);
   const double length = options.angular_length;
   J.middleRows<3>(3) = foot_rows.topRows<3>();
   J.middleRows<3>(6) = length * foot_rows.bottomRows<3>();
@@ -60,14 +69,14 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
                     options.foot_rate * (command.feet[f].translation() - foot.translation()) -
                     carried(foot.translation());
   u.segment<3>(6) =
-      length * (rotation_between(command.feet[f].linear(), next.feet[f].linear()) / dt +
-                options.foot_rate * rotation_between(foot.linear(), command.feet[f].linear()) -
-                anchor_rate);
+      length *
+      (rotation_between(command.feet[f].linear(), next.feet[f].linear()) / dt +
+       options.foot_rate * rotation_between(foot.linear(), command.feet[f].linear()) - anchor_rate);
 
   // Trunk: attitude and angular velocity of the commanded posture.
   const int trunk = model.trunk_body();
   const MatrixXd trunk_rows =
-      body_jacobian(model, data, trunk, data.base_position + data.position[trunk]) * map;
+      anchored(body_jacobian(model, data, trunk, data.base_position + data.position[trunk]), base);
   Matrix3d commanded = command.state.base.attitude.toRotationMatrix();
   Vector3d commanded_rate = command.state.base_angular_velocity;
   if (trunk != 0) {
@@ -77,9 +86,8 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
     commanded_rate = planned.angular_velocity[trunk];
   }
   J.bottomRows<3>() = length * trunk_rows.bottomRows<3>();
-  u.tail<3>() =
-      length * (commanded_rate - anchor_rate +
-                options.trunk_rate * rotation_between(data.rotation[trunk], commanded));
+  u.tail<3>() = length * (commanded_rate - anchor_rate +
+                          options.trunk_rate * rotation_between(data.rotation[trunk], commanded));
 
   const VectorXd bias =
       command.state.dtheta + options.posture_rate * (command.state.theta - reference.theta);

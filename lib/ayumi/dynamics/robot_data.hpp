@@ -17,6 +17,16 @@ struct SpatialInertia {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the base origin [kg m^2]
 };
 
+/// Of one body in articulated_body_acceleration(): spatial vectors (linear part first) about the
+/// base origin.
+struct ArticulatedBody {
+  using Vector = Eigen::Matrix<double, 6, 1>;
+  Eigen::Matrix<double, 6, 6> inertia;
+  Vector screw, bias, twist, acceleration, drift;  ///< drift: V x S dq
+  Vector force;                                    ///< U = I S
+  double inverse = 0, drive = 0;                   ///< 1 / S.U, tau - S.bias
+};
+
 struct RobotData {
   explicit RobotData(const RobotModel& model);
 
@@ -38,6 +48,8 @@ struct RobotData {
   std::vector<Eigen::Vector3d> angular_acceleration, acceleration;
   std::vector<Eigen::Vector3d> force, moment;  ///< of each subtree, moment about the base origin
   std::vector<SpatialInertia> composite;       ///< of each subtree
+
+  std::vector<ArticulatedBody> articulated;  ///< sized by its first use
 
   // Constants of the model that save work.
   std::vector<double> subtree_mass;  ///< [kg]

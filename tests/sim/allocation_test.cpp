@@ -1,0 +1,96 @@
+// Once they have met their largest problem, the inner loops allocate nothing: every call of malloc
+// in this program is counted, which operator new and Eigen end in.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "ayumi/control/estimator.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/sensors.hpp"
+
+extern "C" void* __libc_malloc(size_t);
+extern "C" void* __libc_realloc(void*, size_t);
+
+namespace {
+bool counting = false;
+long allocations = 0;
+}  // namespace
+
+extern "C" void* malloc(size_t size) {
+  if (counting) ++allocations;
+  return __libc_malloc(size);
+}
+extern "C" void* realloc(void* p, size_t size) {
+  if (counting) ++allocations;
+  return __libc_realloc(p, size);
+}
+
+namespace ayumi {
+namespace {
+
+using Eigen::VectorXd;
+
+/// Allocations during a call; operator new goes through malloc as well.
+template <typename Call>
+long allocations_of(const Call& call) {
+  allocations = 0;
+  counting = true;
+  call();
+  counting = false;
+  return allocations;
+}
+
+TEST(Allocations, AreCounted) {
+  EXPECT_GE(allocations_of([] { VectorXd::Zero(100).eval(); }), 1);
+  EXPECT_GE(allocations_of([] { ::operator delete(::operator new(100)); }), 1);
+}
+
+TEST(Allocations, PlantSensorsAndEstimatorHaveNoneAfterTheFirstSteps) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  CommandSeries series = sample(model, read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json"));
+  series.samples.resize(3000);
+  const CommandSample& first = series.samples.front();
+  Plant plant(model, model.limits(), World{});
+  Sensors sensors(model, series.dt, true, 1);
+  Estimator estimator(model, series.dt);
+  plant.set_state(first.state);
+  const std::vector<ExternalWrench> push(1, {-1, {}, {1, 0, 0}, {}});
+  const auto step = [&](const CommandSample& s) {
+    const StepReport& report = plant.step(s.state.theta, push, series.dt);
+    estimator.update(sensors.read(plant.state(), plant.data(), report), s.feet);
+  };
+  for (const CommandSample& s : series.samples) step(s);
+  plant.set_state(first.state);
+  EXPECT_EQ(allocations_of([&] {
+              for (const CommandSample& s : series.samples) step(s);
+            }),
+            0);
+}
+
+TEST(Allocations, DynamicsHaveNoneWithTheirWorkspace) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  RobotData data(model);
+  const RobotState state = model.rest_state();
+  const VectorXd zero = VectorXd::Zero(model.velocity_count());
+  VectorXd force = zero;
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(zero.size(), zero.size());
+  TreeCholesky factor(model);
+  EXPECT_EQ(allocations_of([&] {
+              update_velocities(model, state, data);
+              newton_euler(model, state, zero, data, force);
+              mass_matrix(model, data, M);
+              factor.factor(M);
+              factor.solve(force);
+            }),
+            0);
+}
+
+}  // namespace
+}  // namespace ayumi
