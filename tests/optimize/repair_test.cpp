@@ -85,3 +85,29 @@ TEST(Repair, JointComesInsideItsLimit) {
   ASSERT_EQ(r.status, RepairStatus::repaired);
   EXPECT_GE(r.max_joint_change, 0.034);
 }
+
+TEST(Repair, JointBeyondItsLimitToTheEndIsBroughtBackThereToo) {
+  CommandSeries series = good_walk();
+  const RobotModel& model = limited_biped();
+  int arm = -1;
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const auto in = [j](const std::vector<int>& leg) {
+      return std::find(leg.begin(), leg.end(), j) != leg.end();
+    };
+    if (!in(model.leg(Side::left)) && !in(model.leg(Side::right)) && model.dofs()[j].limited)
+      arm = j;
+  }
+  ASSERT_GE(arm, 0);
+  // A slow ramp to 0.05 rad beyond the limit, held to the end.
+  const double over = model.dofs()[arm].upper + 0.05 - series.samples[0].state.theta[arm];
+  const double T = 0.8 * series.duration();
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const double s = std::min(1.0, k * series.dt / T);
+    series.samples[k].state.theta[arm] += over * s * s * s * (10 - 15 * s + 6 * s * s);
+  }
+  complete_series(model, series);
+  const RepairResult r = timed(model, series);
+  ASSERT_EQ(r.status, RepairStatus::repaired);
+  EXPECT_LE(r.series.samples.back().state.theta[arm], model.dofs()[arm].upper);
+  EXPECT_LT(std::abs(r.series.samples.back().state.dtheta[arm]), 1e-6);
+}

@@ -29,12 +29,8 @@ constexpr double kObjectiveScale = 100.0;
 constexpr double kValueGram[] = {2416.0 / 5040, 1191.0 / 5040, 120.0 / 5040, 1.0 / 5040};
 constexpr double kCurvatureGram[] = {8.0 / 3, -1.5, 0, 1.0 / 6};
 
-MatrixXd coefficients(const CorrectionTrack& zero,
-                      const std::vector<std::pair<int, int>>& variables, const VectorXd& x) {
-  MatrixXd result = zero.coefficients;
-  for (size_t i = 0; i < variables.size(); ++i)
-    result(variables[i].first, variables[i].second) = x[static_cast<Eigen::Index>(i)];
-  return result;
+MatrixXd coefficients(const Eigen::MatrixXi& index, const VectorXd& x) {
+  return index.unaryExpr([&x](int variable) { return variable < 0 ? 0.0 : x[variable]; });
 }
 
 }  // namespace
@@ -67,9 +63,27 @@ void CorrectionProblem::place_variables() {
     if (!free) continue;
     for (int j = 0; j < columns; ++j) {
       if (j >= 6 && !spec_.locked.empty() && spec_.locked[j - 6]) continue;
-      index_(i, j) = static_cast<int>(variables_.size());
-      variables_.emplace_back(i, j);
+      index_(i, j) = variable_count_++;
     }
+  }
+  place_end(0, series_.samples.front());
+  place_end(rows - 3, series_.samples.back());
+}
+
+// A joint beyond its limit at an end has to be moved there too: one variable for the three control
+// points of that end, so that the motion still begins or ends at rest.
+void CorrectionProblem::place_end(int first, const CommandSample& sample) {
+  const double time = first == 0 ? 0 : series_.duration();
+  const bool free = std::any_of(spec_.windows.begin(), spec_.windows.end(), [&](const auto& w) {
+    return time >= w.first && time <= w.second;
+  });
+  for (int j = 0; free && j < model_.dof_count(); ++j) {
+    const Dof& dof = model_.dofs()[j];
+    const double margin = model_.description().soft_limit_margin;
+    const double theta = sample.state.theta[j];
+    if (!dof.limited || (theta >= dof.lower + margin && theta <= dof.upper - margin)) continue;
+    if (!spec_.locked.empty() && spec_.locked[j]) continue;
+    index_.block<3, 1>(first, 6 + j).setConstant(variable_count_++);
   }
 }
 
@@ -219,21 +233,22 @@ void CorrectionProblem::place_objective() {
                                         : model_.joint_weight();
   const double h = zero_.spacing, smooth = std::pow(kSmoothTime, 4);
   std::vector<double> values;
-  for (int v = 0; v < variable_count(); ++v) {
-    const auto [point, column] = variables_[v];
-    for (int d = 0; d < 4 && point - d >= 0; ++d) {
-      const int other = index_(point - d, column);
-      if (other < 0) continue;
-      hessian_.add(v, other);
-      values.push_back(kObjectiveScale * weight[column] *
-                       (h * kValueGram[d] + smooth / (h * h * h) * kCurvatureGram[d]));
-    }
-  }
+  for (int point = 0; point < index_.rows(); ++point)
+    for (int column = 0; column < index_.cols(); ++column)
+      for (int d = 0; d < 4 && point - d >= 0; ++d) {
+        const int one = index_(point, column), other = index_(point - d, column);
+        if (one < 0 || other < 0) continue;
+        // Two control points that share a variable meet on the diagonal, where both orders count.
+        const double share = d > 0 && one == other ? 2 : 1;
+        hessian_.add(std::max(one, other), std::min(one, other));
+        values.push_back(share * kObjectiveScale * weight[column] *
+                         (h * kValueGram[d] + smooth / (h * h * h) * kCurvatureGram[d]));
+      }
   hessian_values_ = Eigen::Map<VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 VectorXd CorrectionProblem::constraints(const VectorXd& x) const {
-  const MatrixXd c = coefficients(zero_, variables_, x);
+  const MatrixXd c = coefficients(index_, x);
   VectorXd g(constraint_count());
   RobotData data(model_);
   InstantState state;
@@ -249,7 +264,7 @@ VectorXd CorrectionProblem::constraints(const VectorXd& x) const {
 }
 
 void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) const {
-  const MatrixXd c = coefficients(zero_, variables_, x);
+  const MatrixXd c = coefficients(index_, x);
   RobotData data(model_);
   InstantState state;
   int at = -1;
@@ -309,7 +324,7 @@ Nlp CorrectionProblem::nlp() const {
 
 CorrectionTrack CorrectionProblem::track(const VectorXd& x) const {
   CorrectionTrack track = zero_;
-  track.coefficients = coefficients(zero_, variables_, x);
+  track.coefficients = coefficients(index_, x);
   return track;
 }
 

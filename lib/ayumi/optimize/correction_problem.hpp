@@ -1,7 +1,8 @@
 #pragma once
 // The least correction of a motion as a nonlinear program. Unknowns: the free control points of a
 // uniform cubic B-spline over base position, base rotation vector and joints (CorrectionTrack);
-// the first and last three stay zero, so the motion starts and ends as it did. Objective:
+// the first and last three stay zero, so the motion starts and ends as it did, but for joints that
+// are beyond their limits there. Objective:
 //   1/2 sum_columns w integral (d^2 + tau^4 d''^2) dt,
 // quadratic, by the Gram matrices of the splines. Constraints: correction_constraints.hpp at chosen
 // samples. Hessian: that of the objective (exact for it; the curvature of the constraints, second
@@ -42,7 +43,7 @@ class CorrectionProblem {
   CorrectionProblem(const RobotModel& model, const CommandSeries& series,
                     const CorrectionSpec& spec);
 
-  int variable_count() const { return static_cast<int>(variables_.size()); }
+  int variable_count() const { return variable_count_; }
   int constraint_count() const { return static_cast<int>(lower_.size()); }
   const std::vector<ConstraintBlock>& blocks() const { return blocks_; }
   const std::vector<Instant>& instants() const { return instants_; }
@@ -59,6 +60,7 @@ class CorrectionProblem {
 
  private:
   void place_variables();
+  void place_end(int first, const CommandSample& sample);
   void place_instants(const ContactPlan& plan);
   void place_constraints();
   void place_ground_blocks(int instant, const CommandSample& sample);
@@ -72,9 +74,9 @@ class CorrectionProblem {
   const RobotModel& model_;
   const CommandSeries& series_;
   CorrectionSpec spec_;
-  CorrectionTrack zero_;                        ///< the track with zero coefficients
-  Eigen::MatrixXi index_;                       ///< variable of control point and column, or -1
-  std::vector<std::pair<int, int>> variables_;  ///< control point and column of a variable
+  CorrectionTrack zero_;   ///< the track with zero coefficients
+  Eigen::MatrixXi index_;  ///< variable of control point and column, or -1
+  int variable_count_ = 0;
   std::vector<Instant> instants_;
   std::vector<ConstraintBlock> blocks_;    ///< in order of their instants
   std::vector<std::vector<int>> columns_;  ///< by block

@@ -27,6 +27,7 @@ const char* name_of(RepairStatus status) {
 namespace {
 
 constexpr int kRounds = 5;
+constexpr size_t kReasons = 6;  // told at most
 constexpr double kPad = 0.5;  // free time around a finding, doubled when it is not enough [s]
 constexpr double kMarginBetween = 5e-4;  // of the ZMP, for what happens between constraints [m]
 constexpr double kRoundMargin = 0.001;   // more ZMP margin each round [m]
@@ -253,6 +254,11 @@ class Repair {
       result_.reasons = reasons_;
       for (const Finding& f : result_.check.findings)
         if (f.severity == Severity::error) result_.reasons.push_back(in_words(f));
+      const size_t count = result_.reasons.size();
+      if (count > kReasons) {
+        result_.reasons.resize(kReasons);
+        result_.reasons.push_back(std::to_string(count - kReasons) + " more findings like these");
+      }
     }
     note_changes(model_, series_, result_);
   }

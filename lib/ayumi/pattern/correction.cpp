@@ -3,6 +3,8 @@
 // w' = J r' + exp(r) w  and  dw' = d(J r')/dt + (J r') x exp(r) w + exp(r) dw.
 #include "ayumi/pattern/correction.hpp"
 
+#include <algorithm>
+
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
@@ -69,8 +71,9 @@ SplineWeights correction_weights(const CorrectionTrack& track, double t) {
   SplineWeights weights;
   const auto last = static_cast<int>(track.coefficients.rows()) - 4;
   const double knots = (t - track.begin) / track.spacing;
-  if (last < 0 || !(knots >= 0) || knots > last + 1) return weights;
-  weights.first = std::min(static_cast<int>(knots), last);
+  constexpr double kRounding = 1e-6;  // the track's own end is inside it
+  if (last < 0 || !(knots >= -kRounding) || knots > last + 1 + kRounding) return weights;
+  weights.first = std::clamp(static_cast<int>(knots), 0, last);
   const double u = knots - weights.first, v = 1 - u, h = track.spacing;
   weights.value << v * v * v, 3 * u * u * u - 6 * u * u + 4, 3 * v * v * v - 6 * v * v + 4,
       u * u * u;
