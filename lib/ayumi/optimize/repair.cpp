@@ -206,14 +206,17 @@ class Repair {
   }
 
  private:
-  // The first and last posture stay: no correction reaches what is wrong there.
+  // The first and last posture stay, but for joints beyond their limits (CorrectionProblem moves
+  // those there too): no correction reaches what else is wrong there.
   bool wrong_at_an_end() {
     for (const Finding& f : result_.check.findings) {
       const bool begins = f.begin < spec_.spacing;
       const bool ends = f.end > series_.duration() - spec_.spacing;
       // The window of a mean torque says nothing of the posture at its end.
       const bool mean = f.kind == "continuous_torque";
-      if (f.severity != Severity::error || mean || !(begins || ends)) continue;
+      const int dof = f.kind == "joint_position" ? model_.find_dof(f.where) : -1;
+      const bool movable = dof >= 0 && !spec_.locked[dof];
+      if (f.severity != Severity::error || mean || movable || !(begins || ends)) continue;
       result_.status = RepairStatus::infeasible;
       result_.reasons.push_back(
           std::string("a repair keeps the motion's ") + (begins ? "first" : "last") +
