@@ -1,0 +1,136 @@
+// Deviations from the plan; s = stiffness / (m g z), T = damping / stiffness:
+//   zZ = -s (xr + T dxr - x - T dx),  ddx = w2 (x - zZ)                      body on its ankle
+//   per tick, from measurements n ticks old:
+//   zf += f (zZ - zf),  gap = zf - K x - D dx - zd,  zd += dt w / Tw gap
+//   dxr += dt (ka w2 gap - ks^2 w2 xr - 2 kd w dxr),  xr += dt dxr
+// The body is integrated exactly over a tick; poles are log(eigenvalue) / tick. The measured zZ is
+// that under the target of the tick before it, as in the simulator.
+#include "ayumi/control/gain_design.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+
+namespace ayumi {
+
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+
+namespace {
+
+enum State { kX, kDx, kXr, kDxr, kFiltered, kOffset, kTarget, kFixed };
+
+MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
+  const double w = std::sqrt(kGravity / loop.height), w2 = w * w, dt = loop.tick;
+  const double s = loop.stiffness / (loop.mass * kGravity * loop.height);
+  const double T = loop.damping / loop.stiffness;
+  const double K = p.k ? *p.k : 1 + p.q, D = (p.d ? *p.d : 1 + p.q) / w;
+  const int delay = static_cast<int>(std::lround(loop.delay / dt));
+  const int n = kFixed + 3 * delay;  // and delayed (x, dx, zZ), newest first
+  const auto unit = [&](int i) { return RowVectorXd(RowVectorXd::Unit(n, i)); };
+
+  RowVectorXd x = unit(kX), dx = unit(kDx);
+  RowVectorXd zmp = -s * (unit(kTarget) - x - T * dx);
+  MatrixXd A = MatrixXd::Zero(n, n);
+  if (delay > 0) {
+    A.row(kFixed) = x;
+    A.row(kFixed + 1) = dx;
+    A.row(kFixed + 2) = zmp;
+    for (int i = kFixed + 3; i < n; ++i) A.row(i) = unit(i - 3);
+    x = unit(n - 3);
+    dx = unit(n - 2);
+    zmp = unit(n - 1);
+  }
+  const double filter = 1 - std::exp(-dt * w / p.tau_z);
+  A.row(kFiltered) = unit(kFiltered) + filter * (zmp - unit(kFiltered));
+  const RowVectorXd gap = A.row(kFiltered) - K * x - D * dx - unit(kOffset);
+  A.row(kOffset) = unit(kOffset);
+  if (p.washout > 0) A.row(kOffset) += dt * w / p.washout * gap;
+  // The law uses the gap before the washout of this tick.
+  A.row(kDxr) = unit(kDxr) +
+                dt * (p.ka * w2 * gap - p.ks * p.ks * w2 * unit(kXr) - 2 * p.kd * w * unit(kDxr));
+  A.row(kXr) = unit(kXr) + dt * A.row(kDxr);
+  A.row(kTarget) = A.row(kXr) + T * A.row(kDxr);
+
+  Eigen::Matrix3d body = Eigen::Matrix3d::Zero();  // x, dx, target held
+  body.row(0) << 0, 1, 0;
+  body.row(1) << w2 * (1 - s), -w2 * s * T, w2 * s;
+  const Eigen::Matrix3d over = Eigen::Matrix3d(dt * body).exp();
+  A.row(kX) = over(0, 0) * unit(kX) + over(0, 1) * unit(kDx) + over(0, 2) * A.row(kTarget);
+  A.row(kDx) = over(1, 0) * unit(kX) + over(1, 1) * unit(kDx) + over(1, 2) * A.row(kTarget);
+  return A;
+}
+
+}  // namespace
+
+LoopModel single_support_loop(const RobotModel& model, double height, double tick) {
+  LoopModel loop{.mass = model.mass(), .height = height, .tick = tick};
+  loop.delay = model.description().sensors.latency;
+  for (Side side : {Side::left, Side::right}) {
+    const std::vector<int>& leg = model.leg(side);
+    for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i) {
+      const ServoDescription& servo = model.dofs()[leg[i]].servo;
+      if (servo.kp <= 0)
+        fail(ErrorCode::bad_model, model.name() + ": joint " + model.dofs()[leg[i]].name +
+                                       " has no servo (kp); give it one in the sidecar");
+      if (loop.stiffness > 0 && servo.kp >= loop.stiffness) continue;
+      loop.stiffness = servo.kp;
+      loop.damping = servo.kd;
+    }
+  }
+  return loop;
+}
+
+LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params) {
+  const Eigen::VectorXcd values = tick_matrix(loop, params).eigenvalues();
+  LoopAnalysis analysis;
+  for (const std::complex<double>& value : values)
+    if (std::abs(value) > 1e-9) analysis.poles.push_back(std::log(value) / loop.tick);
+  // Without a washout its state is a constant, not a mode.
+  if (params.washout <= 0)
+    std::erase_if(analysis.poles, [](const auto& pole) { return std::abs(pole) < 1e-6; });
+  std::sort(analysis.poles.begin(), analysis.poles.end(), [](const auto& a, const auto& b) {
+    return a.real() != b.real() ? a.real() > b.real() : a.imag() > b.imag();
+  });
+  analysis.decay = -analysis.poles.front().real();
+  analysis.frequency = std::abs(analysis.poles.front().imag()) / (2 * M_PI);
+  analysis.stable = analysis.decay > 0;
+  return analysis;
+}
+
+DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2, DtadParams params) {
+  const std::complex<double> sum = p1 + p2, product = p1 * p2;
+  if (std::abs(sum.imag()) > 1e-9 || std::abs(product.imag()) > 1e-9)
+    fail(ErrorCode::usage, "poles: two real ones or a conjugate pair");
+  if (p1.real() >= 0 || p2.real() >= 0)
+    fail(ErrorCode::usage, "poles: " + text::brief(std::max(p1.real(), p2.real())) +
+                               " is not left of 0; the COG would never come back");
+  params.k = 1 + product.real();  // ddx = w2 (x - K x - D dx)
+  params.d = -sum.real();
+  return params;
+}
+
+void refuse_unstable(const LoopModel& loop, const DtadParams& params) {
+  const LoopAnalysis analysis = analyze_loop(loop, params);
+  if (analysis.stable) return;
+  DtadParams other = params;
+  double low = 0, high = params.ka;
+  for (int i = 0; i < 40; ++i) {
+    other.ka = (low + high) / 2;
+    (analyze_loop(loop, other).stable ? low : high) = other.ka;
+  }
+  fail(ErrorCode::usage,
+       "controller gains: with ka = " + text::brief(params.ka) +
+           ", tau_z = " + text::brief(params.tau_z) + " and sensors " + text::brief(loop.delay) +
+           " s late the loop grows at " + text::fixed(-analysis.decay, 1) + " /s, " +
+           text::fixed(analysis.frequency, 1) + " Hz; " +
+           (low > 1e-6 ? "ka below " + text::fixed(low, 2) + " would be stable"
+                       : std::string("no ka is stable: the servos are too soft for this robot, or "
+                                     "ks and kd too small")));
+}
+
+}  // namespace ayumi

@@ -1,0 +1,46 @@
+#pragma once
+// Gains from poles, and whether the whole linear loop they close is stable: pendulum on a servo of
+// finite stiffness, filter and washout, sensor delay, control tick. One horizontal axis, feet flat,
+// the ZMP away from the edge. docs/theory.md, "Gain design".
+
+#include <complex>
+#include <vector>
+
+#include "ayumi/control/dtad.hpp"
+
+namespace ayumi {
+
+/// What the gains work on.
+struct LoopModel {
+  double mass = 0;       ///< [kg]
+  double height = 0;     ///< of the COG above the ground [m]
+  double stiffness = 0;  ///< about the ankle that turns the body against the foot [N m/rad]
+  double damping = 0;    ///< likewise [N m s/rad]
+  double tick = 0.001;   ///< of the controller [s]
+  double delay = 0;      ///< of the sensors [s]
+};
+
+/// The softest stance: the robot on one foot, the softer axis of that ankle alone giving way, the
+/// sidecar's sensor latency. Throws Error(bad_model) for a leg without servos.
+LoopModel single_support_loop(const RobotModel& model, double height, double tick);
+
+struct LoopAnalysis {
+  std::vector<std::complex<double>> poles;  ///< continuous equivalents, slowest decay first [1/s]
+  bool stable = false;
+  double decay = 0;      ///< of the slowest mode; negative when it grows [1/s]
+  double frequency = 0;  ///< of that mode [Hz]
+};
+
+/// Poles of the loop under the law of dtad.cpp.
+LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params);
+
+/// K and D (times omega) of (18)(19) that give the COG the poles p1, p2 in units of omega: both
+/// real or a conjugate pair, Re < 0. Throws Error(usage) otherwise.
+DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2,
+                            DtadParams params = {});
+
+/// Throws Error(usage) with the mode that grows and the largest short-term gain that would be
+/// stable.
+void refuse_unstable(const LoopModel& loop, const DtadParams& params);
+
+}  // namespace ayumi

@@ -1,0 +1,124 @@
+// Poles of the loop against closed forms and against stepping the loop in time.
+#include "ayumi/control/gain_design.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/io/robot_file.hpp"
+
+namespace ayumi {
+namespace {
+
+using Complex = std::complex<double>;
+
+const LoopModel kLoop{
+    .mass = 6.5, .height = 0.22, .stiffness = 150, .damping = 3, .tick = 1e-3, .delay = 0.003};
+
+void expect_pole(const LoopAnalysis& analysis, Complex pole, double tolerance) {
+  double nearest = 1e300;
+  for (const Complex& p : analysis.poles) nearest = std::min(nearest, std::abs(p - pole));
+  EXPECT_LT(nearest, tolerance * std::abs(pole)) << pole;
+}
+
+// Without the short-term loop body and reference are alone: two quadratics in s.
+TEST(GainDesign, PolesOfTheSeparateParts) {
+  DtadParams p;
+  p.ka = 0;
+  p.ks = 1.5;
+  p.kd = 2;
+  p.washout = 0;
+  LoopModel loop = kLoop;
+  loop.tick = 1e-5;
+  loop.delay = 0;
+  const LoopAnalysis analysis = analyze_loop(loop, p);
+  const double w = std::sqrt(kGravity / loop.height);
+  const double s = loop.stiffness / (loop.mass * kGravity * loop.height);
+  const double b = w * w * s * loop.damping / loop.stiffness, c = w * w * (s - 1);
+  for (double sign : {-1.0, 1.0}) {
+    expect_pole(analysis, -b / 2 + sign * std::sqrt(Complex(b * b / 4 - c)), 1e-6);
+    expect_pole(analysis, w * (-2.0 + sign * std::sqrt(Complex(4 - 1.5 * 1.5))), 1e-3);
+  }
+  EXPECT_TRUE(analysis.stable);
+}
+
+/// Growth rate of the loop stepped in time, written out once more without matrices [1/s].
+double stepped_growth(const LoopModel& loop, const DtadParams& p, double seconds) {
+  const double w = std::sqrt(kGravity / loop.height), dt = loop.tick;
+  const double s = loop.stiffness / (loop.mass * kGravity * loop.height);
+  const double T = loop.damping / loop.stiffness;
+  double x = 1e-3, v = 0, xr = 0, vr = 0, zf = 0, zd = 0, target = 0;
+  struct Reading {
+    double x, v, z;
+  };
+  std::deque<Reading> late;
+  std::vector<double> size;
+  const int ticks = static_cast<int>(std::lround(seconds / dt));
+  for (int k = 0; k < ticks; ++k) {
+    late.push_back({x, v, -s * (target - x - T * v)});
+    if (late.size() > 1 + static_cast<size_t>(std::lround(loop.delay / dt))) late.pop_front();
+    const Reading m = late.front();
+    zf += (1 - std::exp(-dt * w / p.tau_z)) * (m.z - zf);
+    const double gap = zf - (1 + p.q) * (m.x + m.v / w) - zd;
+    zd += dt * w / p.washout * gap;
+    vr += dt * (p.ka * w * w * gap - p.ks * p.ks * w * w * xr - 2 * p.kd * w * vr);
+    xr += dt * vr;
+    target = xr + T * vr;
+    for (int i = 0; i < 400; ++i) {
+      v += dt / 400 * w * w * (x + s * (target - x - T * v));
+      x += dt / 400 * v;
+    }
+    size.push_back(std::abs(x) + std::abs(v) / w);
+  }
+  // Largest of the last tenth against the largest of the tenth in the middle.
+  const auto largest = [&](double from) {
+    const auto begin = size.begin() + static_cast<long>(from * ticks);
+    return *std::max_element(begin, begin + ticks / 10);
+  };
+  return std::log(largest(0.9) / largest(0.5)) / (0.4 * seconds);
+}
+
+TEST(GainDesign, SlowestModeIsThatOfTheSteppedLoop) {
+  DtadParams p;
+  EXPECT_NEAR(stepped_growth(kLoop, p, 8), -analyze_loop(kLoop, p).decay, 0.05);
+  p.ka = 40;
+  p.tau_z = 0.4;
+  LoopModel late = kLoop;
+  late.delay = 0.015;
+  const LoopAnalysis unstable = analyze_loop(late, p);
+  EXPECT_FALSE(unstable.stable);
+  EXPECT_NEAR(stepped_growth(late, p, 3), -unstable.decay, 0.05 - 0.03 * unstable.decay);
+}
+
+TEST(GainDesign, PolesGiveKAndD) {
+  const DtadParams p = gains_from_poles({-1, 0}, {-0.25, 0});
+  EXPECT_DOUBLE_EQ(*p.k, 1.25);  // 1 + q
+  EXPECT_DOUBLE_EQ(*p.d, 1.25);
+  const DtadParams pair = gains_from_poles({-1, 0.5}, {-1, -0.5});
+  EXPECT_DOUBLE_EQ(*pair.k, 2.25);
+  EXPECT_DOUBLE_EQ(*pair.d, 2);
+  EXPECT_THROW(gains_from_poles({-1, 0}, {0.1, 0}), Error);
+  EXPECT_THROW(gains_from_poles({-1, 0.5}, {-1, 0.5}), Error);
+}
+
+TEST(GainDesign, Hoap1DefaultsAreStableAndTooMuchIsRefused) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const LoopModel loop = single_support_loop(model, 0.22, 0.001);
+  DtadParams p = dtad_params(model, {"dtad", {}});
+  EXPECT_NO_THROW(refuse_unstable(loop, p));
+  p.tau_z = 2;
+  p.ka = 50;
+  try {
+    refuse_unstable(loop, p);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("the loop grows at"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("ka below"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace ayumi
