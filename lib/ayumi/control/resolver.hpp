@@ -11,19 +11,19 @@
 namespace ayumi {
 
 struct ResolverOptions {
-  double posture_rate = 2.0;   ///< pull of the joints towards the commanded posture [1/s]
-  double foot_rate = 20.0;     ///< correction of the free foot [1/s]
-  double trunk_rate = 10.0;    ///< correction of the trunk attitude [1/s]
-  double damping = 1e-5;       ///< of J_U W^-1 J_U', times trace / rows
-  double angular_length = 0.2; ///< that makes angular rows comparable with linear ones [m]
-  double speed_share = 0.98;   ///< of a joint's speed limit that may be used
+  double posture_rate = 2.0;    ///< pull of the joints towards the commanded posture [1/s]
+  double foot_rate = 20.0;      ///< correction of the free foot [1/s]
+  double trunk_rate = 10.0;     ///< correction of the trunk attitude [1/s]
+  double damping = 1e-5;        ///< of J_U W^-1 J_U', times trace / rows
+  double angular_length = 0.2;  ///< that makes angular rows comparable with linear ones [m]
+  double speed_share = 0.98;    ///< of a joint's speed limit that may be used
 };
 
 struct Resolution {
-  Eigen::VectorXd dtheta;           ///< ref joint rates [rad/s]
-  double scale = 1;                 ///< below 1 where a speed limit made the whole motion slower
-  int limiting_dof = -1;            ///< the joint whose speed limit did it
-  std::vector<int> held;            ///< joints held at a position limit
+  Eigen::VectorXd dtheta;  ///< ref joint rates [rad/s]
+  double scale = 1;        ///< below 1 where a speed limit made the whole motion slower
+  int limiting_dof = -1;   ///< the joint whose speed limit did it
+  std::vector<int> held;   ///< joints held at a position limit
 };
 
 /// `reference`: the reference posture anchored on the planned sole of `anchor`; `data` holds its

@@ -8,8 +8,7 @@ ConvexPolygon support_polygon(const RobotModel& model, const std::array<Eigen::I
   for (Side side : {Side::left, Side::right}) {
     if (!supports(support, side)) continue;
     for (const Eigen::Vector2d& p : model.sole(side).polygon)
-      points.push_back(
-          (feet[static_cast<int>(side)] * Eigen::Vector3d(p.x(), p.y(), 0)).head<2>());
+      points.push_back((feet[static_cast<int>(side)] * Eigen::Vector3d(p.x(), p.y(), 0)).head<2>());
   }
   return ConvexPolygon(std::move(points));
 }

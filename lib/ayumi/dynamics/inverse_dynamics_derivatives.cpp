@@ -122,8 +122,7 @@ void inverse_dynamics_derivatives(const RobotModel& model, const RobotState& sta
     const Subtree& t = tree[i];
     const int row = 6 + body.dof;
     // Wrench of the subtree per q_i and per dq_i: what every body above feels.
-    const Vector6d per_q =
-        t.twice_b * psi1[i] + t.inertia * psi2[i] + cross_force(S[i], t.force);
+    const Vector6d per_q = t.twice_b * psi1[i] + t.inertia * psi2[i] + cross_force(S[i], t.force);
     const Vector6d per_dq = t.twice_b * S[i] + 2.0 * t.inertia * psi1[i];
     dq.block<6, 1>(0, row) += per_q;
     dv.block<6, 1>(0, row) += per_dq;
@@ -149,8 +148,8 @@ void inverse_dynamics_derivatives(const RobotModel& model, const RobotState& sta
   }
   for (int k = 0; k < 3; ++k) {
     const Vector3d e = Vector3d::Unit(k);
-    dv.block<6, 1>(0, 3 + k) = tree[0].twice_b.col(3 + k) +
-                               tree[0].inertia * spatial(Vector3d::Zero(), w0.cross(e));
+    dv.block<6, 1>(0, 3 + k) =
+        tree[0].twice_b.col(3 + k) + tree[0].inertia * spatial(Vector3d::Zero(), w0.cross(e));
   }
   const MatrixXd& M = derivatives.acceleration;
   const Vector3d a0 = acceleration.head<3>() + Vector3d(0, 0, kGravity);

@@ -276,8 +276,7 @@ std::string correction_text(const CorrectionTrack& track) {
   Members members;
   members.add("begin", number(track.begin)).add("spacing", number(track.spacing));
   members.add("columns", columns.array());
-  members.add("coefficients",
-              track.coefficients.rows() == 0 ? "[]" : rows.lines('[', ']', "    "));
+  members.add("coefficients", track.coefficients.rows() == 0 ? "[]" : rows.lines('[', ']', "    "));
   return members.lines('{', '}', "  ");
 }
 

@@ -74,9 +74,8 @@ void CorrectionProblem::place_variables() {
 // points of that end, so that the motion still begins or ends at rest.
 void CorrectionProblem::place_end(int first, const CommandSample& sample) {
   const double time = first == 0 ? 0 : series_.duration();
-  const bool free = std::any_of(spec_.windows.begin(), spec_.windows.end(), [&](const auto& w) {
-    return time >= w.first && time <= w.second;
-  });
+  const bool free = std::any_of(spec_.windows.begin(), spec_.windows.end(),
+                                [&](const auto& w) { return time >= w.first && time <= w.second; });
   for (int j = 0; free && j < model_.dof_count(); ++j) {
     const Dof& dof = model_.dofs()[j];
     const double margin = model_.description().soft_limit_margin;

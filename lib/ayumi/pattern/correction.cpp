@@ -4,7 +4,6 @@
 #include "ayumi/pattern/correction.hpp"
 
 #include <algorithm>
-
 #include <cmath>
 
 #include "ayumi/base/error.hpp"

@@ -31,9 +31,10 @@ void main() {
 }
 )";
 
-// Light from the whole sky, brighter from above; the sun; a dull highlight. A face seen from behind,
-// or with its normal turned away, is lit as if it were the front; a normal that is turned away just
-// so, at an outline, stays (turned, it would look down into the dark). Zero normal: an unlit mark.
+// Light from the whole sky, brighter from above; the sun; a dull highlight. A face seen from
+// behind, or with its normal turned away, is lit as if it were the front; a normal that is turned
+// away just so, at an outline, stays (turned, it would look down into the dark). Zero normal: an
+// unlit mark.
 inline constexpr const char* kSolidFragment = R"(
 in vec3 world_position;
 in vec3 world_normal;

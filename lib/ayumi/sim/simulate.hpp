@@ -1,6 +1,6 @@
 #pragma once
-// SimulationLog = simulate(model, command series, controller, scenario): Ayumi's own integrator with
-// servos, sensors and scripted disturbances, the loop closed around `control`.
+// SimulationLog = simulate(model, command series, controller, scenario): Ayumi's own integrator
+// with servos, sensors and scripted disturbances, the loop closed around `control`.
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/model/robot_model.hpp"
@@ -11,13 +11,13 @@ namespace ayumi {
 
 struct SimulateOptions {
   ControllerSpec controller;
-  std::string profile;             ///< actuator profile; "" = default
+  std::string profile;  ///< actuator profile; "" = default
   World world;
   std::vector<Disturbance> scenario;
-  double settle = 1.0;             ///< hold the last command this long after the pattern [s]
-  int substeps = 1;                ///< integrator steps per 1 ms control tick
-  bool true_state = false;         ///< controllers see ground truth instead of sensors
-  bool sensor_noise = false;       ///< the sidecar's noise, bias, latency
+  double settle = 1.0;        ///< hold the last command this long after the pattern [s]
+  int substeps = 1;           ///< integrator steps per 1 ms control tick
+  bool true_state = false;    ///< controllers see ground truth instead of sensors
+  bool sensor_noise = false;  ///< the sidecar's noise, bias, latency
   std::uint64_t seed = 1;
 };
 

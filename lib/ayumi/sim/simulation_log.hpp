@@ -34,17 +34,17 @@ struct SimulationSample {
   double reference_fz = 0;                                  ///< [N]
   std::array<Eigen::Vector3d, 2> foot_force = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   std::array<Eigen::Vector3d, 2> foot_cop = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  std::array<bool, 2> planned_contact = {true, true};       ///< left, right
-  Eigen::Vector3d push_force = Eigen::Vector3d::Zero();     ///< external force, world [N]
-  Eigen::Vector3d push_point = Eigen::Vector3d::Zero();     ///< where it acts, world [m]
-  double contact_residual = 0;                              ///< of the contact solve [m/s]
+  std::array<bool, 2> planned_contact = {true, true};    ///< left, right
+  Eigen::Vector3d push_force = Eigen::Vector3d::Zero();  ///< external force, world [N]
+  Eigen::Vector3d push_point = Eigen::Vector3d::Zero();  ///< where it acts, world [m]
+  double contact_residual = 0;                           ///< of the contact solve [m/s]
   int contact_iterations = 0;
 };
 
 struct SimulationEvent {
-  double t = 0;       ///< [s]
-  std::string kind;   ///< "push", "touchdown", "fell", "saturation", "support", ...
-  std::string text;   ///< in words
+  double t = 0;      ///< [s]
+  std::string kind;  ///< "push", "touchdown", "fell", "saturation", "support", ...
+  std::string text;  ///< in words
 };
 
 enum class Outcome { stands, unsettled, fell };
@@ -53,27 +53,27 @@ const char* name_of(Outcome outcome);
 /// Verdict and figures of a run, as docs/cli.md defines them.
 struct SimulationResult {
   Outcome outcome = Outcome::unsettled;
-  double fell_at = -1;             ///< [s]; negative when it did not fall
-  double max_tilt = 0;             ///< of the trunk [rad]
-  double final_cog_error = 0;      ///< foot-relative, horizontal [m]
-  double final_speed = 0;          ///< of the COG [m/s]
-  double zmp_tracking_rms = 0;     ///< measured ZMP against reference ZMP [m]
-  double flight = 0;               ///< time without ground contact [s]
-  double apex = 0;                 ///< of the COG above its command [m]
-  int steps = 0;                   ///< touchdowns
-  double max_speed_ratio = 0;      ///< joint speed / limit
-  double max_torque_ratio = 0;     ///< applied torque / limit
-  double max_penetration = 0;      ///< of a sole vertex [m]
-  double max_slip = 0;             ///< of a supporting foot while planned in contact [m]
+  double fell_at = -1;          ///< [s]; negative when it did not fall
+  double max_tilt = 0;          ///< of the trunk [rad]
+  double final_cog_error = 0;   ///< foot-relative, horizontal [m]
+  double final_speed = 0;       ///< of the COG [m/s]
+  double zmp_tracking_rms = 0;  ///< measured ZMP against reference ZMP [m]
+  double flight = 0;            ///< time without ground contact [s]
+  double apex = 0;              ///< of the COG above its command [m]
+  int steps = 0;                ///< touchdowns
+  double max_speed_ratio = 0;   ///< joint speed / limit
+  double max_torque_ratio = 0;  ///< applied torque / limit
+  double max_penetration = 0;   ///< of a sole vertex [m]
+  double max_slip = 0;          ///< of a supporting foot while planned in contact [m]
 };
 
 struct SimulationLog {
-  double dt = 0.001;                    ///< control tick [s]
-  std::string controller;               ///< "none", "dtad", ...
+  double dt = 0.001;       ///< control tick [s]
+  std::string controller;  ///< "none", "dtad", ...
   Provenance provenance;
   World world;
   std::vector<Disturbance> scenario;
-  std::vector<std::string> joints;      ///< order of all joint vectors
+  std::vector<std::string> joints;        ///< order of all joint vectors
   std::vector<SimulationSample> samples;  ///< sample k at k dt
   std::vector<SimulationEvent> events;
   SimulationResult result;

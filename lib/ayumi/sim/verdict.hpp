@@ -34,8 +34,8 @@ class Judge {
   std::vector<SimulationEvent> events_;
   double zmp_square_sum_ = 0;
   long zmp_count_ = 0;
-  double airborne_ = 0;                              // of the present flight [s]
-  std::array<double, 2> unloaded_ = {0, 0};          // time each foot has been off the ground [s]
+  double airborne_ = 0;                      // of the present flight [s]
+  std::array<double, 2> unloaded_ = {0, 0};  // time each foot has been off the ground [s]
   std::array<bool, 2> in_stance_ = {false, false};
   std::array<Eigen::Vector3d, 2> stance_start_;
 };
