@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/pattern/sample.hpp"
 
@@ -31,10 +32,29 @@ std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
   return pairs;
 }
 
+namespace {
+
+// A push on a link that is not there is told before anything is computed.
+void check_scenario(const Pattern& pattern, const RobotModel& model) {
+  for (size_t i = 0; i < pattern.scenario.size(); ++i) {
+    const std::string& on = pattern.scenario[i].on;
+    if (on == "cog" || model.find_link(on) >= 0) continue;
+    std::vector<std::string> names = {"cog"};
+    for (const Link& link : model.links()) names.push_back(link.name);
+    fail(ErrorCode::bad_pattern, pattern.file + ": /scenario/" + std::to_string(i) +
+                                     "/on: " + model.name() + " has no link '" + on + "'" +
+                                     text::suggestion(on, names) +
+                                     "; 'cog' pushes through the centre of gravity");
+  }
+}
+
+}  // namespace
+
 PatternInput load_pattern(const Context& context, const std::filesystem::path& file,
                           const PatternOptions& options, bool meshes) {
   Pattern pattern = read_pattern(file, read_pairs(options.set, "--set"));
   RobotModel model = load_robot(robot_of(pattern), robot_search(context), {.meshes = meshes});
+  check_scenario(pattern, model);
   const std::string wanted = options.profile.empty() ? pattern.profile : options.profile;
   const std::string profile = model.limits(wanted).name;
   CommandSeries series =

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "ayumi/base/error.hpp"
@@ -87,7 +88,7 @@ class Workshop {
 class MainJob {
  public:
   MainJob(Context& context, const Options& options, const fs::path& target)
-      : context_(context), options_(options), target_(target), workshop_(target) {}
+      : context_(context), options_(options), target_(target) {}
 
   /// Returns whether check and closed loop are good.
   bool run(const std::string& pattern);
@@ -109,7 +110,8 @@ class MainJob {
   Context& context_;
   const Options& options_;
   fs::path target_;
-  Workshop workshop_;
+  std::optional<Workshop>
+      workshop_;  // opened when the input has been read: bad input leaves nothing
   RunFolder folder_;
   Json summary_ = Json::object();
 };
@@ -157,7 +159,7 @@ void MainJob::repair_pattern(PatternInput& input) {
   if (result.status != RepairStatus::repaired) return;
   input.series = result.series;
   input.pattern.correction = result.correction;
-  write_pattern(workshop_.file("repaired.json"), input.pattern);
+  write_pattern(workshop_->file("repaired.json"), input.pattern);
   note_file("repaired.json");
 }
 
@@ -182,7 +184,7 @@ bool MainJob::simulate(const PatternInput& input) {
 void MainJob::export_tables(const PatternInput& input) {
   const ReferenceTrajectory reference = extract_reference(input.model, folder_.logs["closed_loop"]);
   folder_.reference = reference;
-  write_file(workshop_.file("reference.json"), reference_json(reference));
+  write_file(workshop_->file("reference.json"), reference_json(reference));
   note_file("reference.json");
   SafetyOptions safety;
   safety.profile = input.profile;
@@ -191,7 +193,7 @@ void MainJob::export_tables(const PatternInput& input) {
   std::string text = "reference.csv, reference.json";
   const bool encoders = input.model.dofs().front().encoder.device > 0;
   if (encoders && safe.report.safe) {
-    write_file(workshop_.file("hoap.csv"), hoap_csv(input.model, safe.table, safety));
+    write_file(workshop_->file("hoap.csv"), hoap_csv(input.model, safe.table, safety));
     note_file("hoap.csv");
     text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) + " rows, largest step " +
             text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit)";
@@ -208,14 +210,14 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
   LociOptions loci;
   loci.title = title;
   for (const char* name : {"loci.svg", "loci.png"}) {
-    write_loci(runs, workshop_.file(name), loci);
+    write_loci(runs, workshop_->file(name), loci);
     note_file(name);
   }
   StripOptions strip;
   strip.clip.title = title;
   strip.clip.picture.width = 640;
   strip.clip.picture.height = 480;
-  write_strip(model, closed, workshop_.file("snapshots.png"), strip);
+  write_strip(model, closed, workshop_->file("snapshots.png"), strip);
   note_file("snapshots.png");
   say("plot", "loci.svg, loci.png, snapshots.png");
   ClipOptions clip;
@@ -224,7 +226,7 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
                      ? context_.threads
                      : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const ClipSummary summary =
-      write_clip(model, closed, workshop_.file("clip.mp4"), clip, context_.progress());
+      write_clip(model, closed, workshop_->file("clip.mp4"), clip, context_.progress());
   note_file("clip.mp4");
   say("preview", "clip.mp4 (" + std::to_string(summary.frames) + " frames, " +
                      std::to_string(summary.width) + "x" + std::to_string(summary.height) + ")");
@@ -233,12 +235,13 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
 bool MainJob::run(const std::string& file) {
   context_.print(file + "\n");
   PatternInput input = load_pattern(context_, file, options_.input, options_.pictures);
+  workshop_.emplace(target_);
   const bool consistent = check(input);
   const bool stands = simulate(input);
   export_tables(input);
   if (options_.pictures) draw(input.model, input.pattern.name);
-  write_run(workshop_.folder(), folder_);
-  workshop_.deliver();
+  write_run(workshop_->folder(), folder_);
+  workshop_->deliver();
   std::vector<std::string> files = folder_.files;
   for (const char* name : {"run.json", "log_open_loop.bin", "log_closed_loop.bin", "reference.csv"})
     files.emplace_back(name);
