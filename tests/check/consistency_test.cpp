@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <set>
 
 #include "ayumi/base/error.hpp"
@@ -311,12 +310,7 @@ TEST(Consistency, TolerancesAreCheckedByName) {
   EXPECT_EQ(finding_kinds().size(), 21u);
 }
 
-TEST(Consistency, SameReportTwiceAndFast) {
-  const auto begin = std::chrono::steady_clock::now();
-  const std::string first = print(check_consistency(limited_biped(), good_walk()));
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  EXPECT_EQ(first, print(check_consistency(limited_biped(), good_walk())));
-  EXPECT_LT(seconds, 0.1 * good_walk().duration());
-  RecordProperty("seconds", std::to_string(seconds));
+TEST(Consistency, SameReportTwice) {
+  EXPECT_EQ(print(check_consistency(limited_biped(), good_walk())),
+            print(check_consistency(limited_biped(), good_walk())));
 }

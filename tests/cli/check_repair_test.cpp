@@ -99,10 +99,11 @@ TEST_F(CheckRepair, AZmpOutsideIsFoundAndRepaired) {
 }
 
 TEST_F(CheckRepair, WhatCannotBeRepairedWritesNothing) {
-  // The first posture itself is out of limits, and a repair keeps it.
+  // The first posture itself is out of limits, and the joint may not move.
   plant("bad.json", R"({ "t": 0, "zmp": "center" })",
         R"({ "t": 0, "zmp": "center", "posture": { "l_elbow": -95 } })");
-  const Output failed = ayumi({"repair", "bad.json", "-o", "out.json", "--json"});
+  const Output failed =
+      ayumi({"repair", "bad.json", "-o", "out.json", "--lock", "l_elbow", "--json"});
   EXPECT_EQ(failed.exit_code, 4) << failed.out << failed.err;
   const Json json = Json::parse(failed.out);
   EXPECT_NE(json["status"], "repaired");
