@@ -18,6 +18,7 @@
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "commands.hpp"
+#include "pattern_input.hpp"
 
 namespace ayumi::app {
 
@@ -36,20 +37,6 @@ struct Source {
   RobotModel model;
   ReferenceTrajectory reference;
 };
-
-std::map<std::string, double> set_parameters(const std::vector<std::string>& words) {
-  std::map<std::string, double> values;
-  for (const std::string& word : words) {
-    const size_t equals = word.find('=');
-    char* end = nullptr;
-    const std::string number = equals == std::string::npos ? "" : word.substr(equals + 1);
-    const double value = std::strtod(number.c_str(), &end);
-    if (number.empty() || *end != '\0')
-      fail(ErrorCode::usage, "--set " + word + ": NAME=NUMBER is needed");
-    values[word.substr(0, equals)] = value;
-  }
-  return values;
-}
 
 // What the servos receive when a pattern is replayed as it is.
 ReferenceTrajectory open_loop_reference(const RobotModel& model, const CommandSeries& series) {
@@ -71,7 +58,7 @@ ReferenceTrajectory open_loop_reference(const RobotModel& model, const CommandSe
 }
 
 Source source_of_pattern(const ExportOptions& options, const Context& context) {
-  const Pattern pattern = read_pattern(options.input, set_parameters(options.set));
+  const Pattern pattern = read_pattern(options.input, read_pairs(options.set, "--set"));
   Source source{
       load_robot(options.robot.empty() ? robot_of(pattern) : options.robot, robot_search(context)),
       {}};
