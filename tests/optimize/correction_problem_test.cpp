@@ -41,7 +41,7 @@ void expect_jacobian(const CorrectionProblem& problem, const VectorXd& x, double
   std::map<std::string, double> worst;
   std::map<std::string, int> rows;
   for (int v = 0; v < problem.variable_count(); ++v) {
-    const double h = 1e-5;
+    const double h = 1e-6;
     VectorXd up = x, down = x;
     up[v] += h;
     down[v] -= h;
@@ -125,7 +125,14 @@ TEST(CorrectionProblem, JacobianAgainstDifferences) {
   CorrectionSpec spec;
   spec.windows = {{0.75, 1.35}};
   spec.watched_share = 0;
+  spec.friction = 0.1;
   const CorrectionProblem problem(limited_biped(), series, spec);
+  for (const auto group : {ConstraintGroup::support, ConstraintGroup::friction,
+                           ConstraintGroup::yaw, ConstraintGroup::stance, ConstraintGroup::swing,
+                           ConstraintGroup::position, ConstraintGroup::speed})
+    EXPECT_TRUE(std::any_of(problem.blocks().begin(), problem.blocks().end(),
+                            [&](const ConstraintBlock& b) { return b.group == group; }))
+        << name_of(group);
   ASSERT_GT(problem.variable_count(), 100);
   Random random(3);
   expect_jacobian(problem, VectorXd::Zero(problem.variable_count()), 1e-6);
@@ -144,7 +151,7 @@ TEST(CorrectionProblem, JacobianInFlightAndOnASlope) {
   spec.friction = 0.01;
   const CorrectionProblem problem(limited_biped(), series, spec);
   Random random(4);
-  expect_jacobian(problem, random.vector(problem.variable_count(), 0.05), 1e-6);
+  expect_jacobian(problem, random.vector(problem.variable_count(), 0.02), 1e-6);
 }
 
 // The constrained support rows are the margin the check prints.
@@ -185,7 +192,7 @@ TEST(CorrectionProblem, ObjectiveIsTheIntegral) {
     const SplineWeights w = correction_weights(track, t);
     const auto rows = track.coefficients.middleRows<4>(w.first);
     const VectorXd d = rows.transpose() * w.value, dd = rows.transpose() * w.acceleration;
-    sum += dt * weight.dot(VectorXd(d.cwiseAbs2() + std::pow(0.05, 4) * dd.cwiseAbs2()));
+    sum += dt * weight.dot(VectorXd(d.cwiseAbs2() + std::pow(0.1, 4) * dd.cwiseAbs2()));
   }
   const Nlp nlp = problem.nlp();
   EXPECT_NEAR(nlp.objective(x), 0.5 * 100 * sum, 1e-4 * nlp.objective(x));

@@ -8,6 +8,7 @@
 #include "ayumi/optimize/correction_constraints.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
@@ -23,7 +24,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 const char* name_of(ConstraintGroup group) {
-  constexpr const char* kNames[] = {"support", "unilateral", "friction", "flight",
+  constexpr const char* kNames[] = {"support", "unilateral", "friction", "flight", "yaw",
                                     "stance",  "swing",      "position", "speed"};
   return kNames[static_cast<int>(group)];
 }
@@ -55,7 +56,31 @@ std::vector<Vector3d> corners(const RobotModel& model, Side side, const Isometry
   return result;
 }
 
-bool of_ground(ConstraintGroup group) { return group <= ConstraintGroup::flight; }
+bool of_ground(ConstraintGroup group) { return group <= ConstraintGroup::yaw; }
+
+// Yaw moment about the ZMP of a plane wrench (f, n): n_z + (n_x f_x + n_y f_y) / f_z.
+double yaw_moment(const Vector6d& w) { return w[5] + (w[3] * w[0] + w[4] * w[1]) / w[2]; }
+
+Eigen::Matrix<double, 1, 6> yaw_gradient(const Vector6d& w) {
+  Eigen::Matrix<double, 1, 6> g;
+  g << w[3], w[4], -(w[3] * w[0] + w[4] * w[1]) / w[2], w[0], w[1], w[2];
+  return g / w[2];
+}
+
+// A ground block by the plane wrench, and its derivative.
+VectorXd ground_values(const ConstraintBlock& block, const Vector6d& w) {
+  if (block.group != ConstraintGroup::yaw) return block.wrench_rows * w;
+  const double most = block.factor * w[2], moment = yaw_moment(w);
+  return block.scale * Eigen::Vector2d(most - moment, most + moment);
+}
+
+MatrixXd ground_gradient(const ConstraintBlock& block, const Vector6d& w) {
+  if (block.group != ConstraintGroup::yaw) return block.wrench_rows;
+  MatrixXd rows(2, 6);
+  rows << -yaw_gradient(w), yaw_gradient(w);
+  rows.col(2).array() += block.factor;
+  return block.scale * rows;
+}
 
 }  // namespace
 
@@ -99,7 +124,7 @@ VectorXd block_values(const RobotModel& model, const ConstraintBlock& block, con
                       const InstantState& state) {
   const RobotState& robot = state.motion.state;
   if (of_ground(block.group))
-    return block.wrench_rows * plane_wrench(instant.plane, robot.base.position, state.wrench);
+    return ground_values(block, plane_wrench(instant.plane, robot.base.position, state.wrench));
   if (block.group == ConstraintGroup::position)
     return VectorXd::Constant(1, robot.theta[block.item]);
   if (block.group == ConstraintGroup::speed)
@@ -128,7 +153,8 @@ std::array<MatrixXd, 3> block_derivatives(const RobotModel& model, const Constra
     Eigen::Matrix<double, 6, 6> P = Eigen::Matrix<double, 6, 6>::Zero();
     P.topLeftCorner<3, 3>() = P.bottomRightCorner<3, 3>() = R;
     P.bottomLeftCorner<3, 3>() = R * skew(arm);
-    const MatrixXd A = block.wrench_rows * P;
+    const Vector6d w = plane_wrench(instant.plane, state.motion.state.base.position, state.wrench);
+    const MatrixXd A = ground_gradient(block, w) * P;
     for (int i = 0; i < 3; ++i) by[i] = A * state.wrench_by[i];
     const Vector3d f = state.wrench.head<3>();
     by[0].leftCols<3>() -= A.rightCols<3>() * skew(f);

@@ -13,15 +13,17 @@
 namespace ayumi {
 
 /// support: f_n (ZMP inside each edge - margin) / (m g) [m]; unilateral: f_n / (m g);
-/// friction: (mu' f_n - f_t in 8 directions) / (m g), mu' the inner octagon of the cone;
-/// flight: ground force / (m g) and moment / (m g) about the planned COG;
-/// stance: sole from its place, position [m] and rotation [rad]; swing: corner heights [m];
-/// position: joint angle [rad]; speed: joint speed / limit.
+/// yaw: (lever f_n -+ yaw moment about the ZMP) / (m g) [m], the lever held as it is in the motion;
+/// friction: (mu f_n - f_t) / (m g) on the sides of a pyramid inside the cone, linear where the
+/// cone itself would ask for its curvature; flight: ground force / (m g) and moment / (m g) about
+/// the planned COG; stance: sole from its place, position [m] and rotation [rad]; swing: corner
+/// heights [m]; position: joint angle [rad]; speed: joint speed / limit.
 enum class ConstraintGroup {
   support,
   unilateral,
   friction,
   flight,
+  yaw,
   stance,
   swing,
   position,
@@ -41,11 +43,12 @@ struct Instant {
 /// Consecutive rows of the constraint vector that belong together.
 struct ConstraintBlock {
   ConstraintGroup group = ConstraintGroup::support;
-  int instant = 0;                                       ///< index of its Instant
-  int item = 0;                                          ///< foot (by Side) or dof
-  int row = 0, rows = 0;                                 ///< first and number
-  double scale = 1;                                      ///< of speed rows: 1 / limit
-  Eigen::Matrix<double, Eigen::Dynamic, 6> wrench_rows;  ///< of ground groups, on plane_wrench
+  int instant = 0;        ///< index of its Instant
+  int item = 0;           ///< foot (by Side) or dof
+  int row = 0, rows = 0;  ///< first and number
+  double scale = 1;       ///< of yaw rows: 1 / (m g); of speed rows: 1 / limit
+  double factor = 0;      ///< of yaw rows: friction times lever [m]
+  Eigen::Matrix<double, Eigen::Dynamic, 6> wrench_rows;  ///< of linear ground groups
 };
 
 /// What the blocks of one instant share.

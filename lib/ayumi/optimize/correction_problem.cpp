@@ -23,14 +23,25 @@ namespace {
 constexpr double kPositionWeight =
     25.0;  // of base position [1/m^2] against joint weight 1 [1/rad^2]
 constexpr double kRotationWeight = 4.0;  // of base rotation
-constexpr double kSmoothTime = 0.05;     // tau [s]
+constexpr double kSmoothTime = 0.1;      // tau [s]
 constexpr double kObjectiveScale = 100.0;
+constexpr int kConeSides = 16;  // of the pyramid inside the friction cone
 
 constexpr double kValueGram[] = {2416.0 / 5040, 1191.0 / 5040, 120.0 / 5040, 1.0 / 5040};
 constexpr double kCurvatureGram[] = {8.0 / 3, -1.5, 0, 1.0 / 6};
 
 MatrixXd coefficients(const Eigen::MatrixXi& index, const VectorXd& x) {
   return index.unaryExpr([&x](int variable) { return variable < 0 ? 0.0 : x[variable]; });
+}
+
+ConstraintBlock block_of(ConstraintGroup group, int instant, int item, int rows, double scale = 1) {
+  ConstraintBlock block;
+  block.group = group;
+  block.instant = instant;
+  block.item = item;
+  block.rows = rows;
+  block.scale = scale;
+  return block;
 }
 
 }  // namespace
@@ -92,12 +103,18 @@ bool CorrectionProblem::free_at(const SplineWeights& weights) const {
   return false;
 }
 
-// Evenly, and at both ends of every contact interval: what must hold changes there.
+// At the knots and between them, for there the acceleration of a cubic spline has its kinks, and at
+// both ends of every contact interval, where what must hold changes.
 void CorrectionProblem::place_instants(const ContactPlan& plan) {
   std::set<int> samples;
   const int count = static_cast<int>(series_.samples.size());
-  const int stride = std::max(1, static_cast<int>(std::lround(spec_.sample_spacing / series_.dt)));
-  for (int k = 0; k < count; k += stride) samples.insert(k);
+  const int places = spec_.instants_per_knot * static_cast<int>(zero_.coefficients.rows() - 3);
+  for (int i = 0; i <= places; ++i) {
+    const double t = i * zero_.spacing / spec_.instants_per_knot;
+    samples.insert(std::min(count - 1, static_cast<int>(std::lround(t / series_.dt))));
+  }
+  for (const double t : spec_.extra)
+    samples.insert(std::clamp(static_cast<int>(std::lround(t / series_.dt)), 0, count - 1));
   for (const auto& intervals : plan.intervals)
     for (const ContactInterval& interval : intervals) {
       samples.insert(interval.first);
@@ -138,29 +155,24 @@ void CorrectionProblem::add_block(ConstraintBlock block, double lower, double up
 
 void CorrectionProblem::place_constraints() {
   for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
-    const Instant& instant = instants_[i];
-    const CommandSample& sample = series_.samples[instant.sample];
-    place_ground_blocks(i, sample);
-    for (int s = 0; s < 2; ++s) {
-      const bool stands = instant.contact[s];
-      ConstraintBlock block{stands ? ConstraintGroup::stance : ConstraintGroup::swing, i, s};
-      block.rows = stands ? 6 : static_cast<int>(model_.sole(static_cast<Side>(s)).polygon.size());
-      add_block(block, stands ? -spec_.sole_position : -spec_.sole_position,
-                stands ? spec_.sole_position : kNoBound);
-      if (!stands) continue;
-      lower_.tail<3>().setConstant(-spec_.sole_angle);
-      upper_.tail<3>().setConstant(spec_.sole_angle);
-    }
-    place_joint_blocks(i, sample);
+    place_ground_blocks(i);
+    place_foot_blocks(i);
+    place_joint_blocks(i);
   }
 }
 
-void CorrectionProblem::place_ground_blocks(int instant, const CommandSample& sample) {
+// What decides whether a limit is near: the motion, and where it has come to.
+std::array<const CommandSample*, 2> CorrectionProblem::watched(int instant) const {
+  const int k = instants_[instant].sample;
+  const CommandSeries& current = spec_.current ? *spec_.current : series_;
+  return {&series_.samples[k], &current.samples[k]};
+}
+
+void CorrectionProblem::place_ground_blocks(int instant) {
   const SupportPlane& plane = instants_[instant].plane;
   const double weight = model_.mass() * kGravity;
   auto add = [&](ConstraintGroup group, const MatrixXd& rows, double lower, double upper) {
-    ConstraintBlock block{group, instant, 0};
-    block.rows = static_cast<int>(rows.rows());
+    ConstraintBlock block = block_of(group, instant, 0, static_cast<int>(rows.rows()));
     block.wrench_rows = rows / weight;
     add_block(std::move(block), lower, upper);
   };
@@ -171,42 +183,89 @@ void CorrectionProblem::place_ground_blocks(int instant, const CommandSample& sa
   MatrixXd rows = support_rows(plane);
   rows.col(2).array() -= spec_.zmp_margin;
   add(ConstraintGroup::support, rows, 0, kNoBound);
-  rows.setZero(1, 6);
-  rows(0, 2) = 1;
-  add(ConstraintGroup::unilateral, rows, spec_.force_share, kNoBound);
+
   RobotData data(model_);
-  const Vector6d base_wrench =
-      inverse_dynamics(model_, sample.state, sample.acceleration, data).head<6>();
-  const GroundUse use = ground_use(
-      plane, plane_wrench(plane, sample.state.base.position, base_wrench), 0.02 * weight);
-  if (use.tangential_force < spec_.watched_share * spec_.friction * use.normal_force) return;
-  rows.setZero(8, 6);
-  for (int i = 0; i < 8; ++i) {
-    rows(i, 0) = -std::cos(i * M_PI / 4);
-    rows(i, 1) = -std::sin(i * M_PI / 4);
-    rows(i, 2) = spec_.friction * std::cos(M_PI / 8);
+  double least_force = weight, most_grip = 0, most_yaw = 0, lever = 0;
+  for (const CommandSample* sample : watched(instant)) {
+    const Vector6d wrench =
+        inverse_dynamics(model_, sample->state, sample->acceleration, data).head<6>();
+    const GroundUse use =
+        ground_use(plane, plane_wrench(plane, sample->state.base.position, wrench), 0.02 * weight);
+    least_force = std::min(least_force, use.normal_force);
+    if (!use.has_zmp) continue;
+    const double grip = spec_.friction * use.normal_force;
+    most_grip = std::max(most_grip, use.tangential_force / grip);
+    const double arm = spec_.friction * yaw_lever(plane.polygon, use.zmp);
+    if (arm > 0) most_yaw = std::max(most_yaw, std::abs(use.yaw_moment) / (arm * use.normal_force));
+    if (arm > 0) lever = arm;  // the last one told: that of the current motion
   }
-  add(ConstraintGroup::friction, rows, 0, kNoBound);
+  if (least_force < 0.5 * weight) {
+    rows.setZero(1, 6);
+    rows(0, 2) = 1;
+    add(ConstraintGroup::unilateral, rows, spec_.force_share, kNoBound);
+  }
+  if (most_grip > spec_.watched_share) {
+    rows.setZero(kConeSides, 6);
+    for (int i = 0; i < kConeSides; ++i) {
+      rows(i, 0) = -std::cos(2 * i * M_PI / kConeSides);
+      rows(i, 1) = -std::sin(2 * i * M_PI / kConeSides);
+      rows(i, 2) = spec_.share * spec_.friction * std::cos(M_PI / kConeSides);
+    }
+    add(ConstraintGroup::friction, rows, 0, kNoBound);
+  }
+  if (lever > 0 && most_yaw > spec_.watched_share) {
+    ConstraintBlock block = block_of(ConstraintGroup::yaw, instant, 0, 2, 1 / weight);
+    block.factor = spec_.share * lever;
+    add_block(std::move(block), 0, kNoBound);
+  }
 }
 
-void CorrectionProblem::place_joint_blocks(int instant, const CommandSample& sample) {
+void CorrectionProblem::place_foot_blocks(int instant) {
+  constexpr double kNearGround = 0.004;  // a swinging sole higher than this is not watched [m]
+  RobotData data(model_);
+  for (Side side : {Side::left, Side::right}) {
+    const int s = static_cast<int>(side);
+    if (instants_[instant].contact[s]) {
+      add_block(block_of(ConstraintGroup::stance, instant, s, 6), -spec_.sole_position,
+                spec_.sole_position);
+      lower_.tail<3>().setConstant(-spec_.sole_angle);
+      upper_.tail<3>().setConstant(spec_.sole_angle);
+      continue;
+    }
+    double lowest = kNearGround;
+    for (const CommandSample* sample : watched(instant)) {
+      update_positions(model_, sample->state, data);
+      const SoleError error = sole_error(model_.sole(side), sole_pose(model_, data, side),
+                                         instants_[instant].ground[s]);
+      lowest = std::min(lowest, error.lowest);
+    }
+    const int corners = static_cast<int>(model_.sole(side).polygon.size());
+    if (lowest < kNearGround)
+      add_block(block_of(ConstraintGroup::swing, instant, s, corners), -spec_.sole_position,
+                kNoBound);
+  }
+}
+
+void CorrectionProblem::place_joint_blocks(int instant) {
   const ActuatorLimits& limits = model_.limits(spec_.profile);
   const double soft = model_.description().soft_limit_margin + spec_.joint_margin;
   for (int i = 0; i < model_.dof_count(); ++i) {
     if (!spec_.locked.empty() && spec_.locked[i]) continue;
     const Dof& dof = model_.dofs()[i];
-    if (dof.limited) {
-      const double lower = dof.lower + soft, upper = dof.upper - soft;
-      const double half = 0.5 * (upper - lower);
-      const double used = std::abs(sample.state.theta[i] - 0.5 * (lower + upper));
-      ConstraintBlock block{ConstraintGroup::position, instant, i, 0, 1};
-      if (used > spec_.watched_share * half) add_block(block, lower, upper);
+    const double lower = dof.lower + soft, upper = dof.upper - soft, most = limits.speed[i];
+    double position = 0, speed = 0;
+    for (const CommandSample* sample : watched(instant)) {
+      const double theta = sample->state.theta[i];
+      if (dof.limited)
+        position =
+            std::max(position, std::abs(theta - 0.5 * (lower + upper)) / (0.5 * (upper - lower)));
+      speed = std::max(speed, std::abs(sample->state.dtheta[i]) / most);
     }
-    const double most = limits.speed[i];
-    if (std::isfinite(most) && std::abs(sample.state.dtheta[i]) > spec_.watched_share * most) {
-      ConstraintBlock block{ConstraintGroup::speed, instant, i, 0, 1, 1 / most};
-      add_block(block, -spec_.speed_share, spec_.speed_share);
-    }
+    if (position > spec_.watched_share)
+      add_block(block_of(ConstraintGroup::position, instant, i, 1), lower, upper);
+    if (speed > spec_.watched_share)
+      add_block(block_of(ConstraintGroup::speed, instant, i, 1, 1 / most), -spec_.share,
+                spec_.share);
   }
 }
 
@@ -293,6 +352,10 @@ void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) con
 Nlp CorrectionProblem::nlp() const {
   Nlp nlp;
   nlp.start = VectorXd::Zero(variable_count());
+  if (spec_.start.rows() == zero_.coefficients.rows())
+    for (Eigen::Index i = 0; i < index_.rows(); ++i)
+      for (Eigen::Index j = 0; j < index_.cols(); ++j)
+        if (index_(i, j) >= 0) nlp.start[index_(i, j)] = spec_.start(i, j);
   nlp.lower = VectorXd::Constant(variable_count(), -kNoBound);
   nlp.upper = VectorXd::Constant(variable_count(), kNoBound);
   nlp.constraint_lower = lower_;

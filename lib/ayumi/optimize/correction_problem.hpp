@@ -22,20 +22,23 @@ namespace ayumi {
 /// What may move and what must hold.
 struct CorrectionSpec {
   double spacing = 0.05;                           ///< of the knots [s]
-  double sample_spacing = 0.025;                   ///< of the constraints [s]
+  int instants_per_knot = 2;                       ///< of the constraints
   std::vector<std::pair<double, double>> windows;  ///< where control points are free [s]
   std::vector<bool> locked;                        ///< by dof; empty: none
   std::string profile;
   double friction = 0.8;
   double zmp_margin = 0.002;    ///< inside the support [m]
   double joint_margin = 1e-4;   ///< inside the position limits [rad]
-  double speed_share = 0.999;   ///< of the speed limits that may be used
+  double share = 0.998;         ///< of speed limits and friction that may be used
   double force_share = 0.1;     ///< least normal force in contact over the weight
   double sole_position = 2e-4;  ///< band a supporting sole stays in [m]
   double sole_angle = 2e-3;     ///< [rad]
-  /// A joint or friction limit is constrained where the uncorrected motion uses more than this
-  /// share of it; the rest is looked at by the check of the result, and then asked for.
+  /// A limit is constrained where the motion, or `current`, uses more than this share of it; the
+  /// rest is looked at by the check of the result.
   double watched_share = 0.7;
+  std::vector<double> extra;               ///< more instants, where an earlier result failed [s]
+  const CommandSeries* current = nullptr;  ///< an earlier result; null: the motion itself
+  Eigen::MatrixXd start;                   ///< its control points, for a start; empty: zero
 };
 
 class CorrectionProblem {
@@ -63,8 +66,10 @@ class CorrectionProblem {
   void place_end(int first, const CommandSample& sample);
   void place_instants(const ContactPlan& plan);
   void place_constraints();
-  void place_ground_blocks(int instant, const CommandSample& sample);
-  void place_joint_blocks(int instant, const CommandSample& sample);
+  void place_ground_blocks(int instant);
+  void place_foot_blocks(int instant);
+  void place_joint_blocks(int instant);
+  std::array<const CommandSample*, 2> watched(int instant) const;
   void place_jacobian();
   void place_objective();
   void add_block(ConstraintBlock block, double lower, double upper);

@@ -146,7 +146,8 @@ void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
   list.SetStringValue("linear_solver", "mumps");
   list.SetStringValue("hessian_approximation", "exact");
   list.SetStringValue("nlp_scaling_method", "none");  // the problems come scaled
-  list.SetStringValue("mu_strategy", "adaptive");
+  list.SetStringValue("mu_strategy", "monotone");
+  list.SetNumericValue("mu_init", options.start_barrier);
   list.SetNumericValue("tol", options.tolerance);
   list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
   list.SetIntegerValue("max_iter", options.max_iterations);

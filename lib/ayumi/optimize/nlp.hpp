@@ -45,6 +45,7 @@ struct Nlp {
 struct NlpOptions {
   int max_iterations = 100;
   double tolerance = 1e-6;             ///< of the optimality conditions
+  double start_barrier = 1e-3;         ///< smaller from a start that is nearly right
   double constraint_tolerance = 1e-7;  ///< of g, unscaled
 };
 

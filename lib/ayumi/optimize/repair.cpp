@@ -29,8 +29,11 @@ namespace {
 constexpr int kRounds = 5;
 constexpr size_t kReasons = 6;  // told at most
 constexpr double kPad = 0.5;    // free time around a finding, doubled when it is not enough [s]
-constexpr double kMarginBetween = 5e-4;  // of the ZMP, for what happens between constraints [m]
-constexpr double kRoundMargin = 0.001;   // more ZMP margin each round [m]
+constexpr double kMarginBetween = 5e-4;     // of the ZMP, for what happens between constraints [m]
+constexpr double kRoundJointMargin = 5e-4;  // [rad]
+constexpr double kRoundShare = 0.004;       // of speed limits and friction
+constexpr double kWarmBarrier = 1e-5;
+constexpr double kRoundMargin = 0.001;  // more ZMP margin each round [m]
 
 std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
                                                       double pad) {
@@ -123,6 +126,8 @@ std::string subject(const RobotModel& model, const ConstraintBlock& block) {
       return "the ZMP cannot come inside the support";
     case ConstraintGroup::unilateral:
       return "the ground would have to pull";
+    case ConstraintGroup::yaw:
+      return "the foot would turn on the ground";
     case ConstraintGroup::friction:
       return "the ground does not give enough friction";
     default:
@@ -170,7 +175,6 @@ class Repair {
          const Progress& progress)
       : model_(model), series_(series), options_(options), progress_(progress) {
     spec_.spacing = options.knot_spacing;
-    spec_.sample_spacing = options.knot_spacing / 2;
     spec_.locked = locked_dofs(model, options.locked_joints);
     spec_.profile = options.check.profile;
     spec_.friction = options.check.friction;
@@ -193,13 +197,18 @@ class Repair {
     for (int round = 0; round < kRounds && !result_.check.consistent && unsolved < 2; ++round) {
       const auto now = result_.check.findings;
       findings_.insert(findings_.end(), now.begin(), now.end());
+      for (const Finding& f : now)
+        if (f.severity == Severity::error && round > 0)
+          spec_.extra.insert(spec_.extra.end(), {f.begin, f.at, f.end});
       spec_.windows = windows_around(findings_, pad);
       last_status_ = solve_round(round);
-      if (last_status_ != NlpStatus::solved) ++unsolved;
-      pad *= 2;
+      if (last_status_ != NlpStatus::solved) {
+        ++unsolved;
+        pad *= 2;
+      }
       spec_.zmp_margin += kRoundMargin;
-      spec_.joint_margin += 5e-4;
-      spec_.watched_share *= 0.5;
+      spec_.joint_margin += kRoundJointMargin;
+      spec_.share -= kRoundShare;
     }
     conclude();
     return result_;
@@ -232,19 +241,24 @@ class Repair {
   }
 
   NlpStatus solve_round(int round) {
+    const CommandSeries current = result_.series;
+    spec_.current = &current;
     const CorrectionProblem problem(model_, series_, spec_);
     NlpOptions nlp_options;
     nlp_options.max_iterations = options_.max_iterations;
+    if (spec_.start.size() > 0) nlp_options.start_barrier = kWarmBarrier;
     const NlpSolution solution =
         solve(problem.nlp(), nlp_options, progress_, "repair round " + std::to_string(round + 1));
     result_.variables = problem.variable_count();
     result_.constraints = problem.constraint_count();
     result_.iterations += solution.iterations;
     result_.constraint_violation = solution.violation;
-    take(problem.track(solution.x));
+    const CorrectionTrack track = problem.track(solution.x);
+    take(track);
+    spec_.start = solution.status == NlpStatus::solved ? track.coefficients : Eigen::MatrixXd();
     reasons_ = violated(model_, problem, solution.x, series_.dt);
     if (round + 2 == kRounds) spec_.spacing /= 2;
-    spec_.sample_spacing = spec_.spacing / 2;
+    spec_.current = nullptr;
     return solution.status;
   }
 
