@@ -9,6 +9,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/check/collision_scan.hpp"
 #include "ayumi/check/contacts.hpp"
 #include "ayumi/check/finding_windows.hpp"
 #include "ayumi/check/hints.hpp"
@@ -25,10 +26,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kWindowGap = 0.020;        // violations nearer than this are one finding [s]
-constexpr double kCollisionPeriod = 0.020;  // of the coarse look at self-collision [s]
-constexpr double kRefineBelow = 0.010;      // clearance that is worth every sample [m]
-constexpr double kRounding = 1e-7;          // of lengths that are met exactly [m]
+constexpr double kWindowGap = 0.020;    // violations nearer than this are one finding [s]
+constexpr double kRefineBelow = 0.010;  // clearance that is worth every sample [m]
+constexpr double kRounding = 1e-7;      // of lengths that are met exactly [m]
 
 int largest_axis(const Vector3d& v) {
   int axis = 0;
@@ -305,16 +305,6 @@ class Checker {
     }
   }
 
-  void check_clearance(int pair, int k, RobotData& data) {
-    update_positions(model_, series_.samples[k].state, data);
-    note_clearance(pair, k, clearance_of(pair, data));
-  }
-
-  double clearance_of(int pair, const RobotData& data) const {
-    return collisions_.clearance(collisions_.pairs()[pair], data,
-                                 tolerance(Kind::self_collision) + kRefineBelow);
-  }
-
   void note_clearance(int pair, int k, double clearance) {
     summary_.min_self_clearance = std::min(summary_.min_self_clearance, clearance);
     const double wanted = tolerance(Kind::self_collision);
@@ -323,33 +313,11 @@ class Checker {
           clearance < 0 ? Severity::error : Severity::warning);
   }
 
-  // Every 20 ms, then every sample around the places where a pair comes near.
   void check_self_collision() {
-    const int stride = std::max(1, static_cast<int>(std::lround(kCollisionPeriod / series_.dt)));
-    const int pairs = static_cast<int>(collisions_.pairs().size());
-    std::vector<int> coarse;
-    for (int k = 0; k < count(); k += stride) coarse.push_back(k);
-    if (coarse.back() != count() - 1) coarse.push_back(count() - 1);
-    const int n = static_cast<int>(coarse.size());
-    Eigen::MatrixXd clearance(n, pairs);
-    for (int c = 0; c < n; ++c) {
-      update_positions(model_, series_.samples[coarse[c]].state, data_);
-      for (int p = 0; p < pairs; ++p) clearance(c, p) = clearance_of(p, data_);
-    }
     const double near = tolerance(Kind::self_collision) + kRefineBelow;
-    for (int p = 0; p < pairs; ++p) {
-      for (int c = 0; c < n; ++c) {
-        const double here = clearance(c, p);
-        note_clearance(p, coarse[c], here);
-        if (c + 1 == n) break;
-        const double next = clearance(c + 1, p);
-        const bool valley = here < near || next < near;
-        const bool minimum =
-            (c == 0 || here <= clearance(c - 1, p)) || (c + 2 >= n || next <= clearance(c + 2, p));
-        if (!valley || !minimum) continue;
-        for (int k = coarse[c] + 1; k < coarse[c + 1]; ++k) check_clearance(p, k, data_);
-      }
-    }
+    scan_clearance(model_, series_, collisions_, near, [this](int pair, int k, double clearance) {
+      note_clearance(pair, k, clearance);
+    });
   }
 
   ConsistencyReport report() {
