@@ -77,24 +77,20 @@ void CorrectionProblem::place_variables() {
       index_(i, j) = variable_count_++;
     }
   }
-  place_end(0, series_.samples.front());
-  place_end(rows - 3, series_.samples.back());
+  place_end(0, 0);
+  place_end(rows - 3, series_.duration());
 }
 
-// A joint beyond its limit at an end has to be moved there too: one variable for the three control
-// points of that end, so that the motion still begins or ends at rest.
-void CorrectionProblem::place_end(int first, const CommandSample& sample) {
-  const double time = first == 0 ? 0 : series_.duration();
-  const bool free = std::any_of(spec_.windows.begin(), spec_.windows.end(),
-                                [&](const auto& w) { return time >= w.first && time <= w.second; });
-  for (int j = 0; free && j < model_.dof_count(); ++j) {
-    const Dof& dof = model_.dofs()[j];
-    const double margin = model_.description().soft_limit_margin;
-    const double theta = sample.state.theta[j];
-    if (!dof.limited || (theta >= dof.lower + margin && theta <= dof.upper - margin)) continue;
-    if (!spec_.locked.empty() && spec_.locked[j]) continue;
-    index_.block<3, 1>(first, 6 + j).setConstant(variable_count_++);
-  }
+// What is wrong at an end has to be moved there too: one variable for the three control points of
+// that end, so that the motion still begins or ends as fast as it did.
+void CorrectionProblem::place_end(int first, double time) {
+  const bool wrong = std::any_of(spec_.windows.begin(), spec_.windows.end(), [&](const auto& w) {
+    return time >= w.first && time <= w.second;
+  });
+  if (!wrong || !spec_.free_ends[first == 0 ? 0 : 1]) return;
+  for (int j = 0; j < model_.velocity_count(); ++j)
+    if (j < 6 || spec_.locked.empty() || !spec_.locked[j - 6])
+      index_.block<3, 1>(first, j).setConstant(variable_count_++);
 }
 
 bool CorrectionProblem::free_at(const SplineWeights& weights) const {

@@ -1,13 +1,14 @@
 #pragma once
 // The least correction of a motion as a nonlinear program. Unknowns: the free control points of a
 // uniform cubic B-spline over base position, base rotation vector and joints (CorrectionTrack);
-// the first and last three stay zero, so the motion starts and ends as it did, but for joints that
-// are beyond their limits there. Objective:
+// the first and last three stay zero, so the motion starts and ends as it did, or move as one where
+// the posture there is itself at fault. Objective:
 //   1/2 sum_columns w integral (d^2 + tau^4 d''^2) dt,
 // quadratic, by the Gram matrices of the splines. Constraints: correction_constraints.hpp at chosen
 // samples. Hessian: that of the objective (exact for it; the curvature of the constraints, second
 // order in a correction of a few hundredths of a radian, is left out: Gauss-Newton).
 
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -24,6 +25,7 @@ struct CorrectionSpec {
   double spacing = 0.05;                           ///< of the knots [s]
   int instants_per_knot = 2;                       ///< of the constraints
   std::vector<std::pair<double, double>> windows;  ///< where control points are free [s]
+  std::array<bool, 2> free_ends = {};              ///< the first, the last posture may move
   std::vector<bool> locked;                        ///< by dof; empty: none
   std::string profile;
   double friction = 0.8;
@@ -63,7 +65,7 @@ class CorrectionProblem {
 
  private:
   void place_variables();
-  void place_end(int first, const CommandSample& sample);
+  void place_end(int first, double time);
   void place_instants(const ContactPlan& plan);
   void place_constraints();
   void place_ground_blocks(int instant);

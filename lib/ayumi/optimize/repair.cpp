@@ -190,7 +190,8 @@ class Repair {
     }
     // COG, ZMP and f_z of the full model: what is left is wrong with the motion itself.
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
-    if (wrong_at_an_end()) return result_;
+    if (locked_out_of_limits()) return result_;
+    free_ends();
     double pad = kPad;
     int unsolved = 0;
     // Wider windows help once against a program without a solution; twice was never seen to.
@@ -215,23 +216,27 @@ class Repair {
   }
 
  private:
-  // The first and last posture stay, but for joints beyond their limits (CorrectionProblem moves
-  // those there too): no correction reaches what else is wrong there.
-  bool wrong_at_an_end() {
+  // A joint that may not move and is beyond its limits: there is nothing to solve.
+  bool locked_out_of_limits() {
     for (const Finding& f : result_.check.findings) {
-      const bool begins = f.begin < spec_.spacing;
-      const bool ends = f.end > series_.duration() - spec_.spacing;
-      // The window of a mean torque says nothing of the posture at its end.
-      const bool mean = f.kind == "continuous_torque";
-      const int dof = f.kind == "joint_position" ? model_.find_dof(f.where) : -1;
-      const bool movable = dof >= 0 && !spec_.locked[dof];
-      if (f.severity != Severity::error || mean || movable || !(begins || ends)) continue;
+      const int dof = f.severity == Severity::error ? model_.find_dof(f.where) : -1;
+      if (dof < 0 || !spec_.locked[dof]) continue;
+      if (f.kind != "joint_position" && f.kind != "joint_speed" && f.kind != "servo_step") continue;
       result_.status = RepairStatus::infeasible;
-      result_.reasons.push_back(
-          std::string("a repair keeps the motion's ") + (begins ? "first" : "last") +
-          " posture, and that is where it is wrong; change it by hand: " + in_words(f));
+      result_.reasons.push_back(f.where +
+                                " is locked, and that is where it is wrong: " + in_words(f));
     }
     return !result_.reasons.empty();
+  }
+
+  // The first and last posture move only where they are themselves at fault. What the tick of an
+  // end says of a mean over many ticks is no fault of that posture.
+  void free_ends() {
+    for (const Finding& f : result_.check.findings) {
+      if (f.severity != Severity::error || f.kind == "continuous_torque") continue;
+      if (f.begin < spec_.spacing) spec_.free_ends[0] = true;
+      if (f.end > series_.duration() - spec_.spacing) spec_.free_ends[1] = true;
+    }
   }
 
   void take(const CorrectionTrack& track) {
