@@ -18,10 +18,16 @@ namespace {
 struct NewOptions {
   std::string robot = "hoap1", out;
   WalkParameters walk;
+  SwayParameters sway;
+  SquatParameters squat;
   double turn_deg = 0;
   std::string first = "right";
   double duration = 3.0;
+  // Left out: HOAP-1's, scaled to the robot.
+  std::optional<double> stride, period, lift, side, depth, hold;
 };
+
+constexpr const char* kScaled = "; left out: HOAP-1's scaled to the robot";
 
 // The generated motion is sampled before it is written: a file that cannot be used is not made.
 void write_new(const Context& context, const RobotModel& model, Pattern pattern,
@@ -52,7 +58,11 @@ void add_common(CLI::App& command, NewOptions& options) {
 
 void new_walk(const Context& context, NewOptions options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
+  const WalkParameters scaled = walk_defaults(model);
   WalkParameters& w = options.walk;
+  w.stride = options.stride.value_or(scaled.stride);
+  w.period = options.period.value_or(scaled.period);
+  w.lift = options.lift.value_or(scaled.lift);
   w.turn = options.turn_deg * std::numbers::pi / 180;
   w.first_swing = options.first == "left" ? Side::left : Side::right;
   write_new(context, model, walk_pattern(model, w), options,
@@ -62,50 +72,154 @@ void new_walk(const Context& context, NewOptions options) {
              "The COG is left out: it is solved from the ZMP keys for the whole robot."});
 }
 
+void new_step(const Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const WalkParameters scaled = walk_defaults(model);
+  WalkParameters& w = options.walk;
+  w.stride = options.stride.value_or(0);
+  w.period = options.period.value_or(scaled.period);
+  w.lift = options.lift.value_or(scaled.lift);
+  w.first_swing = options.first == "left" ? Side::left : Side::right;
+  const std::string where =
+      w.stride == 0 ? "in place" : "of " + text::brief(w.stride) + " m forward";
+  write_new(context, model, walk_pattern(model, w), options,
+            {std::to_string(w.steps) + (w.steps == 1 ? " step " : " steps ") + where +
+                 ", the last foot then comes beside: period " + text::brief(w.period) +
+                 " s, lift " + text::brief(w.lift) + " m",
+             "A longer way: change \"to\" of the swings. The COG is solved from the ZMP keys."});
+}
+
+void new_sway(const Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const SwayParameters scaled = sway_defaults(model);
+  SwayParameters& p = options.sway;
+  p.side = options.side.value_or(p.forward != 0 ? 0 : scaled.side);
+  p.period = options.period.value_or(scaled.period);
+  write_new(
+      context, model, sway_pattern(model, p), options,
+      {"The COG sways " + std::to_string(p.cycles) + " times, " + text::brief(p.side) +
+           " m to either side and " + text::brief(p.forward) + " m ahead and back, over both feet.",
+       "Every key is a rest of the COG; the ZMP of the whole robot follows from it."});
+}
+
+void new_squat(const Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const SquatParameters scaled = squat_defaults(model);
+  SquatParameters& p = options.squat;
+  p.depth = options.depth.value_or(scaled.depth);
+  p.period = options.period.value_or(scaled.period);
+  p.hold = options.hold.value_or(scaled.hold);
+  write_new(context, model, squat_pattern(model, p), options,
+            {"Squats " + std::to_string(p.cycles) + " times by " + text::brief(p.depth) +
+                 " m: COG height keys.",
+             "Where the COG is over the ground is solved: the ZMP stays in the middle."});
+}
+
 void new_stand(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
   write_new(context, model, stand_pattern(model, options.duration), options,
             {"Standing on both feet in the home posture."});
 }
 
+// Options that several generators share.
+void add_scaled(CLI::App& command, const char* name, std::optional<double>& value,
+                const std::string& text, const char* unit) {
+  command.add_option(name, value, text + kScaled)->type_name(unit);
+}
+
+void add_gait(CLI::App& command, NewOptions& options) {
+  command.add_option("--steps", options.walk.steps, "steps before the closing one")
+      ->capture_default_str()
+      ->type_name("N");
+  add_scaled(command, "--period", options.period, "of one step", "S");
+  add_scaled(command, "--lift", options.lift, "of the swing sole", "M");
+  command.add_option("--double-support", options.walk.double_support, "share of the period")
+      ->capture_default_str()
+      ->type_name("SHARE");
+  command.add_option("--first", options.first, "foot that swings first")
+      ->check(CLI::IsMember({"left", "right"}))
+      ->capture_default_str();
+}
+
+void add_walk(CLI::App& command, NewOptions& options) {
+  command.footer("Examples:\n  ayumi new walk --steps 10 --stride 0.025 --period 0.6 -o walk.json");
+  add_common(command, options);
+  add_gait(command, options);
+  add_scaled(command, "--stride", options.stride, "between successive footholds, back is negative",
+             "M");
+  command.add_option("--cog-height", options.walk.cog_height, "0: of the home posture")
+      ->capture_default_str()
+      ->type_name("M");
+  command.add_option("--turn", options.turn_deg, "per step, to the left")
+      ->capture_default_str()
+      ->type_name("DEG");
+  command.add_option("--side", options.walk.side, "sideways per pair of steps, to the left")
+      ->capture_default_str()
+      ->type_name("M");
+}
+
+void add_step(CLI::App& command, NewOptions& options) {
+  command.footer(
+      "Examples:\n  ayumi new step -o in_place.json\n"
+      "  ayumi new step --steps 1 --length 0.03 -o one_step.json");
+  add_common(command, options);
+  add_gait(command, options);
+  command.add_option("--length", options.stride, "of a step forward; left out: in place")
+      ->type_name("M");
+}
+
+void add_sway(CLI::App& command, NewOptions& options) {
+  command.footer("Examples:\n  ayumi new sway --side 0 --forward 0.015 --cycles 3 -o sway.json");
+  add_common(command, options);
+  add_scaled(command, "--side", options.side, "to either side of the middle", "M");
+  command.add_option("--forward", options.sway.forward, "ahead of the middle and behind it")
+      ->capture_default_str()
+      ->type_name("M");
+  add_scaled(command, "--period", options.period, "of one to and fro", "S");
+  command.add_option("--cycles", options.sway.cycles, "to and fro")
+      ->capture_default_str()
+      ->type_name("N");
+}
+
+void add_squat(CLI::App& command, NewOptions& options) {
+  command.footer("Examples:\n  ayumi new squat --depth 0.04 --hold 1 --cycles 1 -o squat.json");
+  add_common(command, options);
+  add_scaled(command, "--depth", options.depth, "of the COG below home", "M");
+  add_scaled(command, "--period", options.period, "of one down and up", "S");
+  add_scaled(command, "--hold", options.hold, "stay below", "S");
+  command.add_option("--cycles", options.squat.cycles, "down and up")
+      ->capture_default_str()
+      ->type_name("N");
+}
+
 }  // namespace
 
 void add_new(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("new", "write a keyframed pattern to edit: walk, stand");
+  CLI::App* command = app.add_subcommand(
+      "new", "write a keyframed pattern to edit: walk, step, stand, sway, squat");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  ayumi new walk -o walk.json\n"
       "  ayumi new walk --steps 12 --stride 0.02 --turn 5 -o turn.json\n"
+      "  ayumi new step --robot humanoid30 --steps 4 -o step.json\n"
+      "  ayumi new sway --side 0.03 -o sway.json\n"
+      "  ayumi new squat --depth 0.04 --cycles 3 -o squat.json\n"
       "  ayumi new stand --duration 4 -o stand.json");
   auto shared = std::make_shared<NewOptions>();
   NewOptions& options = *shared;
 
   CLI::App* walk = command->add_subcommand("walk", "steps that start and end at rest");
-  walk->footer("Examples:\n  ayumi new walk --steps 10 --stride 0.025 --period 0.6 -o walk.json");
-  add_common(*walk, options);
-  WalkParameters& w = options.walk;
-  walk->add_option("--steps", w.steps, "steps that move")->capture_default_str()->type_name("N");
-  walk->add_option("--stride", w.stride, "between successive footholds, back is negative")
-      ->capture_default_str()
-      ->type_name("M");
-  walk->add_option("--period", w.period, "of one step")->capture_default_str()->type_name("S");
-  walk->add_option("--double-support", w.double_support, "share of the period")
-      ->capture_default_str()
-      ->type_name("SHARE");
-  walk->add_option("--lift", w.lift, "of the swing sole")->capture_default_str()->type_name("M");
-  walk->add_option("--cog-height", w.cog_height, "0: of the home posture")
-      ->capture_default_str()
-      ->type_name("M");
-  walk->add_option("--turn", options.turn_deg, "per step, to the left")
-      ->capture_default_str()
-      ->type_name("DEG");
-  walk->add_option("--side", w.side, "sideways per pair of steps, to the left")
-      ->capture_default_str()
-      ->type_name("M");
-  walk->add_option("--first", options.first, "foot that swings first")
-      ->check(CLI::IsMember({"left", "right"}))
-      ->capture_default_str();
+  add_walk(*walk, options);
   walk->callback([shared, &context] { new_walk(context, *shared); });
+  CLI::App* step = command->add_subcommand("step", "steps in place, or one step forward");
+  add_step(*step, options);
+  step->callback([shared, &context] { new_step(context, *shared); });
+  CLI::App* sway = command->add_subcommand("sway", "the COG to and fro over both feet");
+  add_sway(*sway, options);
+  sway->callback([shared, &context] { new_sway(context, *shared); });
+  CLI::App* squat = command->add_subcommand("squat", "the COG down and up over both feet");
+  add_squat(*squat, options);
+  squat->callback([shared, &context] { new_squat(context, *shared); });
 
   CLI::App* stand = command->add_subcommand("stand", "both feet on the ground");
   add_common(*stand, options);

@@ -110,6 +110,76 @@ TEST(WalkPattern, NamesTheParameterOutOfRange) {
   EXPECT_NE(with([](auto& p) { p.cog_height = 0.01; }).find("cog_height"), std::string::npos);
 }
 
+TEST(SwayPattern, ReachesItsAmplitudeAtRestAndComesBack) {
+  const RobotModel model = test::biped();
+  SwayParameters p;
+  p.side = 0.02;
+  p.cycles = 1;
+  p.period = 1;
+  const Pattern pattern = sway_pattern(model, p);
+  const CommandSeries series = sample(model, pattern, {.dt = 0.005});
+  const double middle = series.samples.front().cog.y();
+  double left = 0, right = 0;
+  for (const CommandSample& now : series.samples) {
+    left = std::max(left, now.cog.y() - middle);
+    right = std::min(right, now.cog.y() - middle);
+  }
+  EXPECT_NEAR(left, 0.02, 1e-6);
+  EXPECT_NEAR(right, -0.02, 1e-6);
+  EXPECT_NEAR(series.samples.back().cog.y(), middle, 1e-9);
+  for (const Keyframe& key : pattern.keyframes) {
+    EXPECT_FALSE(key.cog_x.has_value());  // the axis that does not sway is left to the solver
+    EXPECT_LT(std::abs(series.samples[std::lround(key.t / 0.005)].dcog.y()), 1e-5) << key.t;
+  }
+}
+
+TEST(SquatPattern, GoesDownByItsDepth) {
+  const RobotModel model = test::biped();
+  SquatParameters p;
+  p.depth = 0.02;
+  p.cycles = 2;
+  const CommandSeries series = sample(model, squat_pattern(model, p), {.dt = 0.005});
+  const double home = series.samples.front().cog.z();
+  double lowest = home;
+  int below = 0;
+  for (const CommandSample& now : series.samples) {
+    lowest = std::min(lowest, now.cog.z());
+    below += now.cog.z() < home - 0.02 + 1e-4;
+  }
+  EXPECT_NEAR(lowest, home - 0.02, 5e-5);  // keys are rounded to a tenth of a millimetre
+  EXPECT_GE(below * 0.005, 2 * p.hold);
+  EXPECT_NEAR(series.samples.back().cog.z(), home, 5e-5);
+}
+
+TEST(Generators, DefaultsScaleWithTheRobot) {
+  const RobotModel model = test::biped();
+  const WalkParameters p = walk_defaults(model);
+  const double size = sample(model, stand_pattern(model, 0.1)).samples[0].cog.z() / 0.245;
+  EXPECT_NEAR(p.stride, size * WalkParameters{}.stride, 6e-4);
+  EXPECT_NEAR(p.period, std::sqrt(size) * WalkParameters{}.period, 6e-3);
+}
+
+TEST(Generators, NameTheirParameterOutOfRange) {
+  const RobotModel model = test::biped();
+  const auto message = [&](const auto& make) -> std::string {
+    try {
+      make();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::usage);
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message([&] { sway_pattern(model, {.period = 0}); }).find("sway: period 0 s"),
+            std::string::npos);
+  EXPECT_NE(message([&] { sway_pattern(model, {.cycles = 0}); }).find("sway: cycles 0"),
+            std::string::npos);
+  EXPECT_NE(message([&] { squat_pattern(model, {.depth = 3}); }).find("squat: depth 3 m"),
+            std::string::npos);
+  EXPECT_NE(message([&] { squat_pattern(model, {.hold = NAN}); }).find("squat: hold nan"),
+            std::string::npos);
+}
+
 TEST(StandPattern, StandsStill) {
   const RobotModel model = test::biped();
   const CommandSeries series = sample(model, stand_pattern(model, 1.5));

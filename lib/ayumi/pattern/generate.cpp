@@ -12,6 +12,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/pattern/foot_plan.hpp"
+#include "ayumi/pattern/generate_parts.hpp"
 #include "ayumi/pattern/postures.hpp"
 
 namespace ayumi {
@@ -27,16 +28,7 @@ constexpr double kStraightLeg = 0.97, kBentLeg = 0.94;
 // Of both ends, in units of 1/omega: the ZMP rests, then shifts onto the first foot.
 constexpr double kRest = 4.5, kShift = 2.6;
 
-double to_millisecond(double t) { return std::round(1e3 * t) / 1e3; }
-double to_tenth_millimetre(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
 double to_tenth_milliradian(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
-
-void require_range(const char* name, double value, double low, double high, const char* unit) {
-  if (value >= low && value <= high) return;
-  fail(ErrorCode::usage, std::string("walk: ") + name + " " + text::exact(value) + unit +
-                             " is out of range; it may be from " + text::brief(low) + " to " +
-                             text::brief(high) + unit);
-}
 
 // Home's COG height, lowered where home's legs are too straight to step [m]; 0 keeps home's.
 double walking_height(const RobotModel& model, const Pattern& pattern, double leg) {
@@ -48,50 +40,18 @@ double walking_height(const RobotModel& model, const Pattern& pattern, double le
   return to_tenth_millimetre(default_cog_height(model, pattern) - (reach - kBentLeg * leg));
 }
 
-// Sum of the link lengths from hip to sole with the leg straight [m].
-double leg_length(const RobotModel& model) {
-  RobotData data(model);
-  update_positions(model, model.rest_state(), data);
-  const auto& leg = model.leg(Side::left);
-  Vector3d from = data.pose(model.dofs()[leg.front()].body).translation();
-  double length = 0;
-  for (const int dof : leg) {
-    const Vector3d to = data.pose(model.dofs()[dof].body).translation();
-    length += (to - from).norm();
-    from = to;
-  }
-  return length + (sole_pose(model, data, Side::left).translation() - from).norm();
-}
-
 void check_parameters(const RobotModel& model, const WalkParameters& p) {
   const double leg = leg_length(model);
-  require_range("steps", p.steps, 1, 10000, "");
-  require_range("stride", p.stride, -0.6 * leg, 0.6 * leg, " m");
-  require_range("period", p.period, 0.2, 10, " s");
-  require_range("double_support", p.double_support, 0.05, 0.6, "");
-  require_range("lift", p.lift, 0.01 * leg, 0.4 * leg, " m");
-  require_range("side", p.side, -0.4 * leg, 0.4 * leg, " m");
-  require_range("turn", p.turn, -0.6, 0.6, " rad");
-  if (p.cog_height != 0) require_range("cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
+  require_range("walk", "steps", p.steps, 1, 10000, "");
+  require_range("walk", "stride", p.stride, -0.6 * leg, 0.6 * leg, " m");
+  require_range("walk", "period", p.period, 0.2, 10, " s");
+  require_range("walk", "double_support", p.double_support, 0.05, 0.6, "");
+  require_range("walk", "lift", p.lift, 0.01 * leg, 0.4 * leg, " m");
+  require_range("walk", "side", p.side, -0.4 * leg, 0.4 * leg, " m");
+  require_range("walk", "turn", p.turn, -0.6, 0.6, " rad");
+  if (p.cog_height != 0)
+    require_range("walk", "cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
 }
-
-// Times and swings laid one after the other.
-struct Writer {
-  Pattern& pattern;
-  double t = 0;
-
-  void key(double at, ZmpKey::Place place) {
-    Keyframe key;
-    key.t = to_millisecond(at);
-    key.zmp = ZmpKey{place, Eigen::Vector2d::Zero()};
-    key.place = "keyframes/" + std::to_string(pattern.keyframes.size());
-    pattern.keyframes.push_back(key);
-  }
-  void phase(double length, Support support, std::optional<Swing> swing = {}) {
-    t += length;
-    pattern.phases.push_back({to_millisecond(t), support, swing});
-  }
-};
 
 ZmpKey::Place place_of(Side side) {
   return side == Side::left ? ZmpKey::Place::left : ZmpKey::Place::right;
@@ -106,7 +66,8 @@ Foothold foothold(const Vector3d& center, double yaw, double beside) {
   return result;
 }
 
-void write_step(Writer& writer, const WalkParameters& p, Side swing_foot, const Foothold& to) {
+void write_step(PatternWriter& writer, const WalkParameters& p, Side swing_foot,
+                const Foothold& to) {
   const double single = p.period * (1 - p.double_support);
   const Side stance = other(swing_foot);
   const ZmpKey::Place place = place_of(stance);
@@ -126,6 +87,15 @@ std::string title(const WalkParameters& p) {
 
 }  // namespace
 
+WalkParameters walk_defaults(const RobotModel& model) {
+  const double size = size_beside_hoap1(model), slow = std::sqrt(size);
+  WalkParameters p;
+  p.stride = 1e-3 * std::round(1e3 * size * p.stride);
+  p.lift = 1e-3 * std::round(1e3 * size * p.lift);
+  p.period = 0.01 * std::round(100 * slow * p.period);
+  return p;
+}
+
 Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) {
   const WalkParameters& p = parameters;
   check_parameters(model, p);
@@ -143,7 +113,7 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   const double shift = to_millisecond(0.01 * std::round(100 * kShift / omega));
   const double both = p.period * p.double_support;
 
-  Writer writer{pattern};
+  PatternWriter writer{pattern};
   writer.key(0, ZmpKey::Place::center);
   writer.key(rest, ZmpKey::Place::center);
   writer.phase(rest + shift, Support::both);
@@ -175,7 +145,7 @@ Pattern stand_pattern(const RobotModel& model, double duration) {
   Pattern pattern;
   pattern.name = "stand for " + text::brief(duration) + " s";
   pattern.robot = model.name();
-  Writer writer{pattern};
+  PatternWriter writer{pattern};
   writer.key(0, ZmpKey::Place::center);
   writer.phase(duration, Support::both);
   return pattern;

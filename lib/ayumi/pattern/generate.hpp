@@ -1,5 +1,5 @@
 #pragma once
-// Generators of patterns a person then edits: `ayumi new walk`, `ayumi new stand`.
+// Generators of patterns a person then edits: `ayumi new walk`, `step`, `stand`, `sway`, `squat`.
 
 #include "ayumi/pattern/pattern.hpp"
 
@@ -17,11 +17,39 @@ struct WalkParameters {
   Side first_swing = Side::right;
 };
 
+/// The walk of HOAP-1 scaled to a robot: lengths with its home COG height, times with the root of
+/// it.
+WalkParameters walk_defaults(const RobotModel& model);
+
 /// Phases, ZMP keys and swing targets of a straight or turning walk that starts and ends at rest.
 /// Throws Error(usage) naming the parameter out of range.
 Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters);
 
 /// Both feet on the ground, home posture, for `duration` [s].
 Pattern stand_pattern(const RobotModel& model, double duration);
+
+/// The COG goes to and fro over both feet; every stretch starts and ends at rest.
+struct SwayParameters {
+  double side = 0.02;   ///< to either side of the middle [m]
+  double forward = 0;   ///< ahead of and behind it [m]
+  double period = 2.0;  ///< of one to and fro [s]
+  int cycles = 2;
+};
+SwayParameters sway_defaults(const RobotModel& model);
+
+/// COG keys: the middle, left (front), right (back), the middle. Throws as walk_pattern.
+Pattern sway_pattern(const RobotModel& model, const SwayParameters& parameters);
+
+/// The COG goes down and up over both feet.
+struct SquatParameters {
+  double depth = 0.03;  ///< below the home posture's COG [m]
+  double period = 2.0;  ///< of one down and up, without the stay below [s]
+  double hold = 0.3;    ///< stay below [s]
+  int cycles = 2;
+};
+SquatParameters squat_defaults(const RobotModel& model);
+
+/// COG height keys; where the COG is over the ground is solved. Throws as walk_pattern.
+Pattern squat_pattern(const RobotModel& model, const SquatParameters& parameters);
 
 }  // namespace ayumi

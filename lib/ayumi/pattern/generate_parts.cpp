@@ -1,0 +1,66 @@
+#include "ayumi/pattern/generate_parts.hpp"
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/pattern/postures.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kHoap1Height = 0.245;  // of its home COG [m]
+
+}  // namespace
+
+double to_millisecond(double t) { return std::round(1e3 * t) / 1e3; }
+double to_tenth_millimetre(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
+
+void require_range(const char* pattern, const char* name, double value, double low, double high,
+                   const char* unit) {
+  if (value >= low && value <= high) return;
+  fail(ErrorCode::usage, std::string(pattern) + ": " + name + " " + text::exact(value) + unit +
+                             " is out of range; it may be from " + text::brief(low) + " to " +
+                             text::brief(high) + unit);
+}
+
+double leg_length(const RobotModel& model) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const auto& leg = model.leg(Side::left);
+  Vector3d from = data.pose(model.dofs()[leg.front()].body).translation();
+  double length = 0;
+  for (const int dof : leg) {
+    const Vector3d to = data.pose(model.dofs()[dof].body).translation();
+    length += (to - from).norm();
+    from = to;
+  }
+  return length + (sole_pose(model, data, Side::left).translation() - from).norm();
+}
+
+double size_beside_hoap1(const RobotModel& model) {
+  return default_cog_height(model, {}) / kHoap1Height;
+}
+
+void PatternWriter::key(double at, ZmpKey::Place place) {
+  Keyframe key;
+  key.zmp = ZmpKey{place, Eigen::Vector2d::Zero()};
+  add(at, key);
+}
+
+void PatternWriter::add(double at, Keyframe key) {
+  key.t = to_millisecond(at);
+  key.place = "keyframes/" + std::to_string(pattern.keyframes.size());
+  pattern.keyframes.push_back(key);
+}
+
+void PatternWriter::phase(double length, Support support, std::optional<Swing> swing) {
+  t += length;
+  pattern.phases.push_back({to_millisecond(t), support, swing});
+}
+
+}  // namespace ayumi
