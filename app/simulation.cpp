@@ -2,8 +2,12 @@
 
 #include <numbers>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern_file.hpp"
+#ifdef AYUMI_HAS_MUJOCO
+#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#endif
 
 namespace ayumi::app {
 
@@ -23,6 +27,27 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   command.add_option("--substeps", choice.substeps, "integrator steps per servo period")
       ->check(CLI::Range(1, 100).description(""))
       ->type_name("N");
+  add_plant_option(command, choice.plant);
+}
+
+void add_plant_option(CLI::App& command, std::string& plant) {
+  command.add_option("--plant", plant, "what moves the robot: ayumi, or mujoco where built in")
+      ->type_name("NAME");
+}
+
+PlantKind plant_of(const std::string& name) {
+  if (name == "ayumi") return {};
+#ifdef AYUMI_HAS_MUJOCO
+  if (name == "mujoco") return mujoco_plant_kind();
+#else
+  if (name == "mujoco")
+    fail(ErrorCode::usage,
+         "--plant: this program was built without MuJoCo; install libmujoco-dev and configure "
+         "with AYUMI_WITH_MUJOCO=ON, or use ayumi");
+#endif
+  fail(ErrorCode::usage, "--plant: unknown plant '" + name + "'" +
+                             text::suggestion(name, {"ayumi", "mujoco"}) +
+                             " (known: ayumi, mujoco)");
 }
 
 SimulationLog simulate_once(const Context& context, const PatternInput& input,
@@ -42,6 +67,7 @@ SimulationLog simulate_once(const Context& context, const PatternInput& input,
     options.scenario = read_pattern(choice.scenario).scenario;
   options.sensor_noise = choice.noise;
   options.substeps = choice.substeps;
+  options.plant = plant_of(choice.plant);
   options.seed = context.seed;
   SimulationLog log = simulate(input.model, input.series, options, context.progress());
   log.provenance = provenance(context, input, options.controller.type);

@@ -13,8 +13,14 @@ struct SimulationChoice {
   std::vector<std::string> gains;  ///< "name=value"
   bool noise = false;              ///< sensor noise, bias and latency of the sidecar
   int substeps = 1;                ///< of the integrator per servo period
+  std::string plant = "ayumi";     ///< "ayumi" or "mujoco"
 };
 void add_simulation_options(CLI::App& command, SimulationChoice& choice);
+
+/// --plant NAME.
+void add_plant_option(CLI::App& command, std::string& plant);
+/// Throws Error(usage) for a plant this program was built without.
+PlantKind plant_of(const std::string& name);
 
 /// Runs the pattern; the log carries its provenance.
 SimulationLog simulate_once(const Context& context, const PatternInput& input,

@@ -11,6 +11,7 @@
 #include "ayumi/control/dtad.hpp"
 #include "pattern_input.hpp"
 #include "push_results.hpp"
+#include "simulation.hpp"
 
 namespace ayumi::app {
 
@@ -23,6 +24,7 @@ struct Options {
   PatternOptions input;
   std::vector<std::string> controllers, gains;
   std::vector<double> times;
+  std::string plant = "ayumi";
   PushOptions push;
 };
 
@@ -51,6 +53,7 @@ PushOptions push_options(const Context& context, const PatternInput& input,
   push.simulate.profile = input.profile;
   push.simulate.world = input.pattern.world;
   push.simulate.seed = context.seed;
+  push.simulate.plant = plant_of(options.plant);
   push.controllers = chosen_controllers(input, options);
   for (double t : options.times)
     push.phases.push_back({"t = " + text::fixed(t, 3) + " s", t, false});
@@ -82,6 +85,7 @@ Json study_json(const PatternInput& input, const PushOptions& push) {
           {"duration_s", push.duration},
           {"noise", push.simulate.sensor_noise},
           {"substeps", push.simulate.substeps},
+          {"plant", push.simulate.plant.name},
           {"seed", push.simulate.seed}};
 }
 
@@ -221,6 +225,7 @@ void add_push(CLI::App& app, Context& context) {
   command->add_option("--substeps", push.simulate.substeps, "integrator steps per servo period")
       ->check(CLI::Range(1, 100).description(""))
       ->type_name("N");
+  add_plant_option(*command, options->plant);
   command->callback([options, &context] { find_limits(context, *options); });
 }
 

@@ -77,6 +77,7 @@ std::string simulation_json(const SimulationLog& log) {
   const double duration =
       log.samples.empty() ? 0 : log.dt * static_cast<double>(log.samples.size() - 1);
   return text_of({{"controller", log.controller},
+                  {"plant", log.plant},
                   {"outcome", name_of(r.outcome)},
                   {"fell_at_s", figure(r.fell_at, r.fell_at >= 0)},
                   {"duration_s", duration},

@@ -257,7 +257,8 @@ std::string header_of(const SimulationLog& log, const std::string& command_line)
                         {"frame", "world: x forward, y left, z up"},
                         {"quaternion_order", "w x y z, base to world"},
                         {"dt", log.dt},
-                        {"controller", log.controller}};
+                        {"controller", log.controller},
+                        {"plant", log.plant}};
   OrderedJson provenance;
   for_each_provenance(log.provenance,
                       [&](const char* key, const std::string& value) { provenance[key] = value; });
@@ -279,6 +280,7 @@ std::string header_of(const SimulationLog& log, const std::string& command_line)
 void read_header(const JsonNode& header, SimulationLog& log) {
   log.dt = header.at("dt").number();
   log.controller = header.at("controller").string();
+  if (const auto plant = header.find("plant")) log.plant = plant->string();
   const JsonNode provenance = header.at("provenance");
   for_each_provenance(log.provenance, [&](const char* key, std::string& value) {
     value = provenance.at(key).string();

@@ -16,6 +16,7 @@
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/sim/servo.hpp"
 
 namespace ayumi {
 
@@ -26,43 +27,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kStaticSink = 1e-7;      // of a body on four of its points [m]
-constexpr double kDampingTime = 0.004;    // contact damping / stiffness of bodies [s]
 constexpr double kStickRate = 1e-3;       // joint rate below which dry friction holds [rad/s]
 constexpr double kLargest = 1e6;          // number that is taken for one [SI]
 constexpr double kLimitStiffness = 20.0;  // of a joint's end stop, in servo stiffnesses
-
-/// Points of a body that may touch the ground besides the soles.
-std::vector<std::pair<Vector3d, double>> touch_points(const PlacedShape& placed) {
-  std::vector<std::pair<Vector3d, double>> points;
-  auto add = [&](const Vector3d& p, double radius) { points.push_back({placed.pose * p, radius}); };
-  auto add_box = [&](const Vector3d& low, const Vector3d& high) {
-    for (int k = 0; k < 8; ++k)
-      add({k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z()}, 0);
-  };
-  if (const auto* box = std::get_if<Box>(&placed.shape)) {
-    add_box(-0.5 * box->size, 0.5 * box->size);
-  } else if (const auto* sphere = std::get_if<Sphere>(&placed.shape)) {
-    add(Vector3d::Zero(), sphere->radius);
-  } else if (const auto* capsule = std::get_if<Capsule>(&placed.shape)) {
-    for (double s : {-0.5, 0.5}) add({0, 0, s * capsule->length}, capsule->radius);
-  } else if (const auto* cylinder = std::get_if<Cylinder>(&placed.shape)) {
-    for (int k = 0; k < 16; ++k) {
-      const double a = 0.25 * M_PI * (k / 2);
-      const double z = (k % 2 - 0.5) * cylinder->length;
-      add({cylinder->radius * std::cos(a), cylinder->radius * std::sin(a), z}, 0);
-    }
-  } else if (const auto* mesh = std::get_if<MeshShape>(&placed.shape)) {
-    Vector3d low = Vector3d::Constant(1e30), high = -low;
-    for (const MeshPart& part : mesh->mesh.parts)
-      for (const Eigen::Vector3f& v : part.vertices) {
-        low = low.cwiseMin(v.cast<double>());
-        high = high.cwiseMax(v.cast<double>());
-      }
-    if (low.x() <= high.x()) add_box(low, high);
-  }
-  return points;
-}
 
 /// Largest magnitude; NaN when any entry is.
 template <typename Vector>
@@ -99,51 +66,8 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
   const Vector3d tangent = (Vector3d::UnitX() - normal.x() * normal).normalized();
   ground_ << normal, tangent, normal.cross(tangent);
 
-  const double body_stiffness = model.mass() * kGravity / kStaticSink;
-  for (Side side : {Side::left, Side::right}) {
-    if (!model.has_soles()) break;
-    const Sole& sole = model.sole(side);
-    const double count = static_cast<double>(sole.polygon.size());
-    for (size_t i = 0; i < sole.polygon.size(); ++i) {
-      const Vector2d& p = sole.polygon[i];
-      ContactPoint point;
-      point.body = sole.body;
-      point.position = sole.frame * Vector3d(p.x(), p.y(), 0);
-      point.stiffness = sole.stiffness / count;
-      point.damping_time = sole.damping_time;
-      point.side = static_cast<int>(side);
-      point.vertex = static_cast<int>(i);
-      points_.push_back(point);
-    }
-  }
-  for (const Link& link : model.links()) {
-    const bool foot = model.has_soles() && (link.body == model.sole(Side::left).body ||
-                                            link.body == model.sole(Side::right).body);
-    for (const PlacedShape& shape : link.collisions) {
-      if (foot) continue;
-      for (const auto& [position, radius] : touch_points(shape)) {
-        ContactPoint point;
-        point.body = link.body;
-        point.position = link.pose * position;
-        point.radius = radius;
-        point.stiffness = 0.25 * body_stiffness;
-        point.damping_time = kDampingTime;
-        points_.push_back(point);
-      }
-    }
-  }
-  for (size_t i = 0; i < points_.size(); ++i) {
-    if (groups_.empty() || groups_.back().body != points_[i].body)
-      groups_.push_back({points_[i].body, static_cast<int>(i)});
-    ++groups_.back().count;
-  }
-  for (Group& group : groups_) {
-    const ContactPoint* first = &points_[static_cast<size_t>(group.first)];
-    for (int i = 0; i < group.count; ++i) group.center += first[i].position / group.count;
-    for (int i = 0; i < group.count; ++i)
-      group.radius =
-          std::max(group.radius, (first[i].position - group.center).norm() + first[i].radius);
-  }
+  points_ = contact_points(model);
+  groups_ = group_points(points_);
   const int columns = model.velocity_count();
   still_ = velocity_ = lower_ = VectorXd::Zero(columns);
   fixed_ = dry_ = report_.torque = VectorXd::Zero(n);
@@ -202,14 +126,6 @@ void Plant::check_input(const VectorXd& targets, const std::vector<ExternalWrenc
       complain("an external force is not a finite number below 1e6");
 }
 
-// A motor cannot push a joint beyond its speed limit: driving torque fades over the last tenth.
-double Plant::torque_limit(int dof, double rate, double direction) const {
-  const double peak = limits_.peak_torque[dof];
-  const double speed = limits_.speed[dof];
-  if (rate * direction <= speed || !std::isfinite(speed)) return peak;
-  return peak * std::clamp(11.0 - 10.0 * rate * direction / speed, 0.0, 1.0);
-}
-
 void Plant::collect_contacts(double dt) {
   for (const Active& active : active_) points_[static_cast<size_t>(active.point)].touching = false;
   size_t kept = 0;
@@ -218,7 +134,7 @@ void Plant::collect_contacts(double dt) {
   auto far = [&](double gap, double speed) { return gap + 3 * dt * std::min(speed, 0.0) > 1e-3; };
   last_active_.swap(active_);
   active_.clear();
-  for (const Group& group : groups_) {
+  for (const PointGroup& group : groups_) {
     const Matrix3d& R = data_.rotation[group.body];
     const Vector3d offset = data_.position[group.body] + R * group.center;
     const double height = normal.dot(data_.base_position + offset) - group.radius;
@@ -402,7 +318,7 @@ bool Plant::limit_torques(const VectorXd& targets, double dt) {
     if (!saturated_[j]) {
       double& torque = report_.torque[j];
       torque = kp_[j] * (targets[j] - state_.theta[j] - dt * rate) - kd_[j] * rate;
-      const double limit = torque_limit(j, rate, torque > 0 ? 1.0 : -1.0);
+      const double limit = available_torque(limits_, j, rate, torque > 0 ? 1.0 : -1.0);
       if (std::abs(torque) > limit) {
         saturated_[j] = changed = true;
         fixed_[j] = torque = std::copysign(limit, torque);

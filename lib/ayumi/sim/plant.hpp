@@ -3,41 +3,16 @@
 // State in, joint targets and disturbances in, next state and contact forces out.
 
 #include <Eigen/Dense>
-#include <array>
 #include <vector>
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/tree_cholesky.hpp"
 #include "ayumi/pattern/scenario.hpp"
+#include "ayumi/sim/contact_points.hpp"
 #include "ayumi/sim/contact_solver.hpp"
+#include "ayumi/sim/step.hpp"
 
 namespace ayumi {
-
-/// A force or couple from outside during one step.
-struct ExternalWrench {
-  int body = -1;  ///< -1: through the whole-body COG, on the trunk
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< world [m]; unused for body -1
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< world [N]
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< world [N m]
-};
-
-/// Ground force at one vertex of a sole.
-struct SoleForce {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< on the robot, world [N]
-  double gap = 0;                                      ///< to the ground, negative inside [m]
-};
-
-/// What a step did, averaged over its duration.
-struct StepReport {
-  Eigen::VectorXd torque;                       ///< of the servos [N m]
-  std::array<std::vector<SoleForce>, 2> soles;  ///< by Side, in the order of the sole's polygon
-  bool body_contact = false;                    ///< something but a sole touches the ground
-  std::vector<int> saturated;                   ///< dofs whose torque is at its limit
-  int contact_iterations = 0;
-  double contact_residual = 0;  ///< [m/s]
-  double max_penetration = 0;   ///< of a sole vertex [m]
-};
 
 class Plant {
  public:
@@ -56,18 +31,6 @@ class Plant {
                          const std::vector<ExternalWrench>& wrenches, double dt);
 
  private:
-  struct ContactPoint {
-    int body = 0;
-    Eigen::Vector3d position;                              // body frame
-    double radius = 0;                                     // of a sphere around it
-    double stiffness = 0;                                  // [N/m]
-    double damping_time = 0;                               // [s]
-    int side = -1, vertex = -1;                            // of a sole, else -1
-    Eigen::Vector3d impulse = Eigen::Vector3d::Zero();     // of the last step: warm start
-    Eigen::Vector2d deflection = Eigen::Vector2d::Zero();  // of the tangential spring [m]
-    bool touching = false;
-  };
-
   void check_input(const Eigen::VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
                    double dt) const;
   void collect_contacts(double dt);
@@ -79,7 +42,6 @@ class Plant {
   bool limit_torques(const Eigen::VectorXd& targets, double dt);
   void report_contacts(double dt);
   void advance(const Momentum& momentum, double dt);
-  double torque_limit(int dof, double rate, double direction) const;
 
   const RobotModel* model_;
   ActuatorLimits limits_;
@@ -89,13 +51,7 @@ class Plant {
   double time_ = 0;  // since set_state() [s]
   RobotData data_;
   std::vector<ContactPoint> points_;
-  /// Consecutive points of one body and a sphere around them, body frame.
-  struct Group {
-    int body = 0, first = 0, count = 0;
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();
-    double radius = 0;
-  };
-  std::vector<Group> groups_;
+  std::vector<PointGroup> groups_;
   Eigen::VectorXd kp_, kd_, rotor_, viscous_, coulomb_;
 
   // Workspace of step().

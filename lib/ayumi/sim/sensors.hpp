@@ -6,7 +6,7 @@
 
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/math/random.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/step.hpp"
 
 namespace ayumi {
 

@@ -1,6 +1,8 @@
 #pragma once
-// SimulationLog = simulate(model, command series, controller, scenario): Ayumi's own integrator
-// with servos, sensors and scripted disturbances, the loop closed around `control`.
+// SimulationLog = simulate(model, command series, controller, scenario): Ayumi's own integrator (or
+// another plant) with servos, sensors and scripted disturbances, the loop closed around `control`.
+
+#include <functional>
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/model/robot_model.hpp"
@@ -8,6 +10,15 @@
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
+
+class AnyPlant;
+
+/// Which integrator moves the robot.
+struct PlantKind {
+  std::string name = "ayumi";
+  /// Empty: Ayumi's own. The model outlives the plant.
+  std::function<AnyPlant(const RobotModel&, const ActuatorLimits&, const World&)> make = {};
+};
 
 struct SimulateOptions {
   ControllerSpec controller;
@@ -19,6 +30,7 @@ struct SimulateOptions {
   bool true_state = false;    ///< controllers see ground truth instead of sensors
   bool sensor_noise = false;  ///< the sidecar's noise, bias, latency
   std::uint64_t seed = 1;
+  PlantKind plant;
 };
 
 /// Throws Error(bad_model) when the robot has no soles or servos, Error(bad_pattern) for a

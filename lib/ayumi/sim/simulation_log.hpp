@@ -68,8 +68,9 @@ struct SimulationResult {
 };
 
 struct SimulationLog {
-  double dt = 0.001;       ///< control tick [s]
-  std::string controller;  ///< "none", "dtad", ...
+  double dt = 0.001;            ///< control tick [s]
+  std::string controller;       ///< "none", "dtad", ...
+  std::string plant = "ayumi";  ///< what integrated the motion: "ayumi", "mujoco"
   Provenance provenance;
   World world;
   std::vector<Disturbance> scenario;

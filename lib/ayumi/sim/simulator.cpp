@@ -8,6 +8,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/sim/plant.hpp"
 
 namespace ayumi {
 
@@ -46,6 +47,12 @@ const CommandSeries& checked(const CommandSeries& series, const SimulateOptions&
   return series;
 }
 
+AnyPlant make_plant(const RobotModel& model, const ActuatorLimits& limits,
+                    const SimulateOptions& options) {
+  if (options.plant.make) return options.plant.make(model, limits, options.world);
+  return AnyPlant(Plant(model, limits, options.world));
+}
+
 }  // namespace
 
 Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
@@ -55,7 +62,7 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       options_(options),
       limits_(model.limits(options.profile)),
       h_(series.dt / options.substeps),
-      plant_(model, limits_, options.world),
+      plant_(make_plant(model, limits_, options)),
       sensors_(model, series.dt, options.sensor_noise, options.seed),
       estimator_(model, series.dt),
       judge_(model, limits_, options.world),
@@ -233,6 +240,7 @@ SimulationLog Simulator::take_log() {
   SimulationLog log;
   log.dt = series_->dt;
   log.controller = options_.controller.type;
+  log.plant = options_.plant.name;
   log.world = options_.world;
   log.scenario = options_.scenario;
   log.joints = model_->dof_names();

@@ -8,7 +8,7 @@
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/control/dtad.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/any_plant.hpp"
 #include "ayumi/sim/sensors.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "ayumi/sim/verdict.hpp"
@@ -68,7 +68,7 @@ class Simulator {
   SimulateOptions options_;
   ActuatorLimits limits_;
   double h_;  // integrator step [s]
-  Plant plant_;
+  AnyPlant plant_;
   Sensors sensors_;
   Estimator estimator_;
   Judge judge_;

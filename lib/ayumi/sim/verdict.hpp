@@ -1,10 +1,11 @@
 #pragma once
 // The verdict of a run, one definition everywhere (docs/cli.md, "Outcome").
 
+#include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/pattern/command_series.hpp"
-#include "ayumi/sim/plant.hpp"
 #include "ayumi/sim/simulation_log.hpp"
+#include "ayumi/sim/step.hpp"
 
 namespace ayumi {
 

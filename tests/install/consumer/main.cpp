@@ -9,6 +9,9 @@
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/preview/renderer.hpp"
 #include "ayumi/preview/robot_surface.hpp"
+#ifdef HAS_MUJOCO
+#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#endif
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
@@ -31,6 +34,13 @@ int main(int argc, char** argv) {
 
   std::printf("%s: %.3f kg, %s, %zu bytes of picture\n", robot.name().c_str(), robot.mass(),
               ayumi::name_of(repaired.status), image.rgb.size());
+#ifdef HAS_MUJOCO
+  ayumi::SimulateOptions other;
+  other.plant = ayumi::mujoco_plant_kind();  // ayumi::plant_mujoco
+  const ayumi::SimulationLog log = ayumi::simulate(robot, series, other);
+  std::printf("MuJoCo: %s\n", ayumi::name_of(log.result.outcome));
+  if (log.result.outcome != ayumi::Outcome::stands) return 1;
+#endif
   const bool good = repaired.status == ayumi::RepairStatus::already_consistent &&
                     image.rgb.size() == 3u * 160u * 90u;
   return good ? 0 : 1;

@@ -1,0 +1,40 @@
+#pragma once
+// The same robot, servos and soles in MuJoCo, behind the same face as Plant: an independent judge
+// of Ayumi's own integrator. The same points touch the ground: corners of soles and shapes.
+
+#include <memory>
+
+#include "ayumi/dynamics/robot_data.hpp"
+#include "ayumi/sim/simulate.hpp"
+#include "ayumi/sim/step.hpp"
+
+namespace ayumi {
+
+class MujocoPlant {
+ public:
+  /// The model must outlive the plant. Throws Error(bad_model) for a robot with mimic joints or
+  /// without servos.
+  MujocoPlant(const RobotModel& model, const ActuatorLimits& limits, const World& world);
+  ~MujocoPlant();
+  MujocoPlant(const MujocoPlant& other);
+  MujocoPlant& operator=(const MujocoPlant& other);
+  MujocoPlant(MujocoPlant&&) noexcept;
+  MujocoPlant& operator=(MujocoPlant&&) noexcept;
+
+  const RobotState& state() const;
+  const RobotData& data() const;
+  void set_state(const RobotState& state);
+
+  /// As Plant::step().
+  const StepReport& step(const Eigen::VectorXd& targets,
+                         const std::vector<ExternalWrench>& wrenches, double dt);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// For SimulateOptions::plant.
+PlantKind mujoco_plant_kind();
+
+}  // namespace ayumi

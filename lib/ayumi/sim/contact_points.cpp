@@ -1,0 +1,107 @@
+#include "ayumi/sim/contact_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/version.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kStaticSink = 1e-7;    // of a body on four of its points [m]
+constexpr double kDampingTime = 0.004;  // contact damping / stiffness of bodies [s]
+
+/// Points of a body that may touch the ground besides the soles.
+std::vector<std::pair<Vector3d, double>> touch_points(const PlacedShape& placed) {
+  std::vector<std::pair<Vector3d, double>> points;
+  auto add = [&](const Vector3d& p, double radius) { points.push_back({placed.pose * p, radius}); };
+  auto add_box = [&](const Vector3d& low, const Vector3d& high) {
+    for (int k = 0; k < 8; ++k)
+      add({k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z()}, 0);
+  };
+  if (const auto* box = std::get_if<Box>(&placed.shape)) {
+    add_box(-0.5 * box->size, 0.5 * box->size);
+  } else if (const auto* sphere = std::get_if<Sphere>(&placed.shape)) {
+    add(Vector3d::Zero(), sphere->radius);
+  } else if (const auto* capsule = std::get_if<Capsule>(&placed.shape)) {
+    for (double s : {-0.5, 0.5}) add({0, 0, s * capsule->length}, capsule->radius);
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&placed.shape)) {
+    for (int k = 0; k < 16; ++k) {
+      const double a = 0.25 * M_PI * (k / 2);
+      const double z = (k % 2 - 0.5) * cylinder->length;
+      add({cylinder->radius * std::cos(a), cylinder->radius * std::sin(a), z}, 0);
+    }
+  } else if (const auto* mesh = std::get_if<MeshShape>(&placed.shape)) {
+    Vector3d low = Vector3d::Constant(1e30), high = -low;
+    for (const MeshPart& part : mesh->mesh.parts)
+      for (const Eigen::Vector3f& v : part.vertices) {
+        low = low.cwiseMin(v.cast<double>());
+        high = high.cwiseMax(v.cast<double>());
+      }
+    if (low.x() <= high.x()) add_box(low, high);
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<ContactPoint> contact_points(const RobotModel& model) {
+  std::vector<ContactPoint> points;
+  const double body_stiffness = model.mass() * kGravity / kStaticSink;
+  for (Side side : {Side::left, Side::right}) {
+    if (!model.has_soles()) break;
+    const Sole& sole = model.sole(side);
+    const double count = static_cast<double>(sole.polygon.size());
+    for (size_t i = 0; i < sole.polygon.size(); ++i) {
+      const Vector2d& p = sole.polygon[i];
+      ContactPoint point;
+      point.body = sole.body;
+      point.position = sole.frame * Vector3d(p.x(), p.y(), 0);
+      point.stiffness = sole.stiffness / count;
+      point.damping_time = sole.damping_time;
+      point.side = static_cast<int>(side);
+      point.vertex = static_cast<int>(i);
+      points.push_back(point);
+    }
+  }
+  for (const Link& link : model.links()) {
+    const bool foot = model.has_soles() && (link.body == model.sole(Side::left).body ||
+                                            link.body == model.sole(Side::right).body);
+    for (const PlacedShape& shape : link.collisions) {
+      if (foot) continue;
+      for (const auto& [position, radius] : touch_points(shape)) {
+        ContactPoint point;
+        point.body = link.body;
+        point.position = link.pose * position;
+        point.radius = radius;
+        point.stiffness = 0.25 * body_stiffness;
+        point.damping_time = kDampingTime;
+        points.push_back(point);
+      }
+    }
+  }
+  return points;
+}
+
+std::vector<PointGroup> group_points(const std::vector<ContactPoint>& points) {
+  std::vector<PointGroup> groups;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (groups.empty() || groups.back().body != points[i].body)
+      groups.push_back({.body = points[i].body, .first = static_cast<int>(i)});
+    ++groups.back().count;
+  }
+  for (PointGroup& group : groups) {
+    const ContactPoint* first = &points[static_cast<size_t>(group.first)];
+    for (int i = 0; i < group.count; ++i) group.center += first[i].position / group.count;
+    for (int i = 0; i < group.count; ++i)
+      group.radius =
+          std::max(group.radius, (first[i].position - group.center).norm() + first[i].radius);
+  }
+  return groups;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,38 @@
+#pragma once
+// The points of a robot that may touch the ground: corners of its soles and of its collision
+// shapes.
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+/// A point with its spring, and what the last step left in it.
+struct ContactPoint {
+  int body = 0;
+  Eigen::Vector3d position;                              ///< body frame [m]
+  double radius = 0;                                     ///< of a sphere around it [m]
+  double stiffness = 0;                                  ///< [N/m]
+  double damping_time = 0;                               ///< [s]
+  int side = -1, vertex = -1;                            ///< of a sole, else -1
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();     ///< of the last step: warm start
+  Eigen::Vector2d deflection = Eigen::Vector2d::Zero();  ///< of the tangential spring [m]
+  bool touching = false;
+};
+
+/// Consecutive points of one body and a sphere around them, body frame.
+struct PointGroup {
+  int body = 0, first = 0, count = 0;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius = 0;
+};
+
+/// Soles first (left, right, in the order of their polygons), then the collision shapes of all
+/// links that are not part of a foot.
+std::vector<ContactPoint> contact_points(const RobotModel& model);
+
+std::vector<PointGroup> group_points(const std::vector<ContactPoint>& points);
+
+}  // namespace ayumi

@@ -1,0 +1,139 @@
+// Two integrators, one robot: what Ayumi's plant says against MuJoCo.
+
+#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/simulator.hpp"
+#include "tests/support/walk.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+const RobotModel& hoap1() {
+  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  return model;
+}
+
+const CommandSeries& walk() {
+  static const CommandSeries series =
+      sample(hoap1(), read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json"));
+  return series;
+}
+
+TEST(MujocoPlant, StandingCarriesTheWeight) {
+  const CommandSample s = test::standing(hoap1(), 0).samples[0];
+  MujocoPlant plant(hoap1(), hoap1().limits(), World{});
+  plant.set_state(s.state);
+  StepReport report;
+  for (int i = 0; i < 1000; ++i) report = plant.step(s.state.theta, {}, 1e-3);
+  double weight = 0;
+  for (const auto& sole : report.soles)
+    for (const SoleForce& cell : sole) weight += cell.force.z();
+  EXPECT_NEAR(weight, hoap1().mass() * kGravity, 0.01);
+  EXPECT_LT((plant.data().cog - s.cog).norm(), 0.003);
+  EXPECT_LT(report.max_penetration, 0.001);
+  EXPECT_FALSE(report.body_contact);
+}
+
+/// Distance of the two plants' COG and attitude after 0.3 s of flight with limbs that move.
+std::pair<double, double> flight_difference(double step) {
+  RobotState s = hoap1().rest_state();
+  s.base.position.z() = 2;
+  s.base_velocity = Vector3d(0.3, -0.2, 1);
+  s.base_angular_velocity = Vector3d(0.5, 1, -0.7);
+  const VectorXd target = 0.8 * s.theta;
+  Plant ours(hoap1(), hoap1().limits(), World{});
+  MujocoPlant theirs(hoap1(), hoap1().limits(), World{});
+  ours.set_state(s);
+  theirs.set_state(s);
+  for (int i = 0; i < std::lround(0.3 / step); ++i) {
+    ours.step(target, {}, step);
+    theirs.step(target, {}, step);
+  }
+  return {(ours.data().cog - theirs.data().cog).norm(),
+          ours.state().base.attitude.angularDistance(theirs.state().base.attitude)};
+}
+
+// What they differ by falls with the step, in proportion or faster: both go to the same motion.
+TEST(MujocoPlant, AgreesInFlightAsTheStepShrinks) {
+  double cog[3], attitude[3];
+  for (int i = 0; i < 3; ++i) {
+    std::tie(cog[i], attitude[i]) = flight_difference(1e-3 / std::pow(4, i));
+    std::cout << "step " << 1e3 / std::pow(4, i) << " ms: COG " << 1e3 * cog[i] << " mm, attitude "
+              << attitude[i] << " rad\n";
+  }
+  for (int i = 1; i < 3; ++i) {
+    EXPECT_LT(attitude[i], 0.27 * attitude[i - 1]);
+    EXPECT_LT(cog[i], 0.27 * cog[i - 1]);
+  }
+  EXPECT_LT(attitude[2], 1e-4);
+  EXPECT_LT(cog[2], 1e-6);
+}
+
+SimulationLog run(const SimulateOptions& wanted, const PlantKind& kind) {
+  SimulateOptions options = wanted;
+  options.plant = kind;
+  return simulate(hoap1(), walk(), options);
+}
+
+class MujocoWalk : public testing::TestWithParam<std::string> {};
+
+TEST_P(MujocoWalk, GoesTheSameWay) {
+  SimulateOptions options;
+  options.controller.type = GetParam();
+  const SimulationLog ours = run(options, {}), theirs = run(options, mujoco_plant_kind());
+  EXPECT_EQ(ours.plant, "ayumi");
+  EXPECT_EQ(theirs.plant, "mujoco");
+  EXPECT_EQ(theirs.result.outcome, Outcome::stands);
+  ASSERT_EQ(ours.samples.size(), theirs.samples.size());
+  double sum = 0, largest = 0;
+  for (size_t k = 0; k < ours.samples.size(); ++k) {
+    const double difference = (ours.samples[k].cog - theirs.samples[k].cog).norm();
+    sum += difference * difference;
+    largest = std::max(largest, difference);
+  }
+  const double rms = std::sqrt(sum / static_cast<double>(ours.samples.size()));
+  std::cout << "COG, " << GetParam() << ": RMS " << 1e3 * rms << " mm, largest " << 1e3 * largest
+            << " mm\n";
+  EXPECT_LT(rms, 0.005);
+}
+
+INSTANTIATE_TEST_SUITE_P(Controllers, MujocoWalk, testing::Values("none", "dtad"));
+
+// A copy goes on from the same state to the last bit, so that pushes can branch off one run.
+TEST(MujocoPlant, CopiesAreBranches) {
+  SimulateOptions options;
+  options.plant = mujoco_plant_kind();
+  Simulator trunk(hoap1(), walk(), options);
+  trunk.advance(700);
+  Simulator branch = trunk;
+  trunk.advance(300);
+  branch.advance(300);
+  EXPECT_EQ(trunk.state().theta, branch.state().theta);
+  EXPECT_EQ(trunk.state().base.position, branch.state().base.position);
+}
+
+TEST(MujocoPlant, RefusesWhatIsNotANumber) {
+  MujocoPlant plant(hoap1(), hoap1().limits(), World{});
+  VectorXd target = hoap1().rest_state().theta;
+  target[3] = std::nan("");
+  try {
+    plant.step(target, {}, 1e-3);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("servo targets"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace ayumi
