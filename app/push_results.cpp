@@ -121,7 +121,9 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   try {
     const Json json = Json::parse(bytes);
     if (json.at("format") != kFormat) refuse("is not a file of push results");
-    if (json.at("study") != study) refuse("holds the results of another study");
+    // The order of keys says nothing.
+    if (nlohmann::json::parse(json.at("study").dump()) != nlohmann::json::parse(study.dump()))
+      refuse("holds the results of another study");
     for (const Json& entry : json.at("cases")) known.at(entry.at("index")) = case_from(entry);
   } catch (const Json::exception&) {
     refuse("is not a file of push results");

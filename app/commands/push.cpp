@@ -5,10 +5,12 @@
 #include <chrono>
 #include <memory>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/control/dtad.hpp"
+#include "ayumi/preview/push_map.hpp"
 #include "pattern_input.hpp"
 #include "push_results.hpp"
 #include "simulation.hpp"
@@ -20,7 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Options {
-  std::string pattern, out;
+  std::string pattern, out, map;
   PatternOptions input;
   std::vector<std::string> controllers, gains;
   std::vector<double> times;
@@ -97,6 +99,23 @@ std::string ratio_text(const PushLimit& limit, double bound) {
   return text::fixed(bound > 0 ? limit.impulse / bound : 0, 2) + (limit.capped ? "+" : "");
 }
 
+std::vector<std::string> summary_lines(const std::vector<PushCase>& cases,
+                                       const PushOptions& push) {
+  std::vector<std::string> lines;
+  for (size_t k = 0; k < push.controllers.size(); ++k)
+    for (const bool standing : {false, true}) {
+      const PushSummary s = summarize(cases, k, standing, push.step);
+      if (s.cases == 0) continue;
+      lines.push_back(std::string(standing ? "standing" : "walking") + ": " +
+                      push.controllers[k].type + " worst " + text::fixed(s.worst, 2) + " B, mean " +
+                      text::fixed(s.mean, 2) + " B; open loop worst " +
+                      text::fixed(s.open_worst, 2) + " B, mean " + text::fixed(s.open_mean, 2) +
+                      " B; below open loop in " + std::to_string(s.below_open) + " of " +
+                      std::to_string(s.cases) + " cases");
+    }
+  return lines;
+}
+
 /// One block per phase: B in N s, then every law in shares of B, one column per direction.
 std::string table(const std::vector<PushCase>& cases, const PushOptions& push) {
   constexpr size_t kLabel = 16, kCell = 7;
@@ -119,17 +138,35 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push) {
       line(push.controllers[k].type + " / B",
            [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
   }
-  for (size_t k = 0; k < push.controllers.size(); ++k)
-    for (const bool standing : {false, true}) {
-      const PushSummary s = summarize(cases, k, standing, push.step);
-      if (s.cases == 0) continue;
-      out += std::string(standing ? "standing" : "walking") + ": " + push.controllers[k].type +
-             " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
-             " B; open loop worst " + text::fixed(s.open_worst, 2) + " B, mean " +
-             text::fixed(s.open_mean, 2) + " B; below open loop in " +
-             std::to_string(s.below_open) + " of " + std::to_string(s.cases) + " cases\n";
-    }
+  for (const std::string& line : summary_lines(cases, push)) out += line + "\n";
   return out;
+}
+
+PushMap push_map(const PatternInput& input, const std::vector<PushCase>& cases,
+                 const PushOptions& push) {
+  PushMap map;
+  map.title = input.pattern.name + ", " + input.model.name() +
+              (input.profile.empty() ? "" : ", actuators " + input.profile) + ": pushes of " +
+              text::fixed(1e3 * push.duration, 0) + " ms";
+  for (const ControllerSpec& c : push.controllers) map.laws.push_back(c.type);
+  map.remarks = summary_lines(cases, push);
+  const size_t directions = static_cast<size_t>(push.directions);
+  for (size_t p = 0; p < cases.size(); p += directions) {
+    PushMapPhase phase{.name = cases[p].phase.name};
+    phase.curves.resize(push.controllers.size() + 1);
+    for (size_t i = p; i < p + directions; ++i) {
+      const PushCase& c = cases[i];
+      phase.direction.push_back(c.direction);
+      phase.bound.push_back(c.bound);
+      for (size_t k = 0; k < phase.curves.size(); ++k) {
+        const PushLimit& limit = k == 0 ? c.open_loop : c.limits[k - 1];
+        phase.curves[k].impulse.push_back(limit.impulse);
+        phase.curves[k].capped.push_back(limit.capped);
+      }
+    }
+    map.phases.push_back(phase);
+  }
+  return map;
 }
 
 Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, double wall) {
@@ -153,6 +190,12 @@ Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, do
 }
 
 void find_limits(Context& context, const Options& options) {
+  if (!options.map.empty()) {
+    const std::string type = std::filesystem::path(options.map).extension().string();
+    if (type != ".svg" && type != ".png")
+      fail(ErrorCode::usage, "--map " + options.map + ": the name must end in .svg or .png");
+    refuse_overwriting(context, options.map);
+  }
   const PatternInput input = load_pattern(context, options.pattern, options.input);
   const PushOptions push = push_options(context, input, options);
   const Json study = study_json(input, push);
@@ -171,6 +214,10 @@ void find_limits(Context& context, const Options& options) {
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   context.print(table(cases, push));
+  if (!options.map.empty()) {
+    write_push_map(push_map(input, cases, push), options.map);
+    context.print("  drawn in " + options.map + "\n");
+  }
   if (!options.out.empty()) context.print("  written to " + options.out + "\n");
   context.print_json(result_json(cases, push, wall).dump(2));
 }
@@ -181,7 +228,7 @@ void add_push(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
       "push", "largest survivable push by gait phase and direction, against the capture bound");
   command->footer(
-      "Examples:\n  ayumi push patterns/hoap1_walk.json -o out/push.json\n"
+      "Examples:\n  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n"
       "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
       "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
       "A study that was stopped goes on from its results file. The pattern's own pushes are left "
@@ -192,6 +239,8 @@ void add_push(CLI::App& app, Context& context) {
   command
       ->add_option("-o,--out", options->out,
                    "results as JSON; goes on with those of the same study")
+      ->type_name("F");
+  command->add_option("--map", options->map, "polar map of the limits, .svg or .png")
       ->type_name("F");
   add_pattern_options(*command, options->input);
   command->add_option("--controller", options->controllers, "beside open loop; may be repeated")

@@ -1,0 +1,100 @@
+// ayumi push: the same for any number of threads, goes on where it was stopped, draws its map.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Study {
+  Folder folder;
+  std::vector<std::string> command = {"push",
+                                      "stand.json",
+                                      "--quiet",
+                                      "--controller",
+                                      "dtad",
+                                      "--times",
+                                      "0.5",
+                                      "--directions",
+                                      "2",
+                                      "--replicas",
+                                      "0",
+                                      "--step",
+                                      "0.3",
+                                      "--cap",
+                                      "1.5",
+                                      "-o",
+                                      "results.json",
+                                      "--threads",
+                                      "1"};
+  Study() {
+    const Output made = run({"new", "stand", "--duration", "1.5", "-o", "stand.json"});
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+  }
+  Output run(std::vector<std::string> words, const std::vector<std::string>& more = {}) const {
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words, folder.path());
+  }
+};
+
+TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
+  const Study study;
+  const Output first = study.run(study.command);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_NE(first.out.find("walking: dtad worst"), std::string::npos) << first.out;
+  const std::string whole = contents(study.folder / "results.json");
+  Json partly = Json::parse(whole);
+  ASSERT_EQ(partly["cases"].size(), 2u);
+  for (const Json& c : partly["cases"]) {
+    EXPECT_GT(c["bound_Ns"].get<double>(), 1.5);
+    EXPECT_GT(c["limits"][0]["impulse_Ns"].get<double>(), 0.8 * c["bound_Ns"].get<double>());
+  }
+  partly["cases"].erase(0);
+  partly["cases"][0]["open_loop"]["runs"] = 1234;  // taken over, not worked out again
+  write(study.folder / "results.json", partly.dump());
+  std::vector<std::string> again = study.command;
+  again.back() = "2";
+  ASSERT_EQ(study.run(again).exit_code, 0);
+  Json joined = Json::parse(contents(study.folder / "results.json"));
+  EXPECT_EQ(joined["cases"][1]["open_loop"]["runs"], 1234);
+  joined["cases"][1]["open_loop"]["runs"] = Json::parse(whole)["cases"][1]["open_loop"]["runs"];
+  EXPECT_EQ(joined, Json::parse(whole));
+
+  const Output other = study.run(study.command, {"--gain", "ka=1"});
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_NE(other.err.find("results.json: holds the results of another study"), std::string::npos)
+      << other.err;
+}
+
+TEST(PushCommand, DrawsItsMapAndPrintsJson) {
+  const Study study;
+  const Output bad = study.run(study.command, {"--map", "map.jpg"});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_NE(bad.err.find("map.jpg: the name must end in .svg or .png"), std::string::npos);
+  EXPECT_FALSE(fs::exists(study.folder / "results.json")) << "told before the work";
+  const Output good = study.run(study.command, {"--map", "map.svg", "--json"});
+  ASSERT_EQ(good.exit_code, 0) << good.err;
+  const Json json = Json::parse(good.out);
+  EXPECT_EQ(json["thresholds"].size(), 2u);
+  EXPECT_GT(json["worst_ratio"].get<double>(), 0.8);
+  const std::string map = contents(study.folder / "map.svg");
+  EXPECT_NE(map.find("capture bound B"), std::string::npos);
+  EXPECT_NE(map.find("t = 0.500 s"), std::string::npos);
+  EXPECT_EQ(study.run(study.command, {"--map", "map.svg"}).exit_code, 3) << "not overwritten";
+}
+
+TEST(PushCommand, NamesWhatIsWrong) {
+  const Study study;
+  const Output gain = study.run(study.command, {"--gain", "kaa=1"});
+  EXPECT_EQ(gain.exit_code, 2);
+  EXPECT_NE(gain.err.find("dtad has no gain 'kaa'"), std::string::npos) << gain.err;
+  const Output k = study.run(study.command, {"--gain", "k=0.9", "--gain", "d=1"});
+  EXPECT_EQ(k.exit_code, 2);
+  EXPECT_NE(k.err.find("need K > 1 and D > 0"), std::string::npos) << k.err;
+}
+
+}  // namespace
+}  // namespace ayumi::test
