@@ -26,9 +26,10 @@ SimulationSample random_sample(test::Random& random, int joints) {
   s.state.base_velocity = random.vector(1);
   s.state.base_angular_velocity = random.vector(1);
   for (Eigen::VectorXd* v :
-       {&s.state.theta, &s.state.dtheta, &s.target, &s.torque, &s.reference_theta})
+       {&s.state.theta, &s.state.dtheta, &s.target, &s.torque, &s.reference_theta,
+        &s.command_theta})
     *v = random.vector(joints, 1);
-  s.reference_base.position = random.vector(1);
+  s.reference_base.position = s.command_base.position = random.vector(1);
   for (Eigen::Vector3d* v :
        {&s.cog, &s.dcog, &s.zmp, &s.measured_cog, &s.measured_zmp, &s.command_cog, &s.command_zmp,
         &s.reference_cog, &s.reference_zmp, &s.foot_force[0], &s.foot_force[1], &s.foot_cop[0],
@@ -91,6 +92,7 @@ TEST(SimulationLogFile, EveryFieldSurvives) {
             log.samples[7].state.base.attitude.coeffs());
   EXPECT_EQ(back.samples[7].state.dtheta, log.samples[7].state.dtheta);
   EXPECT_EQ(back.samples[7].reference_theta, log.samples[7].reference_theta);
+  EXPECT_EQ(back.samples[7].command_theta, log.samples[7].command_theta);
   EXPECT_EQ(back.samples[7].foot_cop[1], log.samples[7].foot_cop[1]);
   EXPECT_EQ(back.samples[7].planned_contact, log.samples[7].planned_contact);
   EXPECT_EQ(back.samples[7].contact_iterations, log.samples[7].contact_iterations);
@@ -111,14 +113,14 @@ TEST(SimulationLogFile, NoFieldOfASampleIsForgotten) {
   const std::string bytes = log_bytes(log);
   std::uint32_t header = 0;
   std::memcpy(&header, bytes.data() + 12, 4);
-  // Poses 2 x 7, joint vectors 5 x 3, 3-vectors 2 + 15, scalars 5, flags 2, count 1.
-  const size_t columns = 14 + 15 + 3 * 17 + 5 + 2 + 1;
+  // Poses 3 x 7, joint vectors 6 x 3, 3-vectors 2 + 15, scalars 5, flags 2, count 1.
+  const size_t columns = 21 + 18 + 3 * 17 + 5 + 2 + 1;
   EXPECT_EQ(bytes.size(), 16 + header + 20 * columns * 8);
   const auto json = nlohmann::json::parse(bytes.substr(16, header));
   EXPECT_EQ(json.at("columns").size(), columns);
   EXPECT_EQ(json.at("columns").at(0), "base.x[m]");
   const size_t fields_of_plain_sample =
-      2 * sizeof(BasePose) + 2 * 24 + 5 * sizeof(Eigen::VectorXd) + 15 * 24 + 5 * 8 + 8;
+      3 * sizeof(BasePose) + 2 * 24 + 6 * sizeof(Eigen::VectorXd) + 15 * 24 + 5 * 8 + 8;
   EXPECT_LE(sizeof(SimulationSample) - fields_of_plain_sample, 64u) << "a field was added?";
 }
 

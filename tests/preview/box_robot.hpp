@@ -86,6 +86,8 @@ inline SimulationLog box_run(const RobotModel& model) {
     s.state = model.rest_state();
     s.state.base.position = {0.1 * t, 0.02 * std::sin(6 * t), 0.30};
     s.state.theta[0] = 0.3 * std::sin(6 * t);
+    s.command_base.position = {0.1 * t, 0, 0.30};
+    s.command_theta = Eigen::VectorXd::Zero(model.dof_count());
     s.cog = s.state.base.position + Eigen::Vector3d(0, 0, -0.02);
     s.zmp = {0.1 * t, 0.03 * std::sin(6 * t), 0};
     s.reference_zmp = {0.1 * t + 0.02, 0.02 * std::sin(6 * t), 0};

@@ -26,7 +26,9 @@ SimulationLog standing(const RobotModel& model) {
   sample.cog = sample.command_cog = data.cog;
   sample.zmp = sample.reference_zmp = {data.cog.x(), 0, 0};
   sample.fz = sample.command_fz = 9.80665 * model.mass();
-  sample.target = sample.torque = sample.reference_theta = sample.state.theta;
+  sample.target = sample.torque = sample.reference_theta = sample.command_theta =
+      sample.state.theta;
+  sample.reference_base = sample.command_base = sample.state.base;
   sample.state.dtheta = Eigen::VectorXd::Zero(model.dof_count());
   SimulationLog log;
   log.controller = "dtad";

@@ -46,6 +46,8 @@ void for_each_field(Sample& s, const Visit& visit) {
   visit("measured.cog", "m", s.measured_cog);
   visit("measured.zmp", "m", s.measured_zmp);
   visit("measured.fz", "N", s.measured_fz);
+  visit("cmd.base", "m", s.command_base);
+  visit("cmd.theta", "rad", s.command_theta);
   visit("cmd.cog", "m", s.command_cog);
   visit("cmd.zmp", "m", s.command_zmp);
   visit("cmd.fz", "N", s.command_fz);

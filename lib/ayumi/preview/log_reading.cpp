@@ -40,10 +40,12 @@ SimulationSample sample_at(const SimulationLog& log, double t) {
   SimulationSample sample = log.samples[index];
   const SimulationSample& next = log.samples[index + 1];
   sample.state.base = mix(sample.state.base, next.state.base, share);
+  sample.command_base = mix(sample.command_base, next.command_base, share);
   sample.reference_base = mix(sample.reference_base, next.reference_base, share);
   const auto blend = [&](auto& value, const auto& after) { value = mix(value, after, share); };
   blend(sample.state.theta, next.state.theta);
   blend(sample.reference_theta, next.reference_theta);
+  blend(sample.command_theta, next.command_theta);
   blend(sample.cog, next.cog);
   blend(sample.zmp, next.zmp);
   blend(sample.command_cog, next.command_cog);

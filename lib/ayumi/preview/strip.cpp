@@ -15,8 +15,7 @@ void paste(const Image& tile, Image& sheet, int left, int top) {
 
 }  // namespace
 
-void write_strip(const RobotModel& model, const SimulationLog& log,
-                 const std::filesystem::path& path, const StripOptions& options) {
+Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options) {
   std::vector<double> times = options.times;
   const double last = log.dt * static_cast<double>(log.samples.size() - 1);
   if (times.empty())
@@ -37,7 +36,12 @@ void write_strip(const RobotModel& model, const SimulationLog& log,
     paste(renderer.frame(std::clamp(times[i], 0.0, last)), sheet,
           static_cast<int>(i) % columns * options.clip.picture.width,
           static_cast<int>(i) / columns * options.clip.picture.height);
-  write_png(path, sheet);
+  return sheet;
+}
+
+void write_strip(const RobotModel& model, const SimulationLog& log,
+                 const std::filesystem::path& path, const StripOptions& options) {
+  write_png(path, draw_strip(model, log, options));
 }
 
 }  // namespace ayumi

@@ -15,8 +15,11 @@ struct StripOptions {
   int columns = 4;
 };
 
-/// Writes a PNG of all snapshots in reading order, whole or not at all. Throws as ClipRenderer and
-/// write_png; Error(usage) for no snapshots or a picture beyond 16384 pixels.
+/// All snapshots in reading order. Throws as ClipRenderer; Error(usage) for no snapshots or a
+/// picture beyond 16384 pixels.
+Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options);
+
+/// The same as a PNG file, whole or not at all. Throws as draw_strip and write_png.
 void write_strip(const RobotModel& model, const SimulationLog& log,
                  const std::filesystem::path& path, const StripOptions& options);
 

@@ -26,6 +26,8 @@ struct SimulationSample {
   Eigen::Vector3d measured_cog = Eigen::Vector3d::Zero();   ///< estimated, plan frame [m]
   Eigen::Vector3d measured_zmp = Eigen::Vector3d::Zero();   ///< from load cells, plan frame [m]
   double measured_fz = 0;                                   ///< [N]
+  BasePose command_base;                                    ///< base of the commanded posture
+  Eigen::VectorXd command_theta;                            ///< cmd theta [rad]
   Eigen::Vector3d command_cog = Eigen::Vector3d::Zero();    ///< cmd p_G [m]
   Eigen::Vector3d command_zmp = Eigen::Vector3d::Zero();    ///< cmd p_Z [m]
   double command_fz = 0;                                    ///< [N]

@@ -156,6 +156,8 @@ SimulationSample Simulator::sample(const CommandSample& cmd, const Estimate& est
   s.reference_cog = out.cog;
   s.reference_zmp = out.cog_reference.zmp;
   s.reference_fz = out.cog_reference.fz;
+  s.command_base = cmd.state.base;
+  s.command_theta = cmd.state.theta;
   s.command_cog = cmd.cog;
   s.command_zmp = cmd.zmp;
   s.command_fz = cmd.fz;

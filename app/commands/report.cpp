@@ -1,0 +1,75 @@
+// One HTML page of a run.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "pattern_input.hpp"
+#include "report_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string input, output, robot, push;
+  ReportOptions report;
+  double max_megabytes = 8;
+  bool no_replay = false;
+};
+
+void report_run(Options options, Context& context) {
+  refuse_overwriting(context, options.output);
+  if (!is_run_folder(options.input))
+    fail(ErrorCode::bad_file, options.input +
+                                  ": is no RUN, the folder that `ayumi run` or `ayumi simulate` "
+                                  "wrote");
+  if (!(options.max_megabytes > 0) || options.max_megabytes > 1000)
+    fail(ErrorCode::usage, "--max-size: must be above 0 and at most 1000 MB");
+  options.report.max_bytes = static_cast<size_t>(1e6 * options.max_megabytes);
+  options.report.replay = !options.no_replay;
+  const RunFolder run = read_run(options.input);
+  ReportInput input = report_input(run, options.input);
+  const std::string push =
+      options.push.empty() ? (fs::path(options.input) / "push.json").string() : options.push;
+  if (!options.push.empty() || fs::exists(push)) input.thresholds = read_push_thresholds(push);
+  const RobotModel model = load_robot(options.robot.empty() ? run.provenance.robot : options.robot,
+                                      robot_search(context), {.meshes = true});
+  const Report made = make_report(model, input, options.report, context.progress());
+  write_file(options.output, made.html);
+  context.print(options.output + ": " + std::to_string(made.html.size() / 1000) + " kB\n");
+  for (const std::string& cap : made.caps) context.print("  " + cap + "\n");
+  const nlohmann::ordered_json json = {
+      {"output", options.output}, {"bytes", made.html.size()}, {"caps", made.caps}};
+  context.print_json(json.dump(2));
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("report", "one HTML page of a run: verdict, replay, loci");
+  command->add_option("run", options->input, "a RUN folder")->required()->type_name("RUN");
+  command->add_option("-o,--out", options->output, ".html")->required()->type_name("FILE");
+  command
+      ->add_option("--push", options->push,
+                   "results of `ayumi push`; push.json in the RUN where it is there")
+      ->type_name("FILE");
+  command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
+  command->add_option("--max-size", options->max_megabytes, "of the page [MB]")
+      ->capture_default_str();
+  command->add_option("--rate", options->report.rate, "postures per second of the replay")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  command->add_flag("--no-replay", options->no_replay, "pictures only");
+  command->footer(
+      "Examples:\n"
+      "  ayumi report out/ -o out/report.html\n"
+      "  ayumi report out/ --push thresholds.json --max-size 3 -o small.html");
+  command->callback([options, &context] { report_run(*options, context); });
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,13 @@
+#pragma once
+// What a run's folder gives a report.
+
+#include "ayumi/io/run_folder.hpp"
+#include "ayumi/report/report.hpp"
+
+namespace ayumi::app {
+
+/// Logs, open loop first, and the verdicts of `run`; it must outlive the result. Throws
+/// Error(bad_file) naming `file` when the run has no log.
+ReportInput report_input(const RunFolder& run, const std::string& file);
+
+}  // namespace ayumi::app

@@ -1,0 +1,19 @@
+#pragma once
+// Fewer triangles for the same look: vertices that share a cell of a grid become one.
+
+#include <vector>
+
+#include "ayumi/preview/robot_surface.hpp"
+
+namespace ayumi {
+
+/// Triangles of all bodies.
+size_t triangle_count(const std::vector<BodySurface>& surface);
+
+/// Simplifies until at most `max_triangles` are left: the finest grid, edges by factors of 1.3,
+/// that is coarse enough. Outlines move by at most the diagonal of a cell. Returns the edge of the
+/// cells [m]; 0 when nothing was changed. What was closed may be open at places afterwards and is
+/// counted as open.
+double simplify(std::vector<BodySurface>& surface, size_t max_triangles);
+
+}  // namespace ayumi

@@ -1,0 +1,83 @@
+#include "ayumi/report/html.hpp"
+
+#include <cstdint>
+
+namespace ayumi::html {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n')
+      out += c;
+  }
+  return out;
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve(4 * ((bytes.size() + 2) / 3));
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const size_t count = bytes.size() - i < 3 ? bytes.size() - i : 3;
+    std::uint32_t word = 0;
+    for (size_t k = 0; k < 3; ++k)
+      word = word << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 4; ++k) out += k <= count ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+std::string quoted(const std::string& text) {
+  constexpr const char* kHex = "0123456789abcdef";
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      out += {'\\', c};
+    else if (byte < 0x20 || c == '<' || c == '>' || c == '&')
+      out += std::string("\\u00") + kHex[byte / 16] + kHex[byte % 16];
+    else
+      out += c;
+  }
+  return out + '"';
+}
+
+std::string table(const Table& table) {
+  std::string out = "<div class=\"wide\"><table>\n";
+  if (!table.caption.empty()) out += "<caption>" + escaped(table.caption) + "</caption>\n";
+  if (!table.head.empty()) {
+    out += "<tr>";
+    for (const std::string& name : table.head)
+      out += "<th scope=\"col\">" + escaped(name) + "</th>";
+    out += "</tr>\n";
+  }
+  for (const std::vector<std::string>& row : table.rows) {
+    out += "<tr>";
+    for (size_t i = 0; i < row.size(); ++i) {
+      const bool number =
+          !row[i].empty() && std::string("0123456789+-.").find(row[i][0]) != std::string::npos;
+      if (i == 0)
+        out += "<th scope=\"row\">" + row[i] + "</th>";
+      else
+        out += (number ? "<td class=\"number\">" : "<td>") + row[i] + "</td>";
+    }
+    out += "</tr>\n";
+  }
+  return out + "</table></div>\n";
+}
+
+std::string section(const std::string& id, const std::string& title, const std::string& contents) {
+  return "<section id=\"" + id + "\" aria-labelledby=\"" + id + "-title\">\n<h2 id=\"" + id +
+         "-title\">" + escaped(title) + "</h2>\n" + contents + "</section>\n";
+}
+
+}  // namespace ayumi::html

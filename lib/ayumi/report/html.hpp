@@ -1,0 +1,30 @@
+#pragma once
+// Pieces of HTML as text.
+
+#include <string>
+#include <vector>
+
+namespace ayumi::html {
+
+/// Text between tags or in quotes.
+std::string escaped(const std::string& text);
+
+/// Base64 without line breaks.
+std::string base64(const std::string& bytes);
+
+/// Text in JSON quotes, safe inside a <script> element.
+std::string quoted(const std::string& text);
+
+struct Table {
+  std::string caption;
+  std::vector<std::string> head;               ///< text
+  std::vector<std::vector<std::string>> rows;  ///< HTML; a cell that begins with a digit, sign or
+                                               ///< dot is set as a number
+};
+/// The first cell of a row is its heading.
+std::string table(const Table& table);
+
+/// <section id=...><h2>title</h2>contents</section>
+std::string section(const std::string& id, const std::string& title, const std::string& contents);
+
+}  // namespace ayumi::html

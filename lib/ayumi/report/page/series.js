@@ -1,0 +1,51 @@
+// The run's quantities over time, as one table of rows whose first column is the time; and the
+// convex hull that makes soles a support polygon.
+
+export function clampTime({ table, width, rows }, t) {
+  const first = table[0], last = table[(rows - 1) * width];
+  return Math.min(last, Math.max(first, Number.isFinite(t) ? t : first));
+}
+
+/// Index of the last row not after t.
+function indexAt({ table, width, rows }, t) {
+  let low = 0, high = rows - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (table[middle * width] <= t + 1e-6) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}
+
+export function rowAt(series, t) {
+  const start = indexAt(series, t) * series.width;
+  return series.table.subarray(start, start + series.width);
+}
+
+/// Row at t, between two rows their mix; names that end in _planned are as in the row before.
+export function sampleAt(series, t) {
+  const at = clampTime(series, t), index = indexAt(series, at), { table, width, columns } = series;
+  const a = table.subarray(index * width, (index + 1) * width);
+  if (index + 1 >= series.rows) return a;
+  const b = table.subarray((index + 1) * width, (index + 2) * width);
+  const share = Math.min(1, Math.max(0, (at - a[0]) / (b[0] - a[0])));
+  const row = a.map((value, i) => value + share * (b[i] - value));
+  for (const [name, i] of Object.entries(columns)) if (name.endsWith("_planned")) row[i] = a[i];
+  return row;
+}
+
+/// Corners of the hull seen from above, counter-clockwise; points are [x, y, z].
+export function convexHull(points) {
+  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const turn = (o, a, b) => (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+  const half = (list) => {
+    const chain = [];
+    for (const p of list) {
+      while (chain.length > 1 && turn(chain.at(-2), chain.at(-1), p) <= 0) chain.pop();
+      chain.push(p);
+    }
+    chain.pop();
+    return chain;
+  };
+  return sorted.length < 3 ? sorted : [...half(sorted), ...half([...sorted].reverse())];
+}

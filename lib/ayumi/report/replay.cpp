@@ -1,0 +1,149 @@
+#include "ayumi/report/replay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/preview/gltf.hpp"
+#include "ayumi/preview/log_reading.hpp"
+#include "ayumi/preview/robot_surface.hpp"
+#include "ayumi/report/html.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+using html::quoted;
+
+const std::vector<std::string> kColumns = {"t",
+                                           "cog.x",
+                                           "cog.y",
+                                           "cog.z",
+                                           "zmp.x",
+                                           "zmp.y",
+                                           "zmp.z",
+                                           "ref_zmp.x",
+                                           "ref_zmp.y",
+                                           "ref_zmp.z",
+                                           "fz",
+                                           "left_force.x",
+                                           "left_force.y",
+                                           "left_force.z",
+                                           "left_cop.x",
+                                           "left_cop.y",
+                                           "left_cop.z",
+                                           "left_planned",
+                                           "right_force.x",
+                                           "right_force.y",
+                                           "right_force.z",
+                                           "right_cop.x",
+                                           "right_cop.y",
+                                           "right_cop.z",
+                                           "right_planned"};
+
+std::string list(const std::vector<std::string>& items) {
+  return "[" + text::join(items, ",") + "]";
+}
+
+std::string list(const Vector3d& v) {
+  return list({text::exact(v.x()), text::exact(v.y()), text::exact(v.z())});
+}
+
+std::string series_bytes(const SimulationLog& log, const std::vector<double>& times) {
+  std::string bytes;
+  const auto add = [&](double value) {
+    const auto single = static_cast<float>(value);
+    bytes.append(reinterpret_cast<const char*>(&single), sizeof single);
+  };
+  const auto add_vector = [&](const Vector3d& v) {
+    for (const double value : v) add(value);
+  };
+  for (const double t : times) {
+    const SimulationSample s = sample_at(log, t);
+    add(t);
+    add_vector(s.cog);
+    add_vector(s.zmp);
+    add_vector(s.reference_zmp);
+    add(s.fz);
+    for (size_t side = 0; side < 2; ++side) {
+      add_vector(s.foot_force[side]);
+      add_vector(s.foot_cop[side]);
+      add(s.planned_contact[side] ? 1 : 0);
+    }
+  }
+  return bytes;
+}
+
+std::string soles_words(const RobotModel& model) {
+  if (!model.has_soles()) return "[]";
+  std::vector<std::string> soles;
+  for (const Side side : {Side::left, Side::right}) {
+    const Sole& sole = model.sole(side);
+    std::vector<std::string> corners;
+    for (const Eigen::Vector2d& corner : sole.polygon)
+      corners.push_back(list(Vector3d(sole.frame * Vector3d(corner.x(), corner.y(), 0))));
+    soles.push_back("{\"side\":" + quoted(name_of(side)) + ",\"body\":" +
+                    std::to_string(sole.body) + ",\"corners\":" + list(corners) + "}");
+  }
+  return list(soles);
+}
+
+std::string pushes_words(const SimulationLog& log) {
+  std::vector<std::string> words;
+  for (const PushRecord& push : pushes(log)) {
+    const Vector3d along = push.impulse.norm() > 0 ? push.impulse : push.peak;
+    words.push_back("{\"begin\":" + text::exact(push.begin) + ",\"end\":" + text::exact(push.end) +
+                    ",\"from_cog\":" + list(push.from_cog) +
+                    ",\"direction\":" + list(Vector3d(along.normalized())) +
+                    ",\"text\":" + quoted(push_text(push)) + "}");
+  }
+  return list(words);
+}
+
+double height_of(const RobotModel& model, const SimulationLog& log) {
+  const Eigen::AlignedBox3d box =
+      robot_bounds(robot_surface(model), body_poses(model, log.samples.front().state));
+  return box.isEmpty() ? 1.0 : std::max(1e-3, box.sizes().maxCoeff());
+}
+
+bool has_command(const SimulationLog& log) {
+  return log.samples.front().command_theta.size() == log.samples.front().state.theta.size();
+}
+
+}  // namespace
+
+double telling_instant(const SimulationLog& log) {
+  const std::vector<PushRecord> pushed = pushes(log);
+  const double last = duration(log);
+  return pushed.empty() ? 0.5 * last : std::min(last, pushed.front().begin + 0.25);
+}
+
+ReplayData make_replay(const RobotModel& model, const ReportInput& input, const ReplayPlan& plan) {
+  const SimulationLog& log = *input.runs.back().log;
+  ReplayData data;
+  std::vector<Motion> motions = {motion_of(log, MotionSource::run, plan.rate)};
+  if (has_command(log)) motions.push_back(motion_of(log, MotionSource::command, plan.rate));
+  for (size_t i = 0; i + 1 < input.runs.size(); ++i) {
+    motions.push_back(motion_of(*input.runs[i].log, MotionSource::run, plan.rate));
+    motions.back().name = input.runs[i].name;
+  }
+  for (size_t i = 1; i < motions.size(); ++i) data.ghosts.push_back(motions[i].name);
+  data.duration = duration(log);
+  data.start = telling_instant(log);
+  data.model = glb_bytes(model, motions, {.max_triangles = plan.triangles});
+  data.series = series_bytes(log, motions.front().times);
+  std::vector<std::string> columns;
+  for (const std::string& name : kColumns) columns.push_back(quoted(name));
+  data.config = "{\"columns\":" + list(columns) + ",\"rate\":" + text::exact(plan.rate) +
+                ",\"height\":" + text::exact(height_of(model, log)) +
+                ",\"weight\":" + text::exact(9.80665 * model.mass()) +
+                ",\"ground_normal\":" + list(ground_normal(log.world)) +
+                ",\"start\":" + text::exact(data.start) + ",\"view\":\"iso\",\"label\":" +
+                quoted("3-D replay of " + input.title +
+                       "; space plays, arrow keys step, Home and End go to the ends") +
+                ",\"soles\":" + soles_words(model) + ",\"pushes\":" + pushes_words(log) + "}";
+  return data;
+}
+
+}  // namespace ayumi

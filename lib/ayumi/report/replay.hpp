@@ -1,0 +1,29 @@
+#pragma once
+// What a report's replay is made of: the robot with its motions, the run's quantities as a table,
+// and what the script has to know of them.
+
+#include <string>
+
+#include "ayumi/report/report.hpp"
+
+namespace ayumi {
+
+struct ReplayPlan {
+  double rate = 50;           ///< [Hz]
+  size_t triangles = 60'000;  ///< at most, of the robot
+};
+
+struct ReplayData {
+  std::string model;   ///< bytes of a .glb: the run, then its ghosts
+  std::string series;  ///< rows of 32-bit floats, little-endian
+  std::string config;  ///< JSON
+  std::vector<std::string> ghosts;
+  double duration = 0, start = 0;  ///< [s]
+};
+
+/// The instant worth showing first: shortly after the first push, or the middle [s].
+double telling_instant(const SimulationLog& log);
+
+ReplayData make_replay(const RobotModel& model, const ReportInput& input, const ReplayPlan& plan);
+
+}  // namespace ayumi

@@ -1,0 +1,249 @@
+#include "ayumi/report/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/preview/loci.hpp"
+#include "ayumi/preview/loci_parts.hpp"
+#include "ayumi/preview/log_reading.hpp"
+#include "ayumi/preview/robot_surface.hpp"
+#include "ayumi/preview/simplify.hpp"
+#include "ayumi/preview/strip.hpp"
+#include "ayumi/report/html.hpp"
+#include "ayumi/report/page.hpp"
+#include "ayumi/report/replay.hpp"
+#include "ayumi/report/sections.hpp"
+
+// A page that is too large is made again with a coarser replay: half the triangles, then half the
+// rate, down to a tenth; then without the snapshots, and at last without the replay.
+
+namespace ayumi {
+namespace {
+
+using html::escaped;
+
+constexpr double kMostKeys = 4000;  // of the replay
+constexpr size_t kFewestTriangles = 4000;
+constexpr double kLeastRate = 10;  // [Hz]
+
+/// Allows what is in the page and nothing else.
+constexpr const char* kPolicy =
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "img-src data: blob:; connect-src data: blob:; base-uri 'none'; form-action 'none'";
+
+std::vector<LociRun> loci_runs(const ReportInput& input) {
+  std::vector<LociRun> runs;
+  for (const ReportRun& run : input.runs) runs.push_back({html::name_of(run), run.log});
+  return runs;
+}
+
+/// The drawing as an element of the page.
+std::string inline_svg(const Drawing& drawing) {
+  const std::string svg = to_svg(drawing);
+  return svg.substr(svg.find("<svg"));
+}
+
+std::string loci_section(const RobotModel& model, const ReportInput& input) {
+  const std::vector<LociRun> runs = loci_runs(input);
+  LociOptions options;
+  options.title = input.title;
+  const Drawing time = draw_loci(runs, options);
+  const Interval range = plot::time_range(runs, options);
+  std::string out = "<figure id=\"loci-time\" data-time-axis=\"" + text::exact(plot::kLeft) + " " +
+                    text::exact(time.width - plot::kRight) + " " + text::exact(range.low) + " " +
+                    text::exact(range.high) + "\">\n" + inline_svg(time) +
+                    "<figcaption>COG, ZMP and ground force against time; drag in the plot to move "
+                    "the replay.</figcaption></figure>\n";
+  out += "<figure>\n" + inline_svg(draw_support(model, runs, options)) +
+         "<figcaption>The ground from above, with the footholds.</figcaption></figure>\n";
+  return html::section("loci", "Loci", out);
+}
+
+std::string picture(const Image& image, const std::string& words) {
+  return "<img width=\"" + std::to_string(image.width) + "\" height=\"" +
+         std::to_string(image.height) + "\" alt=\"" + escaped(words) +
+         "\" src=\"data:image/png;base64," + html::base64(encode_png(image)) + "\">";
+}
+
+std::string poster(const RobotModel& model, const ReportInput& input) {
+  const SimulationLog& log = *input.runs.back().log;
+  ClipOptions options;
+  options.picture.width = 1024;
+  options.picture.height = 576;
+  options.title = input.title;
+  const double t = telling_instant(log);
+  return picture(ClipRenderer(model, log, options).frame(t), "The robot " + model.name() + " at " +
+                                                                 text::fixed(t, 2) + " s of the " +
+                                                                 html::name_of(input.runs.back()));
+}
+
+std::string snapshots_section(const RobotModel& model, const ReportInput& input) {
+  StripOptions options;
+  options.clip.title = input.title;
+  options.clip.picture.width = 480;
+  options.clip.picture.height = 360;
+  const Image strip = draw_strip(model, *input.runs.back().log, options);
+  return html::section(
+      "snapshots", "Snapshots",
+      "<figure>" +
+          picture(strip, "Eight snapshots of the " + html::name_of(input.runs.back()) +
+                             ", evenly spaced over its " +
+                             text::fixed(duration(*input.runs.back().log), 2) + " s") +
+          "</figure>\n");
+}
+
+std::string check_box(const std::string& mark, const std::string& label) {
+  return "<label><input type=\"checkbox\" id=\"mark-" + mark + "\" checked> " + label +
+         "</label>\n";
+}
+
+std::string options(const std::vector<std::pair<std::string, std::string>>& entries) {
+  std::string out;
+  for (const auto& [value, label] : entries)
+    out += "<option value=\"" + escaped(value) + "\">" + escaped(label) + "</option>";
+  return out;
+}
+
+std::string controls(const ReplayData& data, double rate) {
+  std::vector<std::pair<std::string, std::string>> ghosts = {{"", "none"}};
+  for (const std::string& name : data.ghosts) ghosts.emplace_back(name, name);
+  return "<div id=\"controls\" hidden>\n<div><button type=\"button\" id=\"play\">Play</button>\n"
+         "<label for=\"scrub\">Time</label> <input type=\"range\" id=\"scrub\" min=\"0\" max=\"" +
+         text::exact(data.duration) + "\" step=\"" + text::exact(1 / rate) + "\" value=\"" +
+         text::exact(data.start) +
+         "\">\n<label>Speed <select id=\"speed\"><option value=\"1\">1</option>"
+         "<option value=\"0.5\">1/2</option><option value=\"0.2\">1/5</option>"
+         "<option value=\"0.05\">1/20</option></select></label>\n"
+         "<label>View <select id=\"view\">" +
+         options({{"iso", "iso"},
+                  {"front", "front"},
+                  {"side", "side"},
+                  {"back", "back"},
+                  {"top", "top"}}) +
+         "</select></label>\n<label>Ghost <select id=\"ghost\">" + options(ghosts) +
+         "</select></label></div>\n<fieldset><legend>Marks</legend>\n" + check_box("cog", "COG") +
+         check_box("zmp", "ZMP") + check_box("ref-zmp", "reference ZMP") +
+         check_box("support", "support polygon") + check_box("forces", "foot forces") +
+         check_box("push", "push") +
+         "</fieldset>\n<div id=\"readout\"></div>\n<div id=\"push-now\" "
+         "class=\"bad\"></div>\n</div>\n";
+}
+
+std::string data_element(const std::string& id, const std::string& type,
+                         const std::string& contents) {
+  return "<script type=\"" + type + "\" id=\"" + id + "\">" + contents + "</script>\n";
+}
+
+/// The pieces that do not depend on the plan of the replay.
+struct Pieces {
+  std::string poster, loci, snapshots;
+};
+
+struct Plan {
+  ReplayPlan replay;
+  bool with_replay = true, with_snapshots = true;
+};
+
+std::string page(const RobotModel& model, const ReportInput& input, const Pieces& pieces,
+                 const Plan& plan, const std::vector<std::string>& caps) {
+  std::string head =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"";
+  head += std::string(kPolicy) + "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>" +
+          escaped(input.title) + "</title>\n<style>\n" + std::string(kPageStyle) +
+          "</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#verdict\">To the verdict</a>\n"
+          "<header><h1>" +
+          escaped(input.title) + "</h1>\n<p class=\"soft\">" + escaped(model.name()) + ", " +
+          text::fixed(model.mass(), 2) + " kg, " + std::to_string(model.dof_count()) + " joints; " +
+          text::fixed(duration(*input.runs.back().log), 2) + " s</p></header>\n<main>\n";
+  std::string scene = "<figure><div id=\"stage\">" + pieces.poster + "</div></figure>\n";
+  std::string script;
+  if (plan.with_replay) {
+    const ReplayData data = make_replay(model, input, plan.replay);
+    scene += controls(data, plan.replay.rate) +
+             "<p id=\"replay-state\" class=\"soft\" role=\"status\"></p>\n"
+             "<noscript><p class=\"soft\">With JavaScript the picture becomes a replay.</p>"
+             "</noscript>\n";
+    script = data_element("replay-config", "application/json", data.config) +
+             data_element("replay-series", "text/plain", html::base64(data.series)) +
+             data_element("replay-model", "text/plain", html::base64(data.model)) + "<script>\n" +
+             std::string(kReplayScript) + "</script>\n";
+  }
+  return head + html::verdict_section(input) +
+         html::section("replay", plan.with_replay ? "Replay" : "Picture", scene) + pieces.loci +
+         html::findings_section(input) + html::thresholds_section(input) +
+         (plan.with_snapshots ? pieces.snapshots : "") + html::events_section(input) +
+         html::provenance_section(input, caps) + "</main>\n" + script + "</body>\n</html>\n";
+}
+
+/// Makes the plan smaller; false when nothing is left to reduce.
+bool reduce(Plan& plan, size_t& triangles) {
+  if (plan.with_replay && triangles > kFewestTriangles) {
+    triangles = std::max(kFewestTriangles, triangles / 2);
+    plan.replay.triangles = triangles;
+  } else if (plan.with_replay && plan.replay.rate > kLeastRate) {
+    plan.replay.rate = std::max(kLeastRate, plan.replay.rate / 2);
+  } else if (plan.with_snapshots) {
+    plan.with_snapshots = false;
+  } else if (plan.with_replay) {
+    plan.with_replay = false;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+std::vector<std::string> caps_of(const Plan& plan, const ReportOptions& options, size_t triangles,
+                                 const std::string& no_replay) {
+  std::vector<std::string> caps;
+  if (!no_replay.empty()) caps.push_back(no_replay);
+  if (plan.with_replay && triangles > plan.replay.triangles)
+    caps.push_back("the robot has " + std::to_string(triangles) +
+                   " triangles, the replay shows at most " + std::to_string(plan.replay.triangles));
+  if (plan.with_replay)
+    caps.push_back("the replay has " + text::brief(plan.replay.rate) +
+                   " postures per second and moves evenly between them");
+  const std::string size = text::brief(1e-6 * double(options.max_bytes)) + " MB";
+  if (!plan.with_replay && no_replay.empty())
+    caps.push_back("no replay: with it the page would be larger than " + size);
+  if (!plan.with_snapshots)
+    caps.push_back("no snapshots: with them the page would be larger than " + size);
+  return caps;
+}
+
+}  // namespace
+
+bool has_replay() { return !kReplayScript.empty(); }
+
+Report make_report(const RobotModel& model, const ReportInput& input, const ReportOptions& options,
+                   const Progress& progress) {
+  if (input.runs.empty()) fail(ErrorCode::usage, "a report needs a simulated run");
+  const double last = duration(*input.runs.back().log);
+  Plan plan;
+  plan.with_replay = options.replay && has_replay();
+  const std::string no_replay = plan.with_replay ? ""
+                                : !options.replay
+                                    ? "no replay, as asked for"
+                                    : "no replay: the program was built without npm and three.js";
+  plan.replay.rate = std::min(options.rate, kMostKeys / std::max(1e-9, last));
+  plan.replay.triangles = options.max_triangles;
+  report(progress, {"report", 0.0, "loci"});
+  Pieces pieces;
+  pieces.loci = loci_section(model, input);
+  report(progress, {"report", 0.2, "pictures"});
+  pieces.poster = poster(model, input);
+  pieces.snapshots = snapshots_section(model, input);
+  report(progress, {"report", 0.7, "page"});
+  const size_t triangles = triangle_count(robot_surface(model));
+  size_t allowed = std::min(options.max_triangles, triangles);
+  for (;;) {
+    const std::vector<std::string> caps = caps_of(plan, options, triangles, no_replay);
+    Report made = {page(model, input, pieces, plan, caps), caps};
+    if (made.html.size() <= options.max_bytes || !reduce(plan, allowed)) return made;
+    report(progress, {"report", 0.8, "smaller page"});
+  }
+}
+
+}  // namespace ayumi

@@ -1,0 +1,48 @@
+#pragma once
+// One HTML page of a run, complete in itself: verdict, replay, loci, findings, pictures, push
+// thresholds, provenance. It loads nothing from anywhere; without JavaScript the replay is a
+// picture and everything else is there.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/io/run_results.hpp"
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/sim/simulation_log.hpp"
+
+namespace ayumi {
+
+struct ReportRun {
+  std::string name;          ///< "open loop", "closed loop"
+  const SimulationLog* log;  ///< must outlive the call
+};
+
+struct ReportInput {
+  std::string title;            ///< of the pattern
+  std::vector<ReportRun> runs;  ///< at least one; the last is judged and replayed
+  RunResults results;
+  std::vector<PushThreshold> thresholds;  ///< empty: no study
+};
+
+struct ReportOptions {
+  size_t max_bytes = 8'000'000;   ///< of the page; replay and pictures are reduced to keep it
+  double rate = 50;               ///< of the replay [Hz]
+  size_t max_triangles = 60'000;  ///< of the robot in the replay
+  bool replay = true;
+};
+
+struct Report {
+  std::string html;
+  std::vector<std::string> caps;  ///< what was reduced or left out, and why, in words
+};
+
+/// Whether this program was built with the replay.
+bool has_replay();
+
+/// The same input gives the same bytes. Throws Error(usage) for no runs or an empty one, and as
+/// ClipRenderer does.
+Report make_report(const RobotModel& model, const ReportInput& input,
+                   const ReportOptions& options = {}, const Progress& progress = {});
+
+}  // namespace ayumi

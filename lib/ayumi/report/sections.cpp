@@ -1,0 +1,187 @@
+#include "ayumi/report/sections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/preview/log_reading.hpp"
+#include "ayumi/report/html.hpp"
+
+namespace ayumi::html {
+namespace {
+
+std::string degrees(double radians) { return text::fixed(radians * 180 / M_PI, 1); }
+std::string millimetres(double metres) { return text::fixed(1e3 * metres, 1); }
+std::string percent(double ratio) { return text::fixed(100 * ratio, 0); }
+
+std::string marked(bool good, const std::string& words) {
+  return std::string("<span class=\"") + (good ? "good" : "bad") + "\">" + escaped(words) +
+         "</span>";
+}
+
+std::string outcome_words(const SimulationResult& result) {
+  if (result.outcome == Outcome::fell) return "falls at " + text::fixed(result.fell_at, 2) + " s";
+  return result.outcome == Outcome::stands ? "stands" : "does not come to rest";
+}
+
+std::string outcome_cell(const SimulationResult& result) {
+  return marked(result.outcome == Outcome::stands, outcome_words(result));
+}
+
+/// "pushed with 1.1 N s at 3 s"
+std::string push_words(const SimulationLog& log) {
+  std::string words;
+  for (const PushRecord& push : pushes(log))
+    words += (words.empty() ? ", pushed with " : ", ") + push_text(push) + " at " +
+             text::brief(push.begin) + " s";
+  return words;
+}
+
+Table run_table(const ReportInput& input) {
+  Table table = {"The simulated runs", {"run", "outcome"}, {}};
+  for (const char* name :
+       {"largest tilt [deg]", "final COG error [mm]", "ZMP tracking [mm rms]", "joint speed [%]",
+        "torque [%]", "flight [s]", "steps", "foot slip [mm]"})
+    table.head.emplace_back(name);
+  for (const ReportRun& run : input.runs) {
+    const SimulationResult& r = run.log->result;
+    table.rows.push_back({escaped(name_of(run)), outcome_cell(r), degrees(r.max_tilt),
+                          millimetres(r.final_cog_error), millimetres(r.zmp_tracking_rms),
+                          percent(r.max_speed_ratio), percent(r.max_torque_ratio),
+                          text::fixed(r.flight, 2), std::to_string(r.steps),
+                          millimetres(r.max_slip)});
+  }
+  return table;
+}
+
+std::string export_words(const ExportNote& note) {
+  if (note.safe)
+    return "<p>" + marked(true, "The joint table is safe to replay") + ": its largest step is " +
+           percent(note.max_step_ratio) + " % of the limit (" + escaped(note.worst_joint) +
+           ").</p>\n";
+  std::string words =
+      "<p>" + marked(false, "The joint table is not safe to replay") + ":</p>\n<ul>";
+  for (const std::string& violation : note.violations)
+    words += "<li>" + escaped(violation) + "</li>";
+  return words + "</ul>\n";
+}
+
+std::string repair_words(const RepairNote& note) {
+  std::string words = "<p>Repair: " + escaped(note.status) + " after " +
+                      std::to_string(note.iterations) + " iterations; joints moved by at most " +
+                      text::fixed(note.max_joint_change * 180 / M_PI, 2) + " deg, the COG by " +
+                      millimetres(note.max_cog_change) + " mm.</p>\n";
+  if (note.reasons.empty()) return words;
+  words += "<ul>";
+  for (const std::string& reason : note.reasons) words += "<li>" + escaped(reason) + "</li>";
+  return words + "</ul>\n";
+}
+
+std::string figure(double value, const std::string& unit) {
+  return std::isfinite(value) ? text::brief(value) + " " + escaped(unit) : "not known";
+}
+
+Table finding_table(const ConsistencyReport& check) {
+  Table table = {"Findings of the check",
+                 {"kind", "severity", "where", "when [s]", "worst", "limit", "what to do"},
+                 {}};
+  for (const Finding& f : check.findings)
+    table.rows.push_back({escaped(f.kind),
+                          f.severity == Severity::error ? marked(false, ayumi::name_of(f.severity))
+                                                        : ayumi::name_of(f.severity),
+                          escaped(f.where),
+                          text::fixed(f.at, 3) + " (" + text::fixed(f.begin, 2) + " to " +
+                              text::fixed(f.end, 2) + ")",
+                          figure(f.worst, f.unit), figure(f.limit, f.unit), escaped(f.hint)});
+  return table;
+}
+
+Table summary_table(const CheckSummary& s) {
+  return {"Figures of the check",
+          {},
+          {{"least ZMP margin", figure(1e3 * s.min_zmp_margin, "mm")},
+           {"largest COG residual", figure(1e3 * s.max_cog_residual, "mm")},
+           {"largest ZMP residual", figure(1e3 * s.max_zmp_residual, "mm")},
+           {"largest joint speed", figure(100 * s.max_joint_speed_ratio, "% of the limit")},
+           {"largest torque", figure(100 * s.max_torque_ratio, "% of the limit")},
+           {"largest friction use", figure(100 * s.max_friction_ratio, "% of the cone")},
+           {"least clearance of the links", figure(1e3 * s.min_self_clearance, "mm")}}};
+}
+
+}  // namespace
+
+std::string name_of(const ReportRun& run) {
+  const std::string& law = run.log->controller;
+  return law.empty() || law == "none" ? run.name : run.name + " (" + law + ")";
+}
+
+std::string verdict_section(const ReportInput& input) {
+  const ReportRun& judged = input.runs.back();
+  const SimulationResult& result = judged.log->result;
+  const bool stands = result.outcome == Outcome::stands;
+  const bool consistent = !input.results.check || input.results.check->consistent;
+  const bool repaired = input.results.repair && input.results.repair->status == "repaired";
+  std::string out = "<p class=\"verdict\">The " + escaped(name_of(judged)) + " " +
+                    outcome_cell(result) + escaped(push_words(*judged.log));
+  if (input.results.check)
+    out += "; the pattern is " +
+           marked(consistent || repaired, consistent ? "consistent"
+                                          : repaired ? "inconsistent as written, and was repaired"
+                                                     : "inconsistent");
+  out += ".</p>\n" + table(run_table(input));
+  if (input.results.repair) out += repair_words(*input.results.repair);
+  if (input.results.safety) out += export_words(*input.results.safety);
+  return section("verdict",
+                 stands && (consistent || repaired) ? "Verdict: good" : "Verdict: not good", out);
+}
+
+std::string findings_section(const ReportInput& input) {
+  if (!input.results.check) return "";
+  const ConsistencyReport& check = *input.results.check;
+  std::string out = "<p>Judged against the actuators " + escaped(check.profile) + ".</p>\n";
+  out += check.findings.empty() ? "<p>The check found nothing.</p>\n" : table(finding_table(check));
+  return section("findings", "Findings", out + table(summary_table(check.summary)));
+}
+
+std::string thresholds_section(const ReportInput& input) {
+  if (input.thresholds.empty()) return "";
+  Table rows = {
+      "Largest survivable impulse of 20 ms through the COG. The bound is that of a point "
+      "mass stepping nowhere; + means that the study's largest push was survived.",
+      {"phase", "at [s]", "from [deg]", "law", "impulse [N s]", "open loop [N s]", "bound [N s]",
+       "share of the bound"},
+      {}};
+  for (const PushThreshold& t : input.thresholds)
+    rows.rows.push_back({escaped(t.phase), text::fixed(t.at, 3),
+                         text::fixed(t.direction * 180 / M_PI, 0), escaped(t.controller),
+                         text::fixed(t.impulse, 2) + (t.capped ? "+" : ""),
+                         text::fixed(t.open_loop, 2), text::fixed(t.bound, 2),
+                         t.bound > 0 ? text::fixed(t.impulse / t.bound, 2) : "none"});
+  return section("thresholds", "Push thresholds", table(rows));
+}
+
+std::string events_section(const ReportInput& input) {
+  Table rows = {"Events of the " + name_of(input.runs.back()), {"time [s]", "kind", "what"}, {}};
+  for (const SimulationEvent& event : input.runs.back().log->events)
+    rows.rows.push_back({text::fixed(event.t, 3), escaped(event.kind), escaped(event.text)});
+  if (rows.rows.empty()) return "";
+  return section("events", "Events", table(rows));
+}
+
+std::string provenance_section(const ReportInput& input, const std::vector<std::string>& caps) {
+  const Provenance& p = input.runs.back().log->provenance;
+  const auto code = [](const std::string& text) { return "<code>" + escaped(text) + "</code>"; };
+  Table rows = {"", {}, {{"tool", escaped(std::string("ayumi ") + version())}}};
+  rows.rows.push_back({"robot", escaped(p.robot) + " " + code(p.robot_sha256)});
+  rows.rows.push_back({"pattern", escaped(p.pattern) + " " + code(p.pattern_sha256)});
+  rows.rows.push_back({"actuators", escaped(p.profile)});
+  rows.rows.push_back({"controller", escaped(p.controller)});
+  rows.rows.push_back({"command", code(p.command_line)});
+  std::string out = table(rows);
+  out += "<p>What this page leaves out:</p>\n<ul>";
+  for (const std::string& cap : caps) out += "<li>" + escaped(cap) + "</li>";
+  return section("provenance", "Provenance", caps.empty() ? table(rows) : out + "</ul>\n");
+}
+
+}  // namespace ayumi::html

@@ -1,0 +1,19 @@
+#pragma once
+// The sections of a report that are words and tables.
+
+#include <string>
+
+#include "ayumi/report/report.hpp"
+
+namespace ayumi::html {
+
+std::string verdict_section(const ReportInput& input);
+std::string findings_section(const ReportInput& input);    ///< empty without a check
+std::string thresholds_section(const ReportInput& input);  ///< empty without a study
+std::string events_section(const ReportInput& input);
+std::string provenance_section(const ReportInput& input, const std::vector<std::string>& caps);
+
+/// "closed loop (dtad)"
+std::string name_of(const ReportRun& run);
+
+}  // namespace ayumi::html

@@ -1,0 +1,146 @@
+// node browser.mjs CHROMEDRIVER PAGE.html: loads the page in headless Chromium and tries it as a
+// person would. Prints one line per broken expectation, then "ok" or "failed".
+
+import { spawn } from "node:child_process";
+import { writeFileSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+
+const [driver, page, shot] = process.argv.slice(2);
+let failures = 0;
+const expect = (good, words) => {
+  if (good) return;
+  ++failures;
+  console.log("broken: " + words);
+};
+
+const service = spawn(driver, ["--port=0"], { stdio: ["ignore", "pipe", "ignore"] });
+const port = await new Promise((resolve, reject) => {
+  service.stdout.on("data", (words) => {
+    const found = /successfully on port (\d+)/.exec(String(words));
+    if (found) resolve(found[1]);
+  });
+  service.on("exit", () => reject(new Error("chromedriver ended")));
+});
+const base = `http://127.0.0.1:${port}/session`;
+
+async function call(method, path, body) {
+  const answer = await fetch(base + path, { method, body: body && JSON.stringify(body) });
+  const { value } = await answer.json();
+  if (value && value.error) throw new Error(value.error + ": " + value.message);
+  return value;
+}
+
+async function open(javascript, dark) {
+  const prefs = javascript ? {} : { "profile.managed_default_content_settings.javascript": 2 };
+  const args = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1100,900",
+    "--enable-unsafe-swiftshader", "--use-angle=swiftshader"];
+  if (dark) args.push("--force-dark-mode", "--blink-settings=preferredColorScheme=0");
+  const { sessionId } = await call("POST", "", { capabilities: { alwaysMatch: {
+    browserName: "chrome", "goog:chromeOptions": { args, prefs },
+    "goog:loggingPrefs": { browser: "ALL", performance: "ALL" } } } });
+  const run = (script, ...args) => call("POST", `/${sessionId}/execute/sync`, { script, args });
+  await call("POST", `/${sessionId}/url`, { url: pathToFileURL(page).href });
+  return { id: sessionId, run, log: (type) => call("POST", `/${sessionId}/se/log`, { type }),
+    end: () => call("DELETE", `/${sessionId}`),
+    shoot: async (name) => { if (shot) writeFileSync(shot + name,
+      Buffer.from(await call("GET", `/${sessionId}/screenshot`), "base64")); } };
+}
+
+async function withScript() {
+  const tab = await open(true, false);
+  let state;
+  for (let i = 0; i < 300 && !state; ++i) {
+    state = await tab.run("return document.documentElement.dataset.replay");
+    if (!state) await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+  expect(state === "ready", "the replay says " + state + ": " +
+    await tab.run("return document.getElementById('replay-state').textContent"));
+  const at = (t) => tab.run(`
+    const scrub = document.getElementById("scrub");
+    scrub.value = arguments[0];
+    scrub.dispatchEvent(new Event("input"));
+    return { time: window.ayumiReplay.time, base: window.ayumiReplay.position(0),
+      head: window.ayumiReplay.position(1), said: scrub.getAttribute("aria-valuetext"),
+      cursor: Number(document.querySelector(".cursor").getAttribute("x1")),
+      axis: document.querySelector("[data-time-axis]").dataset.timeAxis.split(" ").map(Number),
+      readout: document.getElementById("readout").textContent };`, t);
+  const last = await tab.run("return Number(document.getElementById('scrub').max)");
+  const first = await at(0), later = await at(0.6 * last);
+  const moved = Math.hypot(...first.base.map((x, i) => x - later.base[i]));
+  expect(moved > 0.01, "scrubbing moves the robot, by " + moved + " m");
+  for (const now of [first, later]) {
+    const [left, right, from, to] = now.axis;
+    const x = left + (right - left) * (now.time - from) / (to - from);
+    expect(Math.abs(now.cursor - x) < 0.5, "the cursor stands at the time: " + now.cursor);
+  }
+  expect(later.cursor - first.cursor > 100, "scrubbing moves the cursor");
+  expect(/seconds, /.test(later.said), "the scrub bar speaks: " + later.said);
+  expect(later.readout.startsWith("t " + later.time.toFixed(3)), "the readout: " + later.readout);
+  await tab.shoot("replay.png");
+  const clicked = await tab.run(`
+    const svg = document.querySelector("[data-time-axis] svg");
+    const box = svg.getBoundingClientRect();
+    svg.dispatchEvent(new PointerEvent("pointerdown", { buttons: 1, bubbles: true,
+      clientX: box.left + box.width / 2, clientY: box.top + box.height / 2 }));
+    return window.ayumiReplay.time;`);
+  expect(Math.abs(clicked - 0.5 * last) < 0.1 * last, "a click in the plot sets the time: " + clicked);
+  const stepped = await tab.run(`
+    const canvas = document.querySelector("#stage canvas"), before = window.ayumiReplay.time;
+    canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight", bubbles: true }));
+    return window.ayumiReplay.time - before;`);
+  expect(stepped > 0 && stepped < 0.2, "the arrow key steps by " + stepped);
+  const colors = await tab.run(`
+    const ghost = document.getElementById("ghost");
+    ghost.selectedIndex = 1;
+    ghost.dispatchEvent(new Event("change"));
+    const canvas = document.querySelector("#stage canvas");
+    window.ayumiReplay.show(window.ayumiReplay.time);
+    const small = document.createElement("canvas");
+    small.width = 64; small.height = 36;
+    const flat = small.getContext("2d");
+    flat.drawImage(canvas, 0, 0, 64, 36);
+    return new Set(new Uint32Array(flat.getImageData(0, 0, 64, 36).data.buffer)).size;`);
+  expect(colors > 100, "the canvas shows a scene: " + colors + " colours");
+  const unnamed = await tab.run(`
+    const named = (e) => e.labels?.length || e.textContent.trim() || e.getAttribute("aria-label");
+    return [...document.querySelectorAll("button, input, select, canvas")].filter((e) => !named(e))
+      .map((e) => e.outerHTML).concat([...document.querySelectorAll("img")].filter((e) => !e.alt)
+      .map((e) => "img")).concat([...document.querySelectorAll("svg")].filter((e) =>
+      !e.querySelector("title")).map((e) => "svg"));`);
+  expect(unnamed.length === 0, "controls and pictures without a name: " + unnamed.join(" "));
+  await tab.shoot("ghost.png");
+  const errors = await tab.log("browser");
+  expect(errors.every((entry) => entry.level !== "SEVERE"),
+    "the console: " + errors.map((entry) => entry.message).join(" | "));
+  const requests = (await tab.log("performance")).map((entry) => JSON.parse(entry.message).message)
+    .filter((m) => m.method === "Network.requestWillBeSent").map((m) => m.params.request.url)
+    .filter((url) => !/^(data|blob|about|chrome):/.test(url) && url !== pathToFileURL(page).href);
+  expect(requests.length === 0, "requests: " + requests.join(" "));
+  await tab.end();
+}
+
+async function withoutScript() {
+  const tab = await open(false, true);
+  await tab.shoot("dark.png");
+  const seen = await tab.run(`
+    const visible = (id) => { const e = document.getElementById(id);
+      return Boolean(e && e.getClientRects().length); };
+    return { verdict: document.querySelector(".verdict").textContent,
+      controls: visible("controls"), loci: visible("loci"),
+      picture: document.querySelector("#stage img")?.naturalWidth,
+      ground: getComputedStyle(document.body).backgroundColor };`).catch((error) => String(error));
+  expect(/stands|falls|rest/.test(seen.verdict), "without scripts the verdict: " + seen.verdict);
+  expect(!seen.controls, "without scripts the controls are hidden");
+  expect(seen.loci && seen.picture > 0, "without scripts plots and picture are there");
+  await tab.end();
+}
+
+try {
+  await withScript();
+  await withoutScript();
+} catch (error) {
+  expect(false, error.message);
+}
+service.kill();
+console.log(failures ? "failed" : "ok");
+process.exit(failures ? 1 : 0);

@@ -1,0 +1,113 @@
+#include "ayumi/report/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/report/html.hpp"
+#include "tests/cli/program.hpp"
+#include "tests/preview/box_robot.hpp"
+
+namespace ayumi::test {
+namespace {
+
+struct Made {
+  RobotModel model = box_robot();
+  SimulationLog open = box_run(model), closed = box_run(model);
+  ReportInput input;
+
+  Made() {
+    open.controller = "none";
+    open.result.outcome = Outcome::fell;
+    open.result.fell_at = 0.8;
+    open.samples.resize(450);
+    closed.provenance.command_line = "ayumi run a<b>.json";
+    closed.events.push_back({0.3, "push", "0.4 N s on cog"});
+    input.title = "sway & <push>";
+    input.runs = {{"open loop", &open}, {"closed loop", &closed}};
+  }
+};
+
+TEST(Report, SaysTheVerdictFirst) {
+  Made made;
+  const Report report = make_report(made.model, made.input);
+  const std::string& html = report.html;
+  const size_t verdict = html.find("The closed loop (dtad) <span class=\"good\">stands</span>, "
+                                   "pushed with 0.4 N s at 0.3 s.");
+  ASSERT_NE(verdict, std::string::npos);
+  EXPECT_LT(verdict, html.find("id=\"replay\""));
+  EXPECT_LT(html.find("id=\"replay\""), html.find("id=\"loci\""));
+  EXPECT_NE(html.find("<span class=\"bad\">falls at 0.80 s</span>"), std::string::npos);
+  EXPECT_NE(html.find("<title>sway &amp; &lt;push&gt;</title>"), std::string::npos);
+  EXPECT_NE(html.find("ayumi run a&lt;b&gt;.json"), std::string::npos);
+  EXPECT_EQ(html.find("<push>"), std::string::npos) << "names are text, not tags";
+  EXPECT_EQ(html, make_report(made.model, made.input).html) << "the same input, the same bytes";
+}
+
+TEST(Report, ShowsFindingsRepairAndThresholds) {
+  Made made;
+  ConsistencyReport check;
+  check.findings.push_back({"zmp_margin", Severity::error, 0.2, 0.4, 0.3, -0.012, 0, "m",
+                            "left foot", "move the ZMP inwards"});
+  made.input.results.check = check;
+  made.input.results.repair = RepairNote{"infeasible", 0.1, 0.02, 17, {"l_knee has no room"}};
+  made.input.results.safety = ExportNote{false, 1.2, "l_knee", {"step of l_knee at 0.100 s"}};
+  made.input.thresholds.push_back({"left foot", "dtad", 0.5, M_PI / 2, 0.83, 0.21, 1.1, true});
+  const std::string html = make_report(made.model, made.input).html;
+  for (const char* words :
+       {"Verdict: not good", "<span class=\"bad\">inconsistent</span>", "move the ZMP inwards",
+        "0.300 (0.20 to 0.40)", "l_knee has no room", "step of l_knee at 0.100 s", "0.83+",
+        "<td class=\"number\">90</td>", "<td class=\"number\">0.75</td>"})
+    EXPECT_NE(html.find(words), std::string::npos) << words;
+}
+
+TEST(Report, KeepsItsSizeAndSaysWhatItLeftOut) {
+  Made made;
+  const Report whole = make_report(made.model, made.input);
+  ReportOptions small;
+  small.max_bytes = 400'000;
+  const Report less = make_report(made.model, made.input, small);
+  EXPECT_LE(less.html.size(), small.max_bytes);
+  EXPECT_LT(less.html.size(), whole.html.size());
+  ASSERT_FALSE(less.caps.empty());
+  for (const std::string& cap : less.caps)
+    EXPECT_NE(less.html.find(html::escaped(cap)), std::string::npos) << cap;
+  EXPECT_NE(less.caps.back().find("0.4 MB"), std::string::npos) << less.caps.back();
+}
+
+TEST(Report, ARunIsNeeded) {
+  Made made;
+  made.input.runs.clear();
+  EXPECT_THROW(make_report(made.model, made.input), Error);
+  SimulationLog empty;
+  made.input.runs = {{"closed loop", &empty}};
+  EXPECT_THROW(make_report(made.model, made.input), Error);
+}
+
+TEST(Report, LoadsAndReplaysInABrowser) {
+  if (!has_replay()) GTEST_SKIP() << "built without npm: there is no replay to try";
+  if (std::string(AYUMI_CHROMEDRIVER).empty())
+    GTEST_SKIP() << "chromium-driver is not installed: the page is not tried in a browser";
+  Made made;
+  const Folder folder;
+  write(folder / "report.html", make_report(made.model, made.input).html);
+  const Output said = run_program({AYUMI_SOURCE_DIR "/tests/report/browser.mjs", AYUMI_CHROMEDRIVER,
+                                   folder / "report.html"},
+                                  folder.path(), AYUMI_NODE);
+  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+  EXPECT_EQ(said.out, "ok\n");
+}
+
+TEST(Html, Base64OfEveryRemainder) {
+  EXPECT_EQ(html::base64(""), "");
+  EXPECT_EQ(html::base64("f"), "Zg==");
+  EXPECT_EQ(html::base64("fo"), "Zm8=");
+  EXPECT_EQ(html::base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(html::base64(std::string("\xff\xfe\x00", 3)), "//4A");
+}
+
+TEST(Html, NothingInJsonEndsAScript) {
+  EXPECT_EQ(html::quoted("</script>&\"\n"), "\"\\u003c/script\\u003e\\u0026\\\"\\u000a\"");
+}
+
+}  // namespace
+}  // namespace ayumi::test
