@@ -24,6 +24,7 @@
 #include "ayumi/preview/loci.hpp"
 #include "ayumi/preview/strip.hpp"
 #include "pattern_input.hpp"
+#include "report_input.hpp"
 #include "simulation.hpp"
 
 namespace ayumi::app {
@@ -106,6 +107,7 @@ class MainJob {
   bool simulate(const PatternInput& input);
   void export_tables(const PatternInput& input);
   void draw(const RobotModel& model, const std::string& title);
+  void write_report(const RobotModel& model, const std::string& title);
 
   Context& context_;
   const Options& options_;
@@ -232,6 +234,16 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
                      std::to_string(summary.width) + "x" + std::to_string(summary.height) + ")");
 }
 
+void MainJob::write_report(const RobotModel& model, const std::string& title) {
+  ReportInput input = report_input(folder_, target_.string());
+  if (!title.empty()) input.title = title;
+  const Report made = make_report(model, input, {}, context_.progress());
+  write_file(workshop_->file("report.html"), made.html);
+  note_file("report.html");
+  say("report", "report.html (" + std::to_string(made.html.size() / 1000) + " kB" +
+                    (has_replay() ? ")" : "; without replay, the program was built without npm)"));
+}
+
 bool MainJob::run(const std::string& file) {
   context_.print(file + "\n");
   PatternInput input = load_pattern(context_, file, options_.input, options_.pictures);
@@ -239,7 +251,10 @@ bool MainJob::run(const std::string& file) {
   const bool consistent = check(input);
   const bool stands = simulate(input);
   export_tables(input);
-  if (options_.pictures) draw(input.model, input.pattern.name);
+  if (options_.pictures) {
+    draw(input.model, input.pattern.name);
+    write_report(input.model, input.pattern.name);
+  }
   write_run(workshop_->folder(), folder_);
   workshop_->deliver();
   std::vector<std::string> files = folder_.files;

@@ -25,9 +25,8 @@ SimulationSample random_sample(test::Random& random, int joints) {
   s.state.base = {random.vector(1), Eigen::Quaterniond(1, random.uniform(), 0.2, 0.1).normalized()};
   s.state.base_velocity = random.vector(1);
   s.state.base_angular_velocity = random.vector(1);
-  for (Eigen::VectorXd* v :
-       {&s.state.theta, &s.state.dtheta, &s.target, &s.torque, &s.reference_theta,
-        &s.command_theta})
+  for (Eigen::VectorXd* v : {&s.state.theta, &s.state.dtheta, &s.target, &s.torque,
+                             &s.reference_theta, &s.command_theta})
     *v = random.vector(joints, 1);
   s.reference_base.position = s.command_base.position = random.vector(1);
   for (Eigen::Vector3d* v :

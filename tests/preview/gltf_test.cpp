@@ -97,8 +97,8 @@ TEST(Gltf, NodesFollowTheRun) {
 TEST(Gltf, CommandAndRunAreTwoAnimations) {
   const RobotModel model = box_robot();
   const SimulationLog log = box_run(model);
-  const std::string bytes = glb_bytes(model, {motion_of(log, MotionSource::run, 10),
-                                              motion_of(log, MotionSource::command, 10)});
+  const std::string bytes = glb_bytes(
+      model, {motion_of(log, MotionSource::run, 10), motion_of(log, MotionSource::command, 10)});
   EXPECT_EQ(bytes, glb_bytes(model, {motion_of(log, MotionSource::run, 10),
                                      motion_of(log, MotionSource::command, 10)}));
   const Glb glb(bytes);
@@ -138,10 +138,10 @@ TEST(Gltf, TheKhronosValidatorHasNoComplaint) {
   write(folder / "hoap.glb", glb_bytes(hoap, {motion_of(standing, MotionSource::run, 30)}));
   write(folder / "coarse.glb", glb_bytes(hoap, {}, {.max_triangles = 3000}));
   for (const char* name : {"boxes.glb", "hoap.glb", "coarse.glb"}) {
-    const Output said = run_program({"NODE_PATH=" AYUMI_NODE_MODULES, AYUMI_NODE,
-                                     AYUMI_SOURCE_DIR "/tests/preview/validate_gltf.cjs",
-                                     folder / name},
-                                    folder.path(), "/usr/bin/env");
+    const Output said =
+        run_program({"NODE_PATH=" AYUMI_NODE_MODULES, AYUMI_NODE,
+                     AYUMI_SOURCE_DIR "/tests/preview/validate_gltf.cjs", folder / name},
+                    folder.path(), "/usr/bin/env");
     EXPECT_EQ(said.exit_code, 0) << name << "\n" << said.out << said.err;
     EXPECT_NE(said.out.find("triangles"), std::string::npos) << said.out;
   }

@@ -31,8 +31,9 @@ TEST(Report, SaysTheVerdictFirst) {
   Made made;
   const Report report = make_report(made.model, made.input);
   const std::string& html = report.html;
-  const size_t verdict = html.find("The closed loop (dtad) <span class=\"good\">stands</span>, "
-                                   "pushed with 0.4 N s at 0.3 s.");
+  const size_t verdict = html.find(
+      "The closed loop (dtad) <span class=\"good\">stands</span>, "
+      "pushed with 0.4 N s at 0.3 s.");
   ASSERT_NE(verdict, std::string::npos);
   EXPECT_LT(verdict, html.find("id=\"replay\""));
   EXPECT_LT(html.find("id=\"replay\""), html.find("id=\"loci\""));
@@ -90,9 +91,9 @@ TEST(Report, LoadsAndReplaysInABrowser) {
   Made made;
   const Folder folder;
   write(folder / "report.html", make_report(made.model, made.input).html);
-  const Output said = run_program({AYUMI_SOURCE_DIR "/tests/report/browser.mjs", AYUMI_CHROMEDRIVER,
-                                   folder / "report.html"},
-                                  folder.path(), AYUMI_NODE);
+  const Output said = run_program(
+      {AYUMI_SOURCE_DIR "/tests/report/browser.mjs", AYUMI_CHROMEDRIVER, folder / "report.html"},
+      folder.path(), AYUMI_NODE);
   EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
   EXPECT_EQ(said.out, "ok\n");
 }

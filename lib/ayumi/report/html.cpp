@@ -51,6 +51,17 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
+namespace {
+
+/// Beside column heads a number stands alone; without them it may have a unit.
+bool is_number(const std::string& cell, bool with_heads) {
+  constexpr const char* kBegin = "0123456789+-.";
+  if (cell.empty() || std::string(kBegin).find(cell[0]) == std::string::npos) return false;
+  return !with_heads || cell.find_first_not_of("0123456789+-.e") == std::string::npos;
+}
+
+}  // namespace
+
 std::string table(const Table& table) {
   std::string out = "<div class=\"wide\"><table>\n";
   if (!table.caption.empty()) out += "<caption>" + escaped(table.caption) + "</caption>\n";
@@ -63,8 +74,7 @@ std::string table(const Table& table) {
   for (const std::vector<std::string>& row : table.rows) {
     out += "<tr>";
     for (size_t i = 0; i < row.size(); ++i) {
-      const bool number =
-          !row[i].empty() && std::string("0123456789+-.").find(row[i][0]) != std::string::npos;
+      const bool number = is_number(row[i], !table.head.empty());
       if (i == 0)
         out += "<th scope=\"row\">" + row[i] + "</th>";
       else

@@ -18,8 +18,7 @@ std::string quoted(const std::string& text);
 struct Table {
   std::string caption;
   std::vector<std::string> head;               ///< text
-  std::vector<std::vector<std::string>> rows;  ///< HTML; a cell that begins with a digit, sign or
-                                               ///< dot is set as a number
+  std::vector<std::vector<std::string>> rows;  ///< HTML; numbers are set to the right
 };
 /// The first cell of a row is its heading.
 std::string table(const Table& table);
