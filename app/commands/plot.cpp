@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -64,6 +65,18 @@ std::vector<LabelledLog> logs_of(const PlotOptions& options) {
   return logs;
 }
 
+// The robot for the panel of the margin, which a plot can do without.
+std::optional<RobotModel> robot_at_hand(const std::string& robot, const PlotOptions& options,
+                                        const Context& context) {
+  try {
+    return load_robot(robot, robot_search(context));
+  } catch (const Error& error) {
+    if (!options.robot.empty()) throw;
+    context.print(std::string("no panel of the ZMP margin: ") + error.what() + "\n");
+    return std::nullopt;
+  }
+}
+
 void plot(const PlotOptions& options, Context& context) {
   if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
     fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
@@ -71,16 +84,19 @@ void plot(const PlotOptions& options, Context& context) {
   std::vector<LociRun> runs;
   for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});
   if (runs.empty()) fail(ErrorCode::usage, "plot: the run holds no logs");
+  const std::string robot =
+      options.robot.empty() ? logs.back().log.provenance.robot : options.robot;
   std::vector<std::string> series;
   if (options.top) {
-    const std::string robot =
-        options.robot.empty() ? logs.back().log.provenance.robot : options.robot;
     write_support_plot(load_robot(robot, robot_search(context)), runs, options.output,
                        options.loci);
     series = {"COG x, y [m]", "ZMP x, y [m]", "footholds [m]"};
   } else {
-    write_loci(runs, options.output, options.loci);
-    series = loci_series(options.loci);
+    const std::optional<RobotModel> model = robot_at_hand(robot, options, context);
+    LociOptions loci = options.loci;
+    if (model) loci.model = &*model;
+    write_loci(runs, options.output, loci);
+    series = loci_series(loci);
   }
   context.print(options.output + ": " + text::join(series, ", ") + "\n");
   nlohmann::ordered_json json = {{"output", options.output}, {"series", series}};

@@ -1,17 +1,21 @@
-// Clips, pictures and frames of a run, off-screen and without simulating again.
+// Clips, pictures, frames and glTF of runs, off-screen and without simulating again.
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/run_folder.hpp"
-#include "ayumi/preview/clip.hpp"
-#include "commands.hpp"
+#include "ayumi/preview/gltf.hpp"
+#include "ayumi/preview/log_reading.hpp"
+#include "ayumi/preview/strip.hpp"
+#include "preview_batch.hpp"
 
 namespace ayumi::app {
 
@@ -20,13 +24,16 @@ namespace {
 namespace fs = std::filesystem;
 
 struct PreviewOptions {
-  std::string input, output, log, robot, size = "1280x720", camera = "follow";
-  std::vector<std::string> hide;
+  std::vector<std::string> inputs;
+  std::string output, log, robot, ghost, sheet, size = "1280x720", camera = "follow";
+  std::string format = "mp4";
+  std::vector<std::string> hide, show;
   ClipOptions clip;
+  int strip = 0, exposures = 0, columns = 4;
   bool draft = false;
 };
 
-// The switches of OverlayOptions by the names that --hide takes.
+// The switches of OverlayOptions by the names that --hide and --show take.
 constexpr std::pair<const char*, bool OverlayOptions::*> kMarks[] = {
     {"cog", &OverlayOptions::cog},
     {"zmp", &OverlayOptions::zmp},
@@ -35,20 +42,22 @@ constexpr std::pair<const char*, bool OverlayOptions::*> kMarks[] = {
     {"forces", &OverlayOptions::forces},
     {"push", &OverlayOptions::push},
     {"trails", &OverlayOptions::trails},
+    {"heat", &OverlayOptions::heat},
     {"caption", &OverlayOptions::caption}};
 
-void hide_marks(const std::vector<std::string>& names, OverlayOptions& overlay) {
+void switch_marks(const std::string& option, const std::vector<std::string>& names, bool on,
+                  OverlayOptions& overlay) {
   std::vector<std::string> known = {"all"};
   for (const auto& [name, flag] : kMarks) known.emplace_back(name);
   for (const std::string& word : names) {
     bool found = word == "all";
     for (const auto& [name, flag] : kMarks)
       if (word == "all" || word == name) {
-        overlay.*flag = false;
+        overlay.*flag = on;
         found = true;
       }
     if (!found)
-      fail(ErrorCode::usage, "--hide " + word + ": not one of " + text::join(known, ", ") +
+      fail(ErrorCode::usage, option + " " + word + ": not one of " + text::join(known, ", ") +
                                  text::suggestion(word, known));
   }
 }
@@ -70,75 +79,204 @@ int thread_count(const Context& context) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-void preview(PreviewOptions options, Context& context) {
-  if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
-    fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
+void settle(PreviewOptions& options, const Context& context) {
   ClipOptions& clip = options.clip;
   parse_size(options.size, clip.picture);
-  hide_marks(options.hide, clip.overlay);
+  switch_marks("--hide", options.hide, false, clip.overlay);
+  switch_marks("--show", options.show, true, clip.overlay);
   clip.camera.mode = camera_mode(options.camera);
   clip.picture.antialias = !options.draft;
   clip.threads = thread_count(context);
-  const SimulationLog log = read_run_log(options.input, options.log);
+  if (options.strip > 0 && options.exposures > 0)
+    fail(ErrorCode::usage, "--strip and --exposures: one of them at a time");
+}
+
+/// Snapshots between --from and --to.
+StripOptions strip_options(const PreviewOptions& options, const SimulationLog& log) {
+  StripOptions strip;
+  strip.clip = options.clip;
+  strip.columns = options.columns;
+  strip.one_picture = options.exposures > 0;
+  const int count = std::max(options.strip, options.exposures);
+  const double last = duration(log), begin = std::min(options.clip.begin, last);
+  const double end = options.clip.end < 0 ? last : std::min(options.clip.end, last);
+  for (int i = 0; i < count; ++i)
+    strip.times.push_back(begin + (end - begin) * i / std::max(1, count - 1));
+  return strip;
+}
+
+ClipSummary write_glb(const RobotModel& model, const SimulationLog& log, const fs::path& path,
+                      const PreviewOptions& options, const SimulationLog* ghost) {
+  const ClipOptions& clip = options.clip;
+  std::vector<Motion> motions = {motion_of(log, MotionSource::run, clip.fps, clip.begin, clip.end)};
+  if (clip.ghost.command)
+    motions.push_back(motion_of(log, MotionSource::command, clip.fps, clip.begin, clip.end));
+  if (ghost) {
+    motions.push_back(motion_of(*ghost, MotionSource::run, clip.fps, clip.begin, clip.end));
+    motions.back().name = "other run";
+  }
+  write_file(path, glb_bytes(model, motions, {.max_triangles = clip.max_triangles}));
+  return {static_cast<int>(motions.front().times.size()), 0, 0, clip.fps, {}};
+}
+
+/// One run to one file. `clip` as settled, but for its number of threads.
+ClipSummary draw_run(const PreviewOptions& options, const std::string& input, const fs::path& path,
+                     int threads, const Context& context, const Progress& progress) {
+  const SimulationLog log = read_run_log(input, options.log);
   const RobotModel model = load_robot(options.robot.empty() ? log.provenance.robot : options.robot,
                                       robot_search(context), {.meshes = true});
+  PreviewOptions own = options;
+  own.clip.threads = threads;
+  std::optional<SimulationLog> ghost;
+  if (options.ghost == "command")
+    own.clip.ghost.command = true;
+  else if (!options.ghost.empty())
+    ghost = read_run_log(options.ghost, options.log);
+  if (ghost) own.clip.ghost.log = &*ghost;
+  if (path.extension() == ".glb")
+    return write_glb(model, log, path, own, ghost ? &*ghost : nullptr);
+  if (options.strip > 0 || options.exposures > 0) {
+    if (path.extension() != ".png")
+      fail(ErrorCode::usage, path.string() + ": --strip and --exposures write a .png");
+    const StripOptions strip = strip_options(own, log);
+    const Image image = draw_strip(model, log, strip);
+    write_png(path, image);
+    return {static_cast<int>(strip.times.size()), image.width, image.height, 0, {}};
+  }
+  return write_clip(model, log, path, own.clip, progress);
+}
+
+nlohmann::ordered_json json_of(const std::string& output, const ClipSummary& summary) {
+  return {{"output", output},
+          {"frames", summary.frames},
+          {"fps", summary.fps},
+          {"size", {summary.width, summary.height}},
+          {"notes", summary.notes}};
+}
+
+void preview_one(const PreviewOptions& options, Context& context) {
+  if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
+    fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
   const auto start = std::chrono::steady_clock::now();
-  const ClipSummary summary = write_clip(model, log, options.output, clip, context.progress());
+  const ClipSummary summary = draw_run(options, options.inputs.front(), options.output,
+                                       options.clip.threads, context, context.progress());
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string size = std::to_string(summary.width) + "x" + std::to_string(summary.height);
   context.print(options.output + ": " + std::to_string(summary.frames) +
-                (summary.frames == 1 ? " picture, " : " frames, ") + size + ", " +
-                text::brief(wall, 3) + " s\n");
-  const nlohmann::ordered_json json = {{"output", options.output},
-                                       {"frames", summary.frames},
-                                       {"fps", summary.fps},
-                                       {"size", {summary.width, summary.height}},
-                                       {"wall_s", wall}};
+                (summary.width == 0    ? " postures"
+                 : summary.frames == 1 ? " picture, " + size
+                                       : " frames, " + size) +
+                ", " + text::brief(wall, 3) + " s\n");
+  for (const std::string& note : summary.notes) context.print("  " + note + "\n");
+  nlohmann::ordered_json json = json_of(options.output, summary);
+  json["wall_s"] = wall;
   context.print_json(json.dump(2));
+}
+
+/// A tile of the contact sheet: the instant worth showing, named after its run.
+Image sheet_tile(const PreviewOptions& options, const std::string& input, const Context& context) {
+  const SimulationLog log = read_run_log(input, options.log);
+  const RobotModel model = load_robot(options.robot.empty() ? log.provenance.robot : options.robot,
+                                      robot_search(context), {.meshes = true});
+  ClipOptions clip = options.clip;
+  clip.picture.width = 480;
+  clip.picture.height = 270;
+  clip.title = fs::path(input).lexically_normal().stem().string();
+  return ClipRenderer(model, log, clip).frame(telling_instant(log));
+}
+
+void preview_many(const PreviewOptions& options, Context& context) {
+  PreviewBatch batch;
+  batch.inputs = options.inputs;
+  batch.folder = options.output;
+  batch.extension = "." + options.format;
+  batch.threads = options.clip.threads;
+  batch.again = context.force;
+  batch.draw = [&](const std::string& input, const fs::path& path, int threads) {
+    return json_of(path.string(), draw_run(options, input, path, threads, context, {}));
+  };
+  if (!options.sheet.empty()) {
+    batch.sheet = options.sheet;
+    batch.tile = [&](const std::string& input) { return sheet_tile(options, input, context); };
+    batch.columns = options.columns;
+  }
+  run_batch(batch, context);
+}
+
+void preview(PreviewOptions options, Context& context) {
+  settle(options, context);
+  if (options.inputs.size() > 1 || !options.sheet.empty())
+    preview_many(options, context);
+  else
+    preview_one(options, context);
+}
+
+void add_picture_options(CLI::App& command, PreviewOptions& options) {
+  ClipOptions& clip = options.clip;
+  command.add_option("--size", options.size, "pixels")->capture_default_str()->type_name("WxH");
+  command.add_option("--fps", clip.fps, "frames per second")->capture_default_str();
+  command.add_option("--speed", clip.speed, "0.25 plays four times slower")->capture_default_str();
+  command.add_option("--from", clip.begin, "first instant [s]")->capture_default_str();
+  command.add_option("--to", clip.end, "last instant [s]");
+  command.add_option("--at", clip.at, "instant of a single picture [s]")->capture_default_str();
+  command.add_option("--strip", options.strip, "so many snapshots side by side in a .png")
+      ->check(CLI::Range(1, 400));
+  command
+      .add_option("--exposures", options.exposures, "so many instants over each other in a .png")
+      ->check(CLI::Range(1, 100));
+  command.add_option("--columns", options.columns, "of --strip and --sheet")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command.add_option("--view", clip.camera.view, text::join(view_names(), ", "))
+      ->capture_default_str();
+  command.add_option("--camera", options.camera, "follow, fixed or orbit")
+      ->check(CLI::IsMember({"follow", "fixed", "orbit"}).description(""))
+      ->capture_default_str();
+  command.add_option("--zoom", clip.camera.zoom, "2: twice as large")->capture_default_str();
+  command.add_option("--ghost", options.ghost, "'command', or another RUN of the same robot")
+      ->type_name("RUN");
+  for (const auto& [name, list, what] :
+       {std::tuple{"--hide", &options.hide,
+                   "cog, zmp, ref-zmp, support, forces, push, trails, "
+                   "heat, caption or all"},
+        {"--show", &options.show, "the same; heat: joints near their limits in red"}})
+    command.add_option(name, *list, what)->delimiter(',')->allow_extra_args(false);
+  command.add_option("--title", clip.title, "first words of the caption");
+  command.add_flag("--draft", options.draft, "faster, without antialiasing");
 }
 
 }  // namespace
 
 void add_preview(CLI::App& app, Context& context) {
   auto options = std::make_shared<PreviewOptions>();
-  ClipOptions& clip = options->clip;
-  CLI::App* command = app.add_subcommand("preview", "clip or picture of a run, off-screen");
-  command->add_option("run", options->input, "a RUN folder or a log file")
+  CLI::App* command = app.add_subcommand("preview", "clip, picture or glTF of runs, off-screen");
+  command->add_option("run", options->inputs, "RUN folders or log files")
       ->required()
       ->type_name("RUN");
   command
       ->add_option("-o,--out", options->output,
-                   ".mp4, .webm, .gif, .png, or a folder for PNG frames")
+                   ".mp4, .webm, .gif, .apng, .png, .glb, or a folder for PNG frames; a folder of "
+                   "clips for several runs")
       ->required()
       ->type_name("FILE");
   command->add_option("--log", options->log, "which log of the RUN, e.g. open_loop");
   command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
-  command->add_option("--size", options->size, "pixels")->capture_default_str()->type_name("WxH");
-  command->add_option("--fps", clip.fps, "frames per second")->capture_default_str();
-  command->add_option("--speed", clip.speed, "0.25 plays four times slower")->capture_default_str();
-  command->add_option("--from", clip.begin, "first instant [s]")->capture_default_str();
-  command->add_option("--to", clip.end, "last instant [s]");
-  command->add_option("--at", clip.at, "instant of a single picture [s]")->capture_default_str();
-  command->add_option("--view", clip.camera.view, text::join(view_names(), ", "))
+  command->add_option("--format", options->format, "of several runs")
+      ->check(CLI::IsMember({"mp4", "webm", "gif", "apng", "png", "glb"}).description(""))
       ->capture_default_str();
-  command->add_option("--camera", options->camera, "follow, fixed or orbit")
-      ->check(CLI::IsMember({"follow", "fixed", "orbit"}).description(""))
-      ->capture_default_str();
-  command->add_option("--zoom", clip.camera.zoom, "2: twice as large")->capture_default_str();
-  command
-      ->add_option("--hide", options->hide,
-                   "cog, zmp, ref-zmp, support, forces, push, trails, caption or all")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--title", clip.title, "first words of the caption");
-  command->add_flag("--draft", options->draft, "faster, without antialiasing");
+  command->add_option("--sheet", options->sheet, "one picture of all runs as well, .png")
+      ->type_name("FILE");
+  add_picture_options(*command, *options);
   command->footer(
       "Examples:\n"
       "  ayumi preview out/ -o walk.mp4\n"
       "  ayumi preview out/ --log open_loop --view side -o fall.mp4\n"
       "  ayumi preview out/ --at 2.35 --hide trails,forces -o push.png\n"
-      "  ayumi preview out/ --from 2 --to 3 --speed 0.2 -o slow.webm");
+      "  ayumi preview out/ --from 2 --to 3 --speed 0.2 --ghost command -o slow.webm\n"
+      "  ayumi preview out/ --exposures 6 --view side -o walk.png\n"
+      "  ayumi preview out/ -o walk.glb\n"
+      "  ayumi preview runs/* -o clips/ --sheet clips/all.png");
   command->callback([options, &context] { preview(*options, context); });
 }
 

@@ -211,6 +211,7 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
                                      {closed.controller, &closed}};
   LociOptions loci;
   loci.title = title;
+  loci.model = &model;
   for (const char* name : {"loci.svg", "loci.png"}) {
     write_loci(runs, workshop_->file(name), loci);
     note_file(name);

@@ -78,6 +78,7 @@ inline const std::vector<ThirdParty>& third_parties() {
       {"nlohmann-json", std::regex("nlohmann/.*"), {"io", "app"}},
       {"OpenGL", std::regex("E?GL/.*"), {"preview"}},
       {"cairo", std::regex("cairo.*"), {"preview"}},
+      {"libjpeg", std::regex("jpeglib\\.h"), {"preview"}},
       {"CLI11", std::regex("CLI/.*"), {"app"}},
       {"MuJoCo", std::regex("mujoco/.*"), {"plant_mujoco"}},
       {"POSIX",

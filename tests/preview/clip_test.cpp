@@ -187,6 +187,19 @@ TEST_F(Clip, EncoderMessagesAreHandedOn) {
   EXPECT_EQ(files(), 1u);
 }
 
+// ffmpeg ends well although what it wrote was cut off.
+TEST_F(Clip, AFullDiskLeavesNoHalfClip) {
+  const fs::path script = folder / "encoder.sh";
+  write_file(script, "#!/bin/sh\ntrap '' XFSZ\nulimit -f 4\nexec ffmpeg \"$@\"\n");
+  fs::permissions(script, fs::perms::owner_all);
+  options.encoder = script.string();
+  for (const char* name : {"a.mp4", "a.webm", "a.gif", "a.apng"})
+    EXPECT_NE(message_of(folder / name, ErrorCode::bad_file).find("File too large"),
+              std::string::npos)
+        << name;
+  EXPECT_EQ(files(), 1u);
+}
+
 TEST_F(Clip, StoppingLeavesNothing) {
   int calls = 0;
   EXPECT_THROW(write_clip(model, log, folder / "a.mp4", options,

@@ -2,62 +2,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/io/run_folder.hpp"
 #include "ayumi/preview/clip.hpp"
-#include "tests/cli/program.hpp"
+#include "tests/preview/standing_run.hpp"
 
 namespace ayumi::test {
 namespace {
 
-RobotModel hoap1(bool meshes) {
-  return load_robot(std::string(AYUMI_SOURCE_DIR) + "/robots/hoap1", {}, {.meshes = meshes});
-}
-
-/// A fifth of a second of standing still, soles on the ground.
-SimulationLog standing(const RobotModel& model) {
-  SimulationSample sample;
-  sample.state = model.rest_state();
-  RobotData data(model);
-  Eigen::Isometry3d sole = Eigen::Isometry3d::Identity();
-  sole.translation() = Eigen::Vector3d(0, 0.039, 0);
-  anchor_base(model, Side::left, sole, sample.state, data);
-  sample.cog = sample.command_cog = data.cog;
-  sample.zmp = sample.reference_zmp = {data.cog.x(), 0, 0};
-  sample.fz = sample.command_fz = 9.80665 * model.mass();
-  sample.target = sample.torque = sample.reference_theta = sample.command_theta =
-      sample.state.theta;
-  sample.reference_base = sample.command_base = sample.state.base;
-  sample.state.dtheta = Eigen::VectorXd::Zero(model.dof_count());
-  SimulationLog log;
-  log.controller = "dtad";
-  log.provenance.robot = "hoap1";
-  log.provenance.pattern = "stand";
-  log.joints = model.dof_names();
-  log.samples.assign(201, sample);
-  log.result.outcome = Outcome::stands;
-  return log;
-}
-
-class Commands : public testing::Test {
- protected:
-  static void SetUpTestSuite() { log = standing(hoap1(false)); }
-  void SetUp() override {
-    RunFolder run;
-    run.provenance = log.provenance;
-    run.logs["closed_loop"] = log;
-    run.logs["open_loop"] = log;
-    run.logs["open_loop"].controller = "none";
-    write_run(folder / "run", run);
-  }
-  Output ayumi(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "-q");
-    return run_program(arguments, folder.path());
-  }
-  Folder folder;
-  static inline SimulationLog log;
-};
+using Commands = OnARun;
 
 TEST_F(Commands, PreviewWritesAClipAndSaysSo) {
   const Output made = ayumi({"preview", "run", "-o", "a.mp4", "--size", "160x90", "--json"});
@@ -87,7 +38,8 @@ TEST_F(Commands, PlotDrawsAllLogsOfARun) {
   const Output made = ayumi({"plot", "run", "-o", "a.svg", "--json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const auto json = nlohmann::json::parse(made.out);
-  EXPECT_EQ(json.at("series").size(), 6u);
+  EXPECT_EQ(json.at("series").size(), 7u);
+  EXPECT_EQ(json.at("series").at(5), "margin [m]");
   EXPECT_EQ(json.at("runs"), nlohmann::json({"open loop", "closed loop, dtad"}));
   EXPECT_NE(contents(folder / "a.svg").find("closed loop, dtad (stands)"), std::string::npos);
   EXPECT_EQ(ayumi({"plot", "run", "-o", "b.png", "--top"}).exit_code, 0);

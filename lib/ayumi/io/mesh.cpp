@@ -141,9 +141,18 @@ class Collector {
     }
     aiString texture;
     if (material.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == AI_SUCCESS && texture.length > 0)
-      part.texture_file = texture.C_Str()[0] == '*'
-                              ? std::string()  // embedded in the file
-                              : (path_.parent_path() / texture.C_Str()).lexically_normal().string();
+      part.texture_file = texture_of(texture.C_Str());
+  }
+
+  // A path, or "data:" and the bytes of a picture inside the file; empty for bare texels.
+  std::string texture_of(std::string name) const {
+    if (const aiTexture* inside = scene_.GetEmbeddedTexture(name.c_str()))
+      return inside->mHeight > 0
+                 ? ""
+                 : "data:" + std::string(reinterpret_cast<char*>(inside->pcData), inside->mWidth);
+    std::replace(name.begin(), name.end(), '\\', '/');
+    if (name.starts_with("file://")) name.erase(0, 7);
+    return (path_.parent_path() / name).lexically_normal().string();
   }
 
   const aiScene& scene_;

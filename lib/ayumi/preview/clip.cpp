@@ -13,6 +13,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/preview/encoder.hpp"
+#include "ayumi/preview/simplify.hpp"
 
 namespace ayumi {
 namespace {
@@ -29,6 +30,13 @@ void check(const RobotModel& model, const SimulationLog& log, const ClipOptions&
        "the run has " + std::to_string(log.samples.front().state.theta.size()) +
            " joints, the robot " + model.name() + " has " + std::to_string(model.dof_count()) +
            ": they do not belong together");
+  if (options.ghost.log) {
+    duration(*options.ghost.log);
+    need(options.ghost.log->joints == log.joints,
+         "ghost: the other run is one of another robot; its joints are not the same");
+  }
+  need(!options.ghost.command || log.samples.front().command_theta.size() == model.dof_count(),
+       "ghost: the log does not hold the commanded posture; simulate again");
   need(options.fps > 0 && options.fps <= 1000,
        "fps: " + text::exact(options.fps) + " is not between 0 and 1000");
   need(options.speed > 0 && std::isfinite(options.speed),
@@ -48,6 +56,19 @@ double robot_height(const std::vector<BodySurface>& surface, const RobotModel& m
   const Eigen::AlignedBox3d box =
       robot_bounds(surface, body_poses(model, log.samples.front().state));
   return box.isEmpty() ? 1.0 : std::max(1e-3, box.sizes().maxCoeff());
+}
+
+/// The robot's surface, simplified where it is too fine; `notes` says so.
+std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOptions& options,
+                                       std::vector<std::string>& notes) {
+  std::vector<BodySurface> surface = robot_surface(model);
+  const size_t before = triangle_count(surface);
+  const double cell = simplify(surface, options.max_triangles);
+  if (cell > 0)
+    notes.push_back("the robot has " + std::to_string(before) + " triangles; drawn with " +
+                    std::to_string(triangle_count(surface)) + ", points moved by at most " +
+                    text::brief(1e3 * std::sqrt(3.0) * cell, 2) + " mm");
+  return surface;
 }
 
 CameraPath make_path(const SimulationLog& log, const ClipOptions& options, double height) {
@@ -78,6 +99,10 @@ class FrameQueue {
         Slot& slot = slots_[size_t(w)];
         try {
           const std::unique_ptr<ClipRenderer> renderer = make();
+          if (w == 0) {
+            const std::lock_guard lock(mutex_);
+            notes_ = renderer->notes();
+          }
           for (int k = w; k < count; k += workers)
             if (!put(slot, renderer->frame(time(k)))) return;
         } catch (...) {
@@ -97,6 +122,9 @@ class FrameQueue {
   }
   FrameQueue(const FrameQueue&) = delete;
   FrameQueue& operator=(const FrameQueue&) = delete;
+
+  /// What the renderers draw otherwise than asked; known once a frame was taken.
+  const std::vector<std::string>& notes() const { return notes_; }
 
   Image take(int k) {
     Slot& slot = slots_[size_t(k) % slots_.size()];
@@ -127,6 +155,7 @@ class FrameQueue {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stop_ = false;
+  std::vector<std::string> notes_;
   std::vector<Slot> slots_;
   std::vector<std::thread> threads_;
 };
@@ -176,19 +205,58 @@ ClipRenderer::ClipRenderer(const RobotModel& model, const SimulationLog& log,
       log_(log),
       options_((check(model, log, options), options)),
       pushes_(pushes(log)),
-      height_(robot_height(robot_surface(model), model, log)),
-      renderer_(robot_surface(model), options.picture),
-      path_(make_path(log, options, height_)) {}
+      surface_(drawn_surface(model, options, notes_)),
+      height_(robot_height(surface_, model, log)),
+      renderer_(surface_, options.picture),
+      path_(make_path(log, options, height_)) {
+  surface_ = {};
+  notes_.insert(notes_.end(), renderer_.notes().begin(), renderer_.notes().end());
+}
 
-Image ClipRenderer::frame(double t) {
+void ClipRenderer::add_ghost(double t, Scene& scene) const {
+  if (options_.ghost.log)
+    scene.exposures.push_back({body_poses(model_, sample_at(*options_.ghost.log, t).state)});
+  if (!options_.ghost.command) return;
+  const SimulationSample sample = sample_at(log_, t);
+  RobotState state = sample.state;
+  state.base = sample.command_base;
+  state.theta = sample.command_theta;
+  scene.exposures.push_back({body_poses(model_, state)});
+}
+
+Scene ClipRenderer::scene_at(double t, Overlay& overlay) const {
   const SimulationSample sample = sample_at(log_, t);
   Scene scene;
   scene.poses = body_poses(model_, sample.state);
   scene.camera = path_.at(t);
   scene.ground_normal = ground_normal(log_.world);
-  Overlay overlay =
-      make_overlay(model_, log_, pushes_, t, sample, scene.poses, height_, options_.overlay);
+  if (options_.overlay.heat) scene.heat = joint_heat(model_, log_.provenance.profile, sample);
+  add_ghost(t, scene);
+  overlay = make_overlay(model_, log_, pushes_, t, sample, scene.poses, height_, options_.overlay);
   scene.overlay = std::move(overlay.triangles);
+  return scene;
+}
+
+Image ClipRenderer::frame(double t) {
+  Overlay overlay;
+  const Scene scene = scene_at(t, overlay);
+  return finished(scene, overlay, t);
+}
+
+Image ClipRenderer::exposures(const std::vector<double>& times) {
+  if (times.empty()) fail(ErrorCode::usage, "a picture needs at least one instant");
+  Overlay overlay;
+  Scene scene = scene_at(times.back(), overlay);
+  scene.exposures.clear();
+  for (size_t i = 0; i + 1 < times.size(); ++i) {
+    const double share = double(i + 1) / double(times.size());
+    scene.exposures.push_back({body_poses(model_, sample_at(log_, times[i]).state),
+                               Eigen::Vector4f::Zero(), 0.25 + 0.5 * share});
+  }
+  return finished(scene, overlay, times.back());
+}
+
+Image ClipRenderer::finished(const Scene& scene, const Overlay& overlay, double t) {
   Image image = renderer_.render(scene);
   const double size = std::clamp(image.height / 32.0, 9.0, 60.0);
   for (const Label& label : overlay.labels) {
@@ -229,12 +297,16 @@ void ClipRenderer::write_caption(Image& image, double t) const {
   };
   using namespace overlay_color;
   const OverlayOptions& on = options_.overlay;
-  const std::array<Entry, 6> entries = {{{on.cog, "● COG", kCog},
-                                         {on.zmp, "● ZMP", kZmp},
-                                         {on.reference_zmp, "○ ref ZMP", kReferenceZmp},
-                                         {on.support, "▭ support", kSupport},
-                                         {on.forces, "↑ foot force", kForce},
-                                         {on.push && !pushes_.empty(), "→ push", kPush}}};
+  const bool ghost = options_.ghost.command || options_.ghost.log;
+  const std::array<Entry, 8> entries = {
+      {{on.cog, "● COG", kCog},
+       {on.zmp, "● ZMP", kZmp},
+       {on.reference_zmp, "○ ref ZMP", kReferenceZmp},
+       {on.support, "▭ support", kSupport},
+       {on.forces, "↑ foot force", kForce},
+       {on.push && !pushes_.empty(), "→ push", kPush},
+       {on.heat, "■ joint near a limit", {1, 0.2f, 0, 1}},
+       {ghost, options_.ghost.command ? "▒ command" : "▒ other run", kSupport}}};
   x = margin;
   for (const Entry& entry : entries) {
     if (!entry.shown) continue;
@@ -252,19 +324,21 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
   const RenderOptions& picture = options.picture;
   const auto make = [&] { return std::make_unique<ClipRenderer>(model, log, options); };
   if (path.extension() == ".png") {
-    const Image image = make()->frame(options.at);
-    write_png(path, image);
-    return {1, picture.width, picture.height, options.fps};
+    const auto renderer = make();
+    write_png(path, renderer->frame(options.at));
+    return {1, picture.width, picture.height, options.fps, renderer->notes()};
   }
   const double end = options.end < 0 ? duration(log) : std::min(options.end, duration(log));
   const double step = options.speed / options.fps;
   const int count = static_cast<int>(std::floor((end - options.begin) / step + 1e-6)) + 1;
   const auto time = [&](int k) { return options.begin + k * options.speed / options.fps; };
+  std::vector<std::string> notes;
   const auto frames = [&](const std::function<void(int, const Image&)>& use) {
     FrameQueue queue(options.threads, count, make, time);
     for (int k = 0; k < count; ++k) {
       report(progress, {"preview", double(k) / count, "frame " + std::to_string(k)});
       use(k, queue.take(k));
+      if (k == 0) notes = queue.notes();
     }
   };
   if (path.extension().empty()) {
@@ -283,7 +357,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
     });
   }
   report(progress, {"preview", 1.0, std::to_string(count) + " frames"});
-  return {count, picture.width, picture.height, options.fps};
+  return {count, picture.width, picture.height, options.fps, notes};
 }
 
 }  // namespace ayumi

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/model/robot_model.hpp"
@@ -13,10 +14,18 @@
 
 namespace ayumi {
 
+/// The robot a second time, translucent.
+struct GhostOptions {
+  bool command = false;                ///< the commanded posture of the same log
+  const SimulationLog* log = nullptr;  ///< or another run of the same robot; must outlive the clip
+};
+
 struct ClipOptions {
   RenderOptions picture;
   CameraOptions camera;
   OverlayOptions overlay;
+  GhostOptions ghost;
+  size_t max_triangles = 400'000;  ///< of the robot; beyond it the surface is simplified
   double fps = 30;                 ///< frames per second of the clip
   double speed = 1;                ///< seconds of the run per second of the clip
   double begin = 0;                ///< first instant shown [s]
@@ -31,6 +40,7 @@ struct ClipSummary {
   int frames = 0;
   int width = 0, height = 0;  ///< [pixel]
   double fps = 0;
+  std::vector<std::string> notes;  ///< what is drawn otherwise than the robot's files say, and why
 };
 
 /// One picture of the run at `t`, overlays and caption included.
@@ -40,16 +50,24 @@ class ClipRenderer {
   /// or a log of another robot.
   ClipRenderer(const RobotModel& model, const SimulationLog& log, const ClipOptions& options);
   Image frame(double t);
+  /// Several instants in one picture: the last in full, the others lighter the earlier they are.
+  Image exposures(const std::vector<double>& times);
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   const RobotModel& model_;
   const SimulationLog& log_;
   ClipOptions options_;
   std::vector<PushRecord> pushes_;
-  double height_;  ///< of the robot [m]
+  std::vector<std::string> notes_;
+  std::vector<BodySurface> surface_;  ///< until the renderer has it
+  double height_;                     ///< of the robot [m]
   Renderer renderer_;
   CameraPath path_;
 
+  Scene scene_at(double t, Overlay& overlay) const;
+  void add_ghost(double t, Scene& scene) const;
+  Image finished(const Scene& scene, const Overlay& overlay, double t);
   void write_caption(Image& image, double t) const;
 };
 

@@ -52,14 +52,17 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
   } else if (extension == ".webm") {
     arguments = {"-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "6",
                  "-crf", "30",         "-b:v",      "0",        "-threads",  "1"};
+  } else if (extension == ".apng") {
+    return {"-f", "apng", "-plays", "0", "-pred", "mixed"};
   } else if (extension == ".gif") {
     return {"-vf",
             "split[a][b];[a]palettegen=stats_mode=single[p];"
             "[b][p]paletteuse=new=1:dither=bayer:bayer_scale=4"};
   } else {
-    fail(ErrorCode::usage, path.string() + ": the format '" + extension +
-                               "' is not one of .mp4, .webm, .gif, .png, or a folder for PNG "
-                               "frames");
+    fail(ErrorCode::usage,
+         path.string() + ": the format '" + extension +
+             "' is not one of .mp4, .webm, .gif, .apng, .png, .glb, or a folder for PNG "
+             "frames");
   }
   arguments.insert(arguments.end(), color.begin(), color.end());
   return arguments;
@@ -179,7 +182,9 @@ void ClipEncoder::add(const Image& frame) {
 
 void ClipEncoder::finish() {
   const int status = wait();
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail_with_log();
+  // Some versions say that the disk is full and still end as if all were well.
+  const bool silent = lseek(log_, 0, SEEK_END) <= 0;
+  if (!silent || !WIFEXITED(status) || WEXITSTATUS(status) != 0) fail_with_log();
 }
 
 }  // namespace ayumi

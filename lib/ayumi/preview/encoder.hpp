@@ -12,9 +12,9 @@ namespace ayumi {
 /// Feeds frames to one ffmpeg process. A process that is not finished is ended by the destructor.
 class ClipEncoder {
  public:
-  /// Format by the extension of `path`: .mp4 (H.264), .webm (VP9), .gif. Throws Error(usage) for
-  /// another, or for an odd size where the format needs an even one; Error(bad_file) when ffmpeg
-  /// cannot be started. The same frames give the same bytes.
+  /// Format by the extension of `path`: .mp4 (H.264), .webm (VP9), .gif, .apng. Throws Error(usage)
+  /// for another, or for an odd size where the format needs an even one; Error(bad_file) when
+  /// ffmpeg cannot be started. The same frames give the same bytes.
   ClipEncoder(const std::filesystem::path& path, int width, int height, double fps,
               const std::string& program = "ffmpeg");
   ~ClipEncoder();

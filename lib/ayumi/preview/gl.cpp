@@ -10,27 +10,27 @@
 namespace ayumi {
 namespace {
 
-GLuint compile(const Gl& gl, GLenum kind, const char* source) {
+GLuint compile(const Gl& gl, GLenum kind, const char* between, const char* source) {
   const GLuint shader = gl.CreateShader(kind);
-  const char* sources[] = {shaders::kCommon, source};
-  gl.ShaderSource(shader, 2, sources, nullptr);
+  const char* sources[] = {shaders::kCommon, between, source};
+  gl.ShaderSource(shader, 3, sources, nullptr);
   gl.CompileShader(shader);
   return shader;
 }
 
 }  // namespace
 
-Gl::Gl() {
+Gl::Gl(const OffscreenContext& context) {
 #define AYUMI_GL_LOAD(TYPE, name) \
-  name = reinterpret_cast<PFNGL##TYPE##PROC>(OffscreenContext::function("gl" #name));
+  name = reinterpret_cast<PFNGL##TYPE##PROC>(context.function("gl" #name));
   AYUMI_GL_FUNCTIONS(AYUMI_GL_LOAD)
 #undef AYUMI_GL_LOAD
 }
 
-GLuint Gl::link(const char* vertex, const char* fragment) const {
+GLuint Gl::link(const char* vertex, const char* fragment, const char* between) const {
   const GLuint program = CreateProgram();
-  for (const GLuint shader :
-       {compile(*this, GL_VERTEX_SHADER, vertex), compile(*this, GL_FRAGMENT_SHADER, fragment)}) {
+  for (const GLuint shader : {compile(*this, GL_VERTEX_SHADER, "", vertex),
+                              compile(*this, GL_FRAGMENT_SHADER, between, fragment)}) {
     AttachShader(program, shader);
     DeleteShader(shader);
   }
@@ -59,7 +59,19 @@ GlMesh Gl::make_mesh() const {
   attribute(0, 3, GL_FLOAT, offsetof(RenderVertex, position));
   attribute(1, 3, GL_FLOAT, offsetof(RenderVertex, normal));
   attribute(2, 4, GL_UNSIGNED_BYTE, offsetof(RenderVertex, color));
+  attribute(3, 2, GL_FLOAT, offsetof(RenderVertex, uv));
   return mesh;
+}
+
+GLuint Gl::make_texture(const std::vector<std::uint8_t>& rgba, int width, int height) const {
+  GLuint texture = 0;
+  GenTextures(1, &texture);
+  BindTexture(GL_TEXTURE_2D, texture);
+  TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  GenerateMipmap(GL_TEXTURE_2D);
+  TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return texture;
 }
 
 void Gl::fill(const GlMesh& mesh, const Triangles& triangles, GLenum usage) const {
@@ -99,6 +111,9 @@ void Gl::set(GLuint program, const char* name, const Eigen::Matrix4f& value) con
 void Gl::set(GLuint program, const char* name, const Eigen::Vector3d& value) const {
   const Eigen::Vector3f f = value.cast<float>();
   Uniform3f(GetUniformLocation(program, name), f[0], f[1], f[2]);
+}
+void Gl::set(GLuint program, const char* name, const Eigen::Vector4f& value) const {
+  Uniform4f(GetUniformLocation(program, name), value[0], value[1], value[2], value[3]);
 }
 void Gl::set(GLuint program, const char* name, double x, double y) const {
   Uniform2f(GetUniformLocation(program, name), static_cast<float>(x), static_cast<float>(y));

@@ -5,40 +5,67 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
+#include "ayumi/preview/offscreen_context.hpp"
 #include "ayumi/preview/triangles.hpp"
 
 namespace ayumi {
 
 // clang-format off
-#define AYUMI_GL_FUNCTIONS(X)                                                                      \
-  X(ACTIVETEXTURE, ActiveTexture)                                                                  \
-  X(ATTACHSHADER, AttachShader)                                                                    \
-  X(BINDBUFFER, BindBuffer) X(BINDFRAMEBUFFER, BindFramebuffer) X(                                 \
-      BINDRENDERBUFFER, BindRenderbuffer) X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY,           \
-                                                                        BindVertexArray)           \
-      X(BLENDFUNC, BlendFunc) X(BLITFRAMEBUFFER, BlitFramebuffer) X(BUFFERDATA, BufferData) X(     \
-          CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEAR, Clear)                          \
-          X(CLEARCOLOR, ClearColor) X(COMPILESHADER, CompileShader) X(                             \
-              CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader)                          \
-              X(DELETESHADER, DeleteShader) X(DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask) X(     \
-                  DISABLE, Disable) X(DRAWARRAYS, DrawArrays) X(DRAWELEMENTS, DrawElements)        \
-                  X(ENABLE, Enable) X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(         \
-                      FRAMEBUFFERRENDERBUFFER, FramebufferRenderbuffer) X(GENBUFFERS, GenBuffers)  \
-                      X(GENFRAMEBUFFERS, GenFramebuffers) X(GENRENDERBUFFERS, GenRenderbuffers) X( \
-                          GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays)            \
-                          X(GETPROGRAMINFOLOG, GetProgramInfoLog) X(GETPROGRAMIV, GetProgramiv) X( \
-                              GETUNIFORMLOCATION, GetUniformLocation) X(LINKPROGRAM, LinkProgram)  \
-                              X(PIXELSTOREI, PixelStorei) X(POLYGONOFFSET, PolygonOffset)          \
-                                  X(READPIXELS, ReadPixels) X(RENDERBUFFERSTORAGEMULTISAMPLE,      \
-                                                              RenderbufferStorageMultisample)      \
-                                      X(SHADERSOURCE, ShaderSource) X(TEXIMAGE2D, TexImage2D)      \
-                                          X(TEXPARAMETERI, TexParameteri) X(UNIFORM1F, Uniform1f)  \
-                                              X(UNIFORM2F, Uniform2f) X(UNIFORM3F, Uniform3f)      \
-                                                  X(UNIFORMMATRIX4FV, UniformMatrix4fv) X(         \
-                                                      USEPROGRAM, UseProgram)                      \
-                                                      X(VERTEXATTRIBPOINTER, VertexAttribPointer)  \
-                                                          X(VIEWPORT, Viewport)
+#define AYUMI_GL_FUNCTIONS(X) \
+  X(ACTIVETEXTURE, ActiveTexture) \
+  X(ATTACHSHADER, AttachShader) \
+  X(BINDBUFFER, BindBuffer) \
+  X(BINDFRAMEBUFFER, BindFramebuffer) \
+  X(BINDRENDERBUFFER, BindRenderbuffer) \
+  X(BINDTEXTURE, BindTexture) \
+  X(BINDVERTEXARRAY, BindVertexArray) \
+  X(BLENDFUNC, BlendFunc) \
+  X(BLITFRAMEBUFFER, BlitFramebuffer) \
+  X(BUFFERDATA, BufferData) \
+  X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) \
+  X(CLEAR, Clear) \
+  X(CLEARCOLOR, ClearColor) \
+  X(COLORMASK, ColorMask) \
+  X(COMPILESHADER, CompileShader) \
+  X(CREATEPROGRAM, CreateProgram) \
+  X(CREATESHADER, CreateShader) \
+  X(DELETESHADER, DeleteShader) \
+  X(DEPTHFUNC, DepthFunc) \
+  X(DEPTHMASK, DepthMask) \
+  X(DISABLE, Disable) \
+  X(DRAWARRAYS, DrawArrays) \
+  X(DRAWELEMENTS, DrawElements) \
+  X(ENABLE, Enable) \
+  X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) \
+  X(FRAMEBUFFERRENDERBUFFER, FramebufferRenderbuffer) \
+  X(GENBUFFERS, GenBuffers) \
+  X(GENERATEMIPMAP, GenerateMipmap) \
+  X(GENFRAMEBUFFERS, GenFramebuffers) \
+  X(GENRENDERBUFFERS, GenRenderbuffers) \
+  X(GENTEXTURES, GenTextures) \
+  X(GENVERTEXARRAYS, GenVertexArrays) \
+  X(GETPROGRAMINFOLOG, GetProgramInfoLog) \
+  X(GETPROGRAMIV, GetProgramiv) \
+  X(GETUNIFORMLOCATION, GetUniformLocation) \
+  X(LINKPROGRAM, LinkProgram) \
+  X(PIXELSTOREI, PixelStorei) \
+  X(POLYGONOFFSET, PolygonOffset) \
+  X(READPIXELS, ReadPixels) \
+  X(RENDERBUFFERSTORAGEMULTISAMPLE, RenderbufferStorageMultisample) \
+  X(SHADERSOURCE, ShaderSource) \
+  X(TEXIMAGE2D, TexImage2D) \
+  X(TEXPARAMETERI, TexParameteri) \
+  X(UNIFORM1F, Uniform1f) \
+  X(UNIFORM2F, Uniform2f) \
+  X(UNIFORM3F, Uniform3f) \
+  X(UNIFORM4F, Uniform4f) \
+  X(UNIFORMMATRIX4FV, UniformMatrix4fv) \
+  X(USEPROGRAM, UseProgram) \
+  X(VERTEXATTRIBPOINTER, VertexAttribPointer) \
+  X(VIEWPORT, Viewport)
 // clang-format on
 
 /// Part of an index buffer.
@@ -65,10 +92,13 @@ struct Gl {
 #undef AYUMI_GL_MEMBER
 
   /// Throws Error(internal) naming a function that is missing.
-  Gl();
+  explicit Gl(const OffscreenContext& context);
 
-  /// Throws Error(internal) with the compiler's words.
-  GLuint link(const char* vertex, const char* fragment) const;
+  /// `between` stands before the fragment's text. Throws Error(internal) with
+  /// the compiler's words.
+  GLuint link(const char* vertex, const char* fragment, const char* between = "") const;
+  /// A picture to be put on surfaces, repeated beyond its edges.
+  GLuint make_texture(const std::vector<std::uint8_t>& rgba, int width, int height) const;
   GlMesh make_mesh() const;
   void fill(const GlMesh& mesh, const Triangles& triangles, GLenum usage) const;
   /// `samples` per pixel, 0 for one without resolving. Throws Error(internal) where refused.
@@ -77,6 +107,7 @@ struct Gl {
 
   void set(GLuint program, const char* name, const Eigen::Matrix4f& value) const;
   void set(GLuint program, const char* name, const Eigen::Vector3d& value) const;
+  void set(GLuint program, const char* name, const Eigen::Vector4f& value) const;
   void set(GLuint program, const char* name, double x, double y) const;
   void set(GLuint program, const char* name, double value) const;
 };

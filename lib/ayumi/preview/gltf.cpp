@@ -12,6 +12,7 @@
 #include "ayumi/preview/log_reading.hpp"
 #include "ayumi/preview/robot_surface.hpp"
 #include "ayumi/preview/simplify.hpp"
+#include "ayumi/preview/texture.hpp"
 
 // Nodes: 0 the world, whose z becomes glTF's y; 1 + i body i, the root below the world. Triangles
 // of a body are gathered by colour and by whether they are seen from both sides; equal vertices are
@@ -62,14 +63,17 @@ class Writer {
   int add_floats(const std::vector<float>& values, int components, bool vertices, bool with_bounds);
   int add_indices(const std::vector<std::uint32_t>& values);
   int material(const Color& color, bool double_sided);
+  /// With the picture of a mesh; as `material` where there is none to embed.
+  int material(const Color& color, const std::string& texture);
 
   std::string file(const std::string& nodes, const std::string& animations) const;
   std::vector<std::string> meshes;
 
  private:
   std::string binary_;
-  std::vector<std::string> views_, accessors_, materials_;
+  std::vector<std::string> views_, accessors_, materials_, images_, textures_;
   std::map<std::pair<Color, bool>, int> known_materials_;
+  std::map<std::pair<Color, std::string>, int> known_textured_;
 
   int add_view(const void* data, size_t bytes, int target);
 };
@@ -132,12 +136,30 @@ int Writer::material(const Color& color, bool double_sided) {
   return entry->second;
 }
 
+int Writer::material(const Color& color, const std::string& texture) {
+  const auto known = known_textured_.find({color, texture});
+  if (known != known_textured_.end()) return known->second;
+  std::vector<std::string> notes;
+  const std::string bytes = texture_bytes(texture, notes);
+  const bool png = bytes.starts_with("\x89PNG");
+  if (!png && !bytes.starts_with("\xff\xd8")) return material(color, true);
+  const int view = add_view(bytes.data(), bytes.size(), 0);
+  textures_.push_back("{\"source\":" + std::to_string(images_.size()) + "}");
+  images_.push_back("{\"bufferView\":" + std::to_string(view) + ",\"mimeType\":\"image/" +
+                    (png ? "png" : "jpeg") + "\"}");
+  materials_.push_back("{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":" +
+                       std::to_string(textures_.size() - 1) +
+                       "},\"metallicFactor\":0,\"roughnessFactor\":0.7},\"doubleSided\":true}");
+  return known_textured_[{color, texture}] = static_cast<int>(materials_.size()) - 1;
+}
+
 std::string Writer::file(const std::string& nodes, const std::string& animations) const {
   std::string json =
       "{\"asset\":{\"version\":\"2.0\",\"generator\":\"ayumi\"},\"scene\":0,"
       "\"scenes\":[{\"nodes\":[0]}],\"nodes\":" +
       nodes + animations + joined("meshes", meshes) + joined("materials", materials_) +
-      joined("accessors", accessors_) + joined("bufferViews", views_);
+      joined("textures", textures_) + joined("images", images_) + joined("accessors", accessors_) +
+      joined("bufferViews", views_);
   if (!binary_.empty())
     json += ",\"buffers\":[{\"byteLength\":" + std::to_string(binary_.size()) + "}]";
   json += "}";
@@ -164,25 +186,30 @@ std::string Writer::file(const std::string& nodes, const std::string& animations
 
 /// Triangles of one colour with each vertex once.
 struct Batch {
-  std::vector<float> positions, normals;
+  std::vector<float> positions, normals, uvs;
   std::vector<std::uint32_t> indices;
-  std::map<std::array<float, 6>, std::uint32_t> known;
+  std::map<std::array<float, 8>, std::uint32_t> known;
 
   void add(const RenderVertex& vertex) {
-    std::array<float, 6> key;
+    std::array<float, 8> key;
     for (size_t i = 0; i < 3; ++i) {
       key[i] = vertex.position[Eigen::Index(i)] + 0.0f;
       key[3 + i] = vertex.normal[Eigen::Index(i)] + 0.0f;
     }
+    key[6] = vertex.uv.x() + 0.0f;
+    key[7] = 1 - vertex.uv.y();  // downwards in glTF
     const auto [entry, fresh] = known.emplace(key, static_cast<std::uint32_t>(known.size()));
     indices.push_back(entry->second);
     if (!fresh) return;
     positions.insert(positions.end(), key.begin(), key.begin() + 3);
-    normals.insert(normals.end(), key.begin() + 3, key.end());
+    normals.insert(normals.end(), key.begin() + 3, key.begin() + 6);
+    uvs.insert(uvs.end(), key.begin() + 6, key.end());
   }
 };
 
-void add_batches(Writer& writer, const Triangles& surface, bool double_sided,
+/// `material` of a colour gives its number.
+template <typename Material>
+void add_batches(Writer& writer, const Triangles& surface, bool with_uvs, const Material& material,
                  std::vector<std::string>& primitives) {
   std::map<Color, Batch> batches;
   for (const std::uint32_t index : surface.indices) {
@@ -190,13 +217,13 @@ void add_batches(Writer& writer, const Triangles& surface, bool double_sided,
     batches[vertex.color].add(vertex);
   }
   for (const auto& [color, batch] : batches) {
-    const int positions = writer.add_floats(batch.positions, 3, true, true);
-    const int normals = writer.add_floats(batch.normals, 3, true, false);
-    const int indices = writer.add_indices(batch.indices);
-    primitives.push_back(
-        "{\"attributes\":{\"POSITION\":" + std::to_string(positions) +
-        ",\"NORMAL\":" + std::to_string(normals) + "},\"indices\":" + std::to_string(indices) +
-        ",\"material\":" + std::to_string(writer.material(color, double_sided)) + "}");
+    std::string words = "{\"attributes\":{\"POSITION\":" +
+                        std::to_string(writer.add_floats(batch.positions, 3, true, true));
+    words += ",\"NORMAL\":" + std::to_string(writer.add_floats(batch.normals, 3, true, false));
+    if (with_uvs)
+      words += ",\"TEXCOORD_0\":" + std::to_string(writer.add_floats(batch.uvs, 2, true, false));
+    words += "},\"indices\":" + std::to_string(writer.add_indices(batch.indices));
+    primitives.push_back(words + ",\"material\":" + std::to_string(material(color)) + "}");
   }
 }
 
@@ -207,8 +234,14 @@ std::vector<int> add_meshes(Writer& writer, const RobotModel& model, size_t max_
   std::vector<int> meshes;
   for (const BodySurface& body : surface) {
     std::vector<std::string> primitives;
-    add_batches(writer, body.closed, false, primitives);
-    add_batches(writer, body.open, true, primitives);
+    for (const bool open : {false, true})
+      add_batches(
+          writer, open ? body.open : body.closed, false,
+          [&](const Color& color) { return writer.material(color, open); }, primitives);
+    for (const TexturedSurface& part : body.textured)
+      add_batches(
+          writer, part.triangles, true,
+          [&](const Color& color) { return writer.material(color, part.texture); }, primitives);
     meshes.push_back(primitives.empty() ? -1 : static_cast<int>(writer.meshes.size()));
     if (!primitives.empty())
       writer.meshes.push_back("{\"primitives\":[" + text::join(primitives, ",") + "]}");

@@ -6,7 +6,10 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/polygon.hpp"
 #include "ayumi/preview/loci_parts.hpp"
+#include "ayumi/preview/overlay.hpp"
+#include "ayumi/preview/robot_surface.hpp"
 
 namespace ayumi {
 namespace {
@@ -21,7 +24,7 @@ constexpr double kGap = 12;  // between panels [pixel]
 struct PanelPlan {
   std::string name;     ///< with unit
   Value run;            ///< of every run
-  Value command;        ///< of the last run; the command is the same for all
+  Value command;        ///< of the last run; the command is the same for all; empty: none
   Value reference;      ///< of the last run; empty: none
   double least = 0;     ///< span of the axis at least
   bool spikes = false;  ///< landings may exceed the range
@@ -31,7 +34,21 @@ Value component(Eigen::Vector3d SimulationSample::*quantity, int index) {
   return [quantity, index](const SimulationSample& s) { return (s.*quantity)[index]; };
 }
 
-std::vector<PanelPlan> plan_panels(const LociOptions& options) {
+/// Distance of the ZMP inside the hull of the soles planned down, where they really are; no number
+/// in flight.
+Value zmp_margin(const RobotModel& model, const Eigen::Vector3d& up) {
+  return [&model, up](const SimulationSample& s) {
+    std::vector<Vector2d> corners;
+    for (const Eigen::Vector3d& corner :
+         support_corners(model, body_poses(model, s.state), s.planned_contact, up))
+      corners.push_back(corner.head<2>());
+    const ConvexPolygon support(std::move(corners));
+    return support.empty() ? std::nan("") : support.margin(s.zmp.head<2>());
+  };
+}
+
+std::vector<PanelPlan> plan_panels(const LociOptions& options,
+                                   const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ()) {
   std::vector<PanelPlan> panels;
   using S = SimulationSample;
   const char* axis[] = {"x", "y", "z"};
@@ -48,6 +65,8 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
       panels.push_back({std::string("ZMP ") + axis[i] + " [m]", component(&S::zmp, i),
                         component(&S::command_zmp, i), component(&S::reference_zmp, i), 0.02,
                         false});
+  if (options.zmp && options.model && options.model->has_soles())
+    panels.push_back({"margin [m]", zmp_margin(*options.model, up), {}, {}, 0.02, false});
   if (options.fz)
     panels.push_back({"f_z [N]",
                       [](const S& s) { return s.fz; },
@@ -60,6 +79,7 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
 
 std::vector<Vector2d> series(const SimulationLog& log, const Value& value, const Interval& time) {
   std::vector<Vector2d> points;
+  if (!value) return points;
   for (size_t k = 0; k < log.samples.size(); ++k) {
     const double t = static_cast<double>(k) * log.dt;
     if (t >= time.low - 1e-9 && t <= time.high + 1e-9)
@@ -191,7 +211,7 @@ void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
 
 Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) {
   const Interval time = time_range(runs, options);
-  const std::vector<PanelPlan> panels = plan_panels(options);
+  const std::vector<PanelPlan> panels = plan_panels(options, ground_normal(runs.back().log->world));
   if (panels.empty()) fail(ErrorCode::usage, "plot: every panel is switched off");
   Drawing drawing = start_drawing(runs, options, "Loci against time");
   const std::vector<PushRecord> pushed = all_pushes(runs, time);

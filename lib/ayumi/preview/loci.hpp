@@ -1,6 +1,7 @@
 #pragma once
 // Loci of runs against time: COG x, y, z with the command, ZMP x, y with the reference ZMP, and
-// f_z, several runs of one pattern together (open loop and closed loop). And the same from above.
+// f_z, several runs of one pattern together (open loop and closed loop); with the robot at hand how
+// far the ZMP is inside the soles planned down. And the same from above.
 
 #include <filesystem>
 #include <string>
@@ -20,6 +21,7 @@ struct LociRun {
 struct LociOptions {
   std::string title = {};                  ///< empty: the pattern's name
   bool cog = true, zmp = true, fz = true;  ///< panels
+  const RobotModel* model = nullptr;       ///< of the runs; with it a panel of the ZMP margin
   double width = 1000;                     ///< [pixel]
   double panel = 132;                      ///< height of one panel [pixel]
   double begin = 0;                        ///< first time shown [s]

@@ -93,4 +93,10 @@ std::string push_text(const PushRecord& push) {
                                              : text::brief(push.peak.norm(), 3) + " N";
 }
 
+double telling_instant(const SimulationLog& log) {
+  const std::vector<PushRecord> pushed = pushes(log);
+  const double last = duration(log);
+  return pushed.empty() ? 0.5 * last : std::min(last, pushed.front().begin + 0.25);
+}
+
 }  // namespace ayumi

@@ -1,48 +1,67 @@
 #include "ayumi/preview/offscreen_context.hpp"
 
-#include <GL/osmesa.h>
-
-#include <string>
+#include <algorithm>
 
 #include "ayumi/base/error.hpp"
 
 namespace ayumi {
 
-OffscreenContext::OffscreenContext() {
-  const int attributes[] = {OSMESA_FORMAT,
-                            OSMESA_RGBA,
-                            OSMESA_DEPTH_BITS,
-                            0,
-                            OSMESA_PROFILE,
-                            OSMESA_CORE_PROFILE,
-                            OSMESA_CONTEXT_MAJOR_VERSION,
-                            3,
-                            OSMESA_CONTEXT_MINOR_VERSION,
-                            3,
-                            0};
-  context_ = OSMesaCreateContextAttribs(attributes, nullptr);
-  if (!context_)
-    fail(ErrorCode::internal,
-         "off-screen rendering: this OSMesa library gives no OpenGL 3.3 core context");
+namespace {
+
+constexpr bool kHasOsmesa =
+#ifdef AYUMI_HAS_OSMESA
+    true;
+#else
+    false;
+#endif
+constexpr bool kHasEgl =
+#ifdef AYUMI_HAS_EGL
+    true;
+#else
+    false;
+#endif
+
+}  // namespace
+
+std::vector<Offscreen> offscreen_ways() {
+  std::vector<Offscreen> ways;
+  if (kHasOsmesa) ways.push_back(Offscreen::osmesa);
+  if (kHasEgl) ways.push_back(Offscreen::egl);
+  return ways;
+}
+
+OffscreenContext::OffscreenContext(Offscreen way) : way_(way) {
+  const std::vector<Offscreen> ways = offscreen_ways();
+  if (way == Offscreen::automatic && !ways.empty()) way_ = ways.front();
+  if (std::find(ways.begin(), ways.end(), way_) == ways.end())
+    fail(ErrorCode::internal, "off-screen rendering: this program was built without " +
+                                  std::string(way == Offscreen::osmesa ? "OSMesa"
+                                              : way == Offscreen::egl  ? "EGL"
+                                                                       : "OSMesa and without EGL"));
+  context_ =
+      way_ == Offscreen::osmesa ? offscreen::Osmesa::create() : offscreen::Egl::create(display_);
   make_current();
 }
 
 OffscreenContext::~OffscreenContext() {
-  if (OSMesaGetCurrentContext() == context_) OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0);
-  OSMesaDestroyContext(static_cast<OSMesaContext>(context_));
+  if (way_ == Offscreen::osmesa)
+    offscreen::Osmesa::destroy(context_);
+  else
+    offscreen::Egl::destroy(display_, context_);
 }
 
 void OffscreenContext::make_current() {
-  if (OSMesaGetCurrentContext() == context_) return;
-  if (!OSMesaMakeCurrent(static_cast<OSMesaContext>(context_), buffer_, GL_UNSIGNED_BYTE, 16, 16))
-    fail(ErrorCode::internal, "off-screen rendering: the OSMesa context cannot be made current");
+  const bool done = way_ == Offscreen::osmesa ? offscreen::Osmesa::make_current(context_, buffer_)
+                                              : offscreen::Egl::make_current(display_, context_);
+  if (!done) fail(ErrorCode::internal, "off-screen rendering: the context cannot be made current");
 }
 
-void (*OffscreenContext::function(const char* name))() {
-  const OSMESAproc address = OSMesaGetProcAddress(name);
+OffscreenContext::Function OffscreenContext::function(const char* name) const {
+  const Function address = way_ == Offscreen::osmesa ? offscreen::Osmesa::function(name)
+                                                     : offscreen::Egl::function(name);
   if (!address)
     fail(ErrorCode::internal, std::string("off-screen rendering: OpenGL lacks ") + name);
-  return reinterpret_cast<void (*)()>(address);
+  return address;
 }
 
 }  // namespace ayumi

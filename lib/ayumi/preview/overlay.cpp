@@ -134,6 +134,29 @@ std::vector<Vector3d> support_corners(const RobotModel& model,
   return corners;
 }
 
+std::vector<float> joint_heat(const RobotModel& model, const std::string& profile,
+                              const SimulationSample& sample) {
+  const std::vector<std::string> known = model.profile_names();
+  const bool has = std::find(known.begin(), known.end(), profile) != known.end();
+  const ActuatorLimits& limits = model.limits(has ? profile : "");
+  std::vector<float> heat;
+  for (const Body& body : model.bodies()) {
+    double use = 0;
+    const auto i = body.dof;
+    if (i >= 0) {
+      const Dof& dof = model.dofs()[size_t(i)];
+      if (dof.limited && dof.upper > dof.lower)
+        use = std::abs(2 * sample.state.theta[i] - dof.upper - dof.lower) / (dof.upper - dof.lower);
+      if (sample.state.dtheta.size() > i)
+        use = std::max(use, std::abs(sample.state.dtheta[i]) / limits.speed[i]);
+      if (sample.torque.size() > i)
+        use = std::max(use, std::abs(sample.torque[i]) / limits.peak_torque[i]);
+    }
+    heat.push_back(static_cast<float>(std::clamp(3 * use - 2, 0.0, 1.0)));
+  }
+  return heat;
+}
+
 Overlay make_overlay(const RobotModel& model, const SimulationLog& log,
                      const std::vector<PushRecord>& pushed, double t,
                      const SimulationSample& sample, const std::vector<Eigen::Isometry3d>& poses,

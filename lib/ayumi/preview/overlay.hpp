@@ -20,6 +20,7 @@ struct OverlayOptions {
   bool forces = true;         ///< arrow per foot
   bool push = true;           ///< arrow with its value
   bool trails = true;         ///< of COG (on the ground) and ZMP
+  bool heat = false;          ///< bodies whose joint is near a limit in red
   bool caption = true;        ///< line of text and legend of the marks
   double trail = 2.0;         ///< length of the trails [s]
   double push_hold = 0.6;     ///< a push is shown at least this long from its start [s]
@@ -52,6 +53,11 @@ std::vector<Eigen::Vector3d> support_corners(const RobotModel& model,
                                              const std::vector<Eigen::Isometry3d>& poses,
                                              const std::array<bool, 2>& contact,
                                              const Eigen::Vector3d& ground_normal);
+
+/// How near the joint of each body is to its limits of position, speed and torque, by body: 0 up to
+/// two thirds of the nearest limit, 1 at it. `profile` by name; the default one where unknown.
+std::vector<float> joint_heat(const RobotModel& model, const std::string& profile,
+                              const SimulationSample& sample);
 
 /// Overlay of the log at time t. `pushed` are the log's pushes(); `sample` and `poses` those of t;
 /// `height` of the robot [m] scales the marks.

@@ -1,17 +1,20 @@
 #include "ayumi/preview/renderer.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <string>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/preview/gl.hpp"
-#include "ayumi/preview/offscreen_context.hpp"
+#include "ayumi/preview/ground_plane.hpp"
 #include "ayumi/preview/shaders.hpp"
+#include "ayumi/preview/texture.hpp"
 
-// Order of a frame: the robot's shadow as coverage seen along the sun, read back, blurred and given
-// back as a small texture; then robot, ground, sky, shadow, overlay. What an overlay hides behind
-// the robot is drawn first and faintly, then its visible part.
+// Order of a frame: the robot's shadow as coverage seen along the sun, read
+// back, blurred and given back as a small texture; then robot, scenery, ground,
+// sky, shadow, exposures, overlay. An exposure is drawn twice, first into the
+// depth alone, so that only its nearest surface shines through. What an overlay
+// hides behind the robot is drawn first and faintly, then its visible part.
 
 namespace ayumi {
 namespace {
@@ -23,58 +26,18 @@ constexpr int kShadowSize = 512;
 constexpr int kSamples = 4;
 constexpr float kHorizon[3] = {0.74f, 0.77f, 0.80f};
 
-/// Frame of the ground plane and the square of it that the robot's shadow falls on.
-struct Ground {
-  Vector3d u, v, normal;
-  Eigen::Vector2d center;
-  double reach = 1;  ///< half edge of the square [m]
+const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
+
+/// From amber to red as the heat rises.
+Eigen::Vector4f heat_tint(float heat) {
+  const float h = std::clamp(heat, 0.0f, 1.0f);
+  return {1.0f, 0.62f * (1 - h), 0.02f, h > 0 ? 0.35f + 0.65f * h : 0.0f};
+}
+
+struct BodyRanges {
+  IndexRange closed, open;
+  std::vector<std::pair<IndexRange, GLuint>> textured;  // with their pictures
 };
-
-Ground make_ground(const Vector3d& normal, const Eigen::AlignedBox3d& box, const Vector3d& sun) {
-  Ground ground;
-  ground.normal = normal.normalized();
-  ground.u = (Vector3d::UnitX() - ground.normal.x() * ground.normal).normalized();
-  ground.v = ground.normal.cross(ground.u);
-  Eigen::AlignedBox2d square;
-  for (int i = 0; i < 8; ++i) {
-    Vector3d p = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
-    p -= sun * (ground.normal.dot(p) / ground.normal.dot(sun));
-    square.extend(Eigen::Vector2d(ground.u.dot(p), ground.v.dot(p)));
-  }
-  ground.center = square.center();
-  ground.reach = 0.5 * square.sizes().maxCoeff() * 1.1;
-  return ground;
-}
-
-/// Where the ground vanishes straight ahead, -1 at the bottom of the picture, 1 at its top.
-double horizon_height(const Camera& camera, const Vector3d& normal, const Matrix4f& to_clip) {
-  const Vector3d ahead = camera.target - camera.eye;
-  const Vector3d level = ahead - normal * normal.dot(ahead);
-  if (level.norm() < 1e-3 * ahead.norm()) return 1;
-  const Eigen::Vector4f clip =
-      to_clip *
-      level.normalized().cast<float>().homogeneous().cwiseProduct(Eigen::Vector4f(1, 1, 1, 0));
-  return std::clamp(double(clip.y() / clip.w()), -1.0, 2.0);
-}
-
-/// Two passes of a box of 2 radius + 1 along rows and columns, in place.
-void blur(std::vector<std::uint8_t>& image, int size, int radius) {
-  std::vector<std::uint8_t> line(static_cast<size_t>(size));
-  const auto smooth = [&](std::uint8_t* data, int stride) {
-    int sum = 0;
-    for (int i = 0; i < size; ++i) line[size_t(i)] = data[i * stride];
-    for (int i = 0; i < radius; ++i) sum += line[size_t(i)];
-    for (int i = 0; i < size; ++i) {
-      if (i + radius < size) sum += line[size_t(i + radius)];
-      if (i - radius - 1 >= 0) sum -= line[size_t(i - radius - 1)];
-      data[i * stride] = static_cast<std::uint8_t>(sum / (2 * radius + 1));
-    }
-  };
-  for (int pass = 0; pass < 2; ++pass) {
-    for (int i = 0; i < size; ++i) smooth(&image[size_t(i) * size_t(size)], 1);
-    for (int i = 0; i < size; ++i) smooth(&image[size_t(i)], size);
-  }
-}
 
 }  // namespace
 
@@ -82,10 +45,11 @@ struct Renderer::Parts {
   RenderOptions options;
   OffscreenContext context;
   Gl gl;
-  GLuint solid, ground, sky, flat, shadow;
-  GlMesh robot, overlay, square;
-  std::vector<std::pair<IndexRange, IndexRange>> ranges;  // closed and open triangles of each body
-  std::vector<Eigen::AlignedBox3d> boxes;                 // of each body, body frame
+  GLuint solid, textured, ground, sky, flat, shadow;
+  GlMesh robot, overlay, scenery, square;
+  std::vector<BodyRanges> ranges;
+  std::vector<Eigen::AlignedBox3d> boxes;  // of each body, body frame
+  std::vector<std::string> notes;
   GlTarget drawn, resolved, flattened;
   GLuint coverage = 0;
 
@@ -94,22 +58,28 @@ struct Renderer::Parts {
   void upload(const std::vector<BodySurface>& surface);
   Eigen::AlignedBox3d bounds_of(const std::vector<Eigen::Isometry3d>& poses) const;
   void draw_coverage(const Scene& scene, const Ground& plane, const Vector3d& sun);
-  void draw_robot(const Scene& scene, const Matrix4f& view_projection, const Vector3d& sun);
+  void light(const Scene& scene, const Matrix4f& view_projection, const Vector3d& sun);
+  template <typename Tint>
+  void draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity, const Tint& tint);
+  void draw_scenery(const Scene& scene);
+  void draw_exposures(const Scene& scene);
   void draw_ground(const Scene& scene, const Matrix4f& view_projection, const Ground& plane);
-  void draw_overlay(const Scene& scene, const Matrix4f& view_projection, const Vector3d& sun);
+  void draw_overlay(const Scene& scene);
   Image read();
 };
 
 Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOptions& chosen)
-    : options(chosen) {
+    : options(chosen), context(chosen.way), gl(context) {
   using namespace shaders;
-  solid = gl.link(kSolidVertex, kSolidFragment);
+  solid = gl.link(kSolidVertex, kSolidFragment, kPlainInput);
+  textured = gl.link(kSolidVertex, kSolidFragment, kTextureInput);
   ground = gl.link(kGroundVertex, kGroundFragment);
   sky = gl.link(kSkyVertex, kSkyFragment);
   flat = gl.link(kFlatVertex, kFlatFragment);
   shadow = gl.link(kGroundVertex, kShadowFragment);
   robot = gl.make_mesh();
   overlay = gl.make_mesh();
+  scenery = gl.make_mesh();
   upload(surface);
   gl.GenVertexArrays(1, &square.array);
   gl.BindVertexArray(square.array);
@@ -141,10 +111,21 @@ void Renderer::Parts::upload(const std::vector<BodySurface>& surface) {
     append(all, part);
     return range;
   };
+  std::map<std::string, GLuint> pictures;
+  const auto picture = [&](const std::string& file) {
+    const auto known = pictures.find(file);
+    if (known != pictures.end()) return known->second;
+    const Texture texture = read_texture(file, notes);
+    return pictures[file] = gl.make_texture(texture.rgba, texture.width, texture.height);
+  };
   for (const BodySurface& body : surface) {
-    const IndexRange closed = add(body.closed);
-    ranges.emplace_back(closed, add(body.open));
-    boxes.push_back(bounds(body.closed).merged(bounds(body.open)));
+    BodyRanges body_ranges = {add(body.closed), add(body.open), {}};
+    for (const TexturedSurface& part : body.textured)
+      body_ranges.textured.emplace_back(add(part.triangles), picture(part.texture));
+    ranges.push_back(std::move(body_ranges));
+    Eigen::AlignedBox3d box;
+    for (const Triangles* part : parts_of(body)) box.extend(bounds(*part));
+    boxes.push_back(box);
   }
   gl.fill(robot, all, GL_STATIC_DRAW);
 }
@@ -176,8 +157,9 @@ void Renderer::Parts::draw_coverage(const Scene& scene, const Ground& plane, con
   gl.BindVertexArray(robot.array);
   for (size_t i = 0; i < ranges.size(); ++i) {
     gl.set(flat, "flatten", Matrix4f((flatten * scene.poses[i].matrix()).cast<float>()));
-    gl.draw(ranges[i].first);
-    gl.draw(ranges[i].second);
+    gl.draw(ranges[i].closed);
+    gl.draw(ranges[i].open);
+    for (const auto& [range, texture] : ranges[i].textured) gl.draw(range);
   }
   std::vector<std::uint8_t> cover(size_t(kShadowSize) * kShadowSize);
   gl.ReadPixels(0, 0, kShadowSize, kShadowSize, GL_RED, GL_UNSIGNED_BYTE, cover.data());
@@ -187,24 +169,71 @@ void Renderer::Parts::draw_coverage(const Scene& scene, const Ground& plane, con
                 cover.data());
 }
 
-void Renderer::Parts::draw_robot(const Scene& scene, const Matrix4f& view_projection,
-                                 const Vector3d& sun) {
-  gl.UseProgram(solid);
-  gl.set(solid, "view_projection", view_projection);
-  gl.set(solid, "eye", scene.camera.eye);
-  gl.set(solid, "sun", sun);
-  gl.set(solid, "up", scene.ground_normal.normalized());
-  gl.set(solid, "opacity", 1.0);
+void Renderer::Parts::light(const Scene& scene, const Matrix4f& view_projection,
+                            const Vector3d& sun) {
+  for (const GLuint program : {textured, solid}) {
+    gl.UseProgram(program);
+    gl.set(program, "view_projection", view_projection);
+    gl.set(program, "model", Matrix4f(Matrix4f::Identity()));
+    gl.set(program, "eye", scene.camera.eye);
+    gl.set(program, "sun", sun);
+    gl.set(program, "up", scene.ground_normal.normalized());
+    gl.set(program, "opacity", 1.0);
+    gl.set(program, "tint", kNoTint);
+  }
+}
+
+/// Leaves `solid` in use, with the identity, no tint and full opacity.
+template <typename Tint>
+void Renderer::Parts::draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity,
+                                  const Tint& tint) {
   gl.BindVertexArray(robot.array);
   gl.Enable(GL_CULL_FACE);
+  gl.UseProgram(solid);
+  gl.set(solid, "opacity", opacity);
   for (size_t i = 0; i < ranges.size(); ++i) {
-    if (!ranges[i].first.count && !ranges[i].second.count) continue;
-    gl.set(solid, "model", Matrix4f(scene.poses[i].matrix().cast<float>()));
-    gl.draw(ranges[i].first);
-    if (!ranges[i].second.count) continue;
+    const BodyRanges& range = ranges[i];
+    if (!range.closed.count && !range.open.count) continue;
+    gl.set(solid, "tint", tint(i));
+    gl.set(solid, "model", Matrix4f(poses[i].matrix().cast<float>()));
+    gl.draw(range.closed);
+    if (!range.open.count) continue;
     gl.Disable(GL_CULL_FACE);
-    gl.draw(ranges[i].second);
+    gl.draw(range.open);
     gl.Enable(GL_CULL_FACE);
+  }
+  gl.Disable(GL_CULL_FACE);
+  for (size_t i = 0; i < ranges.size(); ++i)
+    for (const auto& [range, texture] : ranges[i].textured) {
+      gl.UseProgram(textured);
+      gl.BindTexture(GL_TEXTURE_2D, texture);
+      gl.set(textured, "opacity", opacity);
+      gl.set(textured, "tint", tint(i));
+      gl.set(textured, "model", Matrix4f(poses[i].matrix().cast<float>()));
+      gl.draw(range);
+    }
+  gl.Enable(GL_CULL_FACE);
+  gl.UseProgram(solid);
+  gl.set(solid, "model", Matrix4f(Matrix4f::Identity()));
+  gl.set(solid, "tint", kNoTint);
+  gl.set(solid, "opacity", 1.0);
+}
+
+void Renderer::Parts::draw_scenery(const Scene& scene) {
+  if (scene.scenery.indices.empty()) return;
+  gl.fill(scenery, scene.scenery, GL_STREAM_DRAW);
+  gl.draw({static_cast<GLsizei>(scene.scenery.indices.size()), 0});
+}
+
+void Renderer::Parts::draw_exposures(const Scene& scene) {
+  for (const Exposure& exposure : scene.exposures) {
+    const auto tint = [&](size_t) { return exposure.tint; };
+    gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    draw_bodies(exposure.poses, exposure.opacity, tint);
+    gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl.Enable(GL_BLEND);
+    draw_bodies(exposure.poses, exposure.opacity, tint);
+    gl.Disable(GL_BLEND);
   }
 }
 
@@ -240,20 +269,17 @@ void Renderer::Parts::draw_ground(const Scene& scene, const Matrix4f& view_proje
   if (options.ground && options.shadow) {
     place(shadow, plane.center, plane.reach);
     gl.set(shadow, "strength", 0.42);
+    gl.BindTexture(GL_TEXTURE_2D, coverage);
     gl.Enable(GL_BLEND);
     gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   }
   gl.DepthMask(GL_TRUE);
 }
 
-void Renderer::Parts::draw_overlay(const Scene& scene, const Matrix4f& view_projection,
-                                   const Vector3d& sun) {
+void Renderer::Parts::draw_overlay(const Scene& scene) {
   if (scene.overlay.indices.empty()) return;
   gl.fill(overlay, scene.overlay, GL_STREAM_DRAW);
   gl.UseProgram(solid);
-  gl.set(solid, "view_projection", view_projection);
-  gl.set(solid, "model", Matrix4f(Matrix4f::Identity()));
-  gl.set(solid, "sun", sun);
   const IndexRange all = {static_cast<GLsizei>(scene.overlay.indices.size()), 0};
   gl.Enable(GL_CULL_FACE);
   gl.Enable(GL_BLEND);
@@ -305,15 +331,12 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Image Renderer::render(const Scene& scene) {
   Parts& p = *parts_;
   require(scene.poses.size() == p.ranges.size(), "a scene needs one pose per body");
+  for (const Exposure& exposure : scene.exposures)
+    require(exposure.poses.size() == p.ranges.size(), "an exposure needs one pose per body");
   p.context.make_current();
   const Eigen::AlignedBox3d box = p.bounds_of(scene.poses);
   const Vector3d up = scene.ground_normal.normalized();
-  // The sun stands over the camera's left shoulder, whatever side it looks from.
-  const Vector3d toward = (scene.camera.eye - scene.camera.target).normalized();
-  Vector3d flat_toward = toward - up * up.dot(toward);
-  if (flat_toward.norm() < 1e-6) flat_toward = up.unitOrthogonal();
-  flat_toward.normalize();
-  const Vector3d sun = (0.35 * flat_toward - 0.5 * up.cross(flat_toward) + 1.2 * up).normalized();
+  const Vector3d sun = sun_behind(scene.camera, up);
   const bool with_shadow = p.options.ground && p.options.shadow && !box.isEmpty();
   const Ground plane =
       make_ground(up, box.isEmpty() ? Eigen::AlignedBox3d(up * 0.0, up * 0.0) : box, sun);
@@ -330,10 +353,17 @@ Image Renderer::render(const Scene& scene) {
   p.gl.Disable(GL_BLEND);
   p.gl.ClearColor(kHorizon[0], kHorizon[1], kHorizon[2], 1);
   p.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  p.draw_robot(scene, view_projection, sun);
+  p.light(scene, view_projection, sun);
+  p.draw_bodies(scene.poses, 1.0, [&](size_t i) {
+    return i < scene.heat.size() ? heat_tint(scene.heat[i]) : kNoTint;
+  });
+  p.draw_scenery(scene);
   p.draw_ground(scene, view_projection, plane);
-  p.draw_overlay(scene, view_projection, sun);
+  p.draw_exposures(scene);
+  p.draw_overlay(scene);
   return p.read();
 }
+
+const std::vector<std::string>& Renderer::notes() const { return parts_->notes; }
 
 }  // namespace ayumi

@@ -8,6 +8,7 @@
 
 #include "ayumi/preview/camera.hpp"
 #include "ayumi/preview/image.hpp"
+#include "ayumi/preview/offscreen_context.hpp"
 #include "ayumi/preview/robot_surface.hpp"
 #include "ayumi/preview/triangles.hpp"
 
@@ -18,6 +19,14 @@ struct RenderOptions {
   bool antialias = true;           ///< four samples per pixel
   bool shadow = true;
   bool ground = true;
+  Offscreen way = Offscreen::automatic;
+};
+
+/// The robot once more, translucent: a ghost, or an earlier instant.
+struct Exposure {
+  std::vector<Eigen::Isometry3d> poses;                 ///< one per body, world
+  Eigen::Vector4f tint = {0.16f, 0.42f, 0.85f, 0.75f};  ///< sRGB, and its share of the colour
+  double opacity = 0.35;
 };
 
 struct Scene {
@@ -25,6 +34,9 @@ struct Scene {
   Camera camera;
   Eigen::Vector3d ground_normal = Eigen::Vector3d::UnitZ();  ///< of the plane through the origin
   Triangles overlay;                                         ///< world frame
+  Triangles scenery;                ///< what stands on the ground plane, world frame
+  std::vector<Exposure> exposures;  ///< drawn in their order
+  std::vector<float> heat;          ///< empty, or by body: 0 its own colour, 1 red
 };
 
 /// Holds the OpenGL context and the robot's surface in it. One thread at a time; several renderers
@@ -39,6 +51,10 @@ class Renderer {
 
   /// Throws Error(internal) unless the scene has one pose per body.
   Image render(const Scene& scene);
+
+  /// What is drawn otherwise than its files say, and why: a texture that cannot
+  /// be read.
+  const std::vector<std::string>& notes() const;
 
  private:
   struct Parts;

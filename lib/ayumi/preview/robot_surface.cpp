@@ -20,6 +20,17 @@ void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isomet
     return;
   }
   for (const MeshPart& part : mesh->mesh.parts) {
+    const bool textured =
+        !part.texture_file.empty() && !placed.has_color && part.uvs.size() == part.vertices.size();
+    if (textured) {
+      // The picture's own colours, not dyed by a colour that only says "none".
+      const Eigen::Vector4f white(1, 1, 1, part.has_color ? part.color[3] : 1.0f);
+      Triangles surface = tessellate(part, white);
+      orient(surface);
+      body.textured.push_back({{}, part.texture_file});
+      append(body.textured.back().triangles, surface, pose);
+      continue;
+    }
     const Eigen::Vector4f color = placed.has_color || !part.has_color ? placed.color : part.color;
     add_surface(body, tessellate(part, color), pose);
   }
@@ -37,6 +48,12 @@ std::vector<BodySurface> robot_surface(const RobotModel& model) {
   return surface;
 }
 
+std::vector<const Triangles*> parts_of(const BodySurface& body) {
+  std::vector<const Triangles*> parts = {&body.closed, &body.open};
+  for (const TexturedSurface& surface : body.textured) parts.push_back(&surface.triangles);
+  return parts;
+}
+
 std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state) {
   RobotData data(model);
   update_positions(model, state, data);
@@ -50,7 +67,7 @@ Eigen::AlignedBox3d robot_bounds(const std::vector<BodySurface>& surface,
                                  const std::vector<Eigen::Isometry3d>& poses) {
   Eigen::AlignedBox3d box;
   for (size_t i = 0; i < surface.size(); ++i)
-    for (const Triangles* part : {&surface[i].closed, &surface[i].open})
+    for (const Triangles* part : parts_of(surface[i]))
       for (const RenderVertex& vertex : part->vertices)
         box.extend((poses[i] * vertex.position.cast<double>()).eval());
   return box;

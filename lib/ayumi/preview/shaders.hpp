@@ -17,19 +17,35 @@ inline constexpr const char* kSolidVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 color;
+layout(location = 3) in vec2 uv;
 uniform mat4 model;
 uniform mat4 view_projection;
+uniform vec4 tint;
 out vec3 world_position;
 out vec3 world_normal;
 out vec4 base_color;
+out vec2 place;
 void main() {
   vec4 world = model * vec4(position, 1.0);
   world_position = world.xyz;
   world_normal = mat3(model) * normal;
-  base_color = vec4(to_linear(color.rgb), color.a);
+  base_color = vec4(mix(to_linear(color.rgb), to_linear(tint.rgb), tint.a), color.a);
+  place = uv;
   gl_Position = view_projection * world;
 }
 )";
+
+// The same with a picture instead of the colour: a program of its own, because
+// software renderers pay for a sampler even where it is not used.
+inline constexpr const char* kTextureInput = R"(
+in vec2 place;
+uniform sampler2D picture;
+vec4 surface_color(vec4 base) {
+  vec4 texel = texture(picture, place);
+  return vec4(to_linear(texel.rgb) * base.rgb, texel.a * base.a);
+}
+)";
+inline constexpr const char* kPlainInput = "vec4 surface_color(vec4 base) { return base; }\n";
 
 // Light from the whole sky, brighter from above; the sun; a dull highlight. A face seen from
 // behind, or with its normal turned away, is lit as if it were the front; a normal that is turned
@@ -45,6 +61,7 @@ uniform vec3 up;
 uniform float opacity;
 out vec4 pixel;
 void main() {
+  vec4 own_color = surface_color(base_color);
   float size = dot(world_normal, world_normal);
   vec3 n = world_normal * inversesqrt(max(size, 1e-12));
   vec3 v = normalize(eye - world_position);
@@ -53,8 +70,8 @@ void main() {
   vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.62, 0.65, 0.70), 0.5 + 0.5 * dot(n, up));
   float shine = max(dot(n, normalize(v + sun)), 0.0);
   shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;
-  vec3 lit = base_color.rgb * (0.62 * ambient + 0.72 * direct) + 0.10 * shine * direct;
-  pixel = vec4(to_srgb(size < 1e-6 ? base_color.rgb : lit), base_color.a * opacity);
+  vec3 lit = own_color.rgb * (0.62 * ambient + 0.72 * direct) + 0.10 * shine * direct;
+  pixel = vec4(to_srgb(size < 1e-6 ? own_color.rgb : lit), own_color.a * opacity);
 }
 )";
 

@@ -80,9 +80,22 @@ size_t count_at(const std::vector<BodySurface>& surface, float edge,
     BodySurface coarse;
     for (const Triangles* part : {&body.closed, &body.open})
       append(coarse.open, clustered(*part, edge));
+    for (const TexturedSurface& part : body.textured)
+      coarse.textured.push_back({clustered(part.triangles, edge), part.texture});
     result.push_back(std::move(coarse));
   }
   return triangle_count(result);
+}
+
+double area_of(const Triangles& surface) {
+  double area = 0;
+  for (size_t i = 0; i < surface.indices.size(); i += 3) {
+    const Vector3f& a = surface.vertices[surface.indices[i]].position;
+    const Vector3f& b = surface.vertices[surface.indices[i + 1]].position;
+    const Vector3f& c = surface.vertices[surface.indices[i + 2]].position;
+    area += 0.5 * double((b - a).cross(c - a).norm());
+  }
+  return area;
 }
 
 }  // namespace
@@ -90,18 +103,23 @@ size_t count_at(const std::vector<BodySurface>& surface, float edge,
 size_t triangle_count(const std::vector<BodySurface>& surface) {
   size_t count = 0;
   for (const BodySurface& body : surface)
-    count += (body.closed.indices.size() + body.open.indices.size()) / 3;
+    for (const Triangles* part : parts_of(body)) count += part->indices.size() / 3;
   return count;
 }
 
 double simplify(std::vector<BodySurface>& surface, size_t max_triangles) {
   if (triangle_count(surface) <= max_triangles) return 0;
-  double largest = 0;
+  double area = 0, largest = 0;
   for (const BodySurface& body : surface)
-    for (const Triangles* part : {&body.closed, &body.open})
+    for (const Triangles* part : parts_of(body)) {
+      area += area_of(*part);
       if (!part->indices.empty()) largest = std::max(largest, bounds(*part).sizes().maxCoeff());
+    }
+  if (area <= 0) return 0;
+  // A closed surface of cells of this edge has about twice as many triangles as cells.
+  const double first = 0.7 * std::sqrt(2 * area / static_cast<double>(max_triangles));
   std::vector<BodySurface> result;
-  for (double edge = largest / 1500; edge < 2 * largest; edge *= 1.3) {
+  for (double edge = first; edge < 2 * largest + first; edge *= 1.25) {
     if (count_at(surface, static_cast<float>(edge), result) > max_triangles) continue;
     surface = std::move(result);
     return edge;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/preview/log_reading.hpp"
 
 namespace ayumi {
 
@@ -15,28 +16,39 @@ void paste(const Image& tile, Image& sheet, int left, int top) {
 
 }  // namespace
 
+Image draw_sheet(const std::vector<Image>& tiles, int columns) {
+  const int count = static_cast<int>(tiles.size());
+  const int across = std::clamp(columns, 1, std::max(1, count));
+  const int down = (count + across - 1) / across;
+  Image sheet;
+  sheet.width = tiles.empty() ? 0 : tiles.front().width * across;
+  sheet.height = tiles.empty() ? 0 : tiles.front().height * down;
+  if (tiles.empty() || sheet.width > 16384 || sheet.height > 16384)
+    fail(ErrorCode::usage, "a strip needs at least one snapshot and at most 16384 pixels a side");
+  sheet.rgb.assign(3 * static_cast<size_t>(sheet.width) * static_cast<size_t>(sheet.height), 255);
+  for (int i = 0; i < count; ++i) {
+    const Image& tile = tiles[static_cast<size_t>(i)];
+    paste(tile, sheet, i % across * tile.width, i / across * tile.height);
+  }
+  return sheet;
+}
+
 Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options) {
+  const double last = duration(log);
   std::vector<double> times = options.times;
-  const double last = log.dt * static_cast<double>(log.samples.size() - 1);
   if (times.empty())
     for (int i = 0; i < options.count; ++i)
       times.push_back(last * i / std::max(1, options.count - 1));
-  const int columns = std::min<int>(std::max(1, options.columns), static_cast<int>(times.size()));
-  const int rows = columns ? (static_cast<int>(times.size()) + columns - 1) / columns : 0;
-  const int width = options.clip.picture.width * columns;
-  const int height = options.clip.picture.height * rows;
-  if (times.empty() || width > 16384 || height > 16384)
-    fail(ErrorCode::usage, "a strip needs at least one snapshot and at most 16384 pixels a side");
-  ClipRenderer renderer(model, log, options.clip);
-  Image sheet;
-  sheet.width = width;
-  sheet.height = height;
-  sheet.rgb.assign(3 * static_cast<size_t>(width) * height, 255);
-  for (size_t i = 0; i < times.size(); ++i)
-    paste(renderer.frame(std::clamp(times[i], 0.0, last)), sheet,
-          static_cast<int>(i) % columns * options.clip.picture.width,
-          static_cast<int>(i) / columns * options.clip.picture.height);
-  return sheet;
+  for (double& t : times) t = std::clamp(t, 0.0, last);
+  ClipOptions clip = options.clip;
+  if (options.one_picture) {
+    clip.camera.mode = CameraMode::fixed;
+    return ClipRenderer(model, log, clip).exposures(times);
+  }
+  ClipRenderer renderer(model, log, clip);
+  std::vector<Image> tiles;
+  for (const double t : times) tiles.push_back(renderer.frame(t));
+  return draw_sheet(tiles, options.columns);
 }
 
 void write_strip(const RobotModel& model, const SimulationLog& log,

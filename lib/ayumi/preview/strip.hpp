@@ -13,10 +13,14 @@ struct StripOptions {
   std::vector<double> times;  ///< [s]; empty: `count` evenly spaced over the run
   int count = 8;
   int columns = 4;
+  bool one_picture = false;  ///< all instants in one picture, the earlier the lighter
 };
 
-/// All snapshots in reading order. Throws as ClipRenderer; Error(usage) for no snapshots or a
-/// picture beyond 16384 pixels.
+/// Pictures of one size in reading order. Throws Error(usage) for none or beyond 16384 pixels.
+Image draw_sheet(const std::vector<Image>& tiles, int columns);
+
+/// All snapshots in reading order, or over each other seen by a camera that stands still. Throws as
+/// ClipRenderer; Error(usage) for no snapshots or a picture beyond 16384 pixels.
 Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options);
 
 /// The same as a PNG file, whole or not at all. Throws as draw_strip and write_png.

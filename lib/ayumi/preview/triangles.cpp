@@ -1,9 +1,10 @@
 #include "ayumi/preview/triangles.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <map>
 #include <numbers>
+#include <unordered_map>
 
 #include "ayumi/base/error.hpp"
 
@@ -25,7 +26,7 @@ std::array<std::uint8_t, 4> to_bytes(const Vector4f& color) {
 
 std::uint32_t add_vertex(Triangles& target, const Vector3d& position, const Vector3d& normal,
                          const Vector4f& color) {
-  target.vertices.push_back({position.cast<float>(), normal.cast<float>(), to_bytes(color)});
+  target.vertices.push_back({position.cast<float>(), normal.cast<float>(), to_bytes(color), {}});
   return static_cast<std::uint32_t>(target.vertices.size() - 1);
 }
 
@@ -116,7 +117,14 @@ Eigen::Isometry3d frame_along(const Vector3d& origin, const Vector3d& direction)
 
 /// Vertices at the same place get the same number.
 std::vector<std::uint32_t> weld(const Triangles& surface) {
-  std::map<std::array<float, 3>, std::uint32_t> known;
+  const auto hash = [](const std::array<float, 3>& key) {
+    size_t sum = 0;
+    for (const float value : key)
+      sum = sum * 0x9E3779B97F4A7C15 + std::bit_cast<std::uint32_t>(value);
+    return sum ^ sum >> 29;
+  };
+  std::unordered_map<std::array<float, 3>, std::uint32_t, decltype(hash)> known(
+      surface.vertices.size(), hash);
   std::vector<std::uint32_t> welded;
   welded.reserve(surface.vertices.size());
   for (const RenderVertex& vertex : surface.vertices) {
@@ -195,6 +203,7 @@ Triangles tessellate(const Shape& primitive, const Vector4f& color) {
 Triangles tessellate(const MeshPart& part, const Vector4f& color) {
   Triangles out;
   const bool with_normals = part.normals.size() == part.vertices.size();
+  const bool with_uvs = part.uvs.size() == part.vertices.size();
   for (const auto& triangle : part.triangles) {
     if (std::any_of(triangle.begin(), triangle.end(),
                     [&](std::uint32_t index) { return index >= part.vertices.size(); }))
@@ -206,7 +215,8 @@ Triangles tessellate(const MeshPart& part, const Vector4f& color) {
       Vector3f normal = with_normals ? part.normals[index] : face;
       if (!normal.allFinite() || normal.squaredNorm() == 0) normal = face;
       out.indices.push_back(static_cast<std::uint32_t>(out.vertices.size()));
-      out.vertices.push_back({part.vertices[index], normal.normalized(), to_bytes(color)});
+      out.vertices.push_back({part.vertices[index], normal.normalized(), to_bytes(color),
+                              with_uvs ? part.uvs[index] : Eigen::Vector2f(0, 0)});
     }
   }
   return out;

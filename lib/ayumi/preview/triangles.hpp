@@ -15,6 +15,8 @@ struct RenderVertex {
   Eigen::Vector3f position;           ///< [m]
   Eigen::Vector3f normal;             ///< unit; zero: not lit, the colour as it is
   std::array<std::uint8_t, 4> color;  ///< sRGB and alpha
+  /// Place in a texture, v upwards.
+  Eigen::Vector2f uv = Eigen::Vector2f::Zero();
 };
 
 struct Triangles {

@@ -113,12 +113,6 @@ bool has_command(const SimulationLog& log) {
 
 }  // namespace
 
-double telling_instant(const SimulationLog& log) {
-  const std::vector<PushRecord> pushed = pushes(log);
-  const double last = duration(log);
-  return pushed.empty() ? 0.5 * last : std::min(last, pushed.front().begin + 0.25);
-}
-
 ReplayData make_replay(const RobotModel& model, const ReportInput& input, const ReplayPlan& plan) {
   const SimulationLog& log = *input.runs.back().log;
   ReplayData data;

@@ -21,9 +21,6 @@ struct ReplayData {
   double duration = 0, start = 0;  ///< [s]
 };
 
-/// The instant worth showing first: shortly after the first push, or the middle [s].
-double telling_instant(const SimulationLog& log);
-
 ReplayData make_replay(const RobotModel& model, const ReportInput& input, const ReplayPlan& plan);
 
 }  // namespace ayumi

@@ -48,6 +48,7 @@ std::string loci_section(const RobotModel& model, const ReportInput& input) {
   const std::vector<LociRun> runs = loci_runs(input);
   LociOptions options;
   options.title = input.title;
+  options.model = &model;
   const Drawing time = draw_loci(runs, options);
   const Interval range = plot::time_range(runs, options);
   std::string out = "<figure id=\"loci-time\" data-time-axis=\"" + text::exact(plot::kLeft) + " " +

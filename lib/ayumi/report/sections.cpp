@@ -147,9 +147,9 @@ std::string findings_section(const ReportInput& input) {
 std::string thresholds_section(const ReportInput& input) {
   if (input.thresholds.empty()) return "";
   Table rows = {
-      "Largest survivable impulse of 20 ms through the COG. The bound is that of a point "
-      "mass stepping nowhere; + means that the study's largest push was survived.",
-      {"phase", "at [s]", "from [deg]", "law", "impulse [N s]", "open loop [N s]", "bound [N s]",
+      "Largest survivable impulse of 20 ms through the COG. The bound is what a point mass "
+      "on the planned footholds could absorb; + means that the study's largest push was survived.",
+      {"phase", "at [s]", "towards [deg]", "law", "impulse [N s]", "open loop [N s]", "bound [N s]",
        "share of the bound"},
       {}};
   for (const PushThreshold& t : input.thresholds)
