@@ -14,7 +14,7 @@ namespace ayumi::app {
 void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   command
       .add_option("--controller", choice.controller,
-                  "none, dtad, or dtad-literal (a demonstration)")
+                  "none, dtad, viip, or for demonstration dtad-literal, viip-nofeedback")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,

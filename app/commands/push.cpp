@@ -9,7 +9,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
-#include "ayumi/control/dtad.hpp"
+#include "ayumi/control/controller.hpp"
 #include "ayumi/preview/push_map.hpp"
 #include "pattern_input.hpp"
 #include "push_results.hpp"
@@ -43,7 +43,7 @@ std::vector<ControllerSpec> chosen_controllers(const PatternInput& input, const 
   for (ControllerSpec& spec : specs) {
     for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
       spec.gains.emplace_back(name, value);
-    if (spec.type.starts_with("dtad")) dtad_params(input.model, spec);  // says what is wrong
+    check_controller(input.model, spec);  // says what is wrong
   }
   return specs;
 }

@@ -45,6 +45,24 @@ void expect_same(const Disturbance& a, const Disturbance& b) {
   EXPECT_EQ(a.shape, b.shape);
 }
 
+void expect_same(const ViipGoal& a, const ViipGoal& b) {
+  ASSERT_EQ(a.index(), b.index());
+  if (const auto* cog = std::get_if<CogGoal>(&a)) {
+    EXPECT_EQ(cog->displacement, std::get<CogGoal>(b).displacement);
+  } else if (const auto* steps = std::get_if<StepGoal>(&a)) {
+    EXPECT_EQ(steps->steps, std::get<StepGoal>(b).steps);
+    EXPECT_EQ(steps->velocity, std::get<StepGoal>(b).velocity);
+    EXPECT_EQ(steps->turn, std::get<StepGoal>(b).turn);
+  } else {
+    const JumpGoal &x = std::get<JumpGoal>(a), &y = std::get<JumpGoal>(b);
+    EXPECT_EQ(x.height, y.height);
+    EXPECT_EQ(x.stoop, y.stoop);
+    EXPECT_EQ(x.forward, y.forward);
+    EXPECT_EQ(x.times, y.times);
+    EXPECT_EQ(x.release, y.release);
+  }
+}
+
 void expect_same(const Pattern& a, const Pattern& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.robot, b.robot);
@@ -61,6 +79,8 @@ void expect_same(const Pattern& a, const Pattern& b) {
   for (size_t i = 0; i < a.phases.size(); ++i) {
     EXPECT_EQ(a.phases[i].until, b.phases[i].until);
     EXPECT_EQ(a.phases[i].support, b.phases[i].support);
+    ASSERT_EQ(a.phases[i].viip.has_value(), b.phases[i].viip.has_value());
+    if (a.phases[i].viip) expect_same(*a.phases[i].viip, *b.phases[i].viip);
     ASSERT_EQ(a.phases[i].swing.has_value(), b.phases[i].swing.has_value());
     if (!a.phases[i].swing) continue;
     EXPECT_EQ(a.phases[i].swing->foot, b.phases[i].swing->foot);

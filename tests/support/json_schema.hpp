@@ -75,6 +75,9 @@ class JsonSchema {
   bool array_keeps(const std::string& keyword, const Json& rule, const Json& value) const {
     if (keyword == "minItems") return value.size() >= rule.get<size_t>();
     if (keyword == "maxItems") return value.size() <= rule.get<size_t>();
+    if (keyword == "contains")
+      return std::any_of(value.begin(), value.end(),
+                         [&](const Json& item) { return fits(rule, item); });
     if (keyword == "items")
       return std::all_of(value.begin(), value.end(),
                          [&](const Json& item) { return fits(rule, item); });
@@ -86,6 +89,7 @@ class JsonSchema {
     const auto has = [&](const Json& key) { return value.contains(key.get<std::string>()); };
     if (keyword == "required") return std::all_of(rule.begin(), rule.end(), has);
     if (keyword == "minProperties") return value.size() >= rule.get<size_t>();
+    if (keyword == "maxProperties") return value.size() <= rule.get<size_t>();
     const Json properties = schema.value("properties", Json::object());
     for (const auto& [key, item] : value.items()) {
       if (keyword == "properties" && rule.contains(key) && !fits(rule.at(key), item)) return false;
@@ -104,8 +108,8 @@ class JsonSchema {
   static bool others(const std::string& keyword) {
     for (const char* const known :
          {"minimum", "maximum", "exclusiveMinimum", "minLength", "pattern", "minItems", "maxItems",
-          "items", "required", "minProperties", "properties", "propertyNames", "dependentRequired",
-          "additionalProperties"})
+          "items", "contains", "required", "minProperties", "maxProperties", "properties",
+          "propertyNames", "dependentRequired", "additionalProperties"})
       if (keyword == known) return true;
     throw std::logic_error("the keyword " + keyword + " is not handled");
   }

@@ -70,6 +70,26 @@ inline Disturbance random_push(PatternDice& random) {
   return push;
 }
 
+inline ViipGoal random_goal(PatternDice& random, bool degrees) {
+  switch (random.pick(3)) {
+    case 0:
+      return CogGoal{{random.uniform(-1, 1), random.uniform(-1, 1), 0}};
+    case 1: {
+      StepGoal steps;
+      steps.steps = random.pick(3);
+      if (random.coin()) steps.velocity = {random.uniform(-1, 1), 0};
+      if (random.coin()) steps.turn = random.angle(degrees);
+      return steps;
+    }
+    default: {
+      JumpGoal jump{random.uniform(0.01, 1), random.uniform(0.01, 1), 0, 1 + random.pick(3), {}};
+      if (random.coin()) jump.forward = random.uniform(-1, 1);
+      if (random.coin()) jump.release = JumpGoal::Release::spring;
+      return jump;
+    }
+  }
+}
+
 inline Pattern random_pattern(unsigned seed) {
   PatternDice random(seed);
   Pattern p;
@@ -87,6 +107,10 @@ inline Pattern random_pattern(unsigned seed) {
     Phase phase;
     phase.until = t += random.uniform(0.1, 1);
     phase.support = static_cast<Support>(random.pick(4));
+    if (random.pick(4) == 0) {
+      phase.support = Support::both;
+      phase.viip = random_goal(random, p.degrees);
+    }
     if (phase.support == Support::left)
       phase.swing = Swing{Side::right, random.foothold(p.degrees), random.uniform(0, 0.1)};
     p.phases.push_back(phase);

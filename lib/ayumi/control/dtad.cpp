@@ -18,7 +18,6 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/control/support.hpp"
-#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 
 namespace ayumi {
@@ -29,21 +28,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kMinForceShare = 0.1;    // of the weight: f_min of the projection of f_z
-constexpr double kOffsetLimit = 0.09;     // of the washed-out offset, times z
-constexpr double kSpeedLimit = 0.8;       // of the reference COG, times omega z
-constexpr double kAccelerationLimit = 4;  // of the reference COG, times g
+constexpr double kMinForceShare = 0.1;  // of the weight: f_min of the projection of f_z
+constexpr double kOffsetLimit = 0.09;   // of the washed-out offset, times z
 
 }  // namespace
-
-VectorXd servo_lead(const RobotModel& model) {
-  VectorXd lead(model.dof_count());
-  for (int j = 0; j < model.dof_count(); ++j) {
-    const ServoDescription& servo = model.dofs()[j].servo;
-    lead[j] = servo.kp > 0 ? servo.kd / servo.kp : 0.0;
-  }
-  return lead;
-}
 
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   DtadParams p;
@@ -93,17 +81,19 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
 Dtad::Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadParams& params,
            double dt, const CommandSample& first)
     : model_(&model),
-      limits_(limits),
       params_(params),
       dt_(dt),
-      data_(model),
-      weight_(model.joint_weight()),
-      lead_(servo_lead(model)),
-      previous_target_(first.state.theta),
-      reference_(first.state),
+      body_(model, limits, dt, first.state),
       zmp_filtered_(first.zmp.head<2>()),
       fz_filtered_(first.fz) {
   if (first.support == Support::right) anchor_ = Side::right;
+}
+
+void Dtad::take_over(const Handover& handover, const CommandSample& plan) {
+  body_.take_over(handover);
+  zmp_filtered_ = plan.zmp.head<2>();
+  fz_filtered_ = plan.fz;
+  offset_.setZero();
 }
 
 CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& estimate) {
@@ -146,28 +136,12 @@ CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& e
       if (offset_.norm() > limit) offset_ *= limit / offset_.norm();
     }
   }
-  const Vector3d pull =
-      p.ks * p.ks * w * w * (command.cog - data_.cog) + 2 * p.kd * w * (command.dcog - dcog_);
+  const Vector3d pull = p.ks * p.ks * w * w * (command.cog - body_.cog()) +
+                        2 * p.kd * w * (command.dcog - body_.dcog());
   ref.ddcog = command.ddcog + pull;
   ref.ddcog.head<2>() += p.ka * w2 * gap;
   if (estimate.contact) ref.ddcog.z() += p.kaz * (ref.fz - fz_filtered_) / m;
   return ref;
-}
-
-// A foot that has tipped is turned back flat by the two joints nearest to it. A tilt that lasts is
-// the ground's (or the sensor's) and is forgotten like a lasting offset of the ZMP: levelling a
-// foot that lies flat on a slope would lean the body downhill.
-VectorXd Dtad::ankle_offsets(const Estimate& estimate, double omega) {
-  if (params_.washout > 0)
-    slope_ += std::min(1.0, dt_ * omega / params_.washout) * (estimate.foot_tilt - slope_);
-  const Vector3d tilt = estimate.foot_tilt - slope_;
-  VectorXd offsets = VectorXd::Zero(model_->dof_count());
-  const std::vector<int>& leg = model_->leg(estimate.stance);
-  for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i) {
-    const int body = model_->dofs()[leg[i]].body;
-    offsets[leg[i]] = -params_.ankle * data_.axis[body].dot(tilt);
-  }
-  return offsets;
 }
 
 ControlOutput Dtad::update(const CommandSample& command, const CommandSample& next,
@@ -175,41 +149,13 @@ ControlOutput Dtad::update(const CommandSample& command, const CommandSample& ne
   ControlOutput out;
   if (command.support == Support::left) anchor_ = Side::left;
   if (command.support == Support::right) anchor_ = Side::right;
-  anchor_base(*model_, anchor_, command.feet[static_cast<int>(anchor_)], reference_, data_);
-
-  out.cog = data_.cog;
-  out.cog_reference = cog_reference(command, estimate);
-  CogReference& ref = out.cog_reference;
+  body_.anchor(anchor_, command.feet[static_cast<int>(anchor_)]);
+  out.cog = body_.cog();
+  const CogReference wanted = cog_reference(command, estimate);
   const double z = command.cog.z() - command.zmp.z();
-  const double w = std::sqrt(kGravity / z);
-  const double limit = kAccelerationLimit * kGravity;
-  if (ref.ddcog.norm() > limit) ref.ddcog *= limit / ref.ddcog.norm();
-  dcog_ += dt_ * ref.ddcog;
-  const double speed = kSpeedLimit * w * z;
-  if (dcog_.norm() > speed) dcog_ *= speed / dcog_.norm();
-  ref.dcog = dcog_;
-
-  const Resolution resolution =
-      resolve(*model_, limits_, reference_, data_, anchor_, dcog_, command, next, dt_, weight_);
-  if (resolution.scale < 1)
-    out.notes.push_back("speed limit of " + model_->dofs()[resolution.limiting_dof].name +
-                        " slows the reference");
-  for (int j : resolution.held)
-    out.notes.push_back("position limit holds " + model_->dofs()[j].name);
-
-  const VectorXd offsets = ankle_offsets(estimate, w);
-  reference_.dtheta = resolution.dtheta;
-  reference_.theta += dt_ * resolution.dtheta;
-  out.reference = reference_;
-  out.target = reference_.theta + lead_.cwiseProduct(resolution.dtheta) + offsets;
-  for (int j = 0; j < out.target.size(); ++j) {
-    const Dof& dof = model_->dofs()[j];
-    const double step = limits_.speed[j] * dt_;
-    out.target[j] =
-        std::clamp(out.target[j], previous_target_[j] - step, previous_target_[j] + step);
-    if (dof.limited) out.target[j] = std::clamp(out.target[j], dof.lower, dof.upper);
-  }
-  previous_target_ = out.target;
+  const double forget = params_.washout / std::sqrt(kGravity / z);
+  const VectorXd offsets = body_.ankle_offsets(estimate, params_.ankle, forget);
+  body_.advance(wanted, z, command, next, offsets, out);
   return out;
 }
 

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/control/estimator.hpp"
-#include "ayumi/control/resolver.hpp"
+#include "ayumi/control/reference_body.hpp"
 #include "ayumi/pattern/command_series.hpp"
 
 namespace ayumi {
@@ -35,53 +34,32 @@ struct DtadParams {
 /// unknown gain, K <= 1 or D <= 0, q together with k and d, or a value out of range.
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec);
 
-/// What either controller asks of the body: the reference of (14)-(21) and (24).
-struct CogReference {
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< ref p_Z, plan frame [m]
-  double fz = 0;                                    ///< ref f_z [N]
-  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();  ///< ref acceleration [m/s^2]
-  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();   ///< its integral [m/s]
-};
-
-struct ControlOutput {
-  Eigen::VectorXd target;  ///< what the servos receive [rad]
-  RobotState reference;    ///< reference posture, plan frame
-  CogReference cog_reference;
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< of the reference posture [m]
-  std::vector<std::string> notes;                 ///< what gave way: saturated joints, held limits
-};
-
 class Dtad {
  public:
   /// Starts at rest in the posture of `first`.
   Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadParams& params, double dt,
        const CommandSample& first);
 
+  /// Goes on from what another law left; `plan` is the first command.
+  void take_over(const Handover& handover, const CommandSample& plan);
+
   /// One tick: command now and one tick later, and what is measured.
   ControlOutput update(const CommandSample& command, const CommandSample& next,
                        const Estimate& estimate);
 
+  const ReferenceBody& body() const { return body_; }
+
  private:
   CogReference cog_reference(const CommandSample& command, const Estimate& estimate);
-  Eigen::VectorXd ankle_offsets(const Estimate& estimate, double omega);
 
   const RobotModel* model_;
-  ActuatorLimits limits_;
   DtadParams params_;
   double dt_;
-  RobotData data_;
-  Eigen::VectorXd weight_, lead_, previous_target_;
-  RobotState reference_;
+  ReferenceBody body_;
   Side anchor_ = Side::left;
-  Eigen::Vector3d dcog_ = Eigen::Vector3d::Zero();          // ref COG velocity [m/s]
   Eigen::Vector2d zmp_filtered_ = Eigen::Vector2d::Zero();  // z-hat [m]
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();        // washed-out offset z-hat_d [m]
   double fz_filtered_ = 0;                                  // [N]
-  Eigen::Vector3d slope_ = Eigen::Vector3d::Zero();         // lasting tilt of the stance foot [rad]
 };
-
-/// Time by which a servo target must lead so that the joint does not lag: kd / kp of each joint
-/// [s].
-Eigen::VectorXd servo_lead(const RobotModel& model);
 
 }  // namespace ayumi

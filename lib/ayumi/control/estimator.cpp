@@ -82,6 +82,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   e.foot_tilt.z() = 0;
 
   e.fz = m.feet[0].fz + m.feet[1].fz;
+  e.foot_fz = {m.feet[0].fz, m.feet[1].fz};
   e.contact = e.fz > kContactShare * weight;
   if (e.contact) {
     Vector3d moment = Vector3d::Zero();

@@ -29,6 +29,7 @@ struct Estimate {
   Eigen::Vector3d dcog = Eigen::Vector3d::Zero();       ///< [m/s]
   Eigen::Vector3d zmp = Eigen::Vector3d::Zero();        ///< plan frame, held in flight [m]
   double fz = 0;                                        ///< [N]
+  std::array<double, 2> foot_fz = {0, 0};               ///< of each foot [N]
   bool contact = true;                                  ///< f_z at least 5 % of the weight
   Side stance = Side::left;                             ///< foot that carries the robot
   Eigen::Vector3d foot_tilt = Eigen::Vector3d::Zero();  ///< of the stance foot against the plan, as

@@ -89,6 +89,13 @@ Phase read_phase(const JsonNode& node, PatternScope& scope) {
   only_pattern_keys(node, "phase");
   Phase phase;
   phase.until = read_time(node.at("until"), scope);
+  if (const auto goal = node.find("viip")) {
+    phase.viip = read_viip_goal(*goal, scope);
+    for (const char* const key : {"swing", "support"})
+      if (node.has(key))
+        node.at(key).complain("VIIP chooses support and footholds of a phase with \"viip\"");
+    return phase;
+  }
   phase.support = read_support(node.at("support"));
   if (const auto swing = node.find("swing")) phase.swing = read_swing(*swing, phase.support, scope);
   return phase;
@@ -143,7 +150,8 @@ World read_world(const JsonNode& node, PatternScope& scope) {
 ControllerSpec read_controller(const JsonNode& node, PatternScope& scope) {
   only_pattern_keys(node, "controller");
   ControllerSpec controller;
-  controller.type = node.at("type").one_of({"none", "dtad", "dtad-literal"});
+  controller.type =
+      node.at("type").one_of({"none", "dtad", "dtad-literal", "viip", "viip-nofeedback"});
   const auto gains = node.find("gains");
   if (!gains) return controller;
   if (gains->has("q") && (gains->has("k") || gains->has("d")))

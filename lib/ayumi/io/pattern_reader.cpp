@@ -122,7 +122,9 @@ void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
 
 void read_keyframes(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
   const auto keyframes = root.find("keyframes");
-  if (!keyframes && root.has("table")) return;
+  const bool goals = std::any_of(pattern.phases.begin(), pattern.phases.end(),
+                                 [](const Phase& phase) { return phase.viip.has_value(); });
+  if (!keyframes && (root.has("table") || goals)) return;
   if (!keyframes) root.complain("the key 'keyframes' is missing (or 'table', a sampled motion)");
   keyframes->expect_array();
   if (keyframes->size() == 0) keyframes->complain("is empty; at least one keyframe is needed");

@@ -46,6 +46,7 @@ Interpolation read_interpolation(const JsonNode& node);
 /// {"units": {...}} of a pattern or posture library into the scope.
 void read_units(const JsonNode& root, PatternScope& scope);
 
+ViipGoal read_viip_goal(const JsonNode& node, PatternScope& scope);
 Phase read_phase(const JsonNode& node, PatternScope& scope);
 Keyframe read_keyframe(const JsonNode& node, PatternScope& scope);
 World read_world(const JsonNode& node, PatternScope& scope);

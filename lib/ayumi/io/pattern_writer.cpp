@@ -152,9 +152,37 @@ class Writer {
     if (!start.empty()) top.add("start", start);
   }
 
+  std::string goal(const CogGoal& goal) const {
+    return Members().add("cog", vector(goal.displacement)).object();
+  }
+  std::string goal(const StepGoal& goal) const {
+    Members members;
+    const bool in_place = goal.velocity.isZero(0) && goal.turn == 0;
+    if (in_place) members.add("step", quoted("in_place"));
+    if (goal.steps > 0) members.add("steps", std::to_string(goal.steps));
+    if (!in_place)
+      members.add(
+          "velocity",
+          Members().item(number(goal.velocity.x())).item(number(goal.velocity.y())).array());
+    if (goal.turn != 0) members.add("turn", angle(goal.turn));
+    return members.object();
+  }
+  std::string goal(const JumpGoal& goal) const {
+    Members jump;
+    jump.add("height", number(goal.height)).add("stoop", number(goal.stoop));
+    if (goal.forward != 0) jump.add("forward", number(goal.forward));
+    if (goal.times != 1) jump.add("times", std::to_string(goal.times));
+    if (goal.release == JumpGoal::Release::spring) jump.add("release", quoted("spring"));
+    return Members().add("jump", jump.object()).object();
+  }
+
   std::string phase(const Phase& each) const {
     Members members;
-    members.add("until", number(each.until)).add("support", quoted(name_of(each.support)));
+    members.add("until", number(each.until));
+    if (each.viip)
+      return members.add("viip", std::visit([&](const auto& g) { return goal(g); }, *each.viip))
+          .object();
+    members.add("support", quoted(name_of(each.support)));
     if (each.swing)
       members.add("swing", Members()
                                .add("foot", quoted(name_of(each.swing->foot)))

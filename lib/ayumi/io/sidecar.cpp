@@ -174,7 +174,7 @@ void read_sensors(const JsonNode& node, SensorDescription& sensors) {
 }
 
 void read_control(const JsonNode& node, RobotDescription& robot) {
-  node.only_keys({"joint_weight", "dtad"});
+  node.only_keys({"joint_weight", "dtad", "viip"});
   if (const auto groups = node.find("joint_weight"))
     for (const JsonNode& group : groups->items()) {
       group.only_keys({"joints", "weight"});
@@ -185,6 +185,8 @@ void read_control(const JsonNode& node, RobotDescription& robot) {
     }
   if (const auto gains = node.find("dtad"))
     for (const auto& [name, value] : gains->members()) robot.control.dtad[name] = value.number();
+  if (const auto gains = node.find("viip"))
+    for (const auto& [name, value] : gains->members()) robot.control.viip[name] = value.number();
 }
 
 void lock_joints(const JsonNode& node, RobotDescription& robot) {

@@ -98,6 +98,7 @@ struct SensorDescription {
 struct ControlDefaults {
   std::map<std::string, double> joint_weight;  ///< diagonal of W by joint name, default 1
   std::map<std::string, double> dtad;          ///< gains by name (q, ka, ks, kd, ...)
+  std::map<std::string, double> viip;          ///< likewise of VIIP
 };
 
 struct RobotDescription {

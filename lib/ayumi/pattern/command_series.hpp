@@ -25,9 +25,16 @@ struct CommandSample {
                                            Eigen::Isometry3d::Identity()};  ///< planned sole frames
 };
 
+/// A phase that VIIP carries; the samples hold the posture meanwhile.
+struct ViipSpan {
+  long begin = 0, end = 0;  ///< ticks, the end not included
+  ViipGoal goal;
+};
+
 struct CommandSeries {
   double dt = 0.001;  ///< [s]
   std::vector<CommandSample> samples;
+  std::vector<ViipSpan> viip;                 ///< in time order
   std::map<std::string, std::string> origin;  ///< track -> where it came from, in words
   Eigen::VectorXd joint_weight;               ///< diagonal of W [dof]
 

@@ -13,6 +13,7 @@
 #include "ayumi/math/track.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/pattern/scenario.hpp"
+#include "ayumi/pattern/viip_goal.hpp"
 
 namespace ayumi {
 
@@ -43,6 +44,7 @@ struct Phase {
   double until = 0;  ///< [s]
   Support support = Support::both;
   std::optional<Swing> swing;
+  std::optional<ViipGoal> viip;  ///< VIIP carries the robot: a goal in place of keys
 };
 
 /// A ZMP key: a place of the supporting feet, or a point on the ground.

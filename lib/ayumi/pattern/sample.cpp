@@ -7,6 +7,7 @@
 #include "ayumi/pattern/correction.hpp"
 #include "ayumi/pattern/postures.hpp"
 #include "ayumi/pattern/sample_job.hpp"
+#include "ayumi/pattern/viip_phases.hpp"
 
 namespace ayumi {
 
@@ -25,12 +26,8 @@ int sample_count(const Pattern& pattern, double duration, double dt) {
   return static_cast<int>(steps) + 1;
 }
 
-}  // namespace
-
-CommandSeries sample(const RobotModel& model, const Pattern& pattern, const SampleOptions& options,
-                     const Progress& progress) {
-  if (!model.has_soles())
-    fail(ErrorCode::bad_model, model.name() + ": the robot has no soles; name both in its sidecar");
+CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
+                          const SampleOptions& options, const Progress& progress) {
   const FootPlan feet(model, pattern);
   const InverseKinematics ik(model, default_posture(model, pattern));
   std::vector<bool> solved(model.dof_count());
@@ -46,6 +43,22 @@ CommandSeries sample(const RobotModel& model, const Pattern& pattern, const Samp
                       progress};
   CommandSeries series = tracks.joint_driven ? sample_joint_driven(job) : sample_body_driven(job);
   series.joint_weight = tracks.weight;
+  return series;
+}
+
+}  // namespace
+
+CommandSeries sample(const RobotModel& model, const Pattern& pattern, const SampleOptions& options,
+                     const Progress& progress) {
+  if (!model.has_soles())
+    fail(ErrorCode::bad_model, model.name() + ": the robot has no soles; name both in its sidecar");
+  CommandSeries series;
+  if (has_viip_phases(pattern)) {
+    series = sample_keys(model, without_viip_phases(pattern), options, progress);
+    series = with_viip_phases(model, pattern, series);
+  } else {
+    series = sample_keys(model, pattern, options, progress);
+  }
   if (pattern.correction) series = apply_correction(model, series, *pattern.correction);
   report(progress, {"sample", 1.0, ""});
   return series;

@@ -34,7 +34,7 @@ struct Disturbance {
 
 /// Which controller, with which numbers; empty gains mean the robot's defaults.
 struct ControllerSpec {
-  std::string type = "dtad";  ///< "none", "dtad", "dtad-literal"
+  std::string type = "dtad";  ///< "none", "dtad", "dtad-literal", "viip", "viip-nofeedback"
   std::vector<std::pair<std::string, double>> gains;
 };
 

@@ -66,16 +66,9 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       sensors_(model, series.dt, options.sensor_noise, options.seed),
       estimator_(model, series.dt),
       judge_(model, limits_, options.world),
-      lead_(servo_lead(model)) {
+      controller_(model, limits_, series, options.controller) {
   model.sole(Side::left);  // says so when the robot has none
-  const std::string& type = options.controller.type;
   const CommandSample& first = series.samples.front();
-  if (type == "dtad" || type == "dtad-literal")
-    dtad_.emplace(model, limits_, dtad_params(model, options.controller), series.dt, first);
-  else if (type != "none")
-    fail(ErrorCode::usage, "unknown controller '" + type + "'" +
-                               text::suggestion(type, {"none", "dtad", "dtad-literal"}) +
-                               " (known: none, dtad, dtad-literal)");
   set_scenario(options.scenario);
   planned_ = end_ =
       static_cast<long>(series.samples.size()) + std::lround(options.settle / series.dt);
@@ -130,18 +123,6 @@ std::vector<ExternalWrench> Simulator::wrenches(long step) {
   return result;
 }
 
-ControlOutput Simulator::control(const CommandSample& cmd, const Estimate& estimate) {
-  if (dtad_) return dtad_->update(cmd, command(tick_ + 1), estimate);
-  ControlOutput out;
-  out.reference = cmd.state;
-  out.target = cmd.state.theta + lead_.cwiseProduct(cmd.state.dtheta);
-  out.cog = cmd.cog;
-  out.cog_reference.zmp = cmd.zmp;
-  out.cog_reference.fz = cmd.fz;
-  out.cog_reference.dcog = cmd.dcog;
-  return out;
-}
-
 SimulationSample Simulator::sample(const CommandSample& cmd, const Estimate& estimate,
                                    const ControlOutput& out) {
   SimulationSample s;
@@ -194,10 +175,11 @@ void Simulator::note(double t, const std::vector<std::string>& texts) {
 
 void Simulator::step_once() {
   const double t = time();
-  const CommandSample& cmd = command(tick_);
+  plan_ = controller_.plan();
+  const CommandSample& cmd = plan_;
   const Measurement& measurement = sensors_.read(plant_.state(), plant_.data(), report_);
   estimate_ = estimator_.update(measurement, cmd.feet);
-  const ControlOutput out = control(cmd, estimate_);
+  const ControlOutput out = controller_.update(estimate_);
   last_ = sample(cmd, estimate_, out);
   if (!last_.state.theta.allFinite() || !last_.state.base.position.allFinite())
     fail(ErrorCode::internal,
@@ -235,7 +217,7 @@ bool Simulator::advance(long ticks, const Progress& progress) {
 }
 
 SimulationResult Simulator::result() const {
-  return Judge(judge_).conclude(command(tick_ < end_ ? tick_ : planned_), plant_.state());
+  return Judge(judge_).conclude(controller_.plan(), plant_.state());
 }
 
 SimulationLog Simulator::take_log() {

@@ -3,11 +3,10 @@
 // copy is a branch: it goes on from the same state to the last bit, so that many pushes can share
 // the way up to the push. simulate() is a Simulator run to its end.
 
-#include <optional>
 #include <set>
 
 #include "ayumi/base/progress.hpp"
-#include "ayumi/control/dtad.hpp"
+#include "ayumi/control/controller.hpp"
 #include "ayumi/sim/any_plant.hpp"
 #include "ayumi/sim/sensors.hpp"
 #include "ayumi/sim/simulate.hpp"
@@ -38,7 +37,10 @@ class Simulator {
   const RobotState& state() const { return plant_.state(); }     ///< true state
   const SimulationSample& last_sample() const { return last_; }  ///< of the last tick done
   const Estimate& last_estimate() const { return estimate_; }
-  /// The plan of tick k; that of the end after it.
+  /// What the controller planned for the last tick done: the command where the feet are, or VIIP's
+  /// own motion.
+  const CommandSample& plan() const { return plan_; }
+  /// The command of tick k as sampled; that of the end after it.
   const CommandSample& command(long k) const;
 
   /// Verdict on the run so far.
@@ -57,7 +59,6 @@ class Simulator {
   };
 
   void step_once();
-  ControlOutput control(const CommandSample& cmd, const Estimate& estimate);
   SimulationSample sample(const CommandSample& cmd, const Estimate& estimate,
                           const ControlOutput& out);
   std::vector<ExternalWrench> wrenches(long step);
@@ -72,9 +73,9 @@ class Simulator {
   Sensors sensors_;
   Estimator estimator_;
   Judge judge_;
-  Eigen::VectorXd lead_;
   std::vector<Push> pushes_;
-  std::optional<Dtad> dtad_;
+  Controller controller_;
+  CommandSample plan_;  // of the last tick done
   StepReport report_;
   Eigen::Vector3d zmp_ = Eigen::Vector3d::Zero();
   std::set<std::string> noted_;

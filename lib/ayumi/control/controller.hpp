@@ -1,0 +1,70 @@
+#pragma once
+// The laws behind one face: open loop, DTAD, VIIP. A pattern may pass the robot from one to another
+// by phases; each goes on from the posture, velocity and footholds the last one left.
+
+#include <variant>
+
+#include "ayumi/control/dtad.hpp"
+#include "ayumi/control/viip.hpp"
+
+namespace ayumi {
+
+/// Names known to ControllerSpec::type. "none": open loop, VIIP phases hold their posture;
+/// "dtad", "dtad-literal": that law, VIIP in phases that carry goals; "viip": the same, its gains
+/// are those of VIIP; "viip-nofeedback": likewise without measured feedback, the rest open loop.
+const std::vector<std::string>& controller_names();
+
+/// Throws Error(usage) for an unknown name or gain.
+void check_controller(const RobotModel& model, const ControllerSpec& spec);
+
+class Controller {
+ public:
+  /// Series and model outlive it and its copies. Throws as check_controller() and
+  /// Error(bad_pattern) for a VIIP phase that cannot be carried.
+  Controller(const RobotModel& model, const ActuatorLimits& limits, const CommandSeries& series,
+             const ControllerSpec& spec);
+
+  /// The plan of the coming tick: the command where the robot's feet are, or VIIP's own.
+  const CommandSample& plan() const { return plan_; }
+
+  /// One tick: goes on to the next.
+  ControlOutput update(const Estimate& estimate);
+
+ private:
+  /// The command itself on the servos.
+  struct OpenLoop {
+    Eigen::VectorXd lead;  ///< of the servo targets [s]
+  };
+  /// From the command as sampled to the feet as they are: after steps that VIIP placed.
+  struct Placement {
+    Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
+    /// Of each foot, from its turned command to where it stands; fades when it swings.
+    std::array<Eigen::Isometry3d, 2> rest = {Eigen::Isometry3d::Identity(),
+                                             Eigen::Isometry3d::Identity()};
+    std::array<double, 2> share = {1, 1};           ///< of `rest` that still holds
+    Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< of COG and ZMP, taken back slowly [m]
+    long since = 0;                                 ///< tick at which it began
+    bool moved = false;
+  };
+
+  const CommandSample& command(long k) const;
+  CommandSample placed(long k) const;
+  void place(const CommandSample& from);
+  void enter(long k);
+  void start_law(const ViipSpan* span);
+  const ViipSpan* span_at(long k) const;
+  Handover handover() const;
+
+  const RobotModel* model_;
+  ActuatorLimits limits_;
+  const CommandSeries* series_;
+  ControllerSpec spec_;
+  std::variant<OpenLoop, Dtad, Viip> law_;
+  Placement placement_;
+  CommandSample plan_;
+  Eigen::VectorXd target_;  // last one [rad]
+  const ViipSpan* span_ = nullptr;
+  long tick_ = 0;  // the coming one
+};
+
+}  // namespace ayumi

@@ -1,0 +1,72 @@
+#pragma once
+// Where VIIP puts the feet: a nominal path of footholds, what the pendulum's divergent component
+// xi = x + dx/omega must be when a foot lands for the path to be walked on, and the foot in the
+// air.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/pattern/viip_goal.hpp"
+
+namespace ayumi {
+
+/// Place and heading on the ground.
+struct GroundPose {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]
+  double yaw = 0;                                      ///< [rad]
+};
+
+/// Of a sole: its centre and heading.
+GroundPose ground_pose(const RobotModel& model, Side side, const Eigen::Isometry3d& sole);
+/// Sole frame, level at height z, of a sole centre.
+Eigen::Isometry3d sole_frame(const RobotModel& model, Side side, const GroundPose& pose, double z);
+
+/// b of every foothold: xi - foothold when the foot lands, so that the pendulum reaches the next
+/// foothold's b after `growth` = exp(omega T) with its ZMP on this one; `last` is b of the last.
+std::vector<Eigen::Vector2d> landing_offsets(const std::vector<Eigen::Vector2d>& footholds,
+                                             double growth, const Eigen::Vector2d& last);
+
+/// The ZMP that, held, takes xi to `end` while it grows by `growth`.
+inline Eigen::Vector2d zmp_to_arrive(const Eigen::Vector2d& xi, const Eigen::Vector2d& end,
+                                     double growth) {
+  return (end - xi * growth) / (1 - growth);
+}
+
+/// One single support to come: stance foot, landing foot, and where xi is to be when it lands.
+struct PlannedStep {
+  Side stance = Side::left;
+  Eigen::Vector2d stance_place;  ///< centre of the stance sole [m]
+  GroundPose landing;            ///< nominal
+  Eigen::Vector2d offset;        ///< b of the landing foot
+};
+
+class Footsteps {
+ public:
+  /// `feet`: soles at the start; `period` of a step [s], `growth` of xi during it; `hold`: share of
+  /// an error of place that the next foothold takes back.
+  Footsteps(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet, double period,
+            double growth, double hold);
+
+  /// The step with `stance` on the ground where it now is. `left`: swings to come, this included;
+  /// the last one closes. `rest`: xi wanted at the end, from the middle of the feet.
+  PlannedStep step(const StepGoal& goal, Side stance, const GroundPose& foot, int left,
+                   const Eigen::Vector2d& rest) const;
+
+  /// Moves the path so that the stance foot is not farther from it than can be taken back.
+  void meet(Side stance, const GroundPose& foot);
+
+  /// The path goes on by the step just begun.
+  void advance(const StepGoal& goal, Side stance, int left);
+
+ private:
+  GroundPose moved(const GroundPose& center, const StepGoal& goal, Side swing, int left) const;
+  GroundPose beside(const GroundPose& center, Side side) const;
+
+  double period_, growth_, hold_, half_width_;
+  double largest_error_;  // of place that is taken back [m]
+  GroundPose center_;     // of the feet on the path
+};
+
+}  // namespace ayumi

@@ -1,0 +1,377 @@
+// Per axis x (y alike), hats measured, r reference, xi = x + dx/w, polygon Pi of the feet down:
+//   standing  Z(xi) = Pi[xd + (1 + q)(xi - xd)]
+//   stepping  Z(xi) = Pi[(xi_e - xi E) / (1 - E)],  E = exp(w T) to the landing, xi_e = p + b
+//   reffz = m (kz w)^2 (zd - zr) - 2 dz m kz w dzr + m g              (24), (25) with the mass
+//   w2    = reffz / (m zr)                                            (17)
+//   ddxr  = w2 (xr - Z(xi_r)) + ka w2 (zhat - Z(xi^)) + av w (dx^ - dxr) + ax w^2 (x^ - xr)
+// The first term is (14) of the reference pendulum, the second the short-term absorption of
+// dtad.cpp, the others keep the reference at the robot. A foot lands where xi^ will need it:
+// Z + (xi^ - Z) E - b.
+#include "ayumi/control/viip.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/control/support.hpp"
+#include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/math/rotation.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kMinForceShare = 0.1;    // of the weight: f_min of the projection of f_z
+constexpr double kLeastToLanding = 0.06;  // a landing is never aimed at from nearer than this [s]
+constexpr double kShiftNear = 0.027;      // xi is where the first step starts, times z
+constexpr double kShiftTime = 2.4;        // least length of the shift, times 1/omega
+constexpr double kSettle = 5;             // kept for standing after timed steps, times 1/omega
+constexpr double kTouchShare = 0.1;       // of the weight: the swing foot has landed
+constexpr double kTouchAfter = 0.6;       // of the swing: earlier forces are not a landing
+constexpr double kSoftStart = 0.05, kSoftEnd = 0.35;  // of the swing: the foot sets out sideways
+constexpr double kSwingRate = 4;                      // of the way left per time left
+constexpr double kFootClearance = 0.008;              // between the soles' sides [m]
+
+double smooth(double x) {
+  const double s = std::clamp(x, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
+int index(Side side) { return static_cast<int>(side); }
+
+double half_width(const RobotModel& model) {
+  double low = 1e9, high = -1e9;
+  for (const Vector2d& p : model.sole(Side::left).polygon) {
+    low = std::min(low, p.y());
+    high = std::max(high, p.y());
+  }
+  return 0.5 * (high - low);
+}
+
+GroundPose middle(const RobotModel& model, const std::array<Isometry3d, 2>& feet) {
+  const GroundPose left = ground_pose(model, Side::left, feet[0]);
+  const GroundPose right = ground_pose(model, Side::right, feet[1]);
+  return {0.5 * (left.position + right.position),
+          left.yaw + 0.5 * std::remainder(right.yaw - left.yaw, 2 * M_PI)};
+}
+
+double ground_of(const std::array<Isometry3d, 2>& feet) {
+  return 0.5 * (feet[0].translation().z() + feet[1].translation().z());
+}
+
+Vector3d rotated(const Vector3d& v, double yaw) { return rpy_to_matrix({0, 0, yaw}) * v; }
+
+}  // namespace
+
+ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
+  ViipParams p;
+  const std::map<std::string, double*> fields = {
+      {"q", &p.q},         {"ka", &p.ka},         {"av", &p.av},     {"ax", &p.ax},
+      {"tau_z", &p.tau_z}, {"margin", &p.margin}, {"kz", &p.kz},     {"dz", &p.dz},
+      {"ankle", &p.ankle}, {"single", &p.single}, {"both", &p.both}, {"lift", &p.lift},
+      {"reach", &p.reach}, {"hold", &p.hold}};
+  std::vector<std::string> names;
+  for (const auto& [name, field] : fields) names.push_back(name);
+  auto set = [&](const std::string& name, double value, const std::string& where) {
+    if (!std::isfinite(value) || value < 0)
+      fail(ErrorCode::usage, where + ": gain " + name + " is " + text::brief(value) +
+                                 "; gains are finite and not negative");
+    const auto found = fields.find(name);
+    if (found == fields.end())
+      fail(ErrorCode::usage, where + ": viip has no gain '" + name + "'" +
+                                 text::suggestion(name, names) +
+                                 " (known: " + text::join(names, ", ") + ")");
+    *found->second = value;
+  };
+  for (const auto& [name, value] : model.description().control.viip)
+    set(name, value, model.name() + " sidecar");
+  if (spec.type.starts_with("viip"))
+    for (const auto& [name, value] : spec.gains) set(name, value, "controller gains");
+  for (const char* name : {"q", "tau_z", "kz", "single", "both", "lift"})
+    if (!(*fields.at(name) > 0))
+      fail(ErrorCode::usage, std::string("controller gains: ") + name + " must be positive");
+  if (p.dz < 1 - 1e-9)
+    fail(ErrorCode::usage, "controller gains: dz = " + text::brief(p.dz) +
+                               " overshoots; (25) asks for K_Dz^2 >= 4 m K_Pz, dz >= 1");
+  if (p.hold > 1) fail(ErrorCode::usage, "controller gains: hold is a share, at most 1");
+  p.feedback = spec.type != "viip-nofeedback";
+  return p;
+}
+
+double viip_force(const ViipParams& p, double mass, double omega, double goal, double z,
+                  double dz) {
+  const double rate = p.kz * omega;
+  const double kp_z = mass * rate * rate, kd_z = 2 * p.dz * std::sqrt(mass * kp_z);
+  return kp_z * (goal - z) - kd_z * dz + mass * kGravity;
+}
+
+Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipParams& params,
+           double dt, const Handover& start, const CommandSample& held)
+    : model_(&model),
+      params_(params),
+      dt_(dt),
+      omega_(std::sqrt(kGravity / (held.cog.z() - ground_of(held.feet)))),
+      height_(held.cog.z() - ground_of(held.feet)),
+      body_(model, limits, dt, start.reference),
+      held_(held),
+      plan_(held),
+      footsteps_(model, start.plan.feet, (params.single + params.both) / omega_,
+                 std::exp(params.single + params.both), params.hold) {
+  body_.take_over(start);
+  const GroundPose from = middle(model, held.feet);
+  Vector3d from3(from.position.x(), from.position.y(), ground_of(held.feet));
+  offset_ = rotated(held.cog - from3, -from.yaw);
+  plan_.feet = start.plan.feet;
+  plan_.support = Support::both;
+  plan_.state.dtheta.setZero();
+  if (start.plan.support == Support::right) anchor_ = Side::right;
+  zmp_filtered_ = start.plan.zmp.head<2>();
+  zmp_ = zmp_before_ = {zmp_filtered_, zmp_filtered_};
+  next_ = plan_;
+  body_.anchor(anchor_, plan_.feet[index(anchor_)]);
+  finish_plan();
+  plan_ = next_;
+}
+
+double Viip::time_of(const StepGoal& goal) const {
+  return (kShiftTime + goal.steps * (params_.single + params_.both) + kSettle) / omega_;
+}
+
+void Viip::set_goal(const ViipGoal& goal, long ticks) {
+  ticks_left_ = ticks;
+  if (const auto* cog = std::get_if<CogGoal>(&goal)) {
+    displacement_ = cog->displacement;
+    steps_left_ = stage_ == Stage::single ? 1 : 0;  // a foot in the air comes down first
+    if (stage_ == Stage::shift) stage_ = Stage::stand;
+  } else if (const auto* steps = std::get_if<StepGoal>(&goal)) {
+    steps_ = *steps;
+    displacement_.setZero();
+    start_steps();
+  }
+  finish_plan();
+  plan_ = next_;
+}
+
+// How many swings: as asked, or as many as fit.
+void Viip::start_steps() {
+  const double period = (params_.single + params_.both) / omega_;
+  const double time = static_cast<double>(ticks_left_) * dt_ - (kSettle + kShiftTime) / omega_;
+  steps_left_ = steps_.steps > 0 ? steps_.steps : std::max(0, static_cast<int>(time / period));
+  if (steps_left_ == 0 || stage_ != Stage::stand) return;
+  footsteps_ =
+      Footsteps(*model_, plan_.feet, period, std::exp(params_.single + params_.both), params_.hold);
+  const bool left_first = steps_.velocity.y() > 0 || steps_.turn > 0;
+  anchor_ = left_first ? Side::right : Side::left;
+  stage_ = Stage::shift;
+  elapsed_ = 0;
+}
+
+Vector3d Viip::standing_goal() const {
+  const GroundPose feet = middle(*model_, next_.feet);
+  const Vector3d on_ground(feet.position.x(), feet.position.y(), ground_of(next_.feet));
+  return on_ground + rotated(offset_ + displacement_, feet.yaw);
+}
+
+Vector2d Viip::clipped(const Vector2d& zmp) const {
+  const ConvexPolygon polygon =
+      support_polygon(*model_, plan_.feet, plan_.support).shrunk(params_.margin * height_);
+  return polygon.empty() ? zmp : polygon.project(zmp);
+}
+
+Vector2d Viip::regulate(const Vector2d& xi, const Vector2d& before) const {
+  const auto standing = [&](const Vector2d& goal) -> Vector2d {
+    return goal + (1 + params_.q) * (xi - goal);
+  };
+  const auto arriving = [&](Side stance, int left, double time) {
+    const PlannedStep step =
+        footsteps_.step(steps_, stance, ground_pose(*model_, stance, plan_.feet[index(stance)]),
+                        left, offset_.head<2>());
+    const double growth = std::exp(omega_ * std::max(time, kLeastToLanding));
+    return zmp_to_arrive(xi, step.landing.position + step.offset, growth);
+  };
+  const double single = params_.single / omega_, both = params_.both / omega_;
+  switch (stage_) {
+    case Stage::stand:
+      break;
+    case Stage::shift: {
+      const PlannedStep step = footsteps_.step(
+          steps_, anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]), steps_left_,
+          offset_.head<2>());
+      const Vector2d way = step.landing.position + step.offset - step.stance_place;
+      return clipped(standing(step.stance_place + way * std::exp(-params_.single)));
+    }
+    case Stage::single:
+      return clipped(arriving(anchor_, steps_left_, single - elapsed_));
+    case Stage::both: {
+      const double share = std::min(1.0, elapsed_ / both);
+      const Vector2d after = steps_left_ > 0
+                                 ? arriving(other(anchor_), steps_left_, both - elapsed_ + single)
+                                 : standing(standing_goal().head<2>());
+      return clipped((1 - share) * before + share * after);
+    }
+  }
+  return clipped(standing(standing_goal().head<2>()));
+}
+
+CogReference Viip::cog_reference(const Estimate& e) {
+  const double m = model_->mass(), ground = ground_of(plan_.feet);
+  const Vector3d goal = standing_goal();
+  const double z = body_.cog().z() - ground;
+  CogReference ref;
+  ref.fz = std::max(kMinForceShare * m * kGravity,
+                    viip_force(params_, m, omega_, goal.z() - ground, z, body_.dcog().z()));
+  ref.ddcog.z() = ref.fz / m - kGravity;
+  const double w2 = omega_squared(ref.fz, m, z);
+
+  const Vector2d x = body_.cog().head<2>(), dx = body_.dcog().head<2>();
+  const Vector2d x_hat = e.cog.head<2>(), dx_hat = e.dcog.head<2>();
+  zmp_[1] = regulate(x + dx / omega_, zmp_before_[1]);
+  zmp_[0] = params_.feedback ? regulate(x_hat + dx_hat / omega_, zmp_before_[0]) : zmp_[1];
+  ref.zmp << zmp_[0], ground;
+  Vector2d ddx = w2 * (x - zmp_[1]);
+  if (params_.feedback) {
+    ddx += params_.av * omega_ * (dx_hat - dx) + params_.ax * omega_ * omega_ * (x_hat - x);
+    if (e.contact) {
+      const double filter = 1.0 - std::exp(-dt_ * omega_ / params_.tau_z);
+      zmp_filtered_ += filter * (e.zmp.head<2>() - zmp_filtered_);
+      ddx += params_.ka * w2 * (zmp_filtered_ - zmp_[0]);
+    }
+  }
+  ref.ddcog.head<2>() = ddx;
+  return ref;
+}
+
+void Viip::start_single() {
+  stage_ = Stage::single;
+  elapsed_ = 0;
+  if (steps_.steps == 0) {
+    const double period = (params_.single + params_.both) / omega_;
+    const double time = static_cast<double>(ticks_left_) * dt_ - kSettle / omega_;
+    steps_left_ = std::max(1, static_cast<int>(time / period));
+  }
+  footsteps_.meet(anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]));
+}
+
+// The swing foot follows the landing point while it moves, softly at first: a foot that sets out
+// sideways while it still touches drags the robot along.
+void Viip::swing(const Vector2d& xi) {
+  const double length = params_.single / omega_;
+  const Side foot = other(anchor_);
+  const PlannedStep step =
+      footsteps_.step(steps_, anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]),
+                      steps_left_, offset_.head<2>());
+  const double left = std::max(length - elapsed_, dt_);
+  const double growth = std::exp(omega_ * std::max(length - elapsed_, 0.0));
+  const Vector2d zmp = zmp_[0];
+  Vector2d target = zmp + (xi - zmp) * growth - step.offset;
+  const Vector2d nominal = step.landing.position;
+  const double reach = params_.reach * height_;
+  for (int i = 0; i < 2; ++i)
+    target[i] = std::clamp(target[i], nominal[i] - reach, nominal[i] + reach);
+  // Soles side by side, seen from the stance foot.
+  const GroundPose stance = ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]);
+  Vector2d way = Eigen::Rotation2Dd(-stance.yaw) * (target - stance.position);
+  const double beside = 2 * half_width(*model_) + kFootClearance;
+  if (foot == Side::left)
+    way.y() = std::max(way.y(), beside);
+  else
+    way.y() = std::min(way.y(), -beside);
+  target = stance.position + Eigen::Rotation2Dd(stance.yaw) * way;
+
+  const double phase = elapsed_ / length;
+  const double start = smooth((phase - kSoftStart) / (kSoftEnd - kSoftStart));
+  const double share = std::min(1.0, kSwingRate * start * dt_ / left);
+  GroundPose at = ground_pose(*model_, foot, plan_.feet[index(foot)]);
+  at.position += share * (target - at.position);
+  at.yaw += share * std::remainder(step.landing.yaw - at.yaw, 2 * M_PI);
+  const double after = std::min(1.0, (elapsed_ + dt_) / length);
+  const double up = std::pow(4 * after * (1 - after), 3);
+  const double ground = plan_.feet[index(anchor_)].translation().z();
+  next_.feet[index(foot)] = sole_frame(*model_, foot, at, ground + up * params_.lift * height_);
+}
+
+// Stages, feet and support of the next tick.
+void Viip::go_on(const Estimate& e) {
+  next_ = plan_;
+  elapsed_ += dt_;
+  --ticks_left_;
+  const Vector2d xi = params_.feedback
+                          ? Vector2d(e.cog.head<2>() + e.dcog.head<2>() / omega_)
+                          : Vector2d(body_.cog().head<2>() + body_.dcog().head<2>() / omega_);
+  const double single = params_.single / omega_, both = params_.both / omega_;
+  if (stage_ == Stage::shift) {
+    // xi is where the regulator wants it when the ZMP it asks for is xi itself.
+    const double gap = (zmp_[0] - xi).norm() / params_.q;
+    if (steps_left_ == 0)
+      stage_ = Stage::stand;
+    else if (elapsed_ > kShiftTime / omega_ && gap < kShiftNear * height_)
+      start_single();
+  } else if (stage_ == Stage::single) {
+    const Side foot = other(anchor_);
+    swing(xi);
+    const bool touched = params_.feedback && elapsed_ > kTouchAfter * single &&
+                         e.foot_fz[index(foot)] > kTouchShare * model_->mass() * kGravity;
+    if (touched || elapsed_ >= single) {
+      next_.feet[index(foot)].translation().z() = plan_.feet[index(anchor_)].translation().z();
+      footsteps_.advance(steps_, anchor_, steps_left_);
+      --steps_left_;
+      zmp_before_ = zmp_;
+      stage_ = Stage::both;
+      elapsed_ = 0;
+    }
+  } else if (stage_ == Stage::both && elapsed_ >= both) {
+    if (steps_left_ > 0) {
+      anchor_ = other(anchor_);
+      start_single();
+    } else {
+      stage_ = Stage::stand;
+    }
+  }
+  next_.support = stage_ == Stage::single ? on(anchor_) : Support::both;
+}
+
+// COG, ZMP and trunk of the plan that the judge and the resolution see.
+void Viip::finish_plan() {
+  const GroundPose feet = middle(*model_, next_.feet);
+  const double yaw_before = matrix_to_rpy(plan_.state.base.attitude.toRotationMatrix()).z();
+  next_.state.base = body_.state().base;
+  next_.state.base.attitude =
+      Eigen::Quaterniond(rpy_to_matrix({0, 0, feet.yaw})) *
+      Eigen::Quaterniond(
+          rpy_to_matrix({0, 0, -matrix_to_rpy(held_.state.base.attitude.toRotationMatrix()).z()})) *
+      held_.state.base.attitude;
+  next_.state.base_angular_velocity.setZero();
+  next_.state.base_angular_velocity.z() = std::remainder(feet.yaw - yaw_before, 2 * M_PI) / dt_;
+  next_.cog = standing_goal();
+  next_.dcog.setZero();
+  if (stage_ != Stage::stand) {
+    next_.cog.head<2>() = body_.cog().head<2>();
+    next_.dcog = body_.dcog();
+  }
+  next_.zmp << zmp_[1], ground_of(next_.feet);
+  next_.fz = model_->mass() * kGravity;
+}
+
+ControlOutput Viip::update(const Estimate& estimate) {
+  ControlOutput out;
+  next_ = plan_;
+  body_.anchor(anchor_, plan_.feet[index(anchor_)]);
+  out.cog = body_.cog();
+  const CogReference wanted = cog_reference(estimate);
+  const Eigen::VectorXd offsets = body_.ankle_offsets(estimate, params_.ankle, 6.6 / omega_);
+  go_on(estimate);
+  body_.advance(wanted, height_, plan_, next_, offsets, out);
+  finish_plan();
+  plan_ = next_;
+  return out;
+}
+
+}  // namespace ayumi

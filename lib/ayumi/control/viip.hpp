@@ -1,0 +1,92 @@
+#pragma once
+// VIIP: variable impedant inverted pendulum manipulation, section 4 of the paper. The commanded
+// motion is the pendulum's own: a regulator chooses ref ZMP, (24) the vertical force, the feet are
+// placed where the pendulum will need them. Law and derivation: docs/theory.md.
+
+#include "ayumi/control/footsteps.hpp"
+#include "ayumi/control/reference_body.hpp"
+#include "ayumi/pattern/viip_goal.hpp"
+
+namespace ayumi {
+
+/// Dimensionless: rates in units of omega = sqrt(g / z), lengths in units of the COG height z.
+struct ViipParams {
+  double q = 0.5;        ///< second pole of the standing regulator
+  double ka = 2;         ///< short-term loop on the measured ZMP
+  double av = 3;         ///< leak of the reference velocity to the measured one
+  double ax = 1;         ///< leak of the reference COG to the measured one
+  double tau_z = 0.13;   ///< low-pass of the measured ZMP, times 1/omega
+  double margin = 0.01;  ///< kept inside the support polygon, times z
+  double kz = 1.5;       ///< sqrt(K_Pz / m) of (24), times omega
+  double dz = 1;         ///< K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
+  double ankle = 0;      ///< share of the stance foot's tilt taken back at the ankle
+  double single = 2.0;   ///< length of a single support, times 1/omega
+  double both = 0.53;    ///< of a double support, times 1/omega
+  double lift = 0.09;    ///< of the swing sole, times z
+  double reach = 0.36;   ///< largest departure from a nominal foothold, times z
+  double hold = 0.3;     ///< share of a foot's error of place taken back by the next step
+  bool feedback = true;  ///< false: the reference pendulum alone, a demonstration
+};
+
+/// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
+/// unknown gain or a value out of range, for dz with (25).
+ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec);
+
+/// Ref f_z of (24) [N] for a COG at height z moving at dz that is to be at `goal`.
+double viip_force(const ViipParams& params, double mass, double omega, double goal, double z,
+                  double dz);
+
+class Viip {
+ public:
+  /// Goes on from `start`. `held`: the posture and COG that the pattern holds meanwhile; the COG
+  /// over the middle of its feet is what displacements start from.
+  Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipParams& params, double dt,
+       const Handover& start, const CommandSample& held);
+
+  /// CogGoal or StepGoal from the coming tick on, for `ticks` (steps without a count end in time).
+  void set_goal(const ViipGoal& goal, long ticks);
+
+  /// What counted steps take from standing to standing [s].
+  double time_of(const StepGoal& goal) const;
+
+  /// Feet, support, COG and ZMP of the coming tick.
+  const CommandSample& plan() const { return plan_; }
+
+  ControlOutput update(const Estimate& estimate);
+
+  const ReferenceBody& body() const { return body_; }
+
+ private:
+  enum class Stage { stand, shift, single, both };
+
+  Eigen::Vector3d standing_goal() const;
+  Eigen::Vector2d regulate(const Eigen::Vector2d& xi, const Eigen::Vector2d& before) const;
+  Eigen::Vector2d clipped(const Eigen::Vector2d& zmp) const;
+  CogReference cog_reference(const Estimate& estimate);
+  void go_on(const Estimate& estimate);
+  void start_steps();
+  void start_single();
+  void swing(const Eigen::Vector2d& xi);
+  void finish_plan();
+
+  const RobotModel* model_;
+  ViipParams params_;
+  double dt_, omega_, height_;
+  ReferenceBody body_;
+  CommandSample held_, plan_, next_;
+  Eigen::Vector3d offset_;  // held COG from the middle of the feet, axes of the feet [m]
+  Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();
+  StepGoal steps_;
+  int steps_left_ = 0;
+  long ticks_left_ = 0;
+  Stage stage_ = Stage::stand;
+  double elapsed_ = 0;        // in this stage [s]
+  Side anchor_ = Side::left;  // foot the reference stands on
+  Footsteps footsteps_;
+  Eigen::Vector2d zmp_filtered_;
+  // Clipped ref ZMP by the measured and by the reference state: now, and at the end of the last
+  // single support.
+  std::array<Eigen::Vector2d, 2> zmp_, zmp_before_;
+};
+
+}  // namespace ayumi
