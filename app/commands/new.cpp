@@ -6,8 +6,11 @@
 #include <numbers>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/control/viip.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/postures.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "pattern_input.hpp"
 
@@ -24,6 +27,8 @@ struct NewOptions {
   std::string first = "right";
   double duration = 3.0;
   // Left out: HOAP-1's, scaled to the robot.
+  std::vector<double> cog, velocity;  // goals of VIIP
+  int viip_steps = 0;
   std::optional<double> stride, period, lift, side, depth, hold;
 };
 
@@ -115,6 +120,48 @@ void new_squat(const Context& context, NewOptions options) {
              "Where the COG is over the ground is solved: the ZMP stays in the middle."});
 }
 
+constexpr double kStandFirst = 0.5;  // before a goal of VIIP [s]
+constexpr double kDisplaced = 2.5;   // for a displacement, and for its way back [s]
+
+// Stands, does what the goal asks, stands.
+void new_viip(const Context& context, const NewOptions& options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const bool steps = options.viip_steps > 0;
+  if (steps == !options.cog.empty())
+    fail(ErrorCode::usage,
+         "viip: give --cog, a displacement, or --steps, with or without "
+         "--velocity and --turn");
+  if (!steps && (!options.velocity.empty() || options.turn_deg != 0))
+    fail(ErrorCode::usage, "viip: --velocity and --turn go with --steps");
+  Pattern pattern;
+  pattern.robot = options.robot;
+  pattern.controller.type = "viip";
+  double t = kStandFirst;
+  const auto phase = [&](double length, const ViipGoal& goal) {
+    t += length;
+    pattern.phases.push_back({0.001 * std::ceil(1e3 * t - 1e-6), Support::both, {}, goal});
+  };
+  phase(0, CogGoal{});
+  std::vector<std::string> comments;
+  if (steps) {
+    StepGoal goal;
+    goal.steps = options.viip_steps;
+    for (size_t i = 0; i < options.velocity.size(); ++i)
+      goal.velocity[static_cast<Eigen::Index>(i)] = options.velocity[i];
+    goal.turn = options.turn_deg * std::numbers::pi / 180;
+    const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
+    phase(stepping_time(viip_params(model, pattern.controller), omega, goal.steps) + 0.05, goal);
+    comments = {std::to_string(goal.steps) + " steps, the last one closing; VIIP places the feet.",
+                "The time is what the steps take from standing to standing."};
+  } else {
+    const Eigen::Vector3d displacement(options.cog[0], options.cog[1], options.cog[2]);
+    phase(kDisplaced, CogGoal{displacement});
+    phase(kDisplaced, CogGoal{});
+    comments = {"The COG goes to a displacement over both feet, and back."};
+  }
+  write_new(context, model, pattern, options, comments);
+}
+
 void new_stand(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
   write_new(context, model, stand_pattern(model, options.duration), options,
@@ -181,6 +228,27 @@ void add_sway(CLI::App& command, NewOptions& options) {
       ->type_name("N");
 }
 
+void add_viip(CLI::App& command, NewOptions& options) {
+  command.footer(
+      "Examples:\n  ayumi new viip --cog 0.02,0,0 -o shift.json\n"
+      "  ayumi new viip --steps 8 -o in_place.json\n"
+      "  ayumi new viip --steps 14 --velocity 0.1 -o walk.json\n"
+      "  ayumi new viip --steps 14 --velocity 0.05,0.01 --turn 15 -o turn.json");
+  add_common(command, options);
+  command.add_option("--cog", options.cog, "displacement over both feet: forward, left, up")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("DX,DY,DZ");
+  command.add_option("--steps", options.viip_steps, "swings, the last one closes; in place alone")
+      ->check(CLI::Range(1, 10000).description(""))
+      ->type_name("N");
+  command.add_option("--velocity", options.velocity, "of the COG: forward [m/s], and left")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->type_name("VX,VY");
+  command.add_option("--turn", options.turn_deg, "to the left [deg/s]")->type_name("W");
+}
+
 void add_squat(CLI::App& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new squat --depth 0.04 --hold 1 --cycles 1 -o squat.json");
   add_common(command, options);
@@ -196,7 +264,7 @@ void add_squat(CLI::App& command, NewOptions& options) {
 
 void add_new(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
-      "new", "write a keyframed pattern to edit: walk, step, stand, sway, squat");
+      "new", "write a keyframed pattern to edit: walk, step, stand, sway, squat, viip");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  ayumi new walk -o walk.json\n"
@@ -204,6 +272,7 @@ void add_new(CLI::App& app, Context& context) {
       "  ayumi new step --robot humanoid30 --steps 4 -o step.json\n"
       "  ayumi new sway --side 0.03 -o sway.json\n"
       "  ayumi new squat --depth 0.04 --cycles 3 -o squat.json\n"
+      "  ayumi new viip --steps 14 --velocity 0.1 -o viip_walk.json\n"
       "  ayumi new stand --duration 4 -o stand.json");
   auto shared = std::make_shared<NewOptions>();
   NewOptions& options = *shared;
@@ -221,6 +290,10 @@ void add_new(CLI::App& app, Context& context) {
   add_squat(*squat, options);
   squat->callback([shared, &context] { new_squat(context, *shared); });
 
+  CLI::App* viip = command->add_subcommand(
+      "viip", "goals in place of keys: COG displacement, steps, a walk at a velocity");
+  add_viip(*viip, options);
+  viip->callback([shared, &context] { new_viip(context, *shared); });
   CLI::App* stand = command->add_subcommand("stand", "both feet on the ground");
   add_common(*stand, options);
   stand->add_option("--duration", options.duration, "of the pattern")

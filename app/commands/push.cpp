@@ -59,7 +59,8 @@ PushOptions push_options(const Context& context, const PatternInput& input,
   push.controllers = chosen_controllers(input, options);
   for (double t : options.times)
     push.phases.push_back({"t = " + text::fixed(t, 3) + " s", t, false});
-  if (push.phases.empty()) push.phases = default_push_phases(input.series);
+  if (push.phases.empty())
+    push.phases = default_push_phases(input.model, input.series, push.simulate);
   return push;
 }
 
@@ -99,8 +100,13 @@ std::string ratio_text(const PushLimit& limit, double bound) {
   return text::fixed(bound > 0 ? limit.impulse / bound : 0, 2) + (limit.capped ? "+" : "");
 }
 
-std::vector<std::string> summary_lines(const std::vector<PushCase>& cases,
-                                       const PushOptions& push) {
+/// What stands beside the laws: open loop, or VIIP's pendulum without feedback.
+std::string baseline(const CommandSeries& series) {
+  return series.viip.empty() ? "open loop" : "no feedback";
+}
+
+std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const PushOptions& push,
+                                       const std::string& open) {
   std::vector<std::string> lines;
   for (size_t k = 0; k < push.controllers.size(); ++k)
     for (const bool standing : {false, true}) {
@@ -108,16 +114,17 @@ std::vector<std::string> summary_lines(const std::vector<PushCase>& cases,
       if (s.cases == 0) continue;
       lines.push_back(std::string(standing ? "standing" : "walking") + ": " +
                       push.controllers[k].type + " worst " + text::fixed(s.worst, 2) + " B, mean " +
-                      text::fixed(s.mean, 2) + " B; open loop worst " +
+                      text::fixed(s.mean, 2) + " B; " + open + " worst " +
                       text::fixed(s.open_worst, 2) + " B, mean " + text::fixed(s.open_mean, 2) +
-                      " B; below open loop in " + std::to_string(s.below_open) + " of " +
+                      " B; below " + open + " in " + std::to_string(s.below_open) + " of " +
                       std::to_string(s.cases) + " cases");
     }
   return lines;
 }
 
 /// One block per phase: B in N s, then every law in shares of B, one column per direction.
-std::string table(const std::vector<PushCase>& cases, const PushOptions& push) {
+std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
+                  const std::string& open) {
   constexpr size_t kLabel = 16, kCell = 7;
   const size_t directions = static_cast<size_t>(push.directions);
   std::string out;
@@ -133,12 +140,12 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push) {
          [](const PushCase& c) { return text::fixed(c.direction * 180 / M_PI, 0); });
     line("B, N s", [](const PushCase& c) { return text::fixed(c.bound, 2); });
     line("m w d_edge, N s", [](const PushCase& c) { return text::fixed(c.edge_bound, 2); });
-    line("open loop / B", [](const PushCase& c) { return ratio_text(c.open_loop, c.bound); });
+    line(open + " / B", [](const PushCase& c) { return ratio_text(c.open_loop, c.bound); });
     for (size_t k = 0; k < push.controllers.size(); ++k)
       line(push.controllers[k].type + " / B",
            [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
   }
-  for (const std::string& line : summary_lines(cases, push)) out += line + "\n";
+  for (const std::string& line : summary_lines(cases, push, open)) out += line + "\n";
   return out;
 }
 
@@ -149,7 +156,8 @@ PushMap push_map(const PatternInput& input, const std::vector<PushCase>& cases,
               (input.profile.empty() ? "" : ", actuators " + input.profile) + ": pushes of " +
               text::fixed(1e3 * push.duration, 0) + " ms";
   for (const ControllerSpec& c : push.controllers) map.laws.push_back(c.type);
-  map.remarks = summary_lines(cases, push);
+  map.baseline = baseline(input.series);
+  map.remarks = summary_lines(cases, push, map.baseline);
   const size_t directions = static_cast<size_t>(push.directions);
   for (size_t p = 0; p < cases.size(); p += directions) {
     PushMapPhase phase{.name = cases[p].phase.name};
@@ -213,7 +221,7 @@ void find_limits(Context& context, const Options& options) {
       context.progress());
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  context.print(table(cases, push));
+  context.print(table(cases, push, baseline(input.series)));
   if (!options.map.empty()) {
     write_push_map(push_map(input, cases, push), options.map);
     context.print("  drawn in " + options.map + "\n");

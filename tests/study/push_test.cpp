@@ -78,7 +78,7 @@ TEST(Push, DefaultPhasesAreThoseOfAMiddleStepOnTheLeftFoot) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const WalkParameters walk{.steps = 4};
   const CommandSeries series = sample(model, walk_pattern(model, walk));
-  const std::vector<PushPhase> phases = default_push_phases(series);
+  const std::vector<PushPhase> phases = default_push_phases(model, series, {});
   ASSERT_EQ(phases.size(), 5u);
   EXPECT_TRUE(phases[0].standing);
   const auto support = [&](const PushPhase& p) {

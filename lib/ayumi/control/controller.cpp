@@ -177,12 +177,13 @@ void Controller::enter(long k) {
   Viip& viip = std::get<Viip>(law_);
   if (const auto* steps = std::get_if<StepGoal>(&span->goal)) {
     const double time = static_cast<double>(end - k) * series_->dt;
-    if (steps->steps > 0 && viip.time_of(*steps) > time)
+    const double needed = stepping_time(viip_params(*model_, spec_), viip.omega(), steps->steps);
+    if (steps->steps > 0 && needed > time)
       fail(ErrorCode::bad_pattern,
            "phase at " + text::fixed(static_cast<double>(k) * series_->dt, 3) +
-               " s: " + std::to_string(steps->steps) + " steps take " +
-               text::fixed(viip.time_of(*steps), 2) + " s from standing to standing, the phase " +
-               "has " + text::fixed(time, 2) + " s; make it longer or the steps fewer");
+               " s: " + std::to_string(steps->steps) + " steps take " + text::fixed(needed, 2) +
+               " s from standing to standing, the phase " + "has " + text::fixed(time, 2) +
+               " s; make it longer or the steps fewer");
   }
   viip.set_goal(span->goal, end - k);
   plan_ = viip.plan();

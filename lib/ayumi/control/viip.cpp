@@ -74,10 +74,10 @@ Vector3d rotated(const Vector3d& v, double yaw) { return rpy_to_matrix({0, 0, ya
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   ViipParams p;
   const std::map<std::string, double*> fields = {
-      {"q", &p.q},         {"ka", &p.ka},         {"av", &p.av},     {"ax", &p.ax},
-      {"tau_z", &p.tau_z}, {"margin", &p.margin}, {"kz", &p.kz},     {"dz", &p.dz},
-      {"ankle", &p.ankle}, {"single", &p.single}, {"both", &p.both}, {"lift", &p.lift},
-      {"reach", &p.reach}, {"hold", &p.hold}};
+      {"q", &p.q},       {"goal", &p.goal},   {"ka", &p.ka},         {"av", &p.av},
+      {"ax", &p.ax},     {"tau_z", &p.tau_z}, {"margin", &p.margin}, {"kz", &p.kz},
+      {"dz", &p.dz},     {"ankle", &p.ankle}, {"single", &p.single}, {"both", &p.both},
+      {"lift", &p.lift}, {"reach", &p.reach}, {"hold", &p.hold}};
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where) {
@@ -95,7 +95,7 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
     set(name, value, model.name() + " sidecar");
   if (spec.type.starts_with("viip"))
     for (const auto& [name, value] : spec.gains) set(name, value, "controller gains");
-  for (const char* name : {"q", "tau_z", "kz", "single", "both", "lift"})
+  for (const char* name : {"q", "goal", "tau_z", "kz", "single", "both", "lift"})
     if (!(*fields.at(name) > 0))
       fail(ErrorCode::usage, std::string("controller gains: ") + name + " must be positive");
   if (p.dz < 1 - 1e-9)
@@ -104,6 +104,10 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   if (p.hold > 1) fail(ErrorCode::usage, "controller gains: hold is a share, at most 1");
   p.feedback = spec.type != "viip-nofeedback";
   return p;
+}
+
+double stepping_time(const ViipParams& p, double omega, int steps) {
+  return (kShiftTime + steps * (p.single + p.both) + kSettle) / omega;
 }
 
 double viip_force(const ViipParams& p, double mass, double omega, double goal, double z,
@@ -141,19 +145,15 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
   plan_ = next_;
 }
 
-double Viip::time_of(const StepGoal& goal) const {
-  return (kShiftTime + goal.steps * (params_.single + params_.both) + kSettle) / omega_;
-}
-
 void Viip::set_goal(const ViipGoal& goal, long ticks) {
   ticks_left_ = ticks;
   if (const auto* cog = std::get_if<CogGoal>(&goal)) {
-    displacement_ = cog->displacement;
+    displacement_[0] = cog->displacement;
     steps_left_ = stage_ == Stage::single ? 1 : 0;  // a foot in the air comes down first
     if (stage_ == Stage::shift) stage_ = Stage::stand;
   } else if (const auto* steps = std::get_if<StepGoal>(&goal)) {
     steps_ = *steps;
-    displacement_.setZero();
+    displacement_[0].setZero();
     start_steps();
   }
   finish_plan();
@@ -174,10 +174,10 @@ void Viip::start_steps() {
   elapsed_ = 0;
 }
 
-Vector3d Viip::standing_goal() const {
+Vector3d Viip::standing_goal(const Vector3d& displacement) const {
   const GroundPose feet = middle(*model_, next_.feet);
   const Vector3d on_ground(feet.position.x(), feet.position.y(), ground_of(next_.feet));
-  return on_ground + rotated(offset_ + displacement_, feet.yaw);
+  return on_ground + rotated(offset_ + displacement, feet.yaw);
 }
 
 Vector2d Viip::clipped(const Vector2d& zmp) const {
@@ -214,16 +214,16 @@ Vector2d Viip::regulate(const Vector2d& xi, const Vector2d& before) const {
       const double share = std::min(1.0, elapsed_ / both);
       const Vector2d after = steps_left_ > 0
                                  ? arriving(other(anchor_), steps_left_, both - elapsed_ + single)
-                                 : standing(standing_goal().head<2>());
+                                 : standing(standing_goal(displacement_[2]).head<2>());
       return clipped((1 - share) * before + share * after);
     }
   }
-  return clipped(standing(standing_goal().head<2>()));
+  return clipped(standing(standing_goal(displacement_[2]).head<2>()));
 }
 
 CogReference Viip::cog_reference(const Estimate& e) {
   const double m = model_->mass(), ground = ground_of(plan_.feet);
-  const Vector3d goal = standing_goal();
+  const Vector3d goal = standing_goal(displacement_[2]);
   const double z = body_.cog().z() - ground;
   CogReference ref;
   ref.fz = std::max(kMinForceShare * m * kGravity,
@@ -303,6 +303,8 @@ void Viip::go_on(const Estimate& e) {
   next_ = plan_;
   elapsed_ += dt_;
   --ticks_left_;
+  const double lag = 1 - std::exp(-dt_ * omega_ / params_.goal);
+  for (int i : {1, 2}) displacement_[i] += lag * (displacement_[i - 1] - displacement_[i]);
   const Vector2d xi = params_.feedback
                           ? Vector2d(e.cog.head<2>() + e.dcog.head<2>() / omega_)
                           : Vector2d(body_.cog().head<2>() + body_.dcog().head<2>() / omega_);
@@ -350,7 +352,7 @@ void Viip::finish_plan() {
       held_.state.base.attitude;
   next_.state.base_angular_velocity.setZero();
   next_.state.base_angular_velocity.z() = std::remainder(feet.yaw - yaw_before, 2 * M_PI) / dt_;
-  next_.cog = standing_goal();
+  next_.cog = standing_goal(displacement_[0]);
   next_.dcog.setZero();
   if (stage_ != Stage::stand) {
     next_.cog.head<2>() = body_.cog().head<2>();

@@ -11,15 +11,16 @@ namespace ayumi {
 
 /// Dimensionless: rates in units of omega = sqrt(g / z), lengths in units of the COG height z.
 struct ViipParams {
-  double q = 0.5;        ///< second pole of the standing regulator
+  double q = 0.75;       ///< second pole of the standing regulator
+  double goal = 0.3;     ///< time constant of each of two lags of a displacement, times 1/omega
   double ka = 2;         ///< short-term loop on the measured ZMP
   double av = 3;         ///< leak of the reference velocity to the measured one
   double ax = 1;         ///< leak of the reference COG to the measured one
-  double tau_z = 0.13;   ///< low-pass of the measured ZMP, times 1/omega
+  double tau_z = 0.066;  ///< low-pass of the measured ZMP, times 1/omega
   double margin = 0.01;  ///< kept inside the support polygon, times z
   double kz = 1.5;       ///< sqrt(K_Pz / m) of (24), times omega
   double dz = 1;         ///< K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
-  double ankle = 0;      ///< share of the stance foot's tilt taken back at the ankle
+  double ankle = 0.5;    ///< share of the stance foot's tilt taken back at the ankle
   double single = 2.0;   ///< length of a single support, times 1/omega
   double both = 0.53;    ///< of a double support, times 1/omega
   double lift = 0.09;    ///< of the swing sole, times z
@@ -31,6 +32,9 @@ struct ViipParams {
 /// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
 /// unknown gain or a value out of range, for dz with (25).
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec);
+
+/// What `steps` counted steps take from standing to standing [s].
+double stepping_time(const ViipParams& params, double omega, int steps);
 
 /// Ref f_z of (24) [N] for a COG at height z moving at dz that is to be at `goal`.
 double viip_force(const ViipParams& params, double mass, double omega, double goal, double z,
@@ -46,8 +50,7 @@ class Viip {
   /// CogGoal or StepGoal from the coming tick on, for `ticks` (steps without a count end in time).
   void set_goal(const ViipGoal& goal, long ticks);
 
-  /// What counted steps take from standing to standing [s].
-  double time_of(const StepGoal& goal) const;
+  double omega() const { return omega_; }  ///< sqrt(g / z) of the held posture [1/s]
 
   /// Feet, support, COG and ZMP of the coming tick.
   const CommandSample& plan() const { return plan_; }
@@ -59,7 +62,7 @@ class Viip {
  private:
   enum class Stage { stand, shift, single, both };
 
-  Eigen::Vector3d standing_goal() const;
+  Eigen::Vector3d standing_goal(const Eigen::Vector3d& displacement) const;
   Eigen::Vector2d regulate(const Eigen::Vector2d& xi, const Eigen::Vector2d& before) const;
   Eigen::Vector2d clipped(const Eigen::Vector2d& zmp) const;
   CogReference cog_reference(const Estimate& estimate);
@@ -75,7 +78,9 @@ class Viip {
   ReferenceBody body_;
   CommandSample held_, plan_, next_;
   Eigen::Vector3d offset_;  // held COG from the middle of the feet, axes of the feet [m]
-  Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();
+  // Asked, and on the way there through two lags.
+  std::array<Eigen::Vector3d, 3> displacement_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                                  Eigen::Vector3d::Zero()};
   StepGoal steps_;
   int steps_left_ = 0;
   long ticks_left_ = 0;

@@ -135,7 +135,7 @@ void draw_legend(Drawing& drawing, const PushMap& map, bool capped) {
     x += 27 + text_width(name, 11) + 18;
   };
   entry("capture bound B", kBound, true);
-  entry("open loop", kOpen, false);
+  entry(map.baseline, kOpen, false);
   for (size_t i = 0; i < map.laws.size(); ++i) entry(map.laws[i], kLaws[i], false);
   std::string unit = "N s, through the COG";
   if (capped) unit += "; hollow: the largest tried";

@@ -25,7 +25,8 @@ struct PushMapPhase {
 
 struct PushMap {
   std::string title;
-  std::vector<std::string> laws;  ///< names, open loop not among them
+  std::string baseline = "open loop";  ///< name of the first curve
+  std::vector<std::string> laws;       ///< names of the others
   std::vector<PushMapPhase> phases;
   std::vector<std::string> remarks;  ///< lines below, e.g. the figures over all cases
 };

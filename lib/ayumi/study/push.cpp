@@ -32,9 +32,10 @@ constexpr double kNear = 0.045;         // of xi to the plan, times z: 10 mm at 
 constexpr double kSurelyAfter = 0.8;    // from the push; earlier nearness says nothing [s]
 constexpr double kNearTime = 0.3;       // xi must stay near this long [s]
 constexpr double kTiltedFoot = 2 * M_PI / 180;
+constexpr int kEdgeDirections = 72;
 constexpr long kChunk = 10;  // ticks between looks at a run
 
-/// The first posture of the pattern, held.
+/// The first posture of the pattern, held; by VIIP if the pattern has goals.
 CommandSeries standing_series(const CommandSeries& series) {
   CommandSeries stand;
   stand.dt = series.dt;
@@ -42,18 +43,20 @@ CommandSeries standing_series(const CommandSeries& series) {
   const double duration = kStandingPush + kStandingAfter;
   stand.samples.assign(static_cast<size_t>(std::lround(duration / series.dt)) + 1,
                        series.samples.front());
+  if (!series.viip.empty())
+    stand.viip = {{0, static_cast<long>(stand.samples.size()) - 1, CogGoal{}}};
   return stand;
 }
 
 double divergence(const Simulator& run) {
-  const CommandSample& cmd = run.command(run.tick() - 1);
+  const CommandSample& cmd = run.plan();
   const Estimate& e = run.last_estimate();
   const double w = std::sqrt(kGravity / (cmd.cog.z() - cmd.zmp.z()));
   return ((e.cog - cmd.cog) + (e.dcog - cmd.dcog) / w).head<2>().norm();
 }
 
 double near_distance(const Simulator& run) {
-  const CommandSample& cmd = run.command(run.tick() - 1);
+  const CommandSample& cmd = run.plan();
   return kNear * (cmd.cog.z() - cmd.zmp.z());
 }
 
@@ -67,8 +70,8 @@ struct Trunk {
 class Search {
  public:
   Search(const Trunk& trunk, const PushOptions& options, const PushCase& push, double dt,
-         std::uint64_t seed, const std::atomic<bool>& stop)
-      : trunk_(trunk), options_(options), case_(push), dt_(dt), stop_(stop) {
+         bool goals, std::uint64_t seed, const std::atomic<bool>& stop)
+      : trunk_(trunk), options_(options), case_(push), dt_(dt), goals_(goals), stop_(stop) {
     Random random(seed);
     const auto spread = [&](double width) { return width * (2 * random.uniform() - 1); };
     variations_.push_back({0, 0});
@@ -94,6 +97,7 @@ class Search {
   const PushOptions& options_;
   const PushCase& case_;
   double dt_;
+  bool goals_;  // VIIP's plan follows the robot: nearness to it says nothing
   const std::atomic<bool>& stop_;
   std::vector<Variation> variations_;
   std::map<int, bool> tried_;
@@ -118,7 +122,7 @@ bool Search::survives(double impulse, const Variation& variation, bool to_the_en
   double near_since = -1;
   while (run.advance(kChunk) && !run.fell()) {
     if (stop_) throw Interrupted();
-    if (to_the_end || run.time() < case_.phase.at + kSurelyAfter) continue;
+    if (to_the_end || goals_ || run.time() < case_.phase.at + kSurelyAfter) continue;
     if (divergence(run) > near_distance(run))
       near_since = -1;
     else if (near_since < 0)
@@ -254,6 +258,7 @@ struct Study {
   }
   void grow(size_t i);
   PushCase plan(size_t i) const;
+  double standing_edge_bound() const;
   void search(size_t i, PushCase& found);
 };
 
@@ -272,6 +277,17 @@ void Study::grow(size_t i) {
   trunks[i].stands = !run.fell() && run.result().outcome == Outcome::stands;
 }
 
+// Footholds that VIIP chooses are not planned ones: the yardstick is the nearest edge of the stand
+// that the pattern starts from, the same for every direction.
+double Study::standing_edge_bound() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kEdgeDirections; ++i) {
+    const double angle = 2 * M_PI * i / kEdgeDirections;
+    least = std::min(least, edge_bound(model, stand, 0, {std::cos(angle), std::sin(angle)}));
+  }
+  return least;
+}
+
 PushCase Study::plan(size_t i) const {
   const size_t directions = static_cast<size_t>(options.directions);
   PushCase result;
@@ -282,6 +298,7 @@ PushCase Study::plan(size_t i) const {
   const long k = std::lround(result.phase.at / plan.dt);
   result.bound = capture_bound(capture_region(model, plan, k), u);
   result.edge_bound = edge_bound(model, plan, k, u);
+  if (!series.viip.empty()) result.bound = result.edge_bound = standing_edge_bound();
   return result;
 }
 
@@ -289,7 +306,8 @@ void Study::search(size_t i, PushCase& found) {
   const size_t phase = i / static_cast<size_t>(options.directions);
   for (size_t c = 0; c < controllers.size(); ++c) {
     const Trunk& trunk = trunks[phase * controllers.size() + c];
-    Search search(trunk, options, found, series.dt, options.simulate.seed + 1000 * i, stop);
+    Search search(trunk, options, found, series.dt, !series.viip.empty(),
+                  options.simulate.seed + 1000 * i, stop);
     const PushLimit limit =
         search.find(static_cast<int>(std::lround((c == 0 ? 0.8 : 1.2) / options.step)));
     if (c == 0)
@@ -301,11 +319,15 @@ void Study::search(size_t i, PushCase& found) {
 
 }  // namespace
 
-std::vector<PushPhase> default_push_phases(const CommandSeries& series) {
+namespace {
+
+/// A single support on the left foot.
+struct Interval {
+  size_t before, begin, end;  // start of the double support before it, its own start and end
+};
+
+std::vector<Interval> left_steps(const CommandSeries& series) {
   const std::vector<CommandSample>& s = series.samples;
-  struct Interval {
-    size_t before, begin, end;  // start of the double support before it, its own start and end
-  };
   std::vector<Interval> steps;
   for (size_t k = 1; k < s.size(); ++k) {
     if (s[k].support != Support::left || s[k - 1].support != Support::both) continue;
@@ -314,6 +336,33 @@ std::vector<PushPhase> default_push_phases(const CommandSeries& series) {
     while (step.end < s.size() && s[step.end].support == Support::left) ++step.end;
     steps.push_back(step);
   }
+  return steps;
+}
+
+/// The series with the supports that VIIP makes of it.
+CommandSeries carried(const RobotModel& model, const CommandSeries& series,
+                      const SimulateOptions& options) {
+  SimulateOptions simulate = options;
+  simulate.controller = {"viip", {}};
+  simulate.scenario.clear();
+  Simulator run(model, series, simulate);
+  run.keep_samples(false);
+  CommandSeries result = series;
+  for (CommandSample& s : result.samples) {
+    run.advance(1);
+    s.support = run.plan().support;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<PushPhase> default_push_phases(const RobotModel& model, const CommandSeries& given,
+                                           const SimulateOptions& options) {
+  const bool goals = !given.viip.empty();
+  const CommandSeries series = goals ? carried(model, given, options) : given;
+  const std::vector<CommandSample>& s = series.samples;
+  const std::vector<Interval> steps = left_steps(series);
   std::vector<PushPhase> phases = {{"standing", kStandingPush, true}};
   if (steps.empty()) {
     const double middle = series.dt * std::floor(static_cast<double>(s.size() - 1) / 2);
@@ -326,6 +375,12 @@ std::vector<PushPhase> default_push_phases(const CommandSeries& series) {
            std::round(static_cast<double>(from) + share * static_cast<double>(to - from));
   };
   phases.push_back({"mid double support", time(step.before, step.begin, 0.5), false});
+  if (goals) {
+    phases.erase(phases.begin());
+    phases.push_back({"single support 25 %", time(step.begin, step.end, 0.25), false});
+    phases.push_back({"single support 75 %", time(step.begin, step.end, 0.75), false});
+    return phases;
+  }
   phases.push_back({"single support 11 %", time(step.begin, step.end, 0.11), false});
   phases.push_back({"single support 44 %", time(step.begin, step.end, 0.44), false});
   phases.push_back({"single support 78 %", time(step.begin, step.end, 0.78), false});
@@ -336,8 +391,9 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
                                   const PushOptions& options, const KnownCases& known,
                                   const PushCaseDone& done, const Progress& progress) {
   check_options(options, series);
-  Study study{model, series, options, standing_series(series), options.phases, {{"none", {}}}, {}};
-  if (study.phases.empty()) study.phases = default_push_phases(series);
+  const ControllerSpec open{series.viip.empty() ? "none" : "viip-nofeedback", {}};
+  Study study{model, series, options, standing_series(series), options.phases, {open}, {}};
+  if (study.phases.empty()) study.phases = default_push_phases(model, series, options.simulate);
   for (const ControllerSpec& c : options.controllers) study.controllers.push_back(c);
   const size_t count = study.phases.size() * static_cast<size_t>(options.directions);
   const bool all_known =

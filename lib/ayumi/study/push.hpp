@@ -53,9 +53,11 @@ struct PushLimit {
 /// One phase and direction.
 struct PushCase {
   PushPhase phase;
-  double direction = 0;              ///< of the push, from +x anticlockwise [rad]
-  double bound = 0, edge_bound = 0;  ///< capture_bound(), edge_bound() [N s]
-  PushLimit open_loop;
+  double direction = 0;  ///< of the push, from +x anticlockwise [rad]
+  /// capture_bound(), edge_bound() [N s]. In patterns with VIIP goals both are m omega times the
+  /// way to the nearest edge of the stand they start from: there are no planned footholds.
+  double bound = 0, edge_bound = 0;
+  PushLimit open_loop;            ///< with VIIP goals: their pendulum without feedback
   std::vector<PushLimit> limits;  ///< by PushOptions::controllers
 };
 
@@ -68,8 +70,10 @@ struct PushSummary {
 
 /// Standing, and around the middle step on the left foot: middle of the double support before it
 /// and 11, 44 and 78 % of the single support. Patterns without such a step: standing and their
-/// middle.
-std::vector<PushPhase> default_push_phases(const CommandSeries& series);
+/// middle. With VIIP goals: the middle of the double support and 25 and 75 % of the single support
+/// of the middle step that VIIP makes under `options`.
+std::vector<PushPhase> default_push_phases(const RobotModel& model, const CommandSeries& series,
+                                           const SimulateOptions& options);
 
 /// A finished case by its index, or nothing: taken over instead of being worked out again.
 using KnownCases = std::vector<std::optional<PushCase>>;
