@@ -19,6 +19,7 @@
 #include "ayumi/control/support.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/pattern/foot_plan.hpp"
 
 namespace ayumi {
 
@@ -35,14 +36,8 @@ constexpr double kShiftTime = 2.4;        // least length of the shift, times 1/
 constexpr double kSettle = 5;             // kept for standing after timed steps, times 1/omega
 constexpr double kTouchShare = 0.1;       // of the weight: the swing foot has landed
 constexpr double kTouchAfter = 0.6;       // of the swing: earlier forces are not a landing
-constexpr double kSoftStart = 0.05, kSoftEnd = 0.35;  // of the swing: the foot sets out sideways
-constexpr double kSwingRate = 4;                      // of the way left per time left
-constexpr double kFootClearance = 0.008;              // between the soles' sides [m]
-
-double smooth(double x) {
-  const double s = std::clamp(x, 0.0, 1.0);
-  return s * s * (3 - 2 * s);
-}
+constexpr double kLeastReplan = 0.03;     // a swing is not planned for less than this [s]
+constexpr double kFootClearance = 0.008;  // between the soles' sides [m]
 
 Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
 int index(Side side) { return static_cast<int>(side); }
@@ -186,7 +181,7 @@ Vector2d Viip::clipped(const Vector2d& zmp) const {
   return polygon.empty() ? zmp : polygon.project(zmp);
 }
 
-Vector2d Viip::regulate(const Vector2d& xi, const Vector2d& before) const {
+Vector2d Viip::regulate(const Vector2d& xi, int state) const {
   const auto standing = [&](const Vector2d& goal) -> Vector2d {
     return goal + (1 + params_.q) * (xi - goal);
   };
@@ -194,8 +189,7 @@ Vector2d Viip::regulate(const Vector2d& xi, const Vector2d& before) const {
     const PlannedStep step =
         footsteps_.step(steps_, stance, ground_pose(*model_, stance, plan_.feet[index(stance)]),
                         left, offset_.head<2>());
-    const double growth = std::exp(omega_ * std::max(time, kLeastToLanding));
-    return zmp_to_arrive(xi, step.landing.position + step.offset, growth);
+    return zmp_to_arrive(xi, step.landing.position + step.offset, std::exp(omega_ * time));
   };
   const double single = params_.single / omega_, both = params_.both / omega_;
   switch (stage_) {
@@ -209,13 +203,15 @@ Vector2d Viip::regulate(const Vector2d& xi, const Vector2d& before) const {
       return clipped(standing(step.stance_place + way * std::exp(-params_.single)));
     }
     case Stage::single:
+      // Shortly before the landing only the foothold can still answer.
+      if (single - elapsed_ < kLeastToLanding) return clipped(zmp_[state]);
       return clipped(arriving(anchor_, steps_left_, single - elapsed_));
     case Stage::both: {
       const double share = std::min(1.0, elapsed_ / both);
       const Vector2d after = steps_left_ > 0
                                  ? arriving(other(anchor_), steps_left_, both - elapsed_ + single)
                                  : standing(standing_goal(displacement_[2]).head<2>());
-      return clipped((1 - share) * before + share * after);
+      return clipped((1 - share) * zmp_before_[state] + share * after);
     }
   }
   return clipped(standing(standing_goal(displacement_[2]).head<2>()));
@@ -233,8 +229,8 @@ CogReference Viip::cog_reference(const Estimate& e) {
 
   const Vector2d x = body_.cog().head<2>(), dx = body_.dcog().head<2>();
   const Vector2d x_hat = e.cog.head<2>(), dx_hat = e.dcog.head<2>();
-  zmp_[1] = regulate(x + dx / omega_, zmp_before_[1]);
-  zmp_[0] = params_.feedback ? regulate(x_hat + dx_hat / omega_, zmp_before_[0]) : zmp_[1];
+  zmp_[1] = regulate(x + dx / omega_, 1);
+  zmp_[0] = params_.feedback ? regulate(x_hat + dx_hat / omega_, 0) : zmp_[1];
   ref.zmp << zmp_[0], ground;
   Vector2d ddx = w2 * (x - zmp_[1]);
   if (params_.feedback) {
@@ -252,6 +248,8 @@ CogReference Viip::cog_reference(const Estimate& e) {
 void Viip::start_single() {
   stage_ = Stage::single;
   elapsed_ = 0;
+  swing_rate_.setZero();
+  swing_acceleration_.setZero();
   if (steps_.steps == 0) {
     const double period = (params_.single + params_.both) / omega_;
     const double time = static_cast<double>(ticks_left_) * dt_ - kSettle / omega_;
@@ -260,15 +258,13 @@ void Viip::start_single() {
   footsteps_.meet(anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]));
 }
 
-// The swing foot follows the landing point while it moves, softly at first: a foot that sets out
-// sideways while it still touches drags the robot along.
+// The swing foot lifts off, goes to the landing point, which moves, and comes down.
 void Viip::swing(const Vector2d& xi) {
   const double length = params_.single / omega_;
   const Side foot = other(anchor_);
   const PlannedStep step =
       footsteps_.step(steps_, anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]),
                       steps_left_, offset_.head<2>());
-  const double left = std::max(length - elapsed_, dt_);
   const double growth = std::exp(omega_ * std::max(length - elapsed_, 0.0));
   const Vector2d zmp = zmp_[0];
   Vector2d target = zmp + (xi - zmp) * growth - step.offset;
@@ -286,12 +282,20 @@ void Viip::swing(const Vector2d& xi) {
     way.y() = std::min(way.y(), -beside);
   target = stance.position + Eigen::Rotation2Dd(stance.yaw) * way;
 
-  const double phase = elapsed_ / length;
-  const double start = smooth((phase - kSoftStart) / (kSoftEnd - kSoftStart));
-  const double share = std::min(1.0, kSwingRate * start * dt_ / left);
+  // Least jerk from where the foot is to rest on the target, planned anew in every tick.
   GroundPose at = ground_pose(*model_, foot, plan_.feet[index(foot)]);
-  at.position += share * (target - at.position);
-  at.yaw += share * std::remainder(step.landing.yaw - at.yaw, 2 * M_PI);
+  const double begin = kSwingMargin * length, time = (1 - kSwingMargin) * length - elapsed_;
+  if (elapsed_ > begin && time > dt_) {
+    const Vector3d way_left(target.x() - at.position.x(), target.y() - at.position.y(),
+                            std::remainder(step.landing.yaw - at.yaw, 2 * M_PI));
+    const double t = std::max(time, kLeastReplan);
+    const Vector3d jerk =
+        60 / (t * t * t) * way_left - 36 / (t * t) * swing_rate_ - 9 / t * swing_acceleration_;
+    swing_acceleration_ += dt_ * jerk;
+    swing_rate_ += dt_ * swing_acceleration_;
+    at.position += dt_ * swing_rate_.head<2>();
+    at.yaw += dt_ * swing_rate_.z();
+  }
   const double after = std::min(1.0, (elapsed_ + dt_) / length);
   const double up = std::pow(4 * after * (1 - after), 3);
   const double ground = plan_.feet[index(anchor_)].translation().z();

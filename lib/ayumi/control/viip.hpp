@@ -21,8 +21,8 @@ struct ViipParams {
   double kz = 1.5;       ///< sqrt(K_Pz / m) of (24), times omega
   double dz = 1;         ///< K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
   double ankle = 0.5;    ///< share of the stance foot's tilt taken back at the ankle
-  double single = 2.0;   ///< length of a single support, times 1/omega
-  double both = 0.53;    ///< of a double support, times 1/omega
+  double single = 1.7;   ///< length of a single support, times 1/omega
+  double both = 0.4;     ///< of a double support, times 1/omega
   double lift = 0.09;    ///< of the swing sole, times z
   double reach = 0.36;   ///< largest departure from a nominal foothold, times z
   double hold = 0.3;     ///< share of a foot's error of place taken back by the next step
@@ -63,7 +63,7 @@ class Viip {
   enum class Stage { stand, shift, single, both };
 
   Eigen::Vector3d standing_goal(const Eigen::Vector3d& displacement) const;
-  Eigen::Vector2d regulate(const Eigen::Vector2d& xi, const Eigen::Vector2d& before) const;
+  Eigen::Vector2d regulate(const Eigen::Vector2d& xi, int state) const;
   Eigen::Vector2d clipped(const Eigen::Vector2d& zmp) const;
   CogReference cog_reference(const Estimate& estimate);
   void go_on(const Estimate& estimate);
@@ -89,6 +89,7 @@ class Viip {
   Side anchor_ = Side::left;  // foot the reference stands on
   Footsteps footsteps_;
   Eigen::Vector2d zmp_filtered_;
+  Eigen::Vector3d swing_rate_, swing_acceleration_;  // of x, y, yaw of the foot in the air
   // Clipped ref ZMP by the measured and by the reference state: now, and at the end of the last
   // single support.
   std::array<Eigen::Vector2d, 2> zmp_, zmp_before_;

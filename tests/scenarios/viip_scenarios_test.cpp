@@ -1,0 +1,192 @@
+// VIIP on HOAP-1 in Ayumi's integrator: what a user relies on, in metres, seconds and newton
+// seconds.
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/sim/simulate.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+
+const RobotModel& hoap1() {
+  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  return model;
+}
+
+struct Goal {
+  double until;
+  ViipGoal goal;
+};
+
+Pattern goals(const std::vector<Goal>& list) {
+  Pattern pattern;
+  pattern.robot = "hoap1";
+  pattern.cog_height = 0.225;  // legs bent enough for long steps
+  for (const Goal& each : list)
+    pattern.phases.push_back({each.until, Support::both, {}, each.goal});
+  return pattern;
+}
+
+struct Conditions {
+  std::string profile = "hoap1-strong", controller = "viip";
+  bool noise = false;
+  std::vector<Disturbance> pushes = {};
+};
+
+SimulationLog run(const Pattern& pattern, const Conditions& conditions = {}) {
+  SimulateOptions options;
+  options.controller.type = conditions.controller;
+  options.profile = conditions.profile;
+  options.sensor_noise = conditions.noise;
+  options.scenario = conditions.pushes;
+  return simulate(hoap1(), sample(hoap1(), pattern), options);
+}
+
+StepGoal walk(int steps, double velocity, double turn = 0) {
+  StepGoal goal;
+  goal.steps = steps;
+  goal.velocity.x() = velocity;
+  goal.turn = turn;
+  return goal;
+}
+
+Disturbance push(double at, const Vector3d& direction, double impulse) {
+  Disturbance d;
+  d.at = at;
+  d.duration = 0.02;
+  d.direction = direction.normalized();
+  d.magnitude = impulse;
+  return d;
+}
+
+TEST(ViipHoap1, CogGoesToADisplacementOnBothFeet) {
+  for (const Vector3d& way : {Vector3d(0.02, 0, 0), Vector3d(0.04, 0, 0), Vector3d(0, 0.05, 0),
+                              Vector3d(0, 0, -0.015), Vector3d(0.025, 0.025, -0.015)}) {
+    SCOPED_TRACE(way.transpose());
+    const SimulationLog log = run(goals({{0.5, CogGoal{}}, {3.5, CogGoal{way}}}));
+    EXPECT_EQ(log.result.outcome, Outcome::stands);
+    const Vector3d from = log.samples[499].cog;
+    double settled = 0, squares = 0;
+    for (size_t k = 500; k < 3500; ++k) {
+      const SimulationSample& s = log.samples[k];
+      if ((s.cog - from - way).norm() > 0.002) settled = 1e-3 * static_cast<double>(k - 499);
+      squares += (s.measured_zmp - s.reference_zmp).head<2>().squaredNorm();
+    }
+    EXPECT_LE(settled, 1.1);
+    EXPECT_LE(std::sqrt(squares / 3000), 0.0015);
+    // Height does not overshoot: (25) with the mass.
+    for (const SimulationSample& s : log.samples)
+      EXPECT_GE(s.reference_cog.z() - from.z(), way.z() - 0.0003);
+  }
+}
+
+TEST(ViipHoap1, StepsInPlaceAndStandsWhereItStood) {
+  const SimulationLog log = run(goals({{0.3, CogGoal{}}, {5.8, walk(8, 0)}}));
+  EXPECT_EQ(log.result.outcome, Outcome::stands);
+  EXPECT_EQ(log.result.steps, 8);
+  EXPECT_LE(log.result.final_cog_error, 0.002);
+  EXPECT_LE((log.samples.back().cog - log.samples.front().cog).norm(), 0.015);
+}
+
+TEST(ViipHoap1, WalksAtTheCommandedVelocity) {
+  for (const double velocity : {0.05, 0.15, 0.25}) {
+    SCOPED_TRACE(velocity);
+    const SimulationLog log = run(goals({{0.3, CogGoal{}}, {8.6, walk(14, velocity)}}));
+    EXPECT_EQ(log.result.outcome, Outcome::stands);
+    // Thirteen steps of v T, T = 2.1 / omega.
+    const double way = 13 * velocity * 2.1 / std::sqrt(9.80665 / log.samples[0].cog.z());
+    EXPECT_NEAR(log.samples.back().cog.x() - log.samples.front().cog.x(), way, 0.05 * way);
+    EXPECT_NEAR(log.samples.back().cog.y(), 0, 0.02);
+    EXPECT_LE(log.result.final_cog_error, 0.002);
+  }
+}
+
+TEST(ViipHoap1, RealActuatorsStandStepAndWalkToATenthOfAMetrePerSecond) {
+  Conditions real;
+  real.profile = "hoap1";
+  for (const ViipGoal& goal :
+       {ViipGoal(CogGoal{{0.02, 0, 0}}), ViipGoal(walk(8, 0)), ViipGoal(walk(2, 0.1)),
+        ViipGoal(walk(14, 0.05)), ViipGoal(walk(14, 0.10))})
+    EXPECT_EQ(run(goals({{0.3, CogGoal{}}, {8.6, goal}}), real).result.outcome, Outcome::stands);
+}
+
+TEST(ViipHoap1, StepsWithNoisyLateSensors) {
+  Conditions noisy;
+  noisy.noise = true;
+  for (const double velocity : {0.0, 0.1})
+    EXPECT_EQ(run(goals({{0.3, CogGoal{}}, {8.6, walk(14, velocity)}}), noisy).result.outcome,
+              Outcome::stands);
+}
+
+// A push that the pendulum without feedback does not survive moves the feet.
+TEST(ViipHoap1, APushWhileSteppingMovesTheFeet) {
+  const Pattern steps = goals({{0.3, CogGoal{}}, {7.0, walk(10, 0)}});
+  Conditions pushed;
+  pushed.pushes = {push(2.5, {1, 0, 0}, 1.6)};
+  const SimulationLog log = run(steps, pushed);
+  EXPECT_EQ(log.result.outcome, Outcome::stands);
+  double ahead = 0;
+  for (const SimulationSample& s : log.samples) ahead = std::max(ahead, s.reference_zmp.x());
+  EXPECT_GT(ahead, 0.08);  // beyond the sole it stood on
+  pushed.controller = "viip-nofeedback";
+  EXPECT_EQ(run(steps, pushed).result.outcome, Outcome::fell);
+}
+
+// DTAD -> VIIP walks ahead -> DTAD goes on with its keys where the feet are.
+TEST(ViipHoap1, PhasesPassTheRobotBetweenDtadAndViip) {
+  Pattern pattern = walk_pattern(hoap1(), {.steps = 2});
+  const double first = pattern.duration(), wait = 4.5;
+  Pattern again = pattern;
+  pattern.phases.push_back({first + wait, Support::both, {}, walk(4, 0.08)});
+  // The same steps once more: footholds go on from where the first ones ended.
+  const double x = again.phases[again.phases.size() - 2].swing->to.position.x();
+  for (Phase& phase : again.phases) {
+    phase.until += first + wait;
+    if (phase.swing) phase.swing->to.position.x() += x;
+    pattern.phases.push_back(phase);
+  }
+  for (Keyframe& key : again.keyframes)
+    if (key.t > 0) {
+      key.t += first + wait;
+      pattern.keyframes.push_back(key);
+    }
+  Conditions dtad;
+  dtad.controller = "dtad";
+  const SimulationLog log = run(pattern, dtad);
+  EXPECT_EQ(log.result.outcome, Outcome::stands);
+  EXPECT_LE(log.result.final_cog_error, 0.003);
+  const double period = 2.1 / std::sqrt(9.80665 / log.samples.front().cog.z());
+  EXPECT_NEAR(log.samples.back().cog.x() - log.samples.front().cog.x(), 2 * x + 3 * 0.08 * period,
+              0.02);
+  // Nothing jumps where the laws change.
+  for (const double at : {first, first + wait}) {
+    const size_t k = static_cast<size_t>(std::lround(1e3 * at));
+    for (size_t i = k - 3; i < k + 3; ++i)
+      EXPECT_LT((log.samples[i + 1].target - log.samples[i].target).cwiseAbs().maxCoeff(), 0.01);
+  }
+}
+
+TEST(ViipHoap1, ComplaintsOfPhasesThatCannotBeCarried) {
+  const auto complaint = [](const Pattern& pattern, const std::string& controller) {
+    Conditions conditions;
+    conditions.controller = controller;
+    try {
+      run(pattern, conditions);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_NE(complaint(goals({{0.3, CogGoal{}}, {2, walk(10, 0)}}), "viip").find("10 steps take"),
+            std::string::npos);
+  EXPECT_NE(complaint(stand_pattern(hoap1(), 1), "viip").find("no phase with \"viip\" goals"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ayumi
