@@ -208,10 +208,16 @@ Vector2d Viip::regulate(const Vector2d& xi, int state) const {
       return clipped(arriving(anchor_, steps_left_, single - elapsed_));
     case Stage::both: {
       const double share = std::min(1.0, elapsed_ / both);
-      const Vector2d after = steps_left_ > 0
-                                 ? arriving(other(anchor_), steps_left_, both - elapsed_ + single)
-                                 : standing(standing_goal(displacement_[2]).head<2>());
-      return clipped((1 - share) * zmp_before_[state] + share * after);
+      const Vector2d& before = zmp_before_[state];
+      if (steps_left_ == 0) {
+        const Vector2d after = standing(standing_goal(displacement_[2]).head<2>());
+        return clipped((1 - share) * before + share * after);
+      }
+      // From foot to foot the ZMP goes gradually; what a push asks for beside that, at once.
+      const Side foot = other(anchor_);
+      const Vector2d place = ground_pose(*model_, foot, plan_.feet[index(foot)]).position;
+      const Vector2d after = arriving(foot, steps_left_, both - elapsed_ + single);
+      return clipped((1 - share) * before + share * place + (after - place));
     }
   }
   return clipped(standing(standing_goal(displacement_[2]).head<2>()));
