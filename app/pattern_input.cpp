@@ -1,5 +1,6 @@
 #include "pattern_input.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include "ayumi/base/error.hpp"
@@ -36,15 +37,19 @@ namespace {
 
 // A push on a link that is not there is told before anything is computed.
 void check_scenario(const Pattern& pattern, const RobotModel& model) {
+  std::vector<std::string> links = {"cog"};
+  for (const Link& link : model.links()) links.push_back(link.name);
+  const std::vector<std::string> joints = model.dof_names();
   for (size_t i = 0; i < pattern.scenario.size(); ++i) {
-    const std::string& on = pattern.scenario[i].on;
-    if (on == "cog" || model.find_link(on) >= 0) continue;
-    std::vector<std::string> names = {"cog"};
-    for (const Link& link : model.links()) names.push_back(link.name);
-    fail(ErrorCode::bad_pattern, pattern.file + ": /scenario/" + std::to_string(i) +
-                                     "/on: " + model.name() + " has no link '" + on + "'" +
-                                     text::suggestion(on, names) +
-                                     "; 'cog' pushes through the centre of gravity");
+    const Disturbance& d = pattern.scenario[i];
+    const std::string place = pattern.file + ": /scenario/" + std::to_string(i);
+    if (std::find(links.begin(), links.end(), d.on) == links.end())
+      fail(ErrorCode::bad_pattern, place + "/on: " + model.name() + " has no link '" + d.on + "'" +
+                                       text::suggestion(d.on, links) +
+                                       "; 'cog' pushes through the centre of gravity");
+    if (!d.joint.empty() && std::find(joints.begin(), joints.end(), d.joint) == joints.end())
+      fail(ErrorCode::bad_pattern, place + "/joint: " + model.name() + " has no joint '" + d.joint +
+                                       "'" + text::suggestion(d.joint, joints));
   }
 }
 

@@ -24,6 +24,8 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command.add_flag("--noise", choice.noise, "sensor noise, bias and latency of the sidecar");
+  command.add_flag("--true-state", choice.true_state,
+                   "the controller sees the true state in the world instead of its sensors");
   command.add_option("--substeps", choice.substeps, "integrator steps per servo period")
       ->check(CLI::Range(1, 100).description(""))
       ->type_name("N");
@@ -66,6 +68,7 @@ SimulationLog simulate_once(const Context& context, const PatternInput& input,
   else if (!choice.scenario.empty())
     options.scenario = read_pattern(choice.scenario).scenario;
   options.sensor_noise = choice.noise;
+  options.true_state = choice.true_state;
   options.substeps = choice.substeps;
   options.plant = plant_of(choice.plant);
   options.seed = context.seed;

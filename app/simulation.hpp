@@ -12,6 +12,7 @@ struct SimulationChoice {
   std::string scenario;            ///< "" = the pattern's, "none", or a pattern file whose it is
   std::vector<std::string> gains;  ///< "name=value"
   bool noise = false;              ///< sensor noise, bias and latency of the sidecar
+  bool true_state = false;         ///< instead of sensors and estimator
   int substeps = 1;                ///< of the integrator per servo period
   std::string plant = "ayumi";     ///< "ayumi" or "mujoco"
 };

@@ -73,10 +73,25 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
   for (unsigned seed = 0; seed < 60; ++seed)
     EXPECT_TRUE(schema.accepts(with_comments(pattern_text(random_pattern(seed))))) << seed;
   // Beyond a schema: order of times, meaning of names and expressions, other files, zero vectors.
-  const std::vector<std::string> beyond = {
-      "does not come after",  "carries the robot",     "is already set", "appears twice",
-      "unknown parameter",    "a parameter is",        "no such file",   "the direction is zero",
-      "a point needs a link", "'base.y[m]' is missing"};
+  const std::vector<std::string> beyond = {"does not come after",
+                                           "carries the robot",
+                                           "is already set",
+                                           "appears twice",
+                                           "unknown parameter",
+                                           "a parameter is",
+                                           "no such file",
+                                           "the direction is zero",
+                                           "a point needs a link",
+                                           "a payload needs a link",
+                                           "takes time",
+                                           "does not move",
+                                           "a bump needs",
+                                           "1.5 is above",
+                                           "joint friction needs",
+                                           "the range is empty",
+                                           "only a sine",
+                                           "'frequency' is missing",
+                                           "'base.y[m]' is missing"};
   int judged = 0;
   for (const Broken& each : mistakes()) {
     const std::string reason = message(with(each.key, each.value));

@@ -33,6 +33,15 @@ void expect_same(const Keyframe& a, const Keyframe& b) {
   EXPECT_EQ(a.weights, b.weights);
 }
 
+void expect_same(const FloorMotion& a, const FloorMotion& b) {
+  EXPECT_EQ(a.shape, b.shape);
+  EXPECT_EQ(a.at, b.at);
+  EXPECT_EQ(a.duration, b.duration);
+  EXPECT_EQ(a.frequency, b.frequency);
+  EXPECT_EQ(a.tilt, b.tilt);
+  EXPECT_EQ(a.shift, b.shift);
+}
+
 void expect_same(const Disturbance& a, const Disturbance& b) {
   EXPECT_EQ(a.type, b.type);
   EXPECT_EQ(a.at, b.at);
@@ -43,6 +52,42 @@ void expect_same(const Disturbance& a, const Disturbance& b) {
   EXPECT_EQ(a.direction, b.direction);
   EXPECT_EQ(a.magnitude, b.magnitude);
   EXPECT_EQ(a.shape, b.shape);
+  expect_same(a.floor, b.floor);
+  EXPECT_EQ(a.joint, b.joint);
+  EXPECT_EQ(a.viscous, b.viscous);
+  EXPECT_EQ(a.foot, b.foot);
+  EXPECT_EQ(a.place, b.place);
+  EXPECT_EQ(a.radius, b.radius);
+  EXPECT_EQ(a.force_bias, b.force_bias);
+}
+
+void expect_same(const World& a, const World& b) {
+  EXPECT_EQ(a.friction, b.friction);
+  EXPECT_EQ(a.slope, b.slope);
+  EXPECT_EQ(a.height, b.height);
+  ASSERT_EQ(a.blocks.size(), b.blocks.size());
+  for (size_t i = 0; i < a.blocks.size(); ++i) {
+    EXPECT_EQ(a.blocks[i].kind, b.blocks[i].kind);
+    EXPECT_EQ(a.blocks[i].low, b.blocks[i].low);
+    EXPECT_EQ(a.blocks[i].high, b.blocks[i].high);
+    EXPECT_EQ(a.blocks[i].center, b.blocks[i].center);
+    EXPECT_EQ(a.blocks[i].radius, b.blocks[i].radius);
+    EXPECT_EQ(a.blocks[i].height, b.blocks[i].height);
+  }
+  ASSERT_EQ(a.patches.size(), b.patches.size());
+  for (size_t i = 0; i < a.patches.size(); ++i) {
+    EXPECT_EQ(a.patches[i].low, b.patches[i].low);
+    EXPECT_EQ(a.patches[i].high, b.patches[i].high);
+    EXPECT_EQ(a.patches[i].friction, b.patches[i].friction);
+  }
+  ASSERT_EQ(a.fields.size(), b.fields.size());
+  for (size_t i = 0; i < a.fields.size(); ++i) {
+    EXPECT_EQ(a.fields[i].origin, b.fields[i].origin);
+    EXPECT_EQ(a.fields[i].spacing, b.fields[i].spacing);
+    EXPECT_EQ(a.fields[i].heights, b.fields[i].heights);
+  }
+  ASSERT_EQ(a.motions.size(), b.motions.size());
+  for (size_t i = 0; i < a.motions.size(); ++i) expect_same(a.motions[i], b.motions[i]);
 }
 
 void expect_same(const ViipGoal& a, const ViipGoal& b) {
@@ -89,8 +134,7 @@ void expect_same(const Pattern& a, const Pattern& b) {
   }
   ASSERT_EQ(a.keyframes.size(), b.keyframes.size());
   for (size_t i = 0; i < a.keyframes.size(); ++i) expect_same(a.keyframes[i], b.keyframes[i]);
-  EXPECT_EQ(a.world.friction, b.world.friction);
-  EXPECT_EQ(a.world.slope, b.world.slope);
+  expect_same(a.world, b.world);
   EXPECT_EQ(a.controller.type, b.controller.type);
   EXPECT_EQ(a.controller.gains, b.controller.gains);
   ASSERT_EQ(a.scenario.size(), b.scenario.size());

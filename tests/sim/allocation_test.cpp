@@ -61,7 +61,7 @@ TEST(Allocations, PlantSensorsAndEstimatorHaveNoneAfterTheFirstSteps) {
   Sensors sensors(model, series.dt, true, 1);
   Estimator estimator(model, series.dt);
   plant.set_state(first.state);
-  const std::vector<ExternalWrench> push(1, {-1, {}, {1, 0, 0}, {}});
+  const StepInput push = {{-1, {}, {1, 0, 0}, {}}};
   const auto step = [&](const CommandSample& s) {
     const StepReport& report = plant.step(s.state.theta, push, series.dt);
     estimator.update(sensors.read(plant.state(), plant.data(), report), s.feet);

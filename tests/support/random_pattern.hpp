@@ -90,6 +90,58 @@ inline ViipGoal random_goal(PatternDice& random, bool degrees) {
   }
 }
 
+/// A disturbance of any type but a push, with what its type has.
+inline Disturbance random_disturbance(PatternDice& random) {
+  Disturbance d;
+  d.type = static_cast<DisturbanceType>(3 + random.pick(9));
+  d.at = random.uniform(0, 3);
+  d.duration = random.uniform(0.1, 1);
+  d.magnitude = random.uniform(0, 1);
+  const bool joint = d.type >= DisturbanceType::encoder_offset;
+  if (joint && random.coin()) d.joint = "l_knee";
+  if (d.type == DisturbanceType::encoder_offset) d.magnitude = 0;
+  if (d.type == DisturbanceType::joint_friction) d.viscous = random.uniform(0, 1);
+  if (d.type == DisturbanceType::payload) d.on = "torso";
+  if (d.type == DisturbanceType::payload) d.point.setConstant(random.uniform(-1, 1));
+  if (d.type == DisturbanceType::sensor_bias) d.force_bias = d.magnitude;
+  if (d.type == DisturbanceType::sensor_bias || d.type == DisturbanceType::floor) d.magnitude = 0;
+  if (d.type == DisturbanceType::bump) {
+    if (random.coin()) d.foot = Side::right;
+    d.place = Eigen::Vector2d(random.uniform(-1, 1), random.uniform(-1, 1));
+    d.radius = random.uniform(0.01, 0.1);
+  }
+  if (d.type == DisturbanceType::floor) {
+    d.floor.shape = static_cast<MotionShape>(random.pick(3));
+    if (d.floor.shape == MotionShape::sine) d.floor.frequency = random.uniform(0.1, 2);
+    d.floor.shift = Eigen::Vector3d(random.uniform(-1, 1), 0, random.uniform(-1, 1));
+  }
+  return d;
+}
+
+inline World random_ground(PatternDice& random) {
+  World world;
+  if (random.coin()) world.height = random.uniform(-0.1, 0.1);
+  for (int i = 0; i < random.pick(3); ++i) {
+    GroundBlock block;
+    block.height = random.uniform(-0.1, 0.1);
+    if (random.coin()) {
+      block.kind = GroundBlock::Kind::disc;
+      block.center = Eigen::Vector2d(random.uniform(-1, 1), random.uniform(-1, 1));
+      block.radius = random.uniform(0.01, 1);
+    } else {
+      block.low = Eigen::Vector2d(random.uniform(-1, 0), random.uniform(-1, 0));
+      block.high = Eigen::Vector2d(random.uniform(0.1, 1), random.uniform(0.1, 1));
+    }
+    world.blocks.push_back(block);
+  }
+  if (random.coin()) {
+    world.patches.push_back({{0, random.uniform(-1, 0)}, {1, 2}, random.uniform(0, 1)});
+    world.fields.push_back({{0.1, random.uniform(-1, 1)}, 0.02, Eigen::MatrixXd::Random(3, 2)});
+    world.motions.push_back({MotionShape::sine, 0.5, 2, random.uniform(0.1, 1), {0, 0}, {0, 1, 0}});
+  }
+  return world;
+}
+
 inline Pattern random_pattern(unsigned seed) {
   PatternDice random(seed);
   Pattern p;
@@ -118,12 +170,14 @@ inline Pattern random_pattern(unsigned seed) {
   t = 0;
   for (int i = 0; i <= random.pick(8); ++i)
     p.keyframes.push_back(random_keyframe(random, p.degrees, t += random.uniform(0.1, 1)));
+  p.world = random_ground(random);
   p.world.friction = random.uniform(0, 2);
   if (random.coin()) p.world.slope.y() = random.angle(p.degrees) / 4;
   if (p.degrees)
     p.world.slope.y() = std::round(p.world.slope.y() / kDegreeInRadians) * kDegreeInRadians;
   if (random.coin()) p.controller.gains = {{"ka", random.uniform(0, 3)}, {"q", 0.25}};
   for (int i = 0; i < random.pick(3); ++i) p.scenario.push_back(random_push(random));
+  for (int i = 0; i < random.pick(3); ++i) p.scenario.push_back(random_disturbance(random));
   if (random.coin()) p.tolerances["foot_slip"] = random.uniform(0, 1);
   if (random.coin()) {
     p.correction.emplace();

@@ -1,4 +1,4 @@
-// The parts of a pattern file: phases, keyframes, world, controller, disturbances, correction.
+// The parts of a pattern file: phases, keyframes, controller, correction.
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
@@ -126,27 +126,6 @@ Keyframe read_keyframe(const JsonNode& node, PatternScope& scope) {
   return key;
 }
 
-World read_world(const JsonNode& node, PatternScope& scope) {
-  only_pattern_keys(node, "world");
-  World world;
-  if (const auto friction = node.find("friction"))
-    world.friction = read_number(*friction, scope, 0, 100);
-  const auto ground = node.find("ground");
-  if (!ground) return world;
-  if (ground->value().is_string()) {
-    ground->one_of({"flat"});
-    return world;
-  }
-  only_pattern_keys(*ground, "ground");
-  const char* const names[] = {"roll", "pitch"};
-  for (int i = 0; i < 2; ++i)
-    if (const auto angle = ground->find(names[i])) {
-      world.slope[i] = read_angle(*angle, scope);
-      if (std::abs(world.slope[i]) > 1) angle->complain("a slope above 1 rad is not a ground");
-    }
-  return world;
-}
-
 ControllerSpec read_controller(const JsonNode& node, PatternScope& scope) {
   only_pattern_keys(node, "controller");
   ControllerSpec controller;
@@ -161,42 +140,6 @@ ControllerSpec read_controller(const JsonNode& node, PatternScope& scope) {
   for (const auto& [name, value] : gains->members())
     controller.gains.emplace_back(name, read_number(value, scope));
   return controller;
-}
-
-Disturbance read_disturbance(const JsonNode& node, PatternScope& scope) {
-  only_pattern_keys(node, "disturbance");
-  Disturbance push;
-  const std::string type = node.at("type").one_of({"impulse", "force", "torque"});
-  push.type = type == "impulse" ? DisturbanceType::impulse
-              : type == "force" ? DisturbanceType::force
-                                : DisturbanceType::torque;
-  for (const char* const other : {"impulse", "force", "torque"})
-    if (type != other && node.has(other))
-      node.at(other).complain("the type is \"" + type + "\", which takes \"" + type + "\" only");
-  push.magnitude = read_number(node.at(type), scope, 0, kLargestNumber);
-  push.at = read_time(node.at("at"), scope);
-  push.duration = read_time(node.at("duration"), scope);
-  if (const auto on = node.find("on")) push.on = on->string();
-  if (const auto point = node.find("point")) {
-    if (push.on == "cog")
-      point->complain("a point needs a link to be on: set \"on\" to a link name");
-    push.point = read_vector3(*point, scope);
-  }
-  if (const auto frame = node.find("frame"))
-    push.frame = frame->one_of({"world", "link"}) == "world" ? DisturbanceFrame::world
-                                                             : DisturbanceFrame::link;
-  if (push.frame == DisturbanceFrame::link && push.on == "cog")
-    node.at("frame").complain("\"link\" needs a link: set \"on\" to a link name");
-  push.direction = read_vector3(node.at("direction"), scope);
-  const double length = push.direction.norm();
-  if (!(length > 1e-9)) node.at("direction").complain("the direction is zero");
-  // A unit vector stays as it is, so that writing and reading is the identity.
-  if (std::abs(length - 1) > 1e-15) push.direction /= length;
-  if (const auto shape = node.find("shape"))
-    push.shape = shape->one_of({"rectangle", "half_sine"}) == "rectangle"
-                     ? DisturbanceShape::rectangle
-                     : DisturbanceShape::half_sine;
-  return push;
 }
 
 CorrectionTrack read_correction(const JsonNode& node) {

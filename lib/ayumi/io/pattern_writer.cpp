@@ -1,61 +1,16 @@
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/pattern_scope.hpp"
+#include "ayumi/io/scenario_text.hpp"
 
 namespace ayumi {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string quoted(const std::string& text) {
-  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string number(double value) { return value == 0 ? "0" : text::exact(value); }
-
-// Shortest number of degrees that reads back to the same radians; where no double does, the
-// nearest.
-std::string degrees(double radians) {
-  const double value = radians / kRadiansPerDegree;
-  for (int digits = 1; digits <= 17; ++digits) {
-    const std::string attempt = text::brief(value, digits);
-    double read = 0;
-    std::from_chars(attempt.data(), attempt.data() + attempt.size(), read);
-    if (read * kRadiansPerDegree == radians) return number(read);
-  }
-  return number(value);
-}
-
-// The members of one object or array, in order.
-class Members {
- public:
-  Members& add(const std::string& key, const std::string& value) {
-    items_.push_back(quoted(key) + ": " + value);
-    return *this;
-  }
-  Members& item(const std::string& value) {
-    items_.push_back(value);
-    return *this;
-  }
-  bool empty() const { return items_.empty(); }
-  std::string object() const {
-    return items_.empty() ? "{}" : "{ " + text::join(items_, ", ") + " }";
-  }
-  std::string array() const { return "[" + text::join(items_, ", ") + "]"; }
-  /// One member per line.
-  std::string lines(char open, char close, const std::string& indent) const {
-    return open + ("\n" + indent + "  ") + text::join(items_, ",\n" + indent + "  ") + "\n" +
-           indent + close;
-  }
-
- private:
-  std::vector<std::string> items_;
-};
 
 class Writer {
  public:
@@ -76,10 +31,10 @@ class Writer {
     add_list(top, "keyframes", pattern_.keyframes,
              [this](const Keyframe& each) { return keyframe(each); });
     if (pattern_.table) top.add("table", quoted(pattern_.table->file));
-    add_world(top);
+    top.add("world", world_text(pattern_.world, pattern_.degrees));
     add_controller(top);
     add_list(top, "scenario", pattern_.scenario,
-             [this](const Disturbance& each) { return disturbance(each); });
+             [this](const Disturbance& each) { return disturbance_text(each, pattern_.degrees); });
     add_tolerances(top);
     if (pattern_.correction) top.add("correction", correction_text(*pattern_.correction));
     return top.lines('{', '}', "") + "\n";
@@ -95,9 +50,7 @@ class Writer {
     top.add(key, list.lines('[', ']', "  "));
   }
 
-  std::string angle(double radians) const {
-    return pattern_.degrees ? degrees(radians) : number(radians);
-  }
+  std::string angle(double radians) const { return angle_text(radians, pattern_.degrees); }
 
   std::string joint_angles(const std::map<std::string, double>& joints) const {
     Members members;
@@ -105,16 +58,12 @@ class Writer {
     return members.object();
   }
 
-  static std::string vector(const Eigen::Vector3d& v) {
-    return Members().item(number(v.x())).item(number(v.y())).item(number(v.z())).array();
-  }
-
   std::string foothold(const Foothold& foot) const {
     const Eigen::Vector3d& p = foot.position;
     if (foot.rpy.x() != 0 || foot.rpy.y() != 0) {
       Members rpy;
       for (const double each : foot.rpy) rpy.item(angle(each));
-      return Members().add("position", vector(p)).add("rpy", rpy.array()).object();
+      return Members().add("position", vector_text(p)).add("rpy", rpy.array()).object();
     }
     Members list;
     list.item(number(p.x())).item(number(p.y()));
@@ -153,7 +102,7 @@ class Writer {
   }
 
   std::string goal(const CogGoal& goal) const {
-    return Members().add("cog", vector(goal.displacement)).object();
+    return Members().add("cog", vector_text(goal.displacement)).object();
   }
   std::string goal(const StepGoal& goal) const {
     Members members;
@@ -234,18 +183,6 @@ class Writer {
     return members.object();
   }
 
-  void add_world(Members& top) const {
-    Members world;
-    world.add("friction", number(pattern_.world.friction));
-    const Eigen::Vector2d& slope = pattern_.world.slope;
-    world.add(
-        "ground",
-        slope.isZero(0)
-            ? quoted("flat")
-            : Members().add("roll", angle(slope.x())).add("pitch", angle(slope.y())).object());
-    top.add("world", world.object());
-  }
-
   void add_controller(Members& top) const {
     Members members;
     members.add("type", quoted(pattern_.controller.type));
@@ -253,20 +190,6 @@ class Writer {
     for (const auto& [name, value] : pattern_.controller.gains) gains.add(name, number(value));
     if (!gains.empty()) members.add("gains", gains.object());
     top.add("controller", members.object());
-  }
-
-  std::string disturbance(const Disturbance& push) const {
-    const char* const type = push.type == DisturbanceType::impulse ? "impulse"
-                             : push.type == DisturbanceType::force ? "force"
-                                                                   : "torque";
-    Members members;
-    members.add("type", quoted(type)).add("at", number(push.at));
-    members.add("duration", number(push.duration)).add("on", quoted(push.on));
-    if (push.on != "cog" && !push.point.isZero(0)) members.add("point", vector(push.point));
-    if (push.frame == DisturbanceFrame::link) members.add("frame", quoted("link"));
-    members.add("direction", vector(push.direction)).add(type, number(push.magnitude));
-    if (push.shape == DisturbanceShape::half_sine) members.add("shape", quoted("half_sine"));
-    return members.object();
   }
 
   void add_tolerances(Members& top) const {

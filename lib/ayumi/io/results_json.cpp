@@ -92,6 +92,9 @@ std::string simulation_json(const SimulationLog& log) {
                   {"max_torque_ratio", figure(r.max_torque_ratio)},
                   {"max_penetration_m", figure(r.max_penetration)},
                   {"max_foot_slip_m", figure(r.max_slip)},
+                  {"max_contact_residual_m_s", figure(r.max_contact_residual)},
+                  {"max_contact_iterations", r.max_contact_iterations},
+                  {"mean_contact_iterations", figure(r.mean_contact_iterations)},
                   {"events", events},
                   {"log_hash", log_hash(log)}});
 }

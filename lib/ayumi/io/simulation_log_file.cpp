@@ -8,6 +8,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/json_reader.hpp"
+#include "ayumi/io/scenario_text.hpp"
 #include "ayumi/io/sha256.hpp"
 
 namespace ayumi {
@@ -20,9 +21,6 @@ constexpr char kMagic[] = "AYUMILOG";
 constexpr std::uint32_t kVersion = 1;
 constexpr size_t kPrefix = 16;  // magic, version, header length
 constexpr const char* kOutcomes[] = {"stands", "unsettled", "fell"};
-constexpr const char* kPushTypes[] = {"impulse", "force", "torque"};
-constexpr const char* kPushShapes[] = {"rectangle", "half_sine"};
-constexpr const char* kPushFrames[] = {"world", "link"};
 
 using OrderedJson = nlohmann::ordered_json;
 
@@ -64,6 +62,7 @@ void for_each_field(Sample& s, const Visit& visit) {
   visit("push.point", "m", s.push_point);
   visit("contact.residual", "m/s", s.contact_residual);
   visit("contact.iterations", "1", s.contact_iterations);
+  visit("energy", "J", s.energy);
 }
 
 // Overloads by the type of a field; `joints` names the entries of joint vectors.
@@ -165,43 +164,11 @@ std::vector<std::string> columns_of(const std::vector<std::string>& joints) {
   return names;
 }
 
-OrderedJson array_of(const Eigen::Ref<const Eigen::VectorXd>& v) {
-  OrderedJson list = OrderedJson::array();
-  for (const double value : v) list.push_back(value);
-  return list;
-}
-
-OrderedJson json_of(const Disturbance& push) {
-  return {{"type", kPushTypes[static_cast<int>(push.type)]},
-          {"at", push.at},
-          {"duration", push.duration},
-          {"on", push.on},
-          {"point", array_of(push.point)},
-          {"frame", kPushFrames[static_cast<int>(push.frame)]},
-          {"direction", array_of(push.direction)},
-          {"magnitude", push.magnitude},
-          {"shape", kPushShapes[static_cast<int>(push.shape)]}};
-}
-
 template <size_t N>
 int index_of(const JsonNode& node, const char* const (&names)[N]) {
   const std::vector<std::string> all(names, names + N);
   const std::string name = node.one_of(all);
   return static_cast<int>(std::find(all.begin(), all.end(), name) - all.begin());
-}
-
-Disturbance push_of(const JsonNode& node) {
-  Disturbance push;
-  push.type = static_cast<DisturbanceType>(index_of(node.at("type"), kPushTypes));
-  push.at = node.at("at").number();
-  push.duration = node.at("duration").number();
-  push.on = node.at("on").string();
-  push.point = node.at("point").vector3();
-  push.frame = static_cast<DisturbanceFrame>(index_of(node.at("frame"), kPushFrames));
-  push.direction = node.at("direction").vector3();
-  push.magnitude = node.at("magnitude").number();
-  push.shape = static_cast<DisturbanceShape>(index_of(node.at("shape"), kPushShapes));
-  return push;
 }
 
 // visit(key, figure) for every figure of the result, in file order.
@@ -219,6 +186,9 @@ void for_each_figure(Result& r, const Visit& visit) {
   visit("max_torque_ratio", r.max_torque_ratio);
   visit("max_penetration", r.max_penetration);
   visit("max_slip", r.max_slip);
+  visit("max_contact_residual", r.max_contact_residual);
+  visit("max_contact_iterations", r.max_contact_iterations);
+  visit("mean_contact_iterations", r.mean_contact_iterations);
 }
 
 OrderedJson json_of(const SimulationResult& result) {
@@ -266,9 +236,10 @@ std::string header_of(const SimulationLog& log, const std::string& command_line)
                       [&](const char* key, const std::string& value) { provenance[key] = value; });
   provenance["command_line"] = command_line;
   header["provenance"] = provenance;
-  header["world"] = {{"friction", log.world.friction}, {"slope", array_of(log.world.slope)}};
+  header["world"] = OrderedJson::parse(world_text(log.world, false));
   header["scenario"] = OrderedJson::array();
-  for (const Disturbance& push : log.scenario) header["scenario"].push_back(json_of(push));
+  for (const Disturbance& push : log.scenario)
+    header["scenario"].push_back(OrderedJson::parse(disturbance_text(push, false)));
   header["events"] = OrderedJson::array();
   for (const SimulationEvent& event : log.events)
     header["events"].push_back({{"t", event.t}, {"kind", event.kind}, {"text", event.text}});
@@ -287,9 +258,10 @@ void read_header(const JsonNode& header, SimulationLog& log) {
   for_each_provenance(log.provenance, [&](const char* key, std::string& value) {
     value = provenance.at(key).string();
   });
-  log.world.friction = header.at("world").at("friction").number();
-  log.world.slope = header.at("world").at("slope").vector2();
-  for (const JsonNode& node : header.at("scenario").items()) log.scenario.push_back(push_of(node));
+  PatternScope scope{.parameters = {}, .used = {}, .radians_per_unit = 1.0};
+  log.world = read_world(header.at("world"), scope);
+  for (const JsonNode& node : header.at("scenario").items())
+    log.scenario.push_back(read_disturbance(node, scope));
   for (const JsonNode& node : header.at("events").items())
     log.events.push_back(
         {node.at("t").number(), node.at("kind").string(), node.at("text").string()});

@@ -86,9 +86,9 @@ std::string model_text(const RobotModel& model, const std::vector<ContactPoint>&
       "iterations='100'/>"
       "<default><geom condim='3' solref='0.004 1' solimp='0.95 0.99 0.001' friction='" +
       text::exact(world.friction) +
-      " 0 0'/></default><worldbody><geom name='ground' type='plane' size='0 0 1' quat='" +
-      quadruple(slope) + "' contype='2' conaffinity='1'/>" + body_text(model, points, 0) +
-      "</worldbody><actuator>";
+      " 0 0'/></default><worldbody><geom name='ground' type='plane' size='0 0 1' pos='" +
+      triple(slope * Vector3d(0, 0, world.height)) + "' quat='" + quadruple(slope) +
+      "' contype='2' conaffinity='1'/>" + body_text(model, points, 0) + "</worldbody><actuator>";
   for (int j = 0; j < model.dof_count(); ++j) {
     const std::string kp = text::exact(model.dofs()[static_cast<size_t>(j)].servo.kp);
     out += "<general joint='joint" + std::to_string(j) + "' gainprm='" + kp +
@@ -148,8 +148,7 @@ struct MujocoPlant::Impl {
   void set_exact_numbers();
   void read_state();
   void apply(const ExternalWrench& w);
-  void check_input(const VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
-                   double dt) const;
+  void check_input(const VectorXd& targets, const StepInput& input, double dt) const;
   void limit_torques();
   void report_servos();
   void report_contacts();
@@ -266,8 +265,8 @@ void MujocoPlant::Impl::report_contacts() {
   }
 }
 
-void MujocoPlant::Impl::check_input(const VectorXd& targets,
-                                    const std::vector<ExternalWrench>& wrenches, double dt) const {
+void MujocoPlant::Impl::check_input(const VectorXd& targets, const StepInput& input,
+                                    double dt) const {
   const auto complain = [&](const std::string& what) {
     fail(ErrorCode::usage, model->name() + ": " + what + ", " + text::fixed(d->time, 3) +
                                " s after the plant's start");
@@ -276,9 +275,22 @@ void MujocoPlant::Impl::check_input(const VectorXd& targets,
   if (!(dt > 0 && dt < 1)) complain("step length " + text::brief(dt) + " s is not within 0..1 s");
   if (targets.size() != model->dof_count() || !sound(targets))
     complain("the servo targets are not " + std::to_string(model->dof_count()) + " finite numbers");
-  for (const ExternalWrench& w : wrenches)
+  for (const ExternalWrench& w : input.wrenches)
     if (!(sound(w.force) && sound(w.torque) && sound(w.point)))
       complain("an external force is not a finite number below 1e6");
+  if (!input.payloads.empty() || !input.joints.empty() || input.friction || !input.bumps.empty() ||
+      input.floor)
+    fail(ErrorCode::bad_pattern,
+         "the MuJoCo plant knows impulses, forces and torques only; leave the other disturbances "
+         "out, or use Ayumi's own plant");
+}
+
+void refuse_uneven(const World& world) {
+  if (!world.blocks.empty() || !world.patches.empty() || !world.fields.empty() ||
+      !world.motions.empty())
+    fail(ErrorCode::bad_pattern,
+         "the MuJoCo plant knows one plane at rest with one friction; leave steps, bumps, field, "
+         "patches and motion out of the world, or use Ayumi's own plant");
 }
 
 MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits,
@@ -289,6 +301,7 @@ MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits,
     if (dof.servo.kp <= 0)
       fail(ErrorCode::bad_model,
            model.name() + ": joint " + dof.name + " has no servo (kp); give it one in the sidecar");
+  refuse_uneven(world);
   const std::vector<ContactPoint> points = contact_points(model);
   impl_ = std::make_unique<Impl>(model, limits,
                                  compile(model.name(), model_text(model, points, limits, world)));
@@ -333,16 +346,15 @@ void MujocoPlant::set_state(const RobotState& s) {
   update_velocities(*impl_->model, s, impl_->data);
 }
 
-const StepReport& MujocoPlant::step(const VectorXd& targets,
-                                    const std::vector<ExternalWrench>& wrenches, double dt) {
+const StepReport& MujocoPlant::step(const VectorXd& targets, const StepInput& input, double dt) {
   Impl& p = *impl_;
-  p.check_input(targets, wrenches, dt);
+  p.check_input(targets, input, dt);
   mjData* d = p.d.get();
   p.m->opt.timestep = dt;
   p.limit_torques();
   Eigen::Map<VectorXd>(d->ctrl, p.m->nu) = targets;
   Eigen::Map<VectorXd>(d->xfrc_applied, 6 * p.m->nbody).setZero();
-  for (const ExternalWrench& w : wrenches) p.apply(w);
+  for (const ExternalWrench& w : input.wrenches) p.apply(w);
   mj_step(p.m.get(), d);
   p.read_state();
   if (!p.state.theta.allFinite() || !p.state.base.position.allFinite())

@@ -25,9 +25,9 @@ class MujocoPlant {
   const RobotData& data() const;
   void set_state(const RobotState& state);
 
-  /// As Plant::step().
-  const StepReport& step(const Eigen::VectorXd& targets,
-                         const std::vector<ExternalWrench>& wrenches, double dt);
+  /// As Plant::step(). Throws Error(bad_pattern) for what it does not know: ground that is no plane
+  /// or moves, and disturbances other than impulse, force and torque.
+  const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt);
 
  private:
   struct Impl;

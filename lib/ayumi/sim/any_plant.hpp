@@ -1,7 +1,8 @@
 #pragma once
-// The seam between the simulator and what moves the robot: state in, servo targets and forces from
-// outside in, next state and ground forces out. Any copyable class with the four members below is a
-// plant; a copy of an AnyPlant is a plant of its own that goes on to the last bit as the original.
+// The seam between the simulator and what moves the robot: state in, servo targets and what acts
+// from outside in, next state and ground forces out. Any copyable class with the four members below
+// is a plant; a copy of an AnyPlant is a plant of its own that goes on to the last bit as the
+// original.
 
 #include <any>
 #include <utility>
@@ -24,9 +25,8 @@ class AnyPlant {
   void set_state(const RobotState& state) { calls_->set_state(plant_, state); }
   /// Advances by `dt` [s] with the servo targets [rad, m] held; the report holds until the next
   /// step. Throws Error(usage) with place and time for input that is not finite or beyond 1e6.
-  const StepReport& step(const Eigen::VectorXd& targets,
-                         const std::vector<ExternalWrench>& wrenches, double dt) {
-    return calls_->step(plant_, targets, wrenches, dt);
+  const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt) {
+    return calls_->step(plant_, targets, input, dt);
   }
 
  private:
@@ -34,18 +34,15 @@ class AnyPlant {
     const RobotState& (*state)(const std::any&);
     const RobotData& (*data)(const std::any&);
     void (*set_state)(std::any&, const RobotState&);
-    const StepReport& (*step)(std::any&, const Eigen::VectorXd&, const std::vector<ExternalWrench>&,
-                              double);
+    const StepReport& (*step)(std::any&, const Eigen::VectorXd&, const StepInput&, double);
   };
   template <typename P>
   static constexpr Calls kCalls = {
       [](const std::any& p) -> const RobotState& { return std::any_cast<P>(&p)->state(); },
       [](const std::any& p) -> const RobotData& { return std::any_cast<P>(&p)->data(); },
       [](std::any& p, const RobotState& state) { std::any_cast<P>(&p)->set_state(state); },
-      [](std::any& p, const Eigen::VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
-         double dt) -> const StepReport& {
-        return std::any_cast<P>(&p)->step(targets, wrenches, dt);
-      }};
+      [](std::any& p, const Eigen::VectorXd& targets, const StepInput& input, double dt)
+          -> const StepReport& { return std::any_cast<P>(&p)->step(targets, input, dt); }};
 
   std::any plant_;
   const Calls* calls_;

@@ -9,17 +9,14 @@
 
 namespace ayumi {
 
-/// A point with its spring, and what the last step left in it.
+/// A point with its spring.
 struct ContactPoint {
   int body = 0;
-  Eigen::Vector3d position;                              ///< body frame [m]
-  double radius = 0;                                     ///< of a sphere around it [m]
-  double stiffness = 0;                                  ///< [N/m]
-  double damping_time = 0;                               ///< [s]
-  int side = -1, vertex = -1;                            ///< of a sole, else -1
-  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();     ///< of the last step: warm start
-  Eigen::Vector2d deflection = Eigen::Vector2d::Zero();  ///< of the tangential spring [m]
-  bool touching = false;
+  Eigen::Vector3d position;    ///< body frame [m]
+  double radius = 0;           ///< of a sphere around it [m]
+  double stiffness = 0;        ///< [N/m]
+  double damping_time = 0;     ///< [s]
+  int side = -1, vertex = -1;  ///< of a sole, else -1
 };
 
 /// Consecutive points of one body and a sphere around them, body frame.

@@ -3,13 +3,14 @@
 // State in, joint targets and disturbances in, next state and contact forces out.
 
 #include <Eigen/Dense>
+#include <optional>
 #include <vector>
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/tree_cholesky.hpp"
-#include "ayumi/pattern/scenario.hpp"
 #include "ayumi/sim/contact_points.hpp"
 #include "ayumi/sim/contact_solver.hpp"
+#include "ayumi/sim/ground.hpp"
 #include "ayumi/sim/step.hpp"
 
 namespace ayumi {
@@ -27,26 +28,49 @@ class Plant {
   /// Advances by `dt` [s] with the servo targets held. Throws Error(usage) with place and time for
   /// input that is not finite or beyond 1e6; the plant is then as before. The report holds until
   /// the next step.
-  const StepReport& step(const Eigen::VectorXd& targets,
-                         const std::vector<ExternalWrench>& wrenches, double dt);
+  const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt);
 
  private:
-  void check_input(const Eigen::VectorXd& targets, const std::vector<ExternalWrench>& wrenches,
-                   double dt) const;
+  /// A point that touches, or may within the step.
+  struct Active {
+    long key = 0;   ///< index of the ContactPoint, or beyond them of an inner point of a sole
+    int point = 0;  ///< the ContactPoint, of an inner point its sole's first
+    bool inner = false;
+    double gap = 0;
+    Eigen::Vector3d position;         ///< world [m]
+    Eigen::Matrix3d to_contact;       ///< rows: normal, tangents
+    Eigen::Vector3d ground_velocity;  ///< world [m/s]
+    double friction = 0;
+    Eigen::Vector3d impulse = Eigen::Vector3d::Zero();     ///< of the last step: warm start
+    Eigen::Vector2d deflection = Eigen::Vector2d::Zero();  ///< of the tangential spring [m]
+  };
+
+  void check_input(const Eigen::VectorXd& targets, const StepInput& input, double dt) const;
+  void load(const std::vector<CarriedMass>& payloads);
+  void take_joints(const Eigen::VectorXd& targets, const StepInput& input);
+  /// The robot with what it carries.
+  const RobotModel& moving() const { return loaded_ ? *loaded_ : *model_; }
+
   void collect_contacts(double dt);
-  void assemble(const std::vector<ExternalWrench>& wrenches, double dt);
+  void collect_inner(size_t group, double dt);
+  bool far(double gap, int body, const Active& active, double dt) const;
+  void place_frame(const Eigen::Vector3d& normal, Active& active) const;
+  void remember_impulses();
+  void assemble(const StepInput& input, double dt);
   void push(const ExternalWrench& wrench, double dt);
   void fill_contact_rows(double dt);
   void fill_delassus();
-  void solve_velocity(const Eigen::VectorXd& targets, double dt);
-  bool limit_torques(const Eigen::VectorXd& targets, double dt);
+  void solve_velocity(double dt);
+  bool limit_torques(double dt);
   void report_contacts(double dt);
+  void share_among_cells(const Active& active, const Eigen::Vector3d& force);
   void advance(const Momentum& momentum, double dt);
 
   const RobotModel* model_;
+  std::optional<RobotModel> loaded_;
+  std::vector<CarriedMass> carried_;
   ActuatorLimits limits_;
-  World world_;
-  Eigen::Matrix3d ground_;  // columns: normal, tangents
+  Ground ground_;
   RobotState state_;
   double time_ = 0;  // since set_state() [s]
   RobotData data_;
@@ -55,12 +79,11 @@ class Plant {
   Eigen::VectorXd kp_, kd_, rotor_, viscous_, coulomb_;
 
   // Workspace of step().
-  struct Active {
-    int point;
-    double gap;
-    Eigen::Vector3d position;
-  };
+  Eigen::VectorXd kp_now_, kd_now_, viscous_now_, coulomb_now_, target_now_;
   std::vector<Active> active_, last_active_;
+  std::vector<Eigen::Vector3d> outline_;
+  std::vector<InnerPoint> inner_;
+  std::vector<double> weights_;
   Eigen::MatrixXd M_, system_;
   TreeCholesky factor_;
   /// Contact Jacobians (normal and tangents per velocity column) and L^-T times their transposes,

@@ -17,13 +17,28 @@ Sensors::Sensors(const RobotModel& model, double dt, bool noise, std::uint64_t s
       noise_(noise),
       random_(seed) {
   const double latency = noise ? model.description().sensors.latency : 0.0;
-  ring_.resize(static_cast<size_t>(std::lround(latency / dt)) + 1);
+  latency_ = static_cast<size_t>(std::lround(latency / dt));
+  ring_.resize(latency_ + 1);
+}
+
+void Sensors::reach_back(double latency) {
+  const size_t size = latency_ + static_cast<size_t>(std::lround(latency / dt_)) + 1;
+  if (size <= ring_.size()) return;
+  // Oldest first, so that the newest is the last of those that are filled.
+  std::rotate(ring_.begin(), ring_.begin() + static_cast<long>((newest_ + 1) % ring_.size()),
+              ring_.end());
+  std::rotate(ring_.begin(), ring_.end() - static_cast<long>(filled_), ring_.end());
+  newest_ = filled_ ? filled_ - 1 : 0;
+  ring_.resize(size);
 }
 
 void Sensors::measure(const RobotState& state, const RobotData& truth, const StepReport& report,
+                      const SensorFault& fault, const std::vector<JointFault>& faults,
                       Measurement& m) {
   const SensorDescription& s = model_->description().sensors;
   m.theta = state.theta;
+  for (size_t j = 0; j < faults.size(); ++j)
+    m.theta[static_cast<Eigen::Index>(j)] += faults[j].encoder;
   if (noise_ && s.encoder_quantisation) {
     for (int j = 0; j < model_->dof_count(); ++j) {
       const double counts = std::abs(model_->dofs()[j].encoder.counts_per_degree) * 180.0 / M_PI;
@@ -49,6 +64,9 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
     attitude = exp_rotation(error) * attitude;
     w += noise(s.gyro_noise);
   }
+  if (!fault.tilt.isZero(0))
+    attitude = exp_rotation({fault.tilt.x(), fault.tilt.y(), 0}) * attitude;
+  w += fault.gyro;
   m.attitude = attitude.normalized();
   m.gyro = w;
 
@@ -66,7 +84,7 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
         f += s.force_noise * random_.normal();
         if (s.force_resolution > 0) f = std::round(f / s.force_resolution) * s.force_resolution;
       }
-      f = std::max(f, 0.0);
+      f = std::max(f + fault.force, 0.0);
       load.fz += f;
       moment += f * sole.polygon[i];
     }
@@ -75,12 +93,14 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
 }
 
 const Measurement& Sensors::read(const RobotState& state, const RobotData& truth,
-                                 const StepReport& report) {
+                                 const StepReport& report, const SensorFault& fault,
+                                 const std::vector<JointFault>& faults) {
   newest_ = filled_ ? (newest_ + 1) % ring_.size() : 0;
-  measure(state, truth, report, ring_[newest_]);
+  measure(state, truth, report, fault, faults, ring_[newest_]);
   filled_ = std::min(filled_ + 1, ring_.size());
   // The oldest kept: the very first one until the latency has passed.
-  return ring_[(newest_ + ring_.size() - (filled_ - 1)) % ring_.size()];
+  const size_t wanted = latency_ + static_cast<size_t>(std::lround(fault.latency / dt_));
+  return ring_[(newest_ + ring_.size() - std::min(wanted, filled_ - 1)) % ring_.size()];
 }
 
 }  // namespace ayumi

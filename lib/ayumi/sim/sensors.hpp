@@ -6,6 +6,7 @@
 
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/math/random.hpp"
+#include "ayumi/sim/schedule.hpp"
 #include "ayumi/sim/step.hpp"
 
 namespace ayumi {
@@ -16,12 +17,17 @@ class Sensors {
 
   /// Reads after a plant step: `truth` holds positions and velocities of `state`, the forces are
   /// those of that step. The measurement holds until the next reading.
-  const Measurement& read(const RobotState& state, const RobotData& truth,
-                          const StepReport& report);
+  /// `faults` by dof, or empty.
+  const Measurement& read(const RobotState& state, const RobotData& truth, const StepReport& report,
+                          const SensorFault& fault = {},
+                          const std::vector<JointFault>& faults = {});
+
+  /// Keeps readings for a further latency of up to this [s].
+  void reach_back(double latency);
 
  private:
   void measure(const RobotState& state, const RobotData& truth, const StepReport& report,
-               Measurement& m);
+               const SensorFault& fault, const std::vector<JointFault>& faults, Measurement& m);
 
   const RobotModel* model_;
   int imu_;  // link
@@ -29,7 +35,8 @@ class Sensors {
   bool noise_;
   Random random_;
   Eigen::VectorXd previous_theta_;
-  std::vector<Measurement> ring_;  // latency in ticks + 1 readings, the newest at newest_
+  size_t latency_ = 0;             // of the robot's own sensors [ticks]
+  std::vector<Measurement> ring_;  // the longest latency + 1 readings, the newest at newest_
   size_t newest_ = 0, filled_ = 0;
 };
 

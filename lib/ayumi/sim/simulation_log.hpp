@@ -41,6 +41,7 @@ struct SimulationSample {
   Eigen::Vector3d push_point = Eigen::Vector3d::Zero();  ///< where it acts, world [m]
   double contact_residual = 0;                           ///< of the contact solve [m/s]
   int contact_iterations = 0;
+  double energy = 0;  ///< kinetic (rotors included) and potential over z = 0 [J]
 };
 
 struct SimulationEvent {
@@ -55,18 +56,21 @@ const char* name_of(Outcome outcome);
 /// Verdict and figures of a run, as docs/cli.md defines them.
 struct SimulationResult {
   Outcome outcome = Outcome::unsettled;
-  double fell_at = -1;          ///< [s]; negative when it did not fall
-  double max_tilt = 0;          ///< of the trunk [rad]
-  double final_cog_error = 0;   ///< foot-relative, horizontal [m]
-  double final_speed = 0;       ///< of the COG [m/s]
-  double zmp_tracking_rms = 0;  ///< measured ZMP against reference ZMP [m]
-  double flight = 0;            ///< time without ground contact [s]
-  double apex = 0;              ///< of the COG above its command [m]
-  int steps = 0;                ///< touchdowns
-  double max_speed_ratio = 0;   ///< joint speed / limit
-  double max_torque_ratio = 0;  ///< applied torque / limit
-  double max_penetration = 0;   ///< of a sole vertex [m]
-  double max_slip = 0;          ///< of a supporting foot while planned in contact [m]
+  double fell_at = -1;              ///< [s]; negative when it did not fall
+  double max_tilt = 0;              ///< of the trunk [rad]
+  double final_cog_error = 0;       ///< foot-relative, horizontal [m]
+  double final_speed = 0;           ///< of the COG [m/s]
+  double zmp_tracking_rms = 0;      ///< measured ZMP against reference ZMP [m]
+  double flight = 0;                ///< time without ground contact [s]
+  double apex = 0;                  ///< of the COG above its command [m]
+  int steps = 0;                    ///< touchdowns
+  double max_speed_ratio = 0;       ///< joint speed / limit
+  double max_torque_ratio = 0;      ///< applied torque / limit
+  double max_penetration = 0;       ///< of a sole vertex [m]
+  double max_slip = 0;              ///< of a supporting foot while planned in contact [m]
+  double max_contact_residual = 0;  ///< [m/s]
+  int max_contact_iterations = 0;
+  double mean_contact_iterations = 0;
 };
 
 struct SimulationLog {

@@ -21,26 +21,6 @@ constexpr double kBeforeStart = 0.4;  // servos hold the first posture this long
 constexpr double kAfterFall = 0.8;    // of simulation kept after a fall [s]
 constexpr double kZmpShare = 0.02;    // of the weight below which the ZMP is held
 
-int find_pushed_body(const RobotModel& model, const std::string& name) {
-  if (name == "cog") return -1;
-  const int link = model.find_link(name);
-  if (link >= 0) return link;
-  std::vector<std::string> names;
-  for (const Link& l : model.links()) names.push_back(l.name);
-  fail(ErrorCode::bad_pattern, "scenario: " + model.name() + " has no link '" + name + "'" +
-                                   text::suggestion(name, names) +
-                                   " ('cog' pushes through the centre of gravity)");
-}
-
-/// Share of the rectangle's value in step i of n; the mean over the steps is 1 for impulses.
-double shape_factor(const Disturbance& d, long i, long n) {
-  if (d.shape == DisturbanceShape::rectangle) return 1.0;
-  const double phase = M_PI * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-  if (d.type != DisturbanceType::impulse) return std::sin(phase);
-  // The sum of sin over midpoints is 1 / sin(pi / 2n).
-  return static_cast<double>(n) * std::sin(M_PI / (2.0 * static_cast<double>(n))) * std::sin(phase);
-}
-
 const CommandSeries& checked(const CommandSeries& series, const SimulateOptions& options) {
   if (series.samples.empty()) fail(ErrorCode::bad_pattern, "the command series is empty");
   if (options.substeps < 1) fail(ErrorCode::usage, "substeps must be at least 1");
@@ -63,9 +43,10 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       limits_(model.limits(options.profile)),
       h_(series.dt / options.substeps),
       plant_(make_plant(model, limits_, options)),
-      sensors_(model, series.dt, options.sensor_noise, options.seed),
+      sensors_(model, series.dt, options.sensor_noise && !options.true_state, options.seed),
       estimator_(model, series.dt),
       judge_(model, limits_, options.world),
+      schedule_(model, options.world, h_),
       controller_(model, limits_, series, options.controller) {
   model.sole(Side::left);  // says so when the robot has none
   const CommandSample& first = series.samples.front();
@@ -73,22 +54,15 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
   planned_ = end_ =
       static_cast<long>(series.samples.size()) + std::lround(options.settle / series.dt);
   plant_.set_state(first.state);
-  for (long i = 0; i < std::lround(kBeforeStart / h_); ++i)
-    report_ = plant_.step(first.state.theta, {}, h_);
+  for (long i = -std::lround(kBeforeStart / h_); i < 0; ++i) {
+    schedule_.fill(i, plant_.data(), input_);
+    report_ = plant_.step(first.state.theta, input_, h_);
+  }
 }
 
 void Simulator::set_scenario(const std::vector<Disturbance>& scenario) {
-  pushes_.clear();
-  for (const Disturbance& d : scenario) {
-    Push push{.source = d};
-    push.first = std::lround(d.at / h_);
-    push.count = std::max(1l, std::lround(d.duration / h_));
-    push.per_step = d.type == DisturbanceType::impulse
-                        ? d.magnitude / (static_cast<double>(push.count) * h_)
-                        : d.magnitude;
-    push.body = find_pushed_body(*model_, d.on);
-    pushes_.push_back(push);
-  }
+  schedule_.set(scenario);
+  sensors_.reach_back(schedule_.largest_latency());
   options_.scenario = scenario;
 }
 
@@ -99,28 +73,40 @@ const CommandSample& Simulator::command(long k) const {
 
 double Simulator::time() const { return static_cast<double>(tick_) * series_->dt; }
 
-std::vector<ExternalWrench> Simulator::wrenches(long step) {
-  std::vector<ExternalWrench> result;
-  for (const Push& push : pushes_) {
-    if (step < push.first || step >= push.first + push.count) continue;
-    const Disturbance& d = push.source;
-    ExternalWrench w;
-    const RobotData& data = plant_.data();
-    Vector3d direction = d.direction;
-    if (push.body >= 0) {
-      const Eigen::Isometry3d pose = link_pose(*model_, data, push.body);
-      w.body = model_->links()[push.body].body;
-      w.point = pose * d.point;
-      if (d.frame == DisturbanceFrame::link) direction = pose.linear() * direction;
-    } else if (d.frame == DisturbanceFrame::link) {
-      direction = data.rotation[model_->trunk_body()] * direction;
-    }
-    const Vector3d value =
-        push.per_step * shape_factor(d, step - push.first, push.count) * direction;
-    (d.type == DisturbanceType::torque ? w.torque : w.force) = value;
-    result.push_back(w);
+/// Of the robot without what it carries.
+double Simulator::energy() const {
+  const RobotData& data = plant_.data();
+  double sum = 0;
+  for (size_t b = 0; b < model_->bodies().size(); ++b) {
+    const Inertia& inertia = model_->bodies()[b].inertia;
+    const Eigen::Matrix3d& R = data.rotation[b];
+    const Vector3d com = data.base_position + (data.position[b] + R * inertia.com);
+    const Vector3d w = R.transpose() * data.angular_velocity[b];
+    sum += inertia.mass * point_velocity(data, static_cast<int>(b), com).squaredNorm() +
+           w.dot(inertia.about_com * w) + 2 * inertia.mass * kGravity * com.z();
   }
-  return result;
+  for (int j = 0; j < model_->dof_count(); ++j) {
+    const double rate = plant_.state().dtheta[j];
+    sum += model_->dofs()[j].servo.rotor_inertia * rate * rate;
+  }
+  return 0.5 * sum;
+}
+
+/// What the estimator cannot know: the world's truth in place of the plan frame.
+void Simulator::see_truth() {
+  const RobotData& data = plant_.data();
+  estimate_.state = plant_.state();
+  estimate_.cog = data.cog;
+  estimate_.dcog = data.dcog;
+  double fz = 0;
+  Vector3d moment = Vector3d::Zero();
+  for (const std::vector<SoleForce>& sole : report_.soles)
+    for (const SoleForce& cell : sole) {
+      fz += cell.force.z();
+      moment += cell.force.z() * cell.position;
+    }
+  estimate_.fz = fz;
+  if (fz > kZmpShare * model_->mass() * kGravity) estimate_.zmp = moment / fz;
 }
 
 SimulationSample Simulator::sample(const CommandSample& cmd, const Estimate& estimate,
@@ -165,6 +151,7 @@ SimulationSample Simulator::sample(const CommandSample& cmd, const Estimate& est
   s.zmp = zmp_;
   s.contact_residual = report_.contact_residual;
   s.contact_iterations = report_.contact_iterations;
+  s.energy = energy();
   return s;
 }
 
@@ -175,15 +162,26 @@ void Simulator::note(double t, const std::vector<std::string>& texts) {
 
 void Simulator::step_once() {
   const double t = time();
+  const long step = tick_ * options_.substeps;
+  schedule_.fill(step, plant_.data(), input_);
   plan_ = controller_.plan();
   const CommandSample& cmd = plan_;
-  const Measurement& measurement = sensors_.read(plant_.state(), plant_.data(), report_);
+  const Measurement& measurement = options_.true_state
+                                       ? sensors_.read(plant_.state(), plant_.data(), report_)
+                                       : sensors_.read(plant_.state(), plant_.data(), report_,
+                                                       schedule_.sensor_fault(step), input_.joints);
+  const Vector3d zmp_before = estimate_.zmp;
   estimate_ = estimator_.update(measurement, cmd.feet);
+  if (options_.true_state) {
+    estimate_.zmp = zmp_before;  // held in flight
+    see_truth();
+  }
   const ControlOutput out = controller_.update(estimate_);
   last_ = sample(cmd, estimate_, out);
   if (!last_.state.theta.allFinite() || !last_.state.base.position.allFinite())
     fail(ErrorCode::internal,
          "the simulation left the finite numbers at t = " + text::fixed(t, 3) + " s");
+  if (input_.floor) judge_.set_ground(input_.floor->pose);
   if (judge_.observe(t, cmd, last_, report_, series_->dt)) {
     fell_ = true;
     end_ = std::min(planned_, tick_ + std::lround(kAfterFall / series_->dt));
@@ -192,14 +190,13 @@ void Simulator::step_once() {
   for (int j : report_.saturated)
     note(t, {"torque limit of " + model_->dofs()[j].name + " reached"});
 
+  for (const ExternalWrench& x : input_.wrenches) {
+    last_.push_force += x.force;
+    last_.push_point = x.body < 0 ? last_.cog : x.point;
+  }
   for (int i = 0; i < options_.substeps; ++i) {
-    const std::vector<ExternalWrench> w = wrenches(tick_ * options_.substeps + i);
-    if (i == 0)
-      for (const ExternalWrench& x : w) {
-        last_.push_force += x.force;
-        last_.push_point = x.body < 0 ? last_.cog : x.point;
-      }
-    report_ = plant_.step(out.target, w, h_);
+    if (i > 0) schedule_.fill(step + i, plant_.data(), input_);
+    report_ = plant_.step(out.target, input_, h_);
   }
   if (keep_samples_) samples_.push_back(last_);
   ++tick_;
@@ -233,14 +230,7 @@ SimulationLog Simulator::take_log() {
   log.result = result();
   log.events = judge_.events();
   log.events.insert(log.events.end(), events_.begin(), events_.end());
-  for (const Push& push : pushes_) {
-    const Disturbance& d = push.source;
-    const char* unit = d.type == DisturbanceType::impulse ? " N s"
-                       : d.type == DisturbanceType::force ? " N"
-                                                          : " N m";
-    log.events.push_back({static_cast<double>(push.first) * h_, "push",
-                          text::brief(d.magnitude) + unit + " on " + d.on});
-  }
+  for (const SimulationEvent& event : schedule_.events()) log.events.push_back(event);
   std::stable_sort(log.events.begin(), log.events.end(),
                    [](const SimulationEvent& a, const SimulationEvent& b) { return a.t < b.t; });
   return log;

@@ -8,6 +8,7 @@
 #include "ayumi/base/progress.hpp"
 #include "ayumi/control/controller.hpp"
 #include "ayumi/sim/any_plant.hpp"
+#include "ayumi/sim/schedule.hpp"
 #include "ayumi/sim/sensors.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "ayumi/sim/verdict.hpp"
@@ -50,18 +51,11 @@ class Simulator {
   SimulationLog take_log();
 
  private:
-  /// A disturbance laid out on integrator steps.
-  struct Push {
-    Disturbance source;
-    long first = 0, count = 1;
-    int body = -1;
-    double per_step = 0;  // force or torque of a rectangle [N] or [N m]
-  };
-
   void step_once();
+  double energy() const;
+  void see_truth();
   SimulationSample sample(const CommandSample& cmd, const Estimate& estimate,
                           const ControlOutput& out);
-  std::vector<ExternalWrench> wrenches(long step);
   void note(double t, const std::vector<std::string>& texts);
 
   const RobotModel* model_;
@@ -73,7 +67,8 @@ class Simulator {
   Sensors sensors_;
   Estimator estimator_;
   Judge judge_;
-  std::vector<Push> pushes_;
+  Schedule schedule_;
+  StepInput input_;
   Controller controller_;
   CommandSample plan_;  // of the last tick done
   StepReport report_;

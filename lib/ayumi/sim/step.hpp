@@ -3,7 +3,10 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <optional>
 #include <vector>
+
+#include "ayumi/pattern/world.hpp"
 
 namespace ayumi {
 
@@ -15,7 +18,50 @@ struct ExternalWrench {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< world [N m]
 };
 
-/// Ground force at one vertex of a sole.
+/// A point mass that a link carries.
+struct CarriedMass {
+  int link = 0;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< link frame [m]
+  double mass = 0;                                  ///< [kg]
+  bool operator==(const CarriedMass&) const = default;
+};
+
+/// A disc that rises from the ground.
+struct Bump {
+  GroundBlock block;
+  double rate = 0;  ///< of its height [m/s]
+};
+
+/// Servo and friction of one joint as they are now.
+struct JointFault {
+  double gain = 1;                  ///< times kp and kd
+  double coulomb = 0, viscous = 0;  ///< beyond the joint's own [N m, N m s/rad or N, N s/m]
+  double encoder = 0;               ///< what the encoder reads beyond the truth [rad, m]
+};
+
+/// Where the floor is at the start of a step, and how it moves during it.
+struct FloorPose {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();      ///< ground's frame in the world
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< of the frame's origin [m/s]
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< [rad/s]
+};
+
+/// What acts on the robot from outside during one step.
+struct StepInput {
+  std::vector<ExternalWrench> wrenches;
+  std::vector<CarriedMass> payloads;
+  std::vector<JointFault> joints;  ///< by dof; empty: all sound
+  std::optional<FloorPose> floor;  ///< empty: the world's slope at rest
+  std::optional<double> friction;  ///< of the whole ground
+  std::vector<Bump> bumps;         ///< besides the world's blocks
+
+  StepInput() = default;
+  StepInput(std::vector<ExternalWrench> w) : wrenches(std::move(w)) {}
+  StepInput(std::initializer_list<ExternalWrench> w) : wrenches(w) {}
+};
+
+/// Ground force at one vertex of a sole. Force between the vertices is shared among their cells, so
+/// that total and centre of pressure are right.
 struct SoleForce {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< on the robot, world [N]

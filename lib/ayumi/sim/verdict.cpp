@@ -83,6 +83,10 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
     r.max_tilt = std::max(r.max_tilt, tilt);
     r.apex = std::max(r.apex, sample.cog.z() - command.cog.z());
     r.max_penetration = std::max(r.max_penetration, report.max_penetration);
+    r.max_contact_residual = std::max(r.max_contact_residual, report.contact_residual);
+    r.max_contact_iterations = std::max(r.max_contact_iterations, report.contact_iterations);
+    iterations_ += static_cast<double>(report.contact_iterations);
+    r.mean_contact_iterations = iterations_ / static_cast<double>(++ticks_);
     for (int j = 0; j < model_->dof_count(); ++j) {
       r.max_speed_ratio =
           std::max(r.max_speed_ratio, std::abs(sample.state.dtheta[j]) / limits_.speed[j]);

@@ -14,6 +14,9 @@ class Judge {
  public:
   Judge(const RobotModel& model, const ActuatorLimits& limits, const World& world);
 
+  /// Where the floor is now; at first as the world has it.
+  void set_ground(const Eigen::Isometry3d& pose) { normal_ = pose.linear().col(2); }
+
   /// One control tick: plan, true state and the last step's report. `sample` is the log entry of
   /// this tick. Returns true once, at the tick of the fall.
   bool observe(double t, const CommandSample& command, const SimulationSample& sample,
@@ -35,6 +38,8 @@ class Judge {
   std::vector<SimulationEvent> events_;
   double zmp_square_sum_ = 0;
   long zmp_count_ = 0;
+  double iterations_ = 0;
+  long ticks_ = 0;
   double airborne_ = 0;                      // of the present flight [s]
   std::array<double, 2> unloaded_ = {0, 0};  // time each foot has been off the ground [s]
   std::array<bool, 2> in_stance_ = {false, false};

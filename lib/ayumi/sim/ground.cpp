@@ -1,0 +1,189 @@
+#include "ayumi/sim/ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ayumi {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+// A corner this far below a block's top, or less far than it is inside, stands on the top; deeper
+// it has run into the side.
+constexpr double kLip = 0.001;  // [m]
+constexpr double kDeep =
+    0.005;  // an edge this far inside a sole has met its side, not its face [m]
+constexpr long kBlockIds = 1 << 10, kFieldIds = 1 << 24;
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// The plane of a sole over the ground: height at a place.
+struct Plane {
+  Vector3d origin, normal;
+  double at(const Vector2d& p) const {
+    return origin.z() - normal.head<2>().dot(p - origin.head<2>()) / normal.z();
+  }
+};
+
+bool inside(const std::vector<Vector3d>& polygon, const Vector2d& p) {
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Vector2d a = polygon[i].head<2>(), b = polygon[(i + 1) % polygon.size()].head<2>();
+    if (cross(b - a, p - a) < 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Ground::Block Ground::prepared(const GroundBlock& block, double rise) {
+  Block result;
+  result.count = block_corners(block, result.corner);
+  result.center = block.kind == GroundBlock::Kind::disc ? block.center
+                                                        : Vector2d(0.5 * (block.low + block.high));
+  result.radius = (result.corner[0] - result.center).norm();
+  result.height = block.height;
+  result.rise = rise;
+  return result;
+}
+
+Ground::Ground(const World& world) : world_(world), still_{.pose = floor_pose(world, {}, 0)} {
+  if (!world.fields.empty()) field_ = world.fields.front();
+  fixed_top_ = world.height;
+  if (field_.heights.size() > 0) fixed_top_ = std::max(fixed_top_, field_.heights.maxCoeff());
+  for (const GroundBlock& block : world.blocks) {
+    blocks_.push_back(prepared(block, 0));
+    fixed_top_ = std::max(fixed_top_, block.height);
+  }
+  fixed_ = blocks_.size();
+  set({});
+}
+
+void Ground::set(const StepInput& input) {
+  floor_ = input.floor ? *input.floor : still_;
+  friction_ = input.friction;
+  blocks_.resize(fixed_);
+  top_ = fixed_top_;
+  for (const Bump& bump : input.bumps) {
+    blocks_.push_back(prepared(bump.block, bump.rate));
+    top_ = std::max(top_, bump.block.height);
+  }
+}
+
+double Ground::friction(const Vector3d& p) const {
+  if (friction_) return *friction_;
+  double result = world_.friction;
+  for (const FrictionPatch& patch : world_.patches)
+    if ((p.head<2>() - patch.low).minCoeff() >= 0 && (patch.high - p.head<2>()).minCoeff() >= 0)
+      result = patch.friction;
+  return result;
+}
+
+bool Ground::on_field(const Vector2d& p) const {
+  if (field_.heights.size() == 0) return false;
+  const Vector2d place = (p - field_.origin) / field_.spacing;
+  return place.minCoeff() >= 0 && place.x() <= static_cast<double>(field_.heights.rows() - 1) &&
+         place.y() <= static_cast<double>(field_.heights.cols() - 1);
+}
+
+double Ground::field_height(const Vector2d& p, Vector2d& gradient) const {
+  const Eigen::MatrixXd& z = field_.heights;
+  const Vector2d place = (p - field_.origin) / field_.spacing;
+  const Eigen::Index i = std::min<Eigen::Index>(static_cast<Eigen::Index>(place.x()), z.rows() - 2);
+  const Eigen::Index j = std::min<Eigen::Index>(static_cast<Eigen::Index>(place.y()), z.cols() - 2);
+  const double u = place.x() - static_cast<double>(i), v = place.y() - static_cast<double>(j);
+  gradient << (1 - v) * (z(i + 1, j) - z(i, j)) + v * (z(i + 1, j + 1) - z(i, j + 1)),
+      (1 - u) * (z(i, j + 1) - z(i, j)) + u * (z(i + 1, j + 1) - z(i + 1, j));
+  gradient /= field_.spacing;
+  return (1 - u) * ((1 - v) * z(i, j) + v * z(i, j + 1)) +
+         u * ((1 - v) * z(i + 1, j) + v * z(i + 1, j + 1));
+}
+
+GroundTouch Ground::touch(const Vector3d& p) const {
+  GroundTouch result, wall;
+  double height = world_.height, wall_depth = std::numeric_limits<double>::infinity();
+  if (on_field(p.head<2>())) {
+    Vector2d gradient;
+    height = field_height(p.head<2>(), gradient);
+    result.normal = Vector3d(-gradient.x(), -gradient.y(), 1).normalized();
+  }
+  for (const Block& block : blocks_) {
+    if ((p.head<2>() - block.center).squaredNorm() > block.radius * block.radius) continue;
+    double within = std::numeric_limits<double>::infinity();
+    Vector2d outward = Vector2d::UnitX();
+    for (int k = 0; k < block.count; ++k) {
+      const Vector2d& a = block.corner[static_cast<size_t>(k)];
+      const Vector2d edge =
+          (block.corner[static_cast<size_t>((k + 1) % block.count)] - a).normalized();
+      const double distance = cross(edge, p.head<2>() - a);
+      if (distance >= within) continue;
+      within = distance;
+      outward << edge.y(), -edge.x();
+    }
+    if (within < 0) continue;
+    if (block.height - p.z() > std::max(within, kLip)) {
+      if (within >= wall_depth) continue;
+      wall_depth = within;
+      wall.gap = -within;
+      wall.normal << outward, 0;
+    } else if (block.height > height) {
+      height = block.height;
+      result.normal = Vector3d::UnitZ();
+      result.rise = block.rise;
+    }
+  }
+  result.gap = (p.z() - height) * result.normal.z();
+  return std::isfinite(wall_depth) && result.gap > -kLip ? wall : result;
+}
+
+// Corners of a block within the sole, and crossings of its edges with the sole's.
+void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
+                          std::vector<InnerPoint>& points) const {
+  Vector2d center = Vector2d::Zero();
+  for (const Vector3d& corner : sole) center += corner.head<2>() / static_cast<double>(sole.size());
+  double radius = 0;
+  for (const Vector3d& c : sole) radius = std::max(radius, (c.head<2>() - center).norm());
+  const Plane plane{sole[0], (sole[1] - sole[0]).cross(sole.back() - sole[0]).normalized()};
+  if (plane.normal.z() < 0.5) return;
+  const auto add = [&](long id, const Vector2d& p, double height, double rise) {
+    const double z = plane.at(p), gap = (z - height) * plane.normal.z();
+    if (gap < reach && gap > -kDeep) points.push_back({id, {p.x(), p.y(), z}, gap, rise});
+  };
+  for (size_t b = 0; b < blocks_.size(); ++b) {
+    const Block& block = blocks_[b];
+    if ((block.center - center).norm() > block.radius + radius) continue;
+    const long base = static_cast<long>(b) * kBlockIds;
+    for (int k = 0; k < block.count; ++k) {
+      const Vector2d& p = block.corner[static_cast<size_t>(k)];
+      const Vector2d along = block.corner[static_cast<size_t>((k + 1) % block.count)] - p;
+      if (inside(sole, p)) add(base + k, p, block.height, block.rise);
+      for (size_t i = 0; i < sole.size(); ++i) {
+        const Vector2d a = sole[i].head<2>();
+        const Vector2d edge = sole[(i + 1) % sole.size()].head<2>() - a;
+        const double area = cross(along, edge);
+        if (std::abs(area) < 1e-12) continue;
+        const double s = cross(a - p, edge) / area, t = cross(a - p, along) / area;
+        if (s > 0 && s < 1 && t > 0 && t < 1)
+          add(base + 8 + 8 * static_cast<long>(i) + k, p + s * along, block.height, block.rise);
+      }
+    }
+  }
+  if (field_.heights.size() == 0) return;
+  const Vector2d low = (center.array() - radius).matrix() - field_.origin;
+  const auto first = [&](double x, Eigen::Index n) {
+    return std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::ceil(x / field_.spacing)), 0, n);
+  };
+  const Eigen::Index rows = field_.heights.rows(), columns = field_.heights.cols();
+  const Eigen::Index i1 = first(low.x() + 2 * radius, rows),
+                     j1 = first(low.y() + 2 * radius, columns);
+  for (Eigen::Index i = first(low.x(), rows); i < i1; ++i)
+    for (Eigen::Index j = first(low.y(), columns); j < j1; ++j) {
+      const Vector2d p =
+          field_.origin + field_.spacing * Vector2d(static_cast<double>(i), static_cast<double>(j));
+      if (inside(sole, p)) add(kFieldIds + i * columns + j, p, field_.heights(i, j), 0);
+    }
+}
+
+}  // namespace ayumi

@@ -1,0 +1,72 @@
+#pragma once
+// The ground of one step: the world's shapes with the floor's pose and the bumps of that moment.
+// Points and normals are in the ground's frame (z along the slope's normal) unless said otherwise.
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "ayumi/sim/step.hpp"
+
+namespace ayumi {
+
+/// What a point meets.
+struct GroundTouch {
+  double gap = 0;  ///< along the normal, negative inside [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double rise = 0;  ///< rate of the ground's height there [m/s]
+};
+
+/// Where the ground meets a sole between the sole's corners: a corner or edge of a block, or a node
+/// of the height field.
+struct InnerPoint {
+  long id = 0;              ///< the same in the next step
+  Eigen::Vector3d on_sole;  ///< point of the sole's plane [m]
+  double gap = 0, rise = 0;
+};
+
+class Ground {
+ public:
+  explicit Ground(const World& world);
+
+  /// As it is in the coming step.
+  void set(const StepInput& input);
+
+  /// Only a plane: soles touch with their corners alone.
+  bool plain() const { return blocks_.empty() && field_.heights.size() == 0; }
+  double top() const { return top_; }  ///< of everything [m]
+  const Eigen::Isometry3d& pose() const { return floor_.pose; }
+  Eigen::Vector3d normal() const { return floor_.pose.linear().col(2); }  ///< of the plane, world
+  /// Velocity of the floor at a point, both in the world [m/s].
+  Eigen::Vector3d velocity(const Eigen::Vector3d& p) const {
+    return floor_.velocity + floor_.angular_velocity.cross(p - floor_.pose.translation());
+  }
+
+  GroundTouch touch(const Eigen::Vector3d& p) const;
+  double friction(const Eigen::Vector3d& p) const;
+
+  /// Appends what lies under the convex sole with these corners (anticlockwise seen from above),
+  /// unless it is further below the sole than `reach` [m].
+  void inner_points(const std::vector<Eigen::Vector3d>& sole, double reach,
+                    std::vector<InnerPoint>& points) const;
+
+ private:
+  struct Block {
+    std::array<Eigen::Vector2d, 8> corner;
+    int count = 4;
+    Eigen::Vector2d center;
+    double radius = 0, height = 0, rise = 0;
+  };
+  static Block prepared(const GroundBlock& block, double rise);
+  double field_height(const Eigen::Vector2d& p, Eigen::Vector2d& gradient) const;
+  bool on_field(const Eigen::Vector2d& p) const;
+
+  World world_;
+  HeightField field_;
+  FloorPose still_, floor_;
+  std::vector<Block> blocks_;  // of the world, then the bumps
+  size_t fixed_ = 0;
+  std::optional<double> friction_;
+  double top_ = 0, fixed_top_ = 0;
+};
+
+}  // namespace ayumi

@@ -1,0 +1,264 @@
+// Every disturbance, by what it does to a standing HOAP-1 in N, m and s.
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/simulator.hpp"
+#include "tests/support/walk.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+
+const RobotModel& hoap1() {
+  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  return model;
+}
+
+const CommandSeries& stand() {
+  static const CommandSeries series = test::standing(hoap1(), 2.0);
+  return series;
+}
+
+int dof(const std::string& name) {
+  const std::vector<std::string> names = hoap1().dof_names();
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// From 0.5 s for 1 s.
+Disturbance lasting(DisturbanceType type, double magnitude) {
+  Disturbance d;
+  d.type = type;
+  d.at = 0.5;
+  d.duration = 1.0;
+  d.magnitude = magnitude;
+  return d;
+}
+
+SimulationLog run(const std::vector<Disturbance>& scenario, double friction = 0.8) {
+  SimulateOptions options;
+  options.controller.type = "none";
+  options.settle = 0;
+  options.scenario = scenario;
+  options.world.friction = friction;
+  return simulate(hoap1(), stand(), options);
+}
+
+const SimulationSample& at(const SimulationLog& log, double t) {
+  return log.samples[static_cast<size_t>(std::lround(t / log.dt))];
+}
+
+TEST(Payload, WeighsWhileItIsCarried) {
+  Disturbance d = lasting(DisturbanceType::payload, 0.3);
+  d.on = "r_forearm";
+  d.point = Vector3d(0, 0, -0.05);
+  const SimulationLog log = run({d});
+  const double weight = hoap1().mass() * kGravity;
+  EXPECT_NEAR(at(log, 0.499).fz, weight, 1e-3);
+  EXPECT_GT(std::abs(at(log, 0.501).fz - weight), 1e-3);  // felt in the first step
+  EXPECT_NEAR(at(log, 1.45).fz, weight + 0.3 * kGravity, 0.05);
+  EXPECT_NEAR(at(log, 1.99).fz, weight, 0.05);
+  // ... and leans the ZMP to its side: moments about the ground.
+  const RobotModel& model = hoap1();
+  RobotData data(model);
+  const SimulationSample& s = at(log, 1.45);
+  update_positions(model, s.state, data);
+  const Eigen::Isometry3d hand = link_pose(model, data, model.find_link("r_forearm"));
+  const Vector3d together =
+      (model.mass() * data.cog + 0.3 * (hand * d.point)) / (model.mass() + 0.3);
+  EXPECT_NEAR(s.zmp.y(), together.y(), 2e-4);
+  EXPECT_NEAR(s.cog.y(), together.y(), 1e-9);
+  ASSERT_EQ(log.events.size(), 2u);
+  EXPECT_EQ(log.events[0].t, 0.5);
+  EXPECT_EQ(log.events[0].text, "payload of 0.3 kg on r_forearm");
+  EXPECT_EQ(log.events[1].t, 1.5);
+  EXPECT_EQ(log.events[1].text, "payload of 0.3 kg on r_forearm: over");
+}
+
+// What is there from the start has settled when the run begins.
+TEST(Payload, FromTheStartIsThereWhileTheRobotSettles) {
+  Disturbance d = lasting(DisturbanceType::payload, 0.3);
+  d.at = 0;
+  d.on = "r_forearm";
+  const SimulationLog log = run({d});
+  EXPECT_NEAR(at(log, 0).fz, (hoap1().mass() + 0.3) * kGravity, 0.2);
+}
+
+// A pull that ground of 0.8 holds and ground of 0.1 does not.
+TEST(Friction, LetsTheRobotSlideOnce) {
+  Disturbance pull = lasting(DisturbanceType::force, 0.2 * hoap1().mass() * kGravity);
+  pull.on = "l_foot";
+  pull.direction = Vector3d::UnitY();
+  Disturbance slippery = lasting(DisturbanceType::friction, 0.1);
+  slippery.at = 0.8;
+  slippery.duration = 0.2;
+  const SimulationLog log = run({pull, slippery});
+  EXPECT_LT(std::abs(at(log, 0.79).cog.y() - at(log, 0.49).cog.y()), 0.005);
+  const double slid = at(log, 1.0).cog.y() - at(log, 0.79).cog.y();
+  // Both feet together, from rest: a = (0.2 - 0.1) g, less the upper body's sway.
+  EXPECT_NEAR(slid, 0.5 * 0.1 * kGravity * 0.04, 0.010);
+  EXPECT_GT(slid, 0.010);
+}
+
+// A servo holds a torque with a sag of torque / kp; with half the gain, twice that.
+TEST(GainLoss, SagsByTorqueOverGain) {
+  Disturbance d = lasting(DisturbanceType::gain_loss, 0.5);
+  d.joint = "l_knee";
+  const SimulationLog log = run({d});
+  const int knee = dof("l_knee");
+  const double kp = hoap1().dofs()[static_cast<size_t>(knee)].servo.kp;
+  for (const auto& [t, gain] : {std::pair{0.49, kp}, {1.45, 0.5 * kp}, {1.95, kp}}) {
+    const SimulationSample& s = at(log, t);
+    ASSERT_GT(std::abs(s.torque[knee]), 0.1);
+    EXPECT_NEAR(s.target[knee] - s.state.theta[knee], s.torque[knee] / gain,
+                1e-4 * std::abs(s.torque[knee]) / gain + 1e-7);
+  }
+}
+
+// Servo and controller read the same wrong angle: the joint is off by the offset, and neither
+// knows.
+TEST(EncoderOffset, MovesTheJointUnseen) {
+  Disturbance d = lasting(DisturbanceType::encoder_offset, 0.02);
+  d.joint = hoap1().dof_names().back();
+  SimulateOptions options;
+  options.controller.type = "none";
+  options.scenario = {d};
+  const int j = dof(d.joint);
+  Simulator simulator(hoap1(), stand(), options);
+  simulator.advance(490);
+  const double before = simulator.state().theta[j];
+  const double seen_before = simulator.last_estimate().state.theta[j];
+  simulator.advance(900);
+  EXPECT_NEAR(simulator.state().theta[j] - before, -0.02, 2e-4);
+  EXPECT_NEAR(simulator.last_estimate().state.theta[j] - seen_before, 0, 2e-4);
+}
+
+TEST(JointFriction, HoldsWhatTheServoCannotMove) {
+  const RobotModel& model = hoap1();
+  const int j = model.dof_count() - 1;
+  const double kp = model.dofs()[static_cast<size_t>(j)].servo.kp;
+  StepInput input;
+  input.joints.resize(static_cast<size_t>(model.dof_count()));
+  for (const double coulomb : {0.0, 5.0}) {
+    input.joints[static_cast<size_t>(j)].coulomb = coulomb;
+    Plant plant(model, model.limits(), World{});
+    plant.set_state(stand().samples[0].state);
+    Eigen::VectorXd target = stand().samples[0].state.theta;
+    for (int i = 0; i < 400; ++i) plant.step(target, input, 1e-3);
+    const double before = plant.state().theta[j];
+    target[j] += 0.5 / kp;  // the servo asks for half a newton metre
+    for (int i = 0; i < 300; ++i) plant.step(target, input, 1e-3);
+    const double moved = (plant.state().theta[j] - before) * kp / 0.5;
+    EXPECT_NEAR(moved, coulomb > 0 ? 0 : 1, 0.05);
+  }
+}
+
+// Every reading is three ticks older than without; the motion (open loop) is the same.
+TEST(Latency, DelaysEveryReading) {
+  Disturbance push = lasting(DisturbanceType::impulse, 0.2);
+  push.at = 0.6;
+  push.duration = 0.02;
+  const Disturbance latency = lasting(DisturbanceType::latency, 0.003);
+  const SimulationLog late = run({push, latency}), now = run({push});
+  for (const size_t k : {700u, 900u, 1400u}) {
+    EXPECT_EQ(late.samples[k].cog, now.samples[k].cog);
+    EXPECT_EQ(late.samples[k].measured_fz, now.samples[k - 3].measured_fz);
+  }
+  for (const size_t k : {400u, 1600u})
+    EXPECT_EQ(late.samples[k].measured_fz, now.samples[k].measured_fz);
+}
+
+TEST(SensorBias, TurnsTheAttitudeAndLoadsTheCells) {
+  Disturbance d = lasting(DisturbanceType::sensor_bias, 0);
+  d.tilt_bias = Eigen::Vector2d(0, 0.02);
+  d.force_bias = 0.5;
+  SimulateOptions options;
+  options.controller.type = "none";
+  options.scenario = {d};
+  Simulator simulator(hoap1(), stand(), options);
+  simulator.advance(490);
+  const Estimate before = simulator.last_estimate();
+  simulator.advance(500);
+  const Estimate after = simulator.last_estimate();
+  EXPECT_NEAR(after.state.base.attitude.angularDistance(before.state.base.attitude), 0.02, 1e-4);
+  size_t cells = 0;
+  for (Side side : {Side::left, Side::right}) cells += hoap1().sole(side).polygon.size();
+  EXPECT_NEAR(after.fz - before.fz, 0.5 * static_cast<double>(cells), 0.01);
+  options.true_state = true;
+  Simulator knowing(hoap1(), stand(), options);
+  knowing.advance(990);
+  EXPECT_NEAR((knowing.last_estimate().cog - knowing.last_sample().cog).norm(), 0, 1e-12);
+  EXPECT_EQ(knowing.last_estimate().fz, knowing.last_sample().fz);
+}
+
+TEST(Floor, CarriesAndTiltsTheRobot) {
+  Disturbance d = lasting(DisturbanceType::floor, 0);
+  d.floor.tilt = Eigen::Vector2d(0, 0.03);
+  d.floor.shift = Vector3d(0, 0.02, 0.01);
+  const SimulationLog log = run({d});
+  const auto sole = [&](double t) {
+    RobotData data(hoap1());
+    update_positions(hoap1(), at(log, t).state, data);
+    return sole_pose(hoap1(), data, Side::left);
+  };
+  const Eigen::Isometry3d before = sole(0.49), after = sole(1.99);
+  const Vector3d expected =
+      exp_rotation({0, 0.03, 0}) * before.translation() + Vector3d(0, 0.02, 0.01);
+  EXPECT_LT((after.translation() - expected).norm(), 3e-4);
+  EXPECT_NEAR(matrix_to_rpy(after.linear()).y(), 0.03, 5e-4);
+  EXPECT_EQ(log.result.outcome, Outcome::stands);
+}
+
+TEST(Bump, LiftsTheFootItRisesUnder) {
+  Disturbance d = lasting(DisturbanceType::bump, 0.003);
+  d.foot = Side::left;
+  d.place = hoap1().sole(Side::left).center;
+  d.radius = 0.015;
+  const SimulationLog log = run({d});
+  RobotData data(hoap1());
+  const auto height = [&](double t) {  // of the sole over the bump's middle
+    update_positions(hoap1(), at(log, t).state, data);
+    return (sole_pose(hoap1(), data, Side::left) * Vector3d(d.place.x(), d.place.y(), 0)).z();
+  };
+  EXPECT_NEAR(height(0.49), 0, 1e-4);
+  EXPECT_NEAR(height(1.4), 0.003, 4e-4);
+  EXPECT_NEAR(height(1.99), 0, 2e-4);
+  EXPECT_NEAR(at(log, 1.4).fz, hoap1().mass() * kGravity, 0.3);
+}
+
+TEST(Scenario, UnknownJointsAreNamed) {
+  Disturbance d = lasting(DisturbanceType::gain_loss, 0.5);
+  d.joint = "l_kneee";
+  try {
+    run({d});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("no joint 'l_kneee'; did you mean 'l_knee'"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+// The energy of the log: what gravity gives in a fall is kinetic energy, to the order of the step.
+TEST(Energy, IsKeptInFreeFlight) {
+  CommandSeries series = stand();
+  for (CommandSample& s : series.samples) s.state.base.position.z() += 5;
+  SimulateOptions options;
+  options.controller.type = "none";
+  Simulator simulator(hoap1(), series, options);
+  simulator.advance(1);
+  const double speed = simulator.last_sample().dcog.z();
+  EXPECT_LT(speed, -3);  // it has fallen since the servos were switched on
+  EXPECT_NEAR(
+      simulator.last_sample().energy - simulator.last_sample().cog.z() * hoap1().mass() * kGravity,
+      0.5 * hoap1().mass() * speed * speed, 0.02);
+}
+
+}  // namespace
+}  // namespace ayumi

@@ -1,0 +1,219 @@
+// Ground that is more than a plane, and that moves: closed forms with blocks, and HOAP-1's soles.
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/sim/plant.hpp"
+#include "tests/support/block.hpp"
+#include "tests/support/walk.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kStep = 1e-3;
+
+GroundBlock step_at(const Vector2d& low, const Vector2d& high, double height) {
+  GroundBlock block;
+  block.low = low;
+  block.high = high;
+  block.height = height;
+  return block;
+}
+
+struct BlockIn {
+  BlockIn(const World& world, const Vector3d& place, const Vector3d& size = {0.2, 0.1, 0.04})
+      : model(test::block_description(size, 2.0)), plant(model, model.limits(), world) {
+    RobotState s = model.rest_state();
+    s.base.position = place;
+    plant.set_state(s);
+  }
+  void run(double time, const StepInput& input = {}) {
+    for (long i = 0; i < std::lround(time / kStep); ++i) plant.step(VectorXd(0), input, kStep);
+  }
+  const Vector3d& position() const { return plant.state().base.position; }
+  RobotModel model;
+  Plant plant;
+};
+
+TEST(Ground, BlocksRestOnStepsAndOnThePlaneBelow) {
+  World world;
+  world.height = -0.01;
+  world.blocks.push_back(step_at({-0.5, -0.5}, {0.5, 0.5}, 0.05));
+  BlockIn above(world, {0, 0, 0.08}), beside(world, {0, 1, 0.03});
+  above.run(0.5);
+  beside.run(0.5);
+  EXPECT_NEAR(above.position().z(), 0.07, 1e-6);
+  EXPECT_NEAR(beside.position().z(), 0.01, 1e-6);
+}
+
+TEST(Ground, TheSideOfAStepStopsASlidingBlock) {
+  World world{.friction = 0.1};
+  world.blocks.push_back(step_at({0.3, -1}, {1, 1}, 0.1));
+  BlockIn block(world, {0, 0, 0.02});
+  RobotState s = block.plant.state();
+  s.base_velocity.x() = 1.0;
+  block.plant.set_state(s);
+  block.run(1.0);
+  EXPECT_NEAR(block.position().x(), 0.2, 0.002);  // its front on the riser
+  EXPECT_LT(block.plant.state().base_velocity.norm(), 1e-3);
+}
+
+// On a slope the block sticks on the ground and slides on the patch, by Coulomb's law.
+TEST(Ground, PatchesHaveTheirOwnFriction) {
+  const double angle = 0.3, mu = 0.1;
+  World world{.friction = 0.8, .slope = {0, angle}};
+  world.patches.push_back({{-0.3, -1}, {5, 1}, mu});
+  for (const double y : {0.0, 2.0}) {
+    BlockIn block(world, Vector3d::Zero());
+    RobotState s = block.plant.state();
+    s.base.attitude = exp_rotation({0, angle, 0});
+    s.base.position = s.base.attitude * Vector3d(0, y, 0.02);
+    block.plant.set_state(s);
+    block.run(0.1);
+    const Vector3d start = block.position();
+    const double v0 = block.plant.state().base_velocity.norm();
+    block.run(0.5);
+    const double a = kGravity * (std::sin(angle) - mu * std::cos(angle));
+    const double distance = y > 1 ? 0 : v0 * 0.5 + 0.5 * a * 0.25;
+    EXPECT_NEAR((block.position() - start).norm(), distance, 0.005 * distance + 1e-6);
+  }
+}
+
+// A height field that is an inclined plane is a slope: a second route to the same slide.
+TEST(Ground, AnInclinedFieldIsASlope) {
+  const double angle = 0.3, mu = 0.15;
+  World world{.friction = mu};
+  HeightField field{.origin = {-1, -1}, .spacing = 0.07, .heights = Eigen::MatrixXd(60, 30)};
+  for (Eigen::Index i = 0; i < 60; ++i)
+    field.heights.row(i).setConstant(-std::tan(angle) * (-1 + 0.07 * static_cast<double>(i)));
+  world.fields.push_back(field);
+  BlockIn block(world, Vector3d::Zero());
+  RobotState s = block.plant.state();
+  s.base.attitude = exp_rotation({0, angle, 0});
+  s.base.position = s.base.attitude * Vector3d(0, 0, 0.02);
+  block.plant.set_state(s);
+  block.run(0.1);
+  const Vector3d start = block.position();
+  const double v0 = block.plant.state().base_velocity.norm(), T = 0.6;
+  block.run(T);
+  const double a = kGravity * (std::sin(angle) - mu * std::cos(angle));
+  const double distance = v0 * T + 0.5 * a * T * T;
+  EXPECT_NEAR((block.position() - start).norm(), distance, 0.005 * distance);
+}
+
+/// The floor at step k of a motion, as the simulator gives it.
+StepInput floor_input(const std::vector<FloorMotion>& motions, long k) {
+  const double t = static_cast<double>(k) * kStep;
+  StepInput input;
+  FloorPose floor{.pose = floor_pose({}, motions, t)};
+  const Eigen::Isometry3d next = floor_pose({}, motions, t + kStep);
+  floor.velocity = (next.translation() - floor.pose.translation()) / kStep;
+  floor.angular_velocity =
+      log_rotation(Eigen::Quaterniond(next.linear() * floor.pose.linear().transpose())) / kStep;
+  input.floor = floor;
+  return input;
+}
+
+// Shaken more gently than friction holds, a block goes with the floor; more strongly, it slips.
+TEST(MovingFloor, CarriesABlockAsFarAsFrictionHolds) {
+  const double mu = 0.4, w = 2 * M_PI * 2;
+  for (const double share : {0.8, 1.5}) {
+    const double amplitude = share * mu * kGravity / (w * w);
+    const std::vector<FloorMotion> motions = {
+        {MotionShape::sine, 0.2, 10, 2, {0, 0}, {amplitude, 0, 0}}};
+    BlockIn block(World{.friction = mu}, {0, 0, 0.02});
+    double apart = 0, offset = 0;
+    for (long k = 0; k < 1700; ++k) {
+      block.plant.step(VectorXd(0), floor_input(motions, k), kStep);
+      const double floor =
+          floor_pose({}, motions, static_cast<double>(k + 1) * kStep).translation().x();
+      // The sine begins at full speed: the block has caught up after a moment.
+      if (k == 700) offset = block.position().x() - floor;
+      if (k >= 700) apart = std::max(apart, std::abs(block.position().x() - floor - offset));
+    }
+    if (share < 1) {
+      EXPECT_LT(apart, 1e-6);
+    } else {
+      EXPECT_GT(apart, 0.2 * amplitude);
+    }
+  }
+}
+
+// A slowly tilting floor: the block tips about its lower edge, at the angle where the weight passes
+// over it, and not before.
+TEST(MovingFloor, TipsABlockAtTheRightEdgeAndAngle) {
+  const Vector3d size(0.06, 0.2, 0.2);
+  const double expected = std::atan2(size.x(), size.z());
+  const std::vector<FloorMotion> motions = {{MotionShape::ramp, 0.1, 20, 0, {0, 0.6}, {0, 0, 0}}};
+  BlockIn block(World{.friction = 3}, {0, 0, 0.5 * size.z()}, size);
+  double tipped_at = 0;
+  for (long k = 0; k < 20000 && tipped_at == 0; ++k) {
+    block.plant.step(VectorXd(0), floor_input(motions, k), kStep);
+    const Eigen::Matrix3d floor =
+        floor_pose({}, motions, static_cast<double>(k + 1) * kStep).linear();
+    const Eigen::Matrix3d R = block.plant.state().base.attitude.toRotationMatrix();
+    const double angle = matrix_to_rpy(floor).y();
+    const double tilt = matrix_to_rpy(floor.transpose() * R).y();
+    if (angle < 0.98 * expected) {
+      ASSERT_LT(std::abs(tilt), 1e-4) << "at " << angle;
+    }
+    if (tilt > 0.002) {
+      tipped_at = angle;
+      const Vector3d edge =
+          floor.transpose() * (block.position() + R * Vector3d(0.5 * size.x(), 0, -0.5 * size.z()));
+      EXPECT_NEAR(edge.x(), 0.5 * size.x(), 1e-3);
+      EXPECT_NEAR(edge.z(), 0, 1e-3);
+    }
+  }
+  // From the balance it takes a moment to fall by 2 mrad, while the floor goes on.
+  EXPECT_GT(tipped_at, 0.995 * expected);
+  EXPECT_LT(tipped_at, 1.05 * expected);
+}
+
+// Discs smaller than the soles carry the robot between the corners: the cells share the load so
+// that its centre is on the disc.
+TEST(Ground, BumpsUnderTheSolesCarryBetweenTheirCorners) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const CommandSample start = test::standing(model, 0).samples[0];
+  World world;
+  std::array<Vector2d, 2> centers;
+  for (int side = 0; side < 2; ++side) {
+    const Vector2d c = model.sole(static_cast<Side>(side)).center;
+    centers[side] = (start.feet[side] * Vector3d(c.x(), c.y(), 0)).head<2>();
+    GroundBlock disc;
+    disc.kind = GroundBlock::Kind::disc;
+    disc.center = centers[side];
+    disc.radius = 0.02;
+    disc.height = 0.003;
+    world.blocks.push_back(disc);
+  }
+  Plant plant(model, model.limits(), world);
+  RobotState s = start.state;
+  s.base.position.z() += 0.003;
+  plant.set_state(s);
+  StepReport report;
+  for (int i = 0; i < 1000; ++i) report = plant.step(start.state.theta, {}, kStep);
+  double weight = 0;
+  for (int side = 0; side < 2; ++side) {
+    double fz = 0;
+    Vector3d moment = Vector3d::Zero();
+    for (const SoleForce& cell : report.soles[side]) {
+      fz += cell.force.z();
+      moment += cell.force.z() * cell.position;
+    }
+    EXPECT_LT((moment.head<2>() / fz - centers[side]).norm(), 0.021) << side;
+    EXPECT_NEAR(moment.z() / fz, 0.003, 2e-4);
+    weight += fz;
+  }
+  EXPECT_NEAR(weight, model.mass() * kGravity, 0.05);
+}
+
+}  // namespace
+}  // namespace ayumi
