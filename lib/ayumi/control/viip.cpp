@@ -58,8 +58,9 @@ GroundPose middle(const RobotModel& model, const std::array<Isometry3d, 2>& feet
           left.yaw + 0.5 * std::remainder(right.yaw - left.yaw, 2 * M_PI)};
 }
 
+// The lower foot is on the ground.
 double ground_of(const std::array<Isometry3d, 2>& feet) {
-  return 0.5 * (feet[0].translation().z() + feet[1].translation().z());
+  return std::min(feet[0].translation().z(), feet[1].translation().z());
 }
 
 Vector3d rotated(const Vector3d& v, double yaw) { return rpy_to_matrix({0, 0, yaw}) * v; }
