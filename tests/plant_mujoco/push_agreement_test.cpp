@@ -96,7 +96,7 @@ Comparison compare(const std::vector<double>& times, int directions, int levels,
 }
 
 TEST(PushAgreement, AFewPushesEndTheSame) {
-  const Comparison few = compare({2.0}, 4, 2, 1.6, mujoco_plant_kind());
+  const Comparison few = compare({2.0}, 4, 2, 3.2, mujoco_plant_kind());
   EXPECT_GE(few.same, few.pushes - 1);
   EXPECT_LE(few.farthest, 0.10);
   EXPECT_GT(few.falls, 0);
@@ -104,13 +104,13 @@ TEST(PushAgreement, AFewPushesEndTheSame) {
 }
 
 TEST(PushAgreement, DISABLED_AHundredPushesEndTheSame) {
-  const Comparison all = compare({1.9, 2.1}, 5, 10, 2.0, mujoco_plant_kind());
+  const Comparison all = compare({1.9, 2.1}, 5, 10, 3.5, mujoco_plant_kind());
   EXPECT_GE(all.same, 95);
   EXPECT_LE(all.farthest, 0.10);
 }
 
 TEST(PushAgreement, DISABLED_AHundredPushesWithHalfTheStep) {
-  const Comparison all = compare({1.9, 2.1}, 5, 10, 2.0, {}, 2);
+  const Comparison all = compare({1.9, 2.1}, 5, 10, 3.5, {}, 2);
   EXPECT_GE(all.same, 98);
 }
 
