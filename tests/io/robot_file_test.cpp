@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "ayumi/base/error.hpp"
@@ -84,8 +85,10 @@ TEST(RobotFile, AnEarlierFolderHidesALaterOne) {
   const TemporaryFolder folder;
   folder.write("hoap1/robot.json", read_file(kRobots + "/hoap1/robot.json"));
   const auto found = find_robots({{folder.path(), kRobots}});
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].sidecar, folder.path() / "hoap1/robot.json");
+  const auto is_hoap1 = [](const RobotEntry& entry) { return entry.name == "hoap1"; };
+  ASSERT_EQ(std::count_if(found.begin(), found.end(), is_hoap1), 1);
+  EXPECT_EQ(std::find_if(found.begin(), found.end(), is_hoap1)->sidecar,
+            folder.path() / "hoap1/robot.json");
   EXPECT_THROW(load_robot("hoap2", {{kRobots}}), Error);
 }
 
