@@ -23,6 +23,7 @@ struct Violation {
 struct FindingWindow {
   Violation worst;
   int first = 0, last = 0;  ///< samples
+  int cause = -1;           ///< index of the window this one follows from; -1: its own
 };
 
 /// Violations of one kind and item at most `gap` samples apart are one window. Severity is that of

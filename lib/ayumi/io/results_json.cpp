@@ -30,7 +30,9 @@ OrderedJson json_of(const Finding& f) {
           {"limit", figure(f.limit)},
           {"unit", f.unit},
           {"where", f.where},
-          {"hint", f.hint}};
+          {"hint", f.hint},
+          {"follows_from",
+           f.follows_from.empty() ? OrderedJson(nullptr) : OrderedJson(f.follows_from)}};
 }
 
 OrderedJson json_of(const CheckSummary& s) {

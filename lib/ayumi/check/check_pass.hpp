@@ -1,0 +1,62 @@
+#pragma once
+// One run of the check over a command series: what all its parts read and what they find.
+
+#include "ayumi/check/finding_windows.hpp"
+#include "ayumi/check/motion_dynamics.hpp"
+#include "ayumi/check/self_collision.hpp"
+
+namespace ayumi {
+
+inline constexpr double kWindowGap = 0.020;  ///< violations nearer than this are one finding [s]
+inline constexpr double kRounding = 1e-7;    ///< of lengths that are met exactly [m]
+
+struct CheckPass {
+  CheckPass(const RobotModel& model, const CommandSeries& series, const CheckOptions& options);
+  CheckPass(const CheckPass&) = delete;
+  CheckPass& operator=(const CheckPass&) = delete;
+
+  int count() const { return static_cast<int>(series.samples.size()); }
+  double tolerance(Kind kind) const { return tolerance_of[static_cast<int>(kind)]; }
+
+  /// Notes a violation; `excess` orders the samples of a finding, `detail` is carried along.
+  void add(Kind kind, int item, int sample, double value, double limit, double excess,
+           int detail = 0, Severity severity = Severity::error) {
+    windows.add({kind, item, sample, severity, value, limit, excess, detail});
+  }
+
+  /// Whether the differences that make the rates of sample k mix support and flight: acceleration
+  /// jumps there, and what it needs of the ground is not known.
+  bool at_flight_edge(int k) const;
+
+  const RobotModel& model;
+  const CommandSeries& series;
+  const std::array<double, kKindCount> tolerance_of;
+  const double friction;
+  const ActuatorLimits& limits;
+  const ContactPlan plan;
+  const CollisionModel collisions;
+  MotionDynamics dynamics;
+  const double weight;  ///< [N]
+
+  FindingWindows windows;
+  CheckSummary summary;
+  Eigen::MatrixXd square_sum;         ///< of torques before a sample, dof x (samples + 1)
+  std::vector<double> cog_deviation;  ///< of the posture from the command, by sample [m]
+  std::vector<char> rough;            ///< a joint accelerates beyond the tolerance, by sample
+};
+
+/// Everything that one sample tells by itself.
+void check_samples(CheckPass& pass);
+
+/// Steps between samples that the planned speed does not tell.
+void check_servo_steps(CheckPass& pass);
+/// RMS torque in the thermal window.
+void check_continuous_torque(CheckPass& pass);
+/// Bodies against each other: every 20 ms, then every sample around the places where they are near.
+void check_self_collision(CheckPass& pass);
+
+inline void raise_to(double& maximum, double value) {
+  if (value > maximum) maximum = value;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,69 @@
+// What takes more than one sample to tell.
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/check/check_pass.hpp"
+#include "ayumi/check/collision_scan.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kRefineBelow = 0.010;  // clearance that is worth every sample [m]
+
+void note_clearance(CheckPass& pass, int pair, int k, double clearance) {
+  pass.summary.min_self_clearance = std::min(pass.summary.min_self_clearance, clearance);
+  const double wanted = pass.tolerance(Kind::self_collision);
+  if (clearance < wanted)
+    pass.add(Kind::self_collision, pair, k, clearance, clearance < 0 ? 0 : wanted, -clearance, 0,
+             clearance < 0 ? Severity::error : Severity::warning);
+}
+
+}  // namespace
+
+void check_servo_steps(CheckPass& pass) {
+  const double period = pass.model.description().servo_period, dt = pass.series.dt;
+  const int ticks = std::max(1, static_cast<int>(std::lround(period / dt)));
+  const double most = pass.tolerance(Kind::servo_step);
+  for (int k = ticks; k < pass.count(); ++k) {
+    const RobotState& from = pass.series.samples[k - ticks].state;
+    const RobotState& to = pass.series.samples[k].state;
+    for (int i = 0; i < pass.model.dof_count(); ++i) {
+      const double limit = pass.limits.speed[i], allowed = limit * ticks * dt;
+      if (!std::isfinite(allowed)) continue;
+      const double step = to.theta[i] - from.theta[i], ratio = std::abs(step) / allowed;
+      raise_to(pass.summary.max_servo_step, ratio);
+      const double planned = std::max(std::abs(from.dtheta[i]), std::abs(to.dtheta[i]));
+      // Half a percent: the mean speed of a tick is not the speed at its ends.
+      if (ratio > 1.005 * most && planned <= limit)
+        pass.add(Kind::servo_step, i, k, step, most * allowed, ratio);
+    }
+  }
+}
+
+void check_continuous_torque(CheckPass& pass) {
+  const int whole = static_cast<int>(std::lround(pass.limits.thermal_window / pass.series.dt));
+  const int window = std::clamp(whole, 1, pass.count());
+  const Severity severity = pass.count() >= whole ? Severity::error : Severity::warning;
+  const double most = pass.tolerance(Kind::continuous_torque);
+  for (int i = 0; i < pass.model.dof_count(); ++i) {
+    const double limit = pass.limits.continuous_torque[i];
+    if (!std::isfinite(limit)) continue;
+    for (int end = window; end <= pass.count(); ++end) {
+      const double mean = (pass.square_sum(i, end) - pass.square_sum(i, end - window)) / window;
+      const double rms = std::sqrt(std::max(0.0, mean));
+      raise_to(pass.summary.max_continuous_torque_ratio, rms / limit);
+      if (rms > most * limit)
+        pass.add(Kind::continuous_torque, i, end - 1, rms, most * limit, rms / limit, 0, severity);
+    }
+  }
+}
+
+void check_self_collision(CheckPass& pass) {
+  const double near = pass.tolerance(Kind::self_collision) + kRefineBelow;
+  scan_clearance(
+      pass.model, pass.series, pass.collisions, near,
+      [&pass](int pair, int k, double clearance) { note_clearance(pass, pair, k, clearance); });
+}
+
+}  // namespace ayumi
