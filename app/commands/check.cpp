@@ -1,24 +1,29 @@
 // Is a pattern physically consistent?
 
 #include <chrono>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/pattern_table.hpp"
 #include "ayumi/io/results_json.hpp"
 #include "check_table.hpp"
 #include "pattern_input.hpp"
+#include "signals.hpp"
 
 namespace ayumi::app {
 
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct Options {
   std::vector<std::string> patterns, tolerances;
   PatternOptions input;
-  bool list_tolerances = false;
+  bool list_tolerances = false, watch = false;
 };
 
 void print_tolerances(const Context& context) {
@@ -48,12 +53,71 @@ Json check_one(const Context& context, const Options& options, const std::string
   return json;
 }
 
+// When each of the files behind a pattern was last written; a missing one counts too.
+using Stamps = std::map<fs::path, fs::file_time_type>;
+
+Stamps stamps_of(const std::vector<fs::path>& files) {
+  Stamps stamps;
+  for (const fs::path& file : files) {
+    std::error_code missing;
+    stamps[file] = fs::last_write_time(file, missing);
+  }
+  return stamps;
+}
+
+// What the pattern names now, and what it named before it became unreadable.
+std::vector<fs::path> watched_files(const std::string& file, const Stamps& before) {
+  try {
+    return pattern_files(file);
+  } catch (const Error&) {
+    std::vector<fs::path> files = {file};
+    for (const auto& entry : before) files.push_back(entry.first);
+    return files;
+  }
+}
+
+// A file that is being written may be half there: its mistake is told and the next change awaited.
+void check_once(Context& context, const Options& options, const std::string& file) {
+  try {
+    const Json json = check_one(context, options, file);
+    context.print_json(json.dump());
+    context.exit_code = json["verdict"] == "consistent" ? 0 : 1;
+  } catch (const Error& error) {
+    context.print(std::string(error.what()) + "\n");
+    context.print_json(Json{{"pattern", file}, {"error", error.what()}}.dump());
+    context.exit_code = 3;
+  }
+  std::fflush(stdout);
+}
+
+void wait_or_stop() {
+  if (stop_requested()) throw Interrupted();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
+
+// Until Ctrl-C.
+void watch(Context& context, const Options& options) {
+  if (options.patterns.size() != 1) fail(ErrorCode::usage, "check --watch: name one PATTERN");
+  const std::string& file = options.patterns.front();
+  Stamps seen;
+  while (true) {
+    seen = stamps_of(watched_files(file, seen));
+    check_once(context, options, file);
+    while (stamps_of(watched_files(file, seen)) == seen) wait_or_stop();
+    context.print("\n");
+  }
+}
+
 void check(Context& context, const Options& options) {
   if (options.list_tolerances) {
     print_tolerances(context);
     return;
   }
   if (options.patterns.empty()) fail(ErrorCode::usage, "check: name at least one PATTERN");
+  if (options.watch) {
+    watch(context, options);
+    return;
+  }
   Json all = Json::array();
   bool consistent = true;
   for (const std::string& file : options.patterns) {
@@ -73,7 +137,8 @@ void add_check(CLI::App& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi check patterns/hoap1_walk.json\n"
       "  ayumi check walk.json --profile hoap1-strong --tolerance support_margin=0.01\n"
-      "  ayumi check a.json b.json --json\n  ayumi check --tolerances");
+      "  ayumi check a.json b.json --json\n  ayumi check walk.json --watch\n  ayumi check "
+      "--tolerances");
   static Options options;
   command->add_option("PATTERN", options.patterns, "pattern files");
   command
@@ -82,6 +147,7 @@ void add_check(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command->add_flag("--tolerances", options.list_tolerances,
                     "list all kinds of findings with their tolerances");
+  command->add_flag("--watch", options.watch, "check again at every change, until Ctrl-C");
   add_pattern_options(*command, options.input);
   command->callback([&context] { check(context, options); });
 }

@@ -3,10 +3,14 @@
 // where a finding upstream, at the same place in the motion, is enough to bring it about:
 //   foot      one foot out of its place shows as slip, depth and height: the largest is the cause
 //   posture   an angle beyond its limit, a collision, a foot out of place or a jump between two
-//             samples  ->  forces and residuals, as long as the posture is off the command
+//             samples  ->  forces and residuals, as long as the posture is off the command; an
+//             angle also  ->  its rates and the feet on its leg
+//   phase     a foot that is said to land too early  ->  forces at the other end of that phase,
+//             where the other foot is let go too early
 //   flight    a COG that does not fall freely  ->  the moment of the same force, f_z, COG residual
 //   haste     joints too fast or too weak  ->  forces and residuals that the same path, played
 //             slower, does not have
+//   support   a ZMP outside the sole  ->  leg torques, which no sole could bear
 //   ground    too little friction  ->  too little resistance to turning
 //   command   a posture off the commanded COG  ->  ZMP and f_z off theirs
 #include "ayumi/check/causes.hpp"
@@ -16,6 +20,7 @@
 
 #include "ayumi/base/version.hpp"
 #include "ayumi/check/residuals.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 
 namespace ayumi {
 
@@ -70,8 +75,10 @@ class Causes {
     for (const Kind kind : {Kind::joint_position, Kind::foot_float, Kind::foot_slip,
                             Kind::foot_penetration, Kind::self_collision, Kind::servo_step})
       posture(kind);
+    moved_phase();
     flight();
     haste();
+    support();
     ground();
     command();
     for (FindingWindow& w : windows_)
@@ -147,6 +154,48 @@ class Causes {
     }
   }
 
+  // The supporting foot lands too early and the other one is let go just as much too early, or the
+  // other way round: one phase has moved. The forces of the samples where a foot that still stands
+  // is not counted follow from it.
+  void moved_phase() {
+    for (int i = 0; i < count(); ++i) {
+      if (of(i).kind != Kind::foot_float || !open(i)) continue;
+      const Support here = pass_.series.samples[of(i).sample].support;
+      Span phase = span(i);
+      const auto same = [&](int k) { return pass_.series.samples[k].support == here; };
+      while (phase.first > 0 && same(phase.first - 1)) --phase.first;
+      while (phase.last + 1 < pass_.count() && same(phase.last + 1)) ++phase.last;
+      blame(i, {phase.first - 1, phase.last + 1},
+            [&](int j) { return is_need(of(j)) && another_foot_stands(of(j).sample); });
+    }
+  }
+
+  bool another_foot_stands(int k) const {
+    RobotData data(pass_.model);
+    update_positions(pass_.model, pass_.series.samples[k].state, data);
+    for (const Side side : {Side::left, Side::right}) {
+      const int s = static_cast<int>(side), interval = pass_.plan.index[s][k];
+      if (pass_.plan.at(side, k).contact) continue;
+      for (const int next : {interval - 1, interval + 1}) {
+        if (next < 0 || next >= static_cast<int>(pass_.plan.intervals[s].size())) continue;
+        const SoleError e = sole_error(pass_.model.sole(side), sole_pose(pass_.model, data, side),
+                                       pass_.plan.intervals[s][next].sole);
+        if (e.gap <= pass_.tolerance(Kind::foot_float) &&
+            e.slip <= pass_.tolerance(Kind::foot_slip))
+          return true;
+      }
+    }
+    return false;
+  }
+
+  // No sole can give the moment of a ZMP outside it: the leg torques found for it are no fact.
+  void support() {
+    for (int i = 0; i < count(); ++i)
+      if (of(i).kind == Kind::support_margin && of(i).item == 0 && open(i))
+        blame(i, span(i, kStencil),
+              [&](int j) { return of(j).kind == Kind::joint_torque && in_a_leg(of(j).item); });
+  }
+
   // A force in flight, wherever it acts on the robot, turns it too.
   void flight() {
     const double arm = kReach * pass_.series.samples.front().cog.z();
@@ -188,7 +237,8 @@ class Causes {
     double sum = 0;
     for (int n = 0; n < kThermalLooks; ++n) {
       const int k = v.sample - static_cast<int>(static_cast<long>(n) * length / kThermalLooks);
-      const double torque = pass_.dynamics.at(k, pace).torque[v.item];
+      const double torque = std::min(std::abs(pass_.dynamics.at(k, pace).torque[v.item]),
+                                     pass_.limits.peak_torque[v.item]);
       sum += torque * torque;
     }
     return std::sqrt(sum / kThermalLooks) <= v.limit;

@@ -210,8 +210,10 @@ void check_joint_rates(CheckPass& pass, int k, int i) {
 
 void check_torques(CheckPass& pass, int k, const VectorXd& torque) {
   for (int i = 0; i < pass.model.dof_count(); ++i) {
-    pass.square_sum(i, k + 1) = pass.square_sum(i, k) + torque[i] * torque[i];
     const double limit = pass.limits.peak_torque[i];
+    // A motor gives no more than its peak, so no more than that heats it.
+    const double given = std::min(std::abs(torque[i]), limit);
+    pass.square_sum(i, k + 1) = pass.square_sum(i, k) + given * given;
     if (!std::isfinite(limit)) continue;
     const double ratio = std::abs(torque[i]) / limit, most = pass.tolerance(Kind::joint_torque);
     raise_to(pass.summary.max_torque_ratio, ratio);

@@ -6,6 +6,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/pattern/differentiate.hpp"
 #include "ayumi/pattern/postures.hpp"
 #include "ayumi/pattern/sample_job.hpp"
@@ -79,27 +80,69 @@ void table_base(const SampleJob& job, CommandSeries& series) {
   }
 }
 
-// Planned soles: those of the phases when swings say where the feet go; else where the feet are,
-// and while they carry where they were when they began to.
-void fill_feet(const SampleJob& job, CommandSeries& series) {
-  const bool planned = std::any_of(job.feet.phases().begin(), job.feet.phases().end(),
-                                   [](const Phase& phase) { return phase.swing.has_value(); });
-  series.origin["feet"] = planned ? "phases and swings" : "where the joints put them";
-  RobotData data(job.model);
-  for (int k = 0; k < job.count; ++k) {
-    CommandSample& sample = series.samples[k];
-    const double t = k * job.dt;
-    sample.support = job.feet.support(t);
-    update_positions(job.model, sample.state, data);
-    for (const Side side : kSides) {
-      const int s = static_cast<int>(side);
-      const bool carried = k > 0 && supports(series.samples[k - 1].support, side);
-      sample.feet[s] = planned ? job.feet.pose(side, t)
-                       : carried && supports(sample.support, side)
-                           ? series.samples[k - 1].feet[s]
-                           : sole_pose(job.model, data, side);
+// Where a foot stands from sample `first` to `last`: the median of where the joints put it, so that
+// neither a late landing nor a slip during less than half of the time moves the place.
+Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last) {
+  const int n = last - first + 1;
+  std::array<std::vector<double>, 6> values;
+  const Eigen::Quaterniond turn(soles[first].linear());
+  for (int k = first; k <= last; ++k) {
+    const Vector3d away = log_rotation(Eigen::Quaterniond(soles[k].linear()) * turn.conjugate());
+    for (int i = 0; i < 3; ++i) {
+      values[i].push_back(soles[k].translation()[i]);
+      values[3 + i].push_back(away[i]);
     }
   }
+  std::array<double, 6> median;
+  for (int i = 0; i < 6; ++i) {
+    std::nth_element(values[i].begin(), values[i].begin() + n / 2, values[i].end());
+    median[i] = values[i][n / 2];
+  }
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() = Vector3d(median[0], median[1], median[2]);
+  pose.linear() =
+      (exp_rotation(Vector3d(median[3], median[4], median[5])) * turn).toRotationMatrix();
+  return pose;
+}
+
+void fill_feet_from_joints(CommandSeries& series, const RobotModel& model) {
+  const int count = static_cast<int>(series.samples.size());
+  RobotData data(model);
+  std::array<std::vector<Isometry3d>, 2> soles;
+  for (const CommandSample& sample : series.samples) {
+    update_positions(model, sample.state, data);
+    for (const Side side : kSides)
+      soles[static_cast<int>(side)].push_back(sole_pose(model, data, side));
+  }
+  for (const Side side : kSides) {
+    const auto carries = [&](int k) { return supports(series.samples[k].support, side); };
+    const std::vector<Isometry3d>& own = soles[static_cast<int>(side)];
+    for (int k = 0; k < count;) {
+      int last = k;
+      while (carries(k) && last + 1 < count && carries(last + 1)) ++last;
+      const Isometry3d pose = carries(k) ? median_sole(own, k, last) : own[k];
+      for (; k <= last; ++k) series.samples[k].feet[static_cast<int>(side)] = pose;
+    }
+  }
+}
+
+// Planned soles: those of the phases when swings or keys say where the feet go; else where the
+// joints put them.
+void fill_feet(const SampleJob& job, CommandSeries& series) {
+  const Pattern& pattern = job.pattern;
+  const bool planned = std::any_of(pattern.phases.begin(), pattern.phases.end(),
+                                   [](const Phase& phase) { return phase.swing.has_value(); }) ||
+                       std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(),
+                                   [](const Keyframe& key) { return key.feet[0] || key.feet[1]; });
+  series.origin["feet"] = planned ? "phases and swings" : "where the joints put them";
+  for (int k = 0; k < job.count; ++k) {
+    CommandSample& sample = series.samples[k];
+    sample.support = job.feet.support(k * job.dt);
+    if (!planned) continue;
+    for (const Side side : kSides)
+      sample.feet[static_cast<int>(side)] = job.feet.pose(side, k * job.dt);
+  }
+  if (!planned) fill_feet_from_joints(series, job.model);
 }
 
 void fill_commands(const SampleJob& job, CommandSeries& series) {

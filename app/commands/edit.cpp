@@ -1,0 +1,193 @@
+// Pattern surgery: bake, mirror, retime. The result is sampled and checked before it is written.
+
+#include "ayumi/pattern/edit.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/pattern_table.hpp"
+#include "ayumi/io/results_json.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/study/retime.hpp"
+#include "check_table.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string pattern, out;
+  std::vector<std::string> tolerances;
+  PatternOptions input;
+  double scale = 0;
+  bool to_limits = false;
+};
+
+struct ForceRange {
+  double least = 0, most = 0;  // [N]
+};
+
+ForceRange force_range(const CommandSeries& series) {
+  const auto [least, most] =
+      std::minmax_element(series.samples.begin(), series.samples.end(),
+                          [](const auto& a, const auto& b) { return a.fz < b.fz; });
+  return {least->fz, most->fz};
+}
+
+// The edited pattern, sampled and checked, then written with its table.
+struct Result {
+  CommandSeries series;
+  ConsistencyReport report;
+};
+
+Result check_edited(const Context& context, const Options& options, const PatternInput& input,
+                    const Pattern& edited) {
+  Result result;
+  result.series = sample(input.model, edited, {.dt = input.series.dt}, context.progress());
+  result.report =
+      check_consistency(input.model, result.series, check_options(input, options.tolerances));
+  return result;
+}
+
+void write_edited(Context& context, const Options& options, const Pattern& edited,
+                  const Result& result, const std::string& words, Json json) {
+  refuse_overwriting(context, options.out);
+  if (edited.table) refuse_overwriting(context, table_beside(options.out));
+  write_pattern_and_table(options.out, edited);
+  context.print(options.out + ": " + (result.report.consistent ? "consistent" : "INCONSISTENT") +
+                ", " + text::fixed(result.series.duration(), 2) + " s\n" + words +
+                check_table(result.report));
+  json["output"] = options.out;
+  json["table"] = edited.table ? Json(table_beside(options.out).string()) : Json(nullptr);
+  json["duration_s"] = result.series.duration();
+  json["check"] = Json::parse(check_json(result.report));
+  context.print_json(json.dump(2));
+  context.exit_code = result.report.consistent ? 0 : 1;
+}
+
+PatternInput load(const Context& context, const Options& options) {
+  refuse_overwriting(context, options.out);
+  return load_pattern(context, options.pattern, options.input);
+}
+
+void bake(Context& context, const Options& options) {
+  const PatternInput input = load(context, options);
+  const Pattern edited =
+      baked(input.model, input.pattern, input.series, table_beside(options.out).string());
+  write_edited(context, options, edited, check_edited(context, options, input, edited), "",
+               Json{{"rows", input.series.samples.size()}});
+}
+
+void mirror(Context& context, const Options& options) {
+  const PatternInput input = load(context, options);
+  const Pattern edited = mirrored(input.model, input.pattern);
+  write_edited(context, options, edited, check_edited(context, options, input, edited), "",
+               Json::object());
+}
+
+std::string in_words(double scale, const ConsistencyReport& before, const ForceRange& force_before,
+                     const Result& after, const FastestPace* pace) {
+  const ForceRange force = force_range(after.series);
+  const auto mm = [](double metres) { return text::fixed(1e3 * metres, 1); };
+  const auto newtons = [](const ForceRange& f) {
+    return text::fixed(f.least, 1) + " to " + text::fixed(f.most, 1) + " N";
+  };
+  std::string out = "  " + text::brief(scale) + " of the time\n";
+  if (pace)
+    out += pace->bounded ? "  faster breaks " + pace->limited_by + "\n"
+                         : "  nothing limits it down to this scale\n";
+  return out + "  ZMP margin " + mm(before.summary.min_zmp_margin) + " mm before, " +
+         mm(after.report.summary.min_zmp_margin) + " mm now; f_z " + newtons(force_before) +
+         " before, " + newtons(force) + " now\n";
+}
+
+Json in_json(double scale, const ConsistencyReport& before, const ForceRange& force_before,
+             const Result& after, const FastestPace* pace) {
+  const ForceRange force = force_range(after.series);
+  Json json = {{"scale", scale}};
+  if (pace) json["limited_by"] = pace->bounded ? Json(pace->limited_by) : Json(nullptr);
+  json["zmp_margin_m"] = {{"before", before.summary.min_zmp_margin},
+                          {"after", after.report.summary.min_zmp_margin}};
+  json["fz_N"] = {{"before", {force_before.least, force_before.most}},
+                  {"after", {force.least, force.most}}};
+  return json;
+}
+
+FastestPace limits_of(const Context& context, const Options& options, const PatternInput& input) {
+  RetimeOptions retime;
+  retime.check = check_options(input, options.tolerances);
+  retime.dt = input.series.dt;
+  FastestPace pace = fastest_pace(input.model, input.pattern, retime, context.progress());
+  if (!pace.found)
+    fail(ErrorCode::solver, options.pattern + ": no uniform scaling up to " +
+                                text::brief(retime.slowest) + " passes the check; last: " +
+                                pace.limited_by + "; time alone does not mend it, try repair");
+  return pace;
+}
+
+void retime(Context& context, const Options& options) {
+  if (options.to_limits == (options.scale != 0))
+    fail(ErrorCode::usage, "edit retime: give either --scale S or --to-limits");
+  const PatternInput input = load(context, options);
+  const ConsistencyReport before =
+      check_consistency(input.model, input.series, check_options(input, options.tolerances));
+  FastestPace pace;
+  if (options.to_limits) pace = limits_of(context, options, input);
+  const double scale = options.to_limits ? pace.scale : options.scale;
+  const Pattern edited = retimed(input.model, input.pattern, scale);
+  const Result result = check_edited(context, options, input, edited);
+  const ForceRange force = force_range(input.series);
+  const FastestPace* const found = options.to_limits ? &pace : nullptr;
+  write_edited(context, options, edited, result, in_words(scale, before, force, result, found),
+               in_json(scale, before, force, result, found));
+}
+
+CLI::App& add_edit_of(CLI::App& parent, const std::string& name, const std::string& what,
+                      Options& options) {
+  CLI::App* command = parent.add_subcommand(name, what);
+  command->add_option("PATTERN", options.pattern, "pattern file")->required();
+  command->add_option("-o,--out", options.out, "pattern file to write")->required()->type_name("F");
+  command
+      ->add_option("--tolerance", options.tolerances, "of one kind of finding, over the pattern's")
+      ->type_name("KIND=VALUE")
+      ->allow_extra_args(false);
+  add_pattern_options(*command, options.input);
+  return *command;
+}
+
+}  // namespace
+
+void add_edit(CLI::App& app, Context& context) {
+  CLI::App* command =
+      app.add_subcommand("edit", "pattern surgery that re-checks the result: bake, mirror, retime");
+  command->require_subcommand(1);
+  command->footer(
+      "Examples:\n  ayumi edit mirror walk.json -o mirrored.json\n"
+      "  ayumi edit retime walk.json --scale 1.25 -o slower.json\n"
+      "  ayumi edit retime walk.json --to-limits -o fastest.json\n"
+      "  ayumi edit bake walk.json -o baked.json");
+  static Options options;
+  add_edit_of(*command, "bake", "the motion as a dense table of theta, COG, ZMP, f_z and base",
+              options)
+      .callback([&context] { bake(context, options); });
+  add_edit_of(*command, "mirror", "left for right", options).callback([&context] {
+    mirror(context, options);
+  });
+  CLI::App& retime_command =
+      add_edit_of(*command, "retime", "the same motion in another time", options);
+  retime_command.add_option("--scale", options.scale, "of the time: 0.8 is faster")
+      ->check(CLI::Range(0.01, 100.0))
+      ->type_name("S");
+  retime_command.add_flag("--to-limits", options.to_limits,
+                          "the fastest scale that passes the check");
+  retime_command.callback([&context] { retime(context, options); });
+}
+
+}  // namespace ayumi::app

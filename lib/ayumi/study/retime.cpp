@@ -1,0 +1,103 @@
+#include "ayumi/study/retime.hpp"
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/pattern/edit.hpp"
+#include "ayumi/pattern/sample.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kStep = 1.25;
+
+struct Trial {
+  bool passes = false;
+  std::string reason;  // why not
+};
+
+class Search {
+ public:
+  Search(const RobotModel& model, const Pattern& pattern, const RetimeOptions& options,
+         const Progress& progress)
+      : model_(model), pattern_(pattern), options_(options), progress_(progress) {}
+
+  FastestPace run() {
+    const Trial now = trial(1);
+    double passing = 1, failing = 1;
+    FastestPace result;
+    if (now.passes) {
+      do {
+        passing = failing;
+        failing = std::max(options_.fastest, passing / kStep);
+        if (passing <= options_.fastest) break;
+      } while (trial(failing).passes);
+      result.bounded = passing > options_.fastest;
+    } else {
+      reason_ = now.reason;
+      do {
+        failing = passing;
+        passing *= kStep;
+        if (passing > options_.slowest) return finish(result);
+      } while (!trial(passing).passes);
+      result.bounded = true;
+    }
+    result.found = true;
+    while (result.bounded && passing / failing > 1 + options_.resolution) {
+      const double middle = std::sqrt(passing * failing);
+      (trial(middle).passes ? passing : failing) = middle;
+    }
+    result.scale = rounded(passing);
+    return finish(result);
+  }
+
+ private:
+  FastestPace finish(FastestPace result) {
+    if (result.bounded || !result.found) result.limited_by = reason_;
+    result.evaluations = evaluations_;
+    return result;
+  }
+
+  // Three decimals for people, where they pass too.
+  double rounded(double scale) {
+    const double up = std::ceil(1000 * scale) / 1000;
+    return up != scale && trial(up).passes ? up : scale;
+  }
+
+  Trial trial(double scale) {
+    report(progress_, {"retime", -1, "scale " + text::fixed(scale, 4)});
+    ++evaluations_;
+    try {
+      const CommandSeries series =
+          sample(model_, retimed(model_, pattern_, scale), {.dt = options_.dt});
+      const ConsistencyReport check = check_consistency(model_, series, options_.check);
+      if (check.consistent) return {true, ""};
+      const Finding& f = check.findings.front();
+      reason_ = f.kind + " " + f.where + " at " + text::fixed(f.at, 3) + " s of " +
+                text::fixed(series.duration(), 3) + " s: " + text::brief(f.worst) + " " + f.unit +
+                ", limit " + text::brief(f.limit);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_pattern) throw;
+      reason_ = error.what();
+    }
+    return {false, reason_};
+  }
+
+  const RobotModel& model_;
+  const Pattern& pattern_;
+  const RetimeOptions& options_;
+  const Progress& progress_;
+  std::string reason_;  // of the last scale that failed
+  int evaluations_ = 0;
+};
+
+}  // namespace
+
+FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
+                         const RetimeOptions& options, const Progress& progress) {
+  return Search(model, pattern, options, progress).run();
+}
+
+}  // namespace ayumi

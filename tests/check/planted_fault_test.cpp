@@ -1,0 +1,311 @@
+// Sound motions baked to tables pass; one fault planted in a table, a phase or the world is found
+// with its kind, place and time, and nothing else is an error.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/pattern_table.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/edit.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Kinds = std::set<std::string>;
+
+constexpr double kDegree = M_PI / 180;
+
+const RobotModel& hoap1() {
+  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  return model;
+}
+
+// Through files, as a user would have it.
+Pattern bake(const Pattern& pattern) {
+  const TemporaryFolder folder;
+  const Pattern dense = baked(hoap1(), pattern, sample(hoap1(), pattern), "baked.csv");
+  write_pattern_and_table(folder.path() / "baked.json", dense);
+  return read_pattern(folder.path() / "baked.json");
+}
+
+Pattern named(Pattern pattern) {
+  pattern.robot = "hoap1";
+  return pattern;
+}
+
+const Pattern& walk() {
+  static const Pattern pattern = bake(named(walk_pattern(hoap1(), {.steps = 4})));
+  return pattern;
+}
+
+ConsistencyReport report_of(const Pattern& pattern) {
+  CheckOptions options;
+  options.friction = pattern.world.friction;
+  return check_consistency(hoap1(), sample(hoap1(), pattern), options);
+}
+
+std::string print(const ConsistencyReport& r) {
+  std::ostringstream out;
+  for (const Finding& f : r.findings)
+    out << name_of(f.severity) << " " << f.kind << " " << f.where << " " << f.begin << ".." << f.end
+        << " at " << f.at << " worst " << f.worst << " <- " << f.follows_from << "\n";
+  return out.str();
+}
+
+Kinds error_kinds(const ConsistencyReport& r) {
+  Kinds kinds;
+  for (const Finding& f : r.findings)
+    if (f.severity == Severity::error) kinds.insert(f.kind);
+  return kinds;
+}
+
+const Finding& first(const ConsistencyReport& r, const std::string& kind) {
+  for (const Finding& f : r.findings)
+    if (f.kind == kind && f.severity == Severity::error) return f;
+  static const Finding none;
+  ADD_FAILURE() << "no error " << kind << "\n" << print(r);
+  return none;
+}
+
+// One smooth hill of height 1 around `center`, `width` wide.
+double hill(double t, double center, double width) {
+  const double s = (t - center) / width;
+  return std::abs(s) < 0.5 ? std::pow(std::cos(M_PI * s), 4) : 0;
+}
+
+// Begin and end of the n-th phase with this support.
+std::pair<double, double> phase(const Pattern& pattern, Support support, int n) {
+  double begin = 0;
+  for (const Phase& each : pattern.phases) {
+    if (each.support == support && n-- == 0) return {begin, each.until};
+    begin = each.until;
+  }
+  return {};
+}
+
+double middle(std::pair<double, double> phase) { return 0.5 * (phase.first + phase.second); }
+
+Eigen::Index joint_column(const Pattern& pattern, const std::string& joint) {
+  const auto& joints = pattern.table->joints;
+  return std::find(joints.begin(), joints.end(), joint) - joints.begin();
+}
+
+void bend(Pattern& pattern, const std::string& joint, double center, double width, double height) {
+  DenseTable& table = *pattern.table;
+  const Eigen::Index column = joint_column(pattern, joint);
+  for (Eigen::Index k = 0; k < table.theta.rows(); ++k)
+    table.theta(k, column) += height * hill(static_cast<double>(k) * table.dt, center, width);
+}
+
+double angle_at(const Pattern& pattern, const std::string& joint, double t) {
+  return pattern.table->theta(std::lround(t / pattern.table->dt), joint_column(pattern, joint));
+}
+
+TEST(PlantedFault, SoundMotionsPassBaked) {
+  for (const Pattern& pattern :
+       {named(walk_pattern(hoap1(), {.steps = 4})),
+        named(walk_pattern(hoap1(), {.steps = 4, .stride = 0, .turn = 0.05})),
+        named(sway_pattern(hoap1(), sway_defaults(hoap1()))),
+        named(squat_pattern(hoap1(), squat_defaults(hoap1())))}) {
+    const ConsistencyReport r = report_of(bake(pattern));
+    EXPECT_TRUE(r.consistent) << print(r);
+    for (const Finding& f : r.findings) EXPECT_EQ(f.severity, Severity::info) << print(r);
+  }
+}
+
+TEST(PlantedFault, CogMoved) {
+  for (const int axis : {0, 1, 2}) {
+    Pattern p = walk();
+    for (size_t k = 0; k < p.table->cog.size(); ++k)
+      p.table->cog[k][axis] += 0.015 * hill(static_cast<double>(k) * p.table->dt, 2.0, 0.6);
+    const ConsistencyReport r = report_of(p);
+    EXPECT_EQ(error_kinds(r), Kinds{"cog_residual"}) << print(r);
+    const Finding& f = first(r, "cog_residual");
+    EXPECT_NEAR(f.at, 2.0, 0.002);
+    EXPECT_NEAR(f.worst, 0.015, 1e-6);
+    EXPECT_EQ(f.where, std::string(1, "xyz"[axis]));
+  }
+}
+
+TEST(PlantedFault, ZmpOutside) {
+  for (const Support support : {Support::left, Support::right}) {
+    Pattern p = walk();
+    const double at = middle(phase(p, support, 1));
+    const double outwards = support == Support::left ? 1 : -1;
+    for (size_t k = 0; k < p.table->zmp.size(); ++k)
+      p.table->zmp[k].y() +=
+          outwards * (0.0315 + 0.020) * hill(static_cast<double>(k) * p.table->dt, at, 0.3);
+    const ConsistencyReport r = report_of(p);
+    EXPECT_EQ(error_kinds(r), (Kinds{"zmp_residual", "support_margin"})) << print(r);
+    EXPECT_NEAR(first(r, "zmp_residual").at, at, 0.002);
+    EXPECT_EQ(first(r, "zmp_residual").where, "y");
+    EXPECT_NEAR(first(r, "support_margin").at, at, 0.002);
+    EXPECT_NEAR(first(r, "support_margin").worst, -0.020, 1e-3);
+    EXPECT_EQ(first(r, "support_margin").where, name_of(support));
+  }
+}
+
+TEST(PlantedFault, ForceScaled) {
+  for (const auto& [begin, end] : {std::pair{1.5, 2.2}, std::pair{0.0, 100.0}}) {
+    Pattern p = walk();
+    for (size_t k = 0; k < p.table->fz.size(); ++k) {
+      const double t = static_cast<double>(k) * p.table->dt;
+      if (t >= begin - 1e-9 && t <= end) p.table->fz[k] *= 1.1;
+    }
+    const ConsistencyReport r = report_of(p);
+    EXPECT_EQ(error_kinds(r), Kinds{"fz_residual"}) << print(r);
+    EXPECT_NEAR(first(r, "fz_residual").begin, begin, 0.002);
+    EXPECT_NEAR(first(r, "fz_residual").worst, -0.1 * hoap1().mass() * kGravity, 0.4);
+  }
+}
+
+TEST(PlantedFault, JointBeyondItsLimit) {
+  const std::vector<std::pair<std::string, double>> limits = {
+      {"l_elbow", -95}, {"r_elbow", 6},        {"l_shoulder_pitch", 155}, {"r_shoulder_twist", -95},
+      {"r_knee", -4},   {"r_ankle_roll", -22}, {"l_ankle_pitch", -64},    {"l_hip_pitch", -119}};
+  for (const auto& [joint, degrees] : limits) {
+    for (const auto& [at, width] : {std::pair{2.0, 1.2}, std::pair{2.6, 0.5}}) {
+      Pattern p = walk();
+      bend(p, joint, at, width, degrees * kDegree - angle_at(p, joint, at));
+      const ConsistencyReport r = report_of(p);
+      EXPECT_EQ(error_kinds(r), Kinds{"joint_position"}) << joint << "\n" << print(r);
+      const Finding& f = first(r, "joint_position");
+      EXPECT_EQ(f.where, joint);
+      const double slope = 0.5 * kDegree;  // of the walk itself, which may move the worst sample
+      EXPECT_GE(std::abs(f.worst), std::abs(degrees * kDegree) - slope);
+      EXPECT_NEAR(f.at, at, 0.012);
+      EXPECT_LE(f.begin, at);
+      EXPECT_GE(f.end, at);
+    }
+  }
+}
+
+TEST(PlantedFault, JointBeyondItsLimitAtRestIsFoundToTheSample) {
+  for (const char* joint : {"l_elbow", "r_elbow"}) {
+    Pattern p = bake(named(squat_pattern(hoap1(), squat_defaults(hoap1()))));
+    bend(p, joint, 1.7, 1.0, -95 * kDegree - angle_at(p, joint, 1.7));
+    const ConsistencyReport r = report_of(p);
+    EXPECT_EQ(error_kinds(r), Kinds{"joint_position"}) << print(r);
+    EXPECT_NEAR(first(r, "joint_position").at, 1.7, 0.002);
+  }
+}
+
+// The whole table in `scale` of its time, commands and phases along.
+Pattern squeezed(const Pattern& pattern, double scale) {
+  Pattern p = pattern;
+  p.table->dt *= scale;
+  for (Phase& each : p.phases) each.until *= scale;
+  return p;
+}
+
+TEST(PlantedFault, TimeSqueezed) {
+  const Pattern squat = bake(named(squat_pattern(hoap1(), squat_defaults(hoap1()))));
+  for (const auto& [pattern, scale] :
+       {std::pair{walk(), 0.65}, std::pair{walk(), 0.5}, std::pair{squat, 0.25}}) {
+    const ConsistencyReport r = report_of(squeezed(pattern, scale));
+    for (const std::string& kind : error_kinds(r))
+      EXPECT_TRUE(kind == "joint_speed" || kind == "joint_torque") << print(r);
+    EXPECT_FALSE(r.consistent);
+    EXPECT_NE(first(r, "joint_speed").where.find("knee"), std::string::npos) << print(r);
+  }
+}
+
+TEST(PlantedFault, StanceFootSlips) {
+  for (const Support support : {Support::left, Support::right}) {
+    for (const int axis : {0, 1}) {
+      Pattern p = walk();
+      const double at = middle(phase(p, support, 1));
+      for (size_t k = 0; k < p.table->base.size(); ++k)
+        p.table->base[k].position[axis] +=
+            0.005 * hill(static_cast<double>(k) * p.table->dt, at, 0.35);
+      const ConsistencyReport r = report_of(p);
+      EXPECT_EQ(error_kinds(r), Kinds{"foot_slip"}) << print(r);
+      EXPECT_EQ(first(r, "foot_slip").where, name_of(support));
+      EXPECT_NEAR(first(r, "foot_slip").at, at, 0.002);
+      EXPECT_NEAR(first(r, "foot_slip").worst, 0.005, 1e-4);
+    }
+  }
+}
+
+TEST(PlantedFault, StanceFootSlipsByItsLeg) {
+  Pattern p = walk();
+  const double at = middle(phase(p, Support::right, 1));
+  bend(p, "r_hip_pitch", at, 0.35, -0.025);
+  bend(p, "r_ankle_pitch", at, 0.35, 0.025);
+  const ConsistencyReport r = report_of(p);
+  EXPECT_EQ(error_kinds(r), Kinds{"foot_slip"}) << print(r);
+  EXPECT_EQ(first(r, "foot_slip").where, "right");
+  EXPECT_NEAR(first(r, "foot_slip").at, at, 0.002);
+}
+
+TEST(PlantedFault, ContactTooEarly) {
+  for (const size_t swing : {1, 3, 5}) {
+    for (const bool whole : {false, true}) {
+      Pattern p = walk();
+      ASSERT_TRUE(p.phases[swing].swing);
+      const double landing = p.phases[swing].until - 0.060;
+      p.phases[swing].until = landing;
+      if (whole) p.phases[swing + 1].until -= 0.060;
+      const ConsistencyReport r = report_of(p);
+      EXPECT_EQ(error_kinds(r), Kinds{"foot_float"}) << print(r);
+      EXPECT_EQ(first(r, "foot_float").where, name_of(p.phases[swing].swing->foot));
+      EXPECT_NEAR(first(r, "foot_float").at, landing, 0.002);
+    }
+  }
+}
+
+TEST(PlantedFault, ContactTooEarlyWithoutFootholds) {
+  Pattern p = walk();
+  for (Phase& each : p.phases) each.swing.reset();
+  EXPECT_TRUE(report_of(p).consistent) << print(report_of(p));
+  p.phases[3].until -= 0.060;
+  const ConsistencyReport r = report_of(p);
+  EXPECT_EQ(error_kinds(r), Kinds{"foot_float"}) << print(r);
+  EXPECT_NEAR(first(r, "foot_float").at, p.phases[3].until, 0.002);
+}
+
+TEST(PlantedFault, ArmThroughTheTorso) {
+  for (const char* side : {"l", "r"}) {
+    Pattern p = walk();
+    const double in = side[0] == 'l' ? 1 : -1;  // towards the body
+    bend(p, std::string(side) + "_shoulder_roll", 2.0, 2.0, -in * 10 * kDegree);
+    bend(p, std::string(side) + "_shoulder_twist", 2.0, 2.0, in * 85 * kDegree);
+    bend(p, std::string(side) + "_elbow", 2.0, 2.0, -60 * kDegree);
+    const ConsistencyReport r = report_of(p);
+    EXPECT_EQ(error_kinds(r), Kinds{"self_collision"}) << print(r);
+    const Finding& f = first(r, "self_collision");
+    EXPECT_NE(f.where.find("torso"), std::string::npos) << f.where;
+    EXPECT_NEAR(f.at, 2.0, 0.002);
+  }
+}
+
+TEST(PlantedFault, SlipperyGround) {
+  Pattern p = walk();
+  p.world.friction = 0.10;
+  const ConsistencyReport r = report_of(p);
+  EXPECT_EQ(error_kinds(r), Kinds{"friction"}) << print(r);
+}
+
+// Two faults at once, far apart, are two errors.
+TEST(PlantedFault, NoFaultHidesAnother) {
+  Pattern p = walk();
+  bend(p, "l_elbow", 1.2, 0.6, -95 * kDegree - angle_at(p, "l_elbow", 1.2));
+  for (size_t k = 0; k < p.table->cog.size(); ++k)
+    p.table->cog[k].x() += 0.015 * hill(static_cast<double>(k) * p.table->dt, 2.4, 0.4);
+  for (size_t k = 0; k < p.table->fz.size(); ++k)
+    if (std::abs(static_cast<double>(k) * p.table->dt - 0.4) < 0.1) p.table->fz[k] *= 1.1;
+  const ConsistencyReport r = report_of(p);
+  EXPECT_EQ(error_kinds(r), (Kinds{"joint_position", "cog_residual", "fz_residual"})) << print(r);
+}
+
+}  // namespace
+}  // namespace ayumi::test
