@@ -171,7 +171,7 @@ TEST(PlantedFault, ForceScaled) {
 TEST(PlantedFault, JointBeyondItsLimit) {
   const std::vector<std::pair<std::string, double>> limits = {
       {"l_elbow", -95}, {"r_elbow", 6},        {"l_shoulder_pitch", 155}, {"r_shoulder_twist", -95},
-      {"r_knee", -4},   {"r_ankle_roll", -22}, {"l_ankle_pitch", -64},    {"l_hip_pitch", -119}};
+      {"r_knee", -4},   {"r_ankle_roll", -22}, {"l_ankle_roll", 22},      {"l_hip_pitch", -119}};
   for (const auto& [joint, degrees] : limits) {
     for (const auto& [at, width] : {std::pair{2.0, 1.2}, std::pair{2.6, 0.5}}) {
       Pattern p = walk();
@@ -180,22 +180,12 @@ TEST(PlantedFault, JointBeyondItsLimit) {
       EXPECT_EQ(error_kinds(r), Kinds{"joint_position"}) << joint << "\n" << print(r);
       const Finding& f = first(r, "joint_position");
       EXPECT_EQ(f.where, joint);
-      const double slope = 0.5 * kDegree;  // of the walk itself, which may move the worst sample
-      EXPECT_GE(std::abs(f.worst), std::abs(degrees * kDegree) - slope);
-      EXPECT_NEAR(f.at, at, 0.012);
+      Eigen::Index worst = 0;  // the walk itself moves the joint, so not just at the hill's top
+      (p.table->theta.col(joint_column(p, joint)) * (degrees > 0 ? 1 : -1)).maxCoeff(&worst);
+      EXPECT_NEAR(f.at, static_cast<double>(worst) * p.table->dt, 0.002);
       EXPECT_LE(f.begin, at);
       EXPECT_GE(f.end, at);
     }
-  }
-}
-
-TEST(PlantedFault, JointBeyondItsLimitAtRestIsFoundToTheSample) {
-  for (const char* joint : {"l_elbow", "r_elbow"}) {
-    Pattern p = bake(named(squat_pattern(hoap1(), squat_defaults(hoap1()))));
-    bend(p, joint, 1.7, 1.0, -95 * kDegree - angle_at(p, joint, 1.7));
-    const ConsistencyReport r = report_of(p);
-    EXPECT_EQ(error_kinds(r), Kinds{"joint_position"}) << print(r);
-    EXPECT_NEAR(first(r, "joint_position").at, 1.7, 0.002);
   }
 }
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "ayumi/geometry/penetration.hpp"
+
 namespace ayumi {
 
 using Eigen::Isometry3d;
@@ -18,6 +20,7 @@ struct Collider::Impl {
   double sweep_radius = 0, half_length = 0;
   Isometry3d offset = Isometry3d::Identity();  // library shape in the shape frame
   std::unique_ptr<fcl::CollisionGeometryd> geometry;
+  Solid solid;  // the same for depths
 };
 
 namespace {
@@ -39,21 +42,16 @@ Bounds mesh_bounds(const MeshShape& mesh) {
   return b;
 }
 
-double library_clearance(const fcl::CollisionGeometryd& a, const Isometry3d& pose_a,
-                         const fcl::CollisionGeometryd& b, const Isometry3d& pose_b) {
+// Zero or less where the bodies meet: the library's own depth is not asked for, since its polytope
+// expansion ends the program on some of them.
+double library_distance(const fcl::CollisionGeometryd& a, const Isometry3d& pose_a,
+                        const fcl::CollisionGeometryd& b, const Isometry3d& pose_b) {
   try {
-    fcl::DistanceRequestd request(false, true, 0, 0, 1e-7, fcl::GST_LIBCCD);
+    fcl::DistanceRequestd request(false, false, 0, 0, 1e-7, fcl::GST_LIBCCD);
     fcl::DistanceResultd result;
     return fcl::distance(&a, pose_a, &b, pose_b, request, result);
   } catch (const std::exception&) {
-    // The polytope expansion gives up on some touching configurations; the contact depth does not.
-    fcl::CollisionRequestd request(4, true);
-    fcl::CollisionResultd result;
-    fcl::collide(&a, pose_a, &b, pose_b, request, result);
-    double depth = 0;
-    for (size_t i = 0; i < result.numContacts(); ++i)
-      depth = std::max(depth, std::abs(result.getContact(i).penetration_depth));
-    return -depth;
+    return 0;
   }
 }
 
@@ -65,18 +63,23 @@ Collider::Collider(const Shape& shape) : impl_(std::make_unique<Impl>()) {
     impl.swept = true;
     impl.sweep_radius = radius_ = sphere->radius;
     impl.geometry = std::make_unique<fcl::Sphered>(sphere->radius);
+    impl.solid = {Solid::Kind::capsule, Vector3d::Zero(), sphere->radius, 0};
   } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
     impl.swept = true;
     impl.sweep_radius = capsule->radius;
     impl.half_length = 0.5 * capsule->length;
     radius_ = impl.half_length + capsule->radius;
     impl.geometry = std::make_unique<fcl::Capsuled>(capsule->radius, capsule->length);
+    impl.solid = {Solid::Kind::capsule, Vector3d::Zero(), capsule->radius, impl.half_length};
   } else if (const auto* box = std::get_if<Box>(&shape)) {
     radius_ = 0.5 * box->size.norm();
     impl.geometry = std::make_unique<fcl::Boxd>(box->size);
+    impl.solid = {Solid::Kind::box, 0.5 * box->size, 0, 0};
   } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     radius_ = std::hypot(cylinder->radius, 0.5 * cylinder->length);
     impl.geometry = std::make_unique<fcl::Cylinderd>(cylinder->radius, cylinder->length);
+    impl.solid = {Solid::Kind::cylinder, Vector3d::Zero(), cylinder->radius,
+                  0.5 * cylinder->length};
   } else {
     const Bounds bounds = mesh_bounds(std::get<MeshShape>(shape));
     const Vector3d size = bounds.high - bounds.low;
@@ -84,6 +87,7 @@ Collider::Collider(const Shape& shape) : impl_(std::make_unique<Impl>()) {
     radius_ = 0.5 * size.norm();
     impl.offset.translation() = center_;
     impl.geometry = std::make_unique<fcl::Boxd>(size);
+    impl.solid = {Solid::Kind::box, 0.5 * size, 0, 0};
   }
 }
 
@@ -100,7 +104,10 @@ double clearance(const Collider& a, const Isometry3d& pose_a, const Collider& b,
     const Vector3d &ca = pose_a.translation(), &cb = pose_b.translation();
     return segment_distance(ca - za, ca + za, cb - zb, cb + zb) - ia.sweep_radius - ib.sweep_radius;
   }
-  return library_clearance(*ia.geometry, pose_a * ia.offset, *ib.geometry, pose_b * ib.offset);
+  const Isometry3d place_a = pose_a * ia.offset, place_b = pose_b * ib.offset;
+  const double apart = library_distance(*ia.geometry, place_a, *ib.geometry, place_b);
+  if (apart > 0) return apart;
+  return std::min(0.0, -overlap(ia.solid, place_a, ib.solid, place_b));
 }
 
 double clearance_bound(const Collider& a, const Isometry3d& pose_a, const Collider& b,

@@ -90,7 +90,7 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
     fail(ErrorCode::bad_file, "robot '': a name, folder, sidecar or URDF is needed");
   const fs::path file = find_file(name_or_path, search);
   const bool sidecar = file.extension() != ".urdf";
-  RobotDescription robot = sidecar ? read_sidecar(file) : read_urdf(file);
+  RobotDescription robot = sidecar ? read_sidecar(file, search.folders) : read_urdf(file);
   if (options.meshes) fill_meshes(robot);
   std::error_code ignored;
   if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))

@@ -1,6 +1,7 @@
 #include "ayumi/io/sidecar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -203,6 +204,29 @@ void lock_joints(const JsonNode& node, RobotDescription& robot) {
   }
 }
 
+// Mass properties over those of the URDF; what an entry leaves out stays.
+void read_links(const JsonNode& node, RobotDescription& robot) {
+  std::vector<std::string> names;
+  for (const LinkDescription& link : robot.links) names.push_back(link.name);
+  for (const auto& [name, entry] : node.members()) {
+    const auto link = std::find_if(robot.links.begin(), robot.links.end(),
+                                   [&](const LinkDescription& each) { return each.name == name; });
+    if (link == robot.links.end())
+      entry.complain("the URDF has no link '" + name + "'" + text::suggestion(name, names));
+    entry.only_keys({"mass", "com", "inertia"});
+    link->has_inertial = true;
+    read_not_negative(entry, "mass", link->inertia.mass);
+    if (const auto com = entry.find("com")) link->inertia.com = com->vector3();
+    if (const auto inertia = entry.find("inertia")) {
+      const std::vector<JsonNode> items = inertia->items();
+      if (items.size() != 6) inertia->complain("expected six numbers: xx, xy, xz, yy, yz, zz");
+      std::array<double, 6> i;
+      for (size_t k = 0; k < 6; ++k) i[k] = items[k].number();
+      link->inertia.about_com << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
+    }
+  }
+}
+
 void read_lists(const JsonNode& root, RobotDescription& robot) {
   if (const auto order = root.find("joint_order")) robot.joint_order = order->strings();
   if (const auto pairs = root.find("collision_ignore"))
@@ -220,6 +244,7 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "urdf",
                                         "joint_order",
                                         "locked_joints",
+                                        "links",
                                         "trunk_link",
                                         "soles",
                                         "postures",
@@ -238,6 +263,7 @@ const std::vector<std::string> kKeys = {"$schema",
 void read_root(const JsonNode& root, RobotDescription& robot) {
   const std::vector<std::pair<const char*, std::function<void(const JsonNode&)>>> readers = {
       {"locked_joints", [&](const JsonNode& node) { lock_joints(node, robot); }},
+      {"links", [&](const JsonNode& node) { read_links(node, robot); }},
       {"name", [&](const JsonNode& node) { robot.name = node.string(); }},
       {"trunk_link", [&](const JsonNode& node) { robot.trunk_link = node.string(); }},
       {"soles", [&](const JsonNode& node) { read_soles(node, robot); }},
@@ -260,13 +286,30 @@ void read_root(const JsonNode& root, RobotDescription& robot) {
 
 }  // namespace
 
-RobotDescription read_sidecar(const std::filesystem::path& file) {
+namespace {
+
+std::filesystem::path find_urdf(const JsonNode& node, const std::filesystem::path& file,
+                                const std::vector<std::filesystem::path>& folders) {
+  const std::filesystem::path name = node.string(), beside = file.parent_path() / name;
+  std::error_code ignored;
+  if (std::filesystem::exists(beside, ignored)) return beside;
+  for (const std::filesystem::path& folder : folders)
+    for (const std::filesystem::path& path : {folder / name, folder / "urdf" / name})
+      if (std::filesystem::exists(path, ignored)) return path;
+  node.complain("there is no " + beside.string() + ", and no folder of --robot-path has " +
+                name.string() + ", itself or in urdf/");
+}
+
+}  // namespace
+
+RobotDescription read_sidecar(const std::filesystem::path& file,
+                              const std::vector<std::filesystem::path>& folders) {
   const std::string bytes = read_file(file);
   const Json document = parse_json(bytes, file.string(), ErrorCode::bad_file);
   const JsonNode root = root_of(document, file.string(), ErrorCode::bad_file);
   root.only_keys(kKeys);
   root.at("format").one_of({"ayumi.robot/1"});
-  const std::filesystem::path urdf = file.parent_path() / root.at("urdf").string();
+  const std::filesystem::path urdf = find_urdf(root.at("urdf"), file, folders);
   const std::string urdf_bytes = read_file(urdf);
   RobotDescription robot = parse_urdf(urdf_bytes, urdf);
   robot.sidecar_file = file.string();

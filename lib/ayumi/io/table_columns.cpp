@@ -157,11 +157,14 @@ BasePose base_of(const NumberTable& table, const TableLayout& layout, Eigen::Ind
   return base;
 }
 
-NumberTable read_number_table(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path);
+NumberTable number_table(const std::string& bytes, const std::string& file) {
   const size_t first = bytes.find_first_not_of(" \t\r\n");
   const bool json = first != std::string::npos && bytes[first] == '{';
-  return json ? parse_json_table(bytes, path.string()) : parse_csv(bytes, path.string());
+  return json ? parse_json_table(bytes, file) : parse_csv(bytes, file);
+}
+
+NumberTable read_number_table(const std::filesystem::path& path) {
+  return number_table(read_file(path), path.string());
 }
 
 }  // namespace ayumi

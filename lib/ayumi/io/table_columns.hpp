@@ -39,6 +39,7 @@ BasePose base_of(const NumberTable& table, const TableLayout& layout, Eigen::Ind
                  const std::string& file);
 
 /// CSV or JSON ("columns", "data" and the other keys as header) by the first character.
+NumberTable number_table(const std::string& bytes, const std::string& file);
 NumberTable read_number_table(const std::filesystem::path& path);
 
 }  // namespace ayumi

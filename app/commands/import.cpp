@@ -1,0 +1,118 @@
+// Motions of other origin as patterns: HOAP sequences, tables of angles, Ayumi's own joint tables.
+
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/motion_import.hpp"
+#include "ayumi/io/pattern_table.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string file, robot, out;
+  ImportOptions import;
+};
+
+std::string bytes_of(const std::string& file) {
+  if (file != "-") return read_file(file);
+  return {std::istreambuf_iterator<char>(std::cin), {}};
+}
+
+// A path in the working folder is told from a bundled name by its slash.
+std::string robot_as_written(const std::string& robot) {
+  const bool here = robot.find('/') == std::string::npos && fs::exists(robot);
+  return here ? "./" + robot : robot;
+}
+
+Json json_of(const FootContact& contact) {
+  const Foothold& place = contact.place;
+  return {{"foot", name_of(contact.foot)},
+          {"begin_s", contact.begin},
+          {"end_s", contact.end},
+          {"position_m", {place.position.x(), place.position.y(), place.position.z()}},
+          {"yaw_rad", place.rpy.z()}};
+}
+
+void tell(const Context& context, const Options& options, const ImportedMotion& imported,
+          const GroundedMotion& motion) {
+  const double duration = motion.pattern.duration();
+  std::string words = options.out + ": " + text::fixed(duration, 3) + " s from " +
+                      std::to_string(imported.rows) + " rows (" + imported.format + "), " +
+                      std::to_string(motion.contacts.size()) + " contacts, " +
+                      std::to_string(motion.pattern.phases.size()) + " phases\n";
+  for (const std::string& line : imported.filled) words += "  " + line + "\n";
+  context.print(words);
+  Json contacts = Json::array();
+  for (const FootContact& contact : motion.contacts) contacts.push_back(json_of(contact));
+  context.print_json(Json{
+      {"output", options.out},
+      {"table", table_beside(options.out).string()},
+      {"format", imported.format},
+      {"rows", imported.rows},
+      {"duration_s", duration},
+      {"contacts", contacts},
+      {"filled",
+       imported.filled}}.dump(2));
+}
+
+void import_motion(const Context& context, const Options& options) {
+  refuse_overwriting(context, options.out);
+  refuse_overwriting(context, table_beside(options.out));
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const std::string name = options.file == "-" ? "standard input" : options.file;
+  const ImportedMotion imported = read_motion(bytes_of(options.file), name, model, options.import);
+  GroundedMotion motion =
+      grounded(model, imported.motion, table_beside(options.out).filename().string());
+  motion.pattern.name = "imported from " + fs::path(name).filename().string();
+  motion.pattern.robot = robot_as_written(options.robot);
+  motion.pattern.file = "imported";  // relative names hold from the working folder
+  write_pattern_and_table(options.out, motion.pattern, imported.filled);
+  tell(context, options, imported, motion);
+}
+
+}  // namespace
+
+void add_import(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand(
+      "import", "a HOAP sequence or a table of angles as a pattern, contacts detected");
+  command->footer(
+      "Examples:\n  ayumi import walk.csv --robot hoap1 -o walk.json\n"
+      "  ayumi import m03.csv --robot examples/hoap3/robot.json --robot-path hoap3_description "
+      "-o m03.json\n"
+      "  ayumi import angles.csv --robot hoap1 --unit deg --rate 200 -o angles.json");
+  static Options options;
+  static std::string unit = "rad";
+  command->add_option("FILE", options.file, "sequence or table; - reads standard input")
+      ->required();
+  command->add_option("--robot", options.robot, "a bundled robot, a sidecar or a URDF")
+      ->required()
+      ->type_name("ROBOT");
+  command->add_option("-o,--out", options.out, "pattern file to write; its table goes beside it")
+      ->required()
+      ->type_name("F");
+  command->add_option("--format", options.import.format, "left out: by the content")
+      ->check(CLI::IsMember({"hoap", "csv", "json"}));
+  command->add_option("--unit", unit, "of columns named by bare joint names")
+      ->check(CLI::IsMember({"rad", "deg"}))
+      ->capture_default_str();
+  command->add_option("--rate", options.import.rate, "of rows without a time column [1/s]")
+      ->check(CLI::Range(1.0, 1e5))
+      ->type_name("HZ");
+  command->callback([&context] {
+    options.import.degrees = unit == "deg";
+    import_motion(context, options);
+  });
+}
+
+}  // namespace ayumi::app

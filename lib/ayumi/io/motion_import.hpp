@@ -1,0 +1,49 @@
+#pragma once
+// Motions of other origin: HOAP sequences as the real robots' files are, tables of angles, and the
+// joint tables Ayumi writes. What was understood, filled in or left out is said in words.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ayumi/pattern/grounded_motion.hpp"
+
+namespace ayumi {
+
+struct ImportOptions {
+  std::string format;    ///< "hoap", "csv", "json"; "" by the content
+  bool degrees = false;  ///< unit of bare joint columns
+  double rate = 0;       ///< of rows without a time column [1/s]
+};
+
+struct ImportedMotion {
+  RawMotion motion;
+  std::string format;               ///< "hoap", "csv" or "json"
+  int rows = 0;                     ///< data rows of the file
+  std::vector<std::string> filled;  ///< what the file does not say, or says beside the motion
+};
+
+/// Layouts of HOAP sequences by columns: 25 (HOAP-1: 20 motors), 27 (HOAP-2: 21), 29 (HOAP-3: 21).
+/// Blanks, CR, `-0` and `R` anywhere behind the motors are fine. General commands (3) only take
+/// their time. Changing intervals become the smallest one, straight between rows. Angles are the
+/// smoothest ones within half a count of what the file says. Throws Error(bad_file) "file:line:
+/// ..." for another number of columns, a cell that is no count, and where a device moves that the
+/// robot does not have.
+ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
+                                const RobotModel& model);
+
+/// A head row and numbers: t[s] (or t, time, time_s), joints as theta.<joint>[rad] or by their bare
+/// names, and whole groups of cog, zmp, fz, base, contact columns as in Ayumi's tables. Rows that
+/// are not evenly spaced are interpolated. Throws Error(bad_file) naming the column or row.
+ImportedMotion read_table_motion(const std::string& bytes, const std::string& file,
+                                 const RobotModel& model, const ImportOptions& options = {});
+
+/// Either of them, by the content. `bytes` from `file`.
+ImportedMotion read_motion(const std::string& bytes, const std::string& file,
+                           const RobotModel& model, const ImportOptions& options = {});
+
+/// `x` made smooth without leaving x - half .. x + half anywhere; `width` is the standard deviation
+/// of the averaging [samples].
+Eigen::VectorXd smoothest_within(const Eigen::VectorXd& x, double half, double width);
+
+}  // namespace ayumi

@@ -1,0 +1,272 @@
+// Recorded and commanded motions of real robots, imported and judged. The data are not part of this
+// program: without them the tests that need them are skipped. What the files are like is also
+// rebuilt here in small.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/io/motion_import.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/math/polygon.hpp"
+#include "ayumi/pattern/sample.hpp"
+
+namespace ayumi::test {
+namespace {
+
+const std::string kData = AYUMI_SOURCE_DIR "/../shared/data/hoap3";
+
+bool has_data() { return std::filesystem::exists(kData + "/hoap3_description/urdf/hoap3.urdf"); }
+
+RobotModel hoap3() {
+  return load_robot(AYUMI_SOURCE_DIR "/examples/hoap3/robot.json",
+                    {.folders = {kData + "/hoap3_description"}});
+}
+
+GroundedMotion import_file(const RobotModel& model, const std::string& name) {
+  const std::string file = kData + "/motions/" + name;
+  GroundedMotion motion =
+      grounded(model, read_motion(read_file(file), file, model).motion, "motion.csv");
+  motion.pattern.robot = "hoap3";
+  return motion;
+}
+
+std::vector<std::vector<double>> numbers(const std::string& file) {
+  std::ifstream stream(file);
+  std::vector<std::vector<double>> rows;
+  for (std::string line; std::getline(stream, line);) {
+    std::vector<double> row;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::atof(cell.c_str()));
+    if (row.size() > 2) rows.push_back(row);
+  }
+  return rows;
+}
+
+// Of the load that four cells of a foot tell (calibration of the robot that was recorded).
+double foot_load(const std::vector<double>& row, bool left) {
+  const double cells[2][4][3] = {{{-5.11442e-4, 14.2344585, -3303.68632},
+                                  {-4.31681e-3, 20.0368094, -4647.39660},
+                                  {-1.908608e-3, 16.1762142, -4048.92221},
+                                  {-2.731305e-3, 17.9329046, -4073.06324}},
+                                 {{8.900151e-5, 13.2084705, -3100.32925},
+                                  {-2.881771e-3, 19.0722583, -4386.87610},
+                                  {-1.290640e-3, 24.8923387, -5962.94605},
+                                  {-8.447711e-3, 27.7942590, -5557.83858}}};
+  const double l[2][3] = {{-3.575867e-10, 7.709541e-6, 0.898027268},
+                          {-6.297247e-10, 1.1559476e-5, 0.874587850}};
+  double r = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double a = row[(left ? 6 : 0) + i];
+    const double* c = cells[left][i];
+    r += c[0] * a * a + c[1] * a + c[2];
+  }
+  return 0.00981 * (l[left][0] * r * r * r + l[left][1] * r * r + l[left][2] * r);
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  double ma = 0, mb = 0, aa = 0, bb = 0, ab = 0;
+  for (size_t i = 0; i < a.size(); ++i) ma += a[i] / a.size(), mb += b[i] / a.size();
+  for (size_t i = 0; i < a.size(); ++i) {
+    aa += (a[i] - ma) * (a[i] - ma);
+    bb += (b[i] - mb) * (b[i] - mb);
+    ab += (a[i] - ma) * (b[i] - mb);
+  }
+  return ab / std::sqrt(aa * bb);
+}
+
+TEST(RealMotion, FujitsuWalkShiftsItsWeightAsMeasured) {
+  if (!has_data()) GTEST_SKIP() << "no HOAP-3 data at " << kData;
+  const RobotModel model = hoap3();
+  EXPECT_NEAR(model.mass(), 8.802, 0.002);
+  const GroundedMotion motion = import_file(model, "walk_m03_fujitsu_sample_pulses_1ms.csv");
+  const CommandSeries series = sample(model, motion.pattern);
+  const auto sensors = numbers(kData + "/recordings/walk_m03_measured_sensors_adc_1ms.csv");
+  ASSERT_EQ(sensors.size(), series.samples.size());
+  std::vector<double> lateral, share;
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const double left = foot_load(sensors[k], true), right = foot_load(sensors[k], false);
+    if (left + right < 10) continue;
+    const CommandSample& s = series.samples[k];
+    const Eigen::Vector3d middle = 0.5 * (s.feet[0].translation() + s.feet[1].translation());
+    lateral.push_back((s.cog - middle).y());
+    share.push_back(left / (left + right));
+  }
+  EXPECT_GT(lateral.size(), 0.9 * sensors.size());
+  std::printf("lateral COG and left-foot load: correlation %.3f over %zu samples\n",
+              correlation(lateral, share), lateral.size());
+  EXPECT_GE(correlation(lateral, share), 0.85);
+
+  int single = 0, inside = 0;
+  for (const CommandSample& s : series.samples) {
+    if (s.support != Support::left && s.support != Support::right) continue;
+    const Side side = s.support == Support::left ? Side::left : Side::right;
+    const Eigen::Vector3d zmp = s.feet[static_cast<int>(side)].inverse() * s.zmp;
+    ++single;
+    inside += ConvexPolygon(model.sole(side).polygon).margin(zmp.head<2>()) >= 0;
+  }
+  std::printf("single support %.2f s, ZMP inside the sole for %.0f %%\n", 0.001 * single,
+              100.0 * inside / single);
+  EXPECT_GT(single, 4000);
+  EXPECT_GT(inside, 0.7 * single);
+  // Steps alternate, and no foot stays where it was.
+  EXPECT_GE(motion.contacts.size(), 12u);
+  for (size_t i = 3; i < motion.contacts.size(); ++i)
+    EXPECT_NE(motion.contacts[i].foot, motion.contacts[i - 1].foot) << i;
+}
+
+TEST(RealMotion, SideStepIsFlaggedAtItsJump) {
+  if (!has_data()) GTEST_SKIP() << "no HOAP-3 data at " << kData;
+  const RobotModel model = hoap3();
+  const GroundedMotion motion = import_file(model, "side_step_right_pulses_2ms.csv");
+  const ConsistencyReport r = check_consistency(model, sample(model, motion.pattern));
+  EXPECT_FALSE(r.consistent);
+  bool found = false;
+  for (const Finding& f : r.findings) {
+    if (f.severity != Severity::error || (f.kind != "joint_speed" && f.kind != "servo_step"))
+      continue;
+    if (f.where != "L_LFE_L_KN_joint" || std::abs(f.at - 2 * 1252.5e-3) > 0.006) continue;
+    found = true;
+    EXPECT_GT(std::abs(f.worst), 212 / 209.0 * M_PI / 180 * 1000 * 0.8);
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST(RealMotion, EveryFileOfTheRobotIsRead) {
+  if (!has_data()) GTEST_SKIP() << "no HOAP-3 data at " << kData;
+  const RobotModel model = hoap3();
+  for (const auto& [name, rows, dt] :
+       {std::tuple{"walk_forward_7cm_steps_pulses_1ms.csv", 15400, 0.001},
+        std::tuple{"swagger_perdonavidas_right_pulses_2ms.csv", 4000, 0.002}}) {
+    const std::string file = kData + "/motions/" + name;
+    const ImportedMotion read = read_motion(read_file(file), file, model);
+    EXPECT_EQ(read.format, "hoap");
+    EXPECT_EQ(read.rows, rows);
+    EXPECT_EQ(read.motion.dt, dt);
+    EXPECT_FALSE(grounded(model, read.motion, "t.csv").contacts.empty());
+  }
+}
+
+const RobotModel& hoap1() {
+  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  return model;
+}
+
+// A row of counts for `motors`, all 0 but the elbows.
+std::string row(int interval, int motors, int elbows, const std::string& tail,
+                const std::string& separator = ",") {
+  std::string text = std::to_string(interval) + separator + "2";
+  for (int m = 1; m <= motors; ++m)
+    text += separator + std::to_string(m == 10 ? elbows : m == 20 ? -elbows : 0);
+  return text + tail;
+}
+
+ImportedMotion read(const std::string& text) { return read_motion(text, "seq.csv", hoap1()); }
+
+std::string message(const std::string& text) {
+  try {
+    read(text);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_file);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(HoapImport, LayoutsOfAllThreeRobots) {
+  const int elbow = hoap1().find_dof("r_elbow");
+  for (const auto& [motors, tail] :
+       {std::pair{20, ",R,R,R"}, std::pair{21, ",60,R,R,R"}, std::pair{21, ",60,60,R,R,R,R"}}) {
+    std::string text;
+    for (int k = 0; k < 10; ++k) text += row(1, motors, 2090, tail) + "\r\n";
+    const ImportedMotion motion = read(text);
+    EXPECT_EQ(motion.rows, 10);
+    EXPECT_NEAR(motion.motion.theta(5, elbow), -10 * M_PI / 180, 1e-12);
+    EXPECT_EQ(motion.motion.dt, 0.001);
+  }
+}
+
+TEST(HoapImport, QuirksOfRealFiles) {
+  std::string text;
+  text += "2,3,5,G,12,350\n";                           // a command to one device: only its time
+  text += row(1, 21, 0, ", R ,R ,R, R", " , ") + "\n";  // blanks, and R for the hobby servo
+  text += row(1, 21, 209, ",R,R,R,R") + "\r\n\r\n";     // an empty line
+  std::string negative = row(2, 21, 418, ",60,R,R,R");
+  negative.replace(negative.find(",0,"), 3, ",-0,");
+  text += negative + "\n";
+  for (int k = 0; k < 8; ++k) text += row(2, 21, 418, ",60,R,R,R") + "\n";
+  const ImportedMotion motion = read(text);
+  EXPECT_EQ(motion.rows, 11);
+  EXPECT_EQ(motion.motion.dt, 0.001);         // 1 and 2 ms
+  EXPECT_EQ(motion.motion.theta.rows(), 19);  // the last row is at 18 ms after the first
+  const int elbow = hoap1().find_dof("r_elbow");
+  // Each angle is within half a count of what the file says.
+  const double half = 0.5 / 209 * M_PI / 180;
+  EXPECT_NEAR(motion.motion.theta(1, elbow), -1 * M_PI / 180, half + 1e-12);
+  EXPECT_NEAR(motion.motion.theta(2, elbow), -2 * M_PI / 180, half + 1e-12);
+  std::string said;
+  for (const std::string& line : motion.filled) said += line + "\n";
+  EXPECT_NE(said.find("1 commands to single devices"), std::string::npos) << said;
+  EXPECT_NE(said.find("device 21 is not on this robot"), std::string::npos) << said;
+  EXPECT_NE(said.find("intervals change"), std::string::npos) << said;
+}
+
+TEST(HoapImport, MistakesNameTheLine) {
+  const std::string good = row(1, 20, 0, ",R,R,R") + "\n";
+  EXPECT_NE(message(good + row(1, 20, 0, ",R,R") + "\n").find("seq.csv:2: 24 columns"),
+            std::string::npos);
+  EXPECT_NE(message(good + row(1, 20, 40000, ",R,R,R") + "\n").find("'40000' is not a count"),
+            std::string::npos);
+  EXPECT_NE(message(good + good + "0,2,1\n").find("seq.csv:3: '0' is not an interval"),
+            std::string::npos);
+  std::string waist;
+  for (int k = 0; k < 4; ++k) {
+    std::string line = row(1, 21, 0, ",60,R,R,R");
+    line.replace(line.rfind(",0,60"), 5, "," + std::to_string(k) + ",60");
+    waist += line + "\n";
+  }
+  EXPECT_NE(message(waist).find("device 21 moves from 0 to 3"), std::string::npos);
+}
+
+TEST(TableImport, BareNamesDegreesAndUnevenTimes) {
+  std::string text = "time,l_elbow,r_knee\n";
+  for (int k = 0; k < 20; ++k) {
+    const double t = 0.5 + 0.01 * k + (k == 7 ? 0.002 : 0);
+    text += std::to_string(t) + "," + std::to_string(-100 * (t - 0.5)) + ",40\n";
+  }
+  const ImportedMotion motion = read_motion(text, "a.csv", hoap1(), {.degrees = true});
+  EXPECT_EQ(motion.format, "csv");
+  EXPECT_NEAR(motion.motion.dt, 0.01, 1e-12);
+  ASSERT_EQ(motion.motion.theta.rows(), 20);
+  for (int k = 0; k < 20; ++k)
+    EXPECT_NEAR(motion.motion.theta(k, hoap1().find_dof("l_elbow")), -k * M_PI / 180, 1e-6) << k;
+  EXPECT_NEAR(motion.motion.theta(0, hoap1().find_dof("r_knee")), 40 * M_PI / 180, 1e-12);
+  EXPECT_THROW(read_motion("l_elbow\n0\n1\n", "a.csv", hoap1()), Error);
+  EXPECT_THROW(read_motion("t,l_elbo\n0,0\n1,1\n", "a.csv", hoap1()), Error);
+}
+
+TEST(SmoothestWithin, TakesRoundingAwayAndKeepsJumps) {
+  Eigen::VectorXd truth(400), rounded(400);
+  for (int k = 0; k < 400; ++k) {
+    truth[k] = 40 * std::sin(0.02 * k) + (k >= 200 ? 300 : 0);
+    rounded[k] = std::round(truth[k]);
+  }
+  const Eigen::VectorXd smooth = smoothest_within(rounded, 0.5, 6);
+  EXPECT_LE((smooth - rounded).cwiseAbs().maxCoeff(), 0.5);
+  EXPECT_NEAR(smooth[200] - smooth[199], 300, 2);
+  double before = 0, after = 0;
+  for (int k = 20; k < 180; ++k) {
+    before = std::max(before, std::abs(rounded[k + 1] - 2 * rounded[k] + rounded[k - 1]));
+    after = std::max(after, std::abs(smooth[k + 1] - 2 * smooth[k] + smooth[k - 1]));
+  }
+  EXPECT_LT(after, 0.3 * before);
+}
+
+}  // namespace
+}  // namespace ayumi::test

@@ -1,0 +1,138 @@
+// The commands edit and import, and check that watches.
+
+#include <signal.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string kWalk = AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json";
+
+class Edit : public testing::Test {
+ protected:
+  Output ayumi(const std::vector<std::string>& arguments) {
+    return run_program(arguments, folder.path());
+  }
+  Folder folder;
+};
+
+TEST_F(Edit, BakedMotionIsTheSameMotion) {
+  const Output baked = ayumi({"edit", "bake", kWalk, "-o", "baked.json", "--json"});
+  ASSERT_EQ(baked.exit_code, 0) << baked.out << baked.err;
+  const Json json = Json::parse(baked.out);
+  EXPECT_EQ(json["check"]["verdict"], "consistent");
+  EXPECT_EQ(json["table"], "baked.csv");
+  EXPECT_EQ(folder.files(), (std::vector<std::string>{"baked.csv", "baked.json"}));
+  const Output again = ayumi({"check", "baked.json", "--json"});
+  EXPECT_EQ(again.exit_code, 0) << again.out << again.err;
+  // Baking what is baked changes nothing, byte for byte.
+  ASSERT_EQ(ayumi({"edit", "bake", "baked.json", "-o", "twice.json"}).exit_code, 0);
+  EXPECT_EQ(contents(folder / "twice.csv"), contents(folder / "baked.csv"));
+  // What is there is not overwritten.
+  EXPECT_EQ(ayumi({"edit", "bake", kWalk, "-o", "baked.json"}).exit_code, 3);
+}
+
+TEST_F(Edit, MirroredTwiceIsTheSameFile) {
+  ASSERT_EQ(ayumi({"edit", "mirror", kWalk, "-o", "a.json"}).exit_code, 0);
+  ASSERT_EQ(ayumi({"edit", "mirror", "a.json", "-o", "b.json"}).exit_code, 0);
+  ASSERT_EQ(ayumi({"edit", "mirror", "b.json", "-o", "c.json"}).exit_code, 0);
+  EXPECT_EQ(contents(folder / "a.json"), contents(folder / "c.json"));
+  EXPECT_NE(contents(folder / "a.json"), contents(folder / "b.json"));
+}
+
+TEST_F(Edit, RetimeToLimitsIsTheFastestThatPasses) {
+  const Output out =
+      ayumi({"edit", "retime", kWalk, "--to-limits", "-o", "fast.json", "--json", "-q"});
+  ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
+  const Json json = Json::parse(out.out);
+  const double scale = json["scale"];
+  EXPECT_LT(scale, 1);
+  EXPECT_FALSE(json["limited_by"].is_null());
+  EXPECT_GT(double(json["fz_N"]["after"][1]), double(json["fz_N"]["before"][1]));
+  EXPECT_EQ(ayumi({"check", "fast.json"}).exit_code, 0);
+  const std::string faster = std::to_string(scale * 0.98);
+  const Output broken = ayumi({"edit", "retime", kWalk, "--scale", faster, "-o", "b.json"});
+  EXPECT_NE(broken.exit_code, 0);
+}
+
+TEST_F(Edit, MistakesOfTheCall) {
+  EXPECT_EQ(ayumi({"edit", "retime", kWalk, "-o", "a.json"}).exit_code, 2);
+  EXPECT_EQ(ayumi({"edit", "retime", kWalk, "--scale", "0", "-o", "a.json"}).exit_code, 2);
+  EXPECT_EQ(ayumi({"edit", "bake", kWalk, "-o", "a.csv"}).exit_code, 3);
+  EXPECT_EQ(ayumi({"edit", "bake", "missing.json", "-o", "a.json"}).exit_code, 3);
+  EXPECT_TRUE(folder.files().empty());
+}
+
+// The walk as the robot would play it, and back: its steps are found again.
+TEST_F(Edit, SequencesComeBack) {
+  ASSERT_EQ(ayumi({"export", kWalk, "--format", "hoap", "-o", "walk.csv"}).exit_code, 0);
+  const Output out = ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "back.json", "--json"});
+  ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
+  const Json json = Json::parse(out.out);
+  EXPECT_EQ(json["format"], "hoap");
+  // Eight steps, a closing one, and where both feet stood before.
+  EXPECT_EQ(json["contacts"].size(), 11u) << out.out;
+  const Json last = json["contacts"].back();
+  EXPECT_NEAR(last["position_m"][0], 0.24, 0.004);
+  // Made for the robot's own file, the table takes the name of no other.
+  EXPECT_EQ(ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "walk.json"}).exit_code, 3);
+  const Output checked = ayumi({"check", "back.json", "--json"});
+  EXPECT_TRUE(checked.exit_code == 0 || checked.exit_code == 1) << checked.err;
+  const Json summary = Json::parse(checked.out)["summary"];
+  EXPECT_LT(summary["max_foot_slip_m"], 0.004);
+  EXPECT_LT(summary["max_foot_penetration_m"], 0.004);
+}
+
+TEST_F(Edit, ImportReadsStandardInputAndNamesMistakes) {
+  write(folder / "bad.csv", "1,2,0,0\n");
+  const Output bad = ayumi({"import", "bad.csv", "--robot", "hoap1", "-o", "a.json"});
+  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_NE(bad.err.find("bad.csv:1: 4 columns"), std::string::npos) << bad.err;
+  // Standard input is empty here.
+  EXPECT_EQ(ayumi({"import", "-", "--robot", "hoap1", "-o", "a.json"}).exit_code, 3);
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.csv"});
+}
+
+// Waits until `file` holds `text`, up to 20 s.
+bool appears(const fs::path& file, const std::string& text) {
+  for (int i = 0; i < 200; ++i) {
+    if (contents(file).find(text) != std::string::npos) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return false;
+}
+
+TEST_F(Edit, WatchChecksAgainUntilStopped) {
+  write(folder / "w.json", contents(kWalk));
+  const fs::path out = folder / "out";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int file = ::open(out.c_str(), O_WRONLY | O_CREAT, 0600);
+    if (::chdir(folder.path().c_str()) != 0 || ::dup2(file, 1) < 0) ::_exit(126);
+    ::execl(AYUMI_PROGRAM, AYUMI_PROGRAM, "check", "w.json", "--watch", "-q", nullptr);
+    ::_exit(127);
+  }
+  EXPECT_TRUE(appears(out, "w.json: consistent"));
+  write(folder / "w.json", "{ half a file");
+  EXPECT_TRUE(appears(out, "w.json:1"));
+  std::string slippery = contents(kWalk);
+  const std::string key = R"("friction": 0.8)";
+  slippery.replace(slippery.find(key), key.size(), R"("friction": 0.05)");
+  write(folder / "w.json", slippery);
+  EXPECT_TRUE(appears(out, "w.json: INCONSISTENT"));
+  ::kill(child, SIGINT);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+}
+
+}  // namespace
+}  // namespace ayumi::test
