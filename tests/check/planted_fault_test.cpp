@@ -266,16 +266,24 @@ TEST(PlantedFault, ContactTooEarlyWithoutFootholds) {
 TEST(PlantedFault, ArmThroughTheTorso) {
   for (const char* side : {"l", "r"}) {
     Pattern p = walk();
-    const double in = side[0] == 'l' ? 1 : -1;  // towards the body
-    bend(p, std::string(side) + "_shoulder_roll", 2.0, 2.0, -in * 10 * kDegree);
+    const double in = side[0] == 'l' ? 1 : -1;  // the forearm turns towards the body
+    bend(p, std::string(side) + "_shoulder_pitch", 2.0, 2.0, 25 * kDegree);
     bend(p, std::string(side) + "_shoulder_twist", 2.0, 2.0, in * 85 * kDegree);
-    bend(p, std::string(side) + "_elbow", 2.0, 2.0, -60 * kDegree);
+    bend(p, std::string(side) + "_elbow", 2.0, 2.0, -64 * kDegree);
     const ConsistencyReport r = report_of(p);
     EXPECT_EQ(error_kinds(r), Kinds{"self_collision"}) << print(r);
     const Finding& f = first(r, "self_collision");
     EXPECT_NE(f.where.find("torso"), std::string::npos) << f.where;
     EXPECT_NEAR(f.at, 2.0, 0.002);
   }
+}
+
+// The limit and the collision are two facts.
+TEST(PlantedFault, ArmThroughTheTorsoBeyondItsLimit) {
+  Pattern p = walk();
+  bend(p, "l_shoulder_roll", 2.0, 2.0, -0.7);
+  const ConsistencyReport r = report_of(p);
+  EXPECT_EQ(error_kinds(r), (Kinds{"joint_position", "self_collision"})) << print(r);
 }
 
 TEST(PlantedFault, SlipperyGround) {

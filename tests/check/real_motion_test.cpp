@@ -206,10 +206,10 @@ TEST(HoapImport, QuirksOfRealFiles) {
   EXPECT_EQ(motion.motion.dt, 0.001);         // 1 and 2 ms
   EXPECT_EQ(motion.motion.theta.rows(), 19);  // the last row is at 18 ms after the first
   const int elbow = hoap1().find_dof("r_elbow");
-  // Each angle is within half a count of what the file says.
-  const double half = 0.5 / 209 * M_PI / 180;
-  EXPECT_NEAR(motion.motion.theta(1, elbow), -1 * M_PI / 180, half + 1e-12);
-  EXPECT_NEAR(motion.motion.theta(2, elbow), -2 * M_PI / 180, half + 1e-12);
+  // Each angle is within a tenth of a degree of what the file says.
+  const double count = 0.1 * M_PI / 180;
+  EXPECT_NEAR(motion.motion.theta(1, elbow), -1 * M_PI / 180, count + 1e-12);
+  EXPECT_NEAR(motion.motion.theta(2, elbow), -2 * M_PI / 180, count + 1e-12);
   std::string said;
   for (const std::string& line : motion.filled) said += line + "\n";
   EXPECT_NE(said.find("1 commands to single devices"), std::string::npos) << said;
@@ -251,21 +251,25 @@ TEST(TableImport, BareNamesDegreesAndUnevenTimes) {
   EXPECT_THROW(read_motion("t,l_elbo\n0,0\n1,1\n", "a.csv", hoap1()), Error);
 }
 
-TEST(SmoothestWithin, TakesRoundingAwayAndKeepsJumps) {
-  Eigen::VectorXd truth(400), rounded(400);
-  for (int k = 0; k < 400; ++k) {
-    truth[k] = 40 * std::sin(0.02 * k) + (k >= 200 ? 300 : 0);
+TEST(SmoothedWithin, TakesRoundingAwayAndKeepsJumpsAndCurvature) {
+  Eigen::VectorXd truth(600), rounded(600);
+  for (int k = 0; k < 600; ++k) {
+    truth[k] = 400 * std::sin(0.01 * k) + (k >= 300 ? 300 : 0);
     rounded[k] = std::round(truth[k]);
   }
-  const Eigen::VectorXd smooth = smoothest_within(rounded, 0.5, 6);
-  EXPECT_LE((smooth - rounded).cwiseAbs().maxCoeff(), 0.5);
-  EXPECT_NEAR(smooth[200] - smooth[199], 300, 2);
+  const Eigen::VectorXd smooth = smoothed_within(rounded, 20, 50);
+  EXPECT_LE((smooth - rounded).cwiseAbs().maxCoeff(), 20);
+  EXPECT_GT(smooth[300] - smooth[299], 300 - 2 * 20);
+  const auto second = [](const Eigen::VectorXd& x, int k) {
+    return x[k + 1] - 2 * x[k] + x[k - 1];
+  };
   double before = 0, after = 0;
-  for (int k = 20; k < 180; ++k) {
-    before = std::max(before, std::abs(rounded[k + 1] - 2 * rounded[k] + rounded[k - 1]));
-    after = std::max(after, std::abs(smooth[k + 1] - 2 * smooth[k] + smooth[k - 1]));
+  for (int k = 60; k < 240; ++k) {
+    before = std::max(before, std::abs(second(rounded, k) - second(truth, k)));
+    after = std::max(after, std::abs(second(smooth, k) - second(truth, k)));
   }
-  EXPECT_LT(after, 0.3 * before);
+  EXPECT_GT(before, 0.5);
+  EXPECT_LT(after, 0.05);
 }
 
 }  // namespace

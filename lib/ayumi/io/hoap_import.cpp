@@ -16,8 +16,8 @@ namespace ayumi {
 namespace {
 
 constexpr double kRadiansPerDegree = EIGEN_PI / 180;
-constexpr double kSmoothing = 0.006;  // width of the averaging within half a count [s]
-constexpr int kRounds = 30;
+constexpr double kSmoothing = 0.050;  // to either side of a sample [s]
+constexpr double kBandDegrees = 0.1;  // of change by it; servos follow no better
 
 std::string_view trimmed(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -147,20 +147,26 @@ void refuse_lost_motion(const std::vector<Row>& rows, size_t device, const Robot
 
 }  // namespace
 
-Eigen::VectorXd smoothest_within(const Eigen::VectorXd& x, double half, double width) {
-  const auto reach = static_cast<Eigen::Index>(std::ceil(3 * width));
+Eigen::VectorXd smoothed_within(const Eigen::VectorXd& x, double band, int reach) {
   const Eigen::Index n = x.size();
-  if (reach < 1 || n < 3) return x;
-  Eigen::VectorXd kernel(2 * reach + 1);
-  for (Eigen::Index i = -reach; i <= reach; ++i)
-    kernel[i + reach] = std::exp(-0.5 * static_cast<double>(i * i) / (width * width));
-  kernel /= kernel.sum();
-  Eigen::VectorXd y = x, padded(n + 2 * reach);
-  for (int round = 0; round < kRounds; ++round) {
-    padded << Eigen::VectorXd::Constant(reach, y[0]), y, Eigen::VectorXd::Constant(reach, y[n - 1]);
-    for (Eigen::Index k = 0; k < n; ++k)
-      y[k] = std::clamp(kernel.dot(padded.segment(k, 2 * reach + 1)), x[k] - half, x[k] + half);
+  constexpr int kDegree = 4;
+  if (reach < 3 || n <= reach) return x;
+  // Least squares over -reach .. reach: the value at 0 is linear in the samples.
+  Eigen::MatrixXd powers(2 * reach + 1, kDegree + 1);
+  for (int i = -reach; i <= reach; ++i)
+    for (int p = 0; p <= kDegree; ++p)
+      powers(i + reach, p) = std::pow(static_cast<double>(i) / reach, p);
+  const Eigen::MatrixXd normal = powers.transpose() * powers;
+  const Eigen::VectorXd weights =
+      powers * normal.ldlt().solve(Eigen::VectorXd::Unit(kDegree + 1, 0));
+  Eigen::VectorXd padded(n + 2 * reach), y(n);
+  padded.segment(reach, n) = x;
+  for (int i = 1; i <= reach; ++i) {  // point-symmetric about both ends
+    padded[reach - i] = 2 * x[0] - x[i];
+    padded[reach + n - 1 + i] = 2 * x[n - 1] - x[n - 1 - i];
   }
+  for (Eigen::Index k = 0; k < n; ++k)
+    y[k] = x[k] + band * std::tanh((weights.dot(padded.segment(k, 2 * reach + 1)) - x[k]) / band);
   return y;
 }
 
@@ -204,10 +210,12 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
     }
     told[static_cast<size_t>(dof)] = 1;
     const double per_degree = model.dofs()[dof].encoder.counts_per_degree;
+    const int reach = static_cast<int>(std::lround(kSmoothing / result.motion.dt));
     result.motion.theta.col(dof) =
-        smoothest_within(on_ticks(rows, device, tick), 0.5, kSmoothing / result.motion.dt) *
+        smoothed_within(on_ticks(rows, device, tick), kBandDegrees * std::abs(per_degree), reach) *
         (kRadiansPerDegree / per_degree);
   }
+  result.filled.push_back("angles smoothed by at most " + text::brief(kBandDegrees) + " deg");
   for (int dof = 0; dof < model.dof_count(); ++dof)
     if (!told[static_cast<size_t>(dof)])
       result.filled.push_back(model.dofs()[dof].name + ": not in the file, rests at home");

@@ -26,7 +26,7 @@ struct ImportedMotion {
 /// Layouts of HOAP sequences by columns: 25 (HOAP-1: 20 motors), 27 (HOAP-2: 21), 29 (HOAP-3: 21).
 /// Blanks, CR, `-0` and `R` anywhere behind the motors are fine. General commands (3) only take
 /// their time. Changing intervals become the smallest one, straight between rows. Angles are the
-/// smoothest ones within half a count of what the file says. Throws Error(bad_file) "file:line:
+/// smoothed by at most 0.1 deg. Throws Error(bad_file) "file:line:
 /// ..." for another number of columns, a cell that is no count, and where a device moves that the
 /// robot does not have.
 ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
@@ -42,8 +42,8 @@ ImportedMotion read_table_motion(const std::string& bytes, const std::string& fi
 ImportedMotion read_motion(const std::string& bytes, const std::string& file,
                            const RobotModel& model, const ImportOptions& options = {});
 
-/// `x` made smooth without leaving x - half .. x + half anywhere; `width` is the standard deviation
-/// of the averaging [samples].
-Eigen::VectorXd smoothest_within(const Eigen::VectorXd& x, double half, double width);
+/// Each sample replaced by the quartic that fits it and `reach` samples to either side best, but by
+/// less than `band`: rounding goes, curvature stays, and so does a jump.
+Eigen::VectorXd smoothed_within(const Eigen::VectorXd& x, double band, int reach);
 
 }  // namespace ayumi

@@ -227,6 +227,22 @@ void read_links(const JsonNode& node, RobotDescription& robot) {
   }
 }
 
+void read_position_limits(const JsonNode& node, RobotDescription& robot) {
+  for (const auto& [name, entry] : node.members()) {
+    const auto joint =
+        std::find_if(robot.joints.begin(), robot.joints.end(),
+                     [&](const JointDescription& each) { return each.name == name; });
+    if (joint == robot.joints.end() || !contains(moving_joints(robot), name))
+      entry.complain("'" + name + "' is not a moving joint of the robot" +
+                     text::suggestion(name, moving_joints(robot)));
+    const Eigen::Vector2d limits = kDegree * entry.vector2();
+    joint->has_limits = true;
+    joint->lower = limits.x();
+    joint->upper = limits.y();
+    if (joint->type == JointType::continuous) joint->type = JointType::revolute;
+  }
+}
+
 void read_lists(const JsonNode& root, RobotDescription& robot) {
   if (const auto order = root.find("joint_order")) robot.joint_order = order->strings();
   if (const auto pairs = root.find("collision_ignore"))
@@ -245,6 +261,7 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "joint_order",
                                         "locked_joints",
                                         "links",
+                                        "position_limits_deg",
                                         "trunk_link",
                                         "soles",
                                         "postures",
@@ -263,6 +280,7 @@ const std::vector<std::string> kKeys = {"$schema",
 void read_root(const JsonNode& root, RobotDescription& robot) {
   const std::vector<std::pair<const char*, std::function<void(const JsonNode&)>>> readers = {
       {"locked_joints", [&](const JsonNode& node) { lock_joints(node, robot); }},
+      {"position_limits_deg", [&](const JsonNode& node) { read_position_limits(node, robot); }},
       {"links", [&](const JsonNode& node) { read_links(node, robot); }},
       {"name", [&](const JsonNode& node) { robot.name = node.string(); }},
       {"trunk_link", [&](const JsonNode& node) { robot.trunk_link = node.string(); }},

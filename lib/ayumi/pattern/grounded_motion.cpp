@@ -19,11 +19,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRest = 0.020;     // relative speed of feet that stand [m/s]
-constexpr double kLever = 0.05;     // a turn counts as the speed of a point this far [m]
-constexpr double kLevel = 0.003;    // difference of heights of feet that stand [m]
-constexpr double kLook = 0.010;     // speeds are differences over twice this [s]
-constexpr double kShortest = 0.02;  // stretch of one support [s]
+constexpr double kRest = 0.020;           // relative speed of feet that stand [m/s]
+constexpr double kLever = 0.05;           // a turn counts as the speed of a point this far [m]
+constexpr double kLevel = 0.003;          // difference of heights of feet that stand [m]
+constexpr double kHandoverSpeed = 0.04;   // of feet along the ground as one takes over [m/s]
+constexpr double kHandoverTime = 0.3;     // within which one takes over [s]
+constexpr double kHandoverHeight = 0.01;  // between them [m]
+constexpr double kLook = 0.010;           // speeds are differences over twice this [s]
+constexpr double kShortest = 0.02;        // stretch of one support [s]
 
 using Soles = std::array<std::vector<Isometry3d>, 2>;  // by Side, then row
 
@@ -90,6 +93,36 @@ void tell_low_swings(std::vector<int>& labels) {
                                                : after;
     }
     k = last + 1;
+  }
+}
+
+// Real robots are told angles that make up for what gives way under load, so that their soles never
+// rest against each other at one height. Where one foot takes over from the other at once, both
+// carry as long as they do not part along the ground, and are not far from one height.
+void add_handovers(const Soles& soles, double dt, std::vector<int>& labels) {
+  const int n = static_cast<int>(labels.size());
+  const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
+  const auto ground_normal = [&](int k) {
+    return Vector3d((soles[0][k].linear().col(2) + soles[1][k].linear().col(2)).normalized());
+  };
+  // In the axes of the left foot, which is as good as still at those times.
+  const auto between = [&](int k) -> Vector3d {
+    return soles[0][k].linear().transpose() *
+           (soles[1][k].translation() - soles[0][k].translation());
+  };
+  const auto stands = [&](int k) {
+    const int a = std::max(0, k - look), b = std::min(n - 1, k + look);
+    const Vector3d up = soles[0][k].linear().transpose() * ground_normal(k);
+    const Vector3d speed = (between(b) - between(a)) / ((b - a) * dt);
+    return (speed - up.dot(speed) * up).norm() < kHandoverSpeed &&
+           std::abs(up.dot(between(k))) < kHandoverHeight;
+  };
+  const int near = static_cast<int>(std::lround(kHandoverTime / dt));
+  const std::vector<int> given = labels;
+  for (int k = 1; k < n; ++k) {
+    if (given[k] == 0 || given[k - 1] == 0 || given[k] == given[k - 1]) continue;
+    for (int i = std::max(0, k - near); i < std::min(n, k + near); ++i)
+      if (stands(i)) labels[i] = 0;
   }
 }
 
@@ -160,6 +193,7 @@ std::vector<Support> supports_from(const RobotModel& model, const RawMotion& mot
     return without_blinks(supports_with_base(model, soles, motion.dt), motion.dt);
   std::vector<int> labels = relative_labels(model, soles, motion.dt);
   tell_low_swings(labels);
+  add_handovers(soles, motion.dt, labels);
   std::vector<Support> result;
   for (const int label : labels)
     result.push_back(label == 1 ? Support::left : label == -1 ? Support::right : Support::both);
@@ -287,9 +321,7 @@ class Grounding {
     const auto single = [&](size_t r) { return runs_[r].support == Support::right ? 1.0 : 0.0; };
     const bool before = run > 0, after = run + 1 < runs_.size();
     if (runs_[run].support != Support::both) return single(run);
-    if (!before && !after) return 0.5;
-    if (!before || !after) return single(before ? run - 1 : run + 1);
-    const double from = single(run - 1), to = single(run + 1);
+    const double from = before ? single(run - 1) : 0.5, to = after ? single(run + 1) : 0.5;
     const double u =
         static_cast<double>(k - runs_[run].first + 1) / (runs_[run].last - runs_[run].first + 2);
     return from + (to - from) * minimum_jerk(u).value;

@@ -22,8 +22,10 @@ struct RawMotion {
 
 /// Who carries the robot in each row. Feet on the ground do not move against each other: both carry
 /// while their relative pose rests (2 cm/s) at one height (3 mm); else the one that is lower in the
-/// other's frame. With a base, a sole carries that is within 3 mm of the lowest height of all and
-/// rests; flight is when none does. Stretches shorter than 20 ms belong to their neighbours.
+/// other's frame; where one takes over from the other at once, both carry as long as they do not
+/// part along the ground (4 cm/s) or by more than 1 cm in height. With a base, a sole carries that
+/// is within 3 mm of the lowest height of all and rests; flight is when none does. Stretches
+/// shorter than 20 ms belong to their neighbours.
 std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion);
 
 /// One foot on the ground.
