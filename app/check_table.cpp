@@ -37,8 +37,7 @@ std::string check_table(const ConsistencyReport& report) {
   for (const Finding& f : report.findings)
     out += "  " + padded(name_of(f.severity), 8) + padded(f.kind, 19) + f.where + ", " +
            seconds(f) + ": " + quantity(f.worst, f.unit) + ", limit " + quantity(f.limit, f.unit) +
-           "\n" + std::string(10, ' ') +
-           (f.follows_from.empty() ? f.hint : "follows from " + f.follows_from) + "\n";
+           "\n" + std::string(10, ' ') + f.hint + "\n";
   const CheckSummary& s = report.summary;
   out += "  ZMP " + mm(std::abs(s.min_zmp_margin)) +
          (s.min_zmp_margin < 0 ? " outside" : " inside") + " the support; residuals COG " +

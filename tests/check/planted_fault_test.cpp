@@ -267,7 +267,8 @@ TEST(PlantedFault, ArmThroughTheTorso) {
   for (const char* side : {"l", "r"}) {
     Pattern p = walk();
     const double in = side[0] == 'l' ? 1 : -1;  // the forearm turns towards the body
-    bend(p, std::string(side) + "_shoulder_pitch", 2.0, 2.0, 25 * kDegree);
+    bend(p, std::string(side) + "_shoulder_pitch", 2.0, 2.0, 42 * kDegree);
+    bend(p, std::string(side) + "_shoulder_roll", 2.0, 2.0, -in * 10 * kDegree);
     bend(p, std::string(side) + "_shoulder_twist", 2.0, 2.0, in * 85 * kDegree);
     bend(p, std::string(side) + "_elbow", 2.0, 2.0, -64 * kDegree);
     const ConsistencyReport r = report_of(p);

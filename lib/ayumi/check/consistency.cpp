@@ -88,6 +88,7 @@ Finding finding_of(const CheckPass& pass, const std::vector<FindingWindow>& wind
     f.follows_from = kind_name(cause) + " " +
                      where_text(pass.model, pass.collisions.pairs(), cause) + " at " +
                      text::fixed(cause.sample * dt, 3) + " s";
+    f.hint = "follows from " + f.follows_from + ": mend that first";
   }
   return f;
 }
