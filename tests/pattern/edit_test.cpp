@@ -87,7 +87,7 @@ TEST(Mirror, MotionIsTheMirrorImage) {
     const CommandSample &s = a.samples[k], &m = b.samples[k];
     EXPECT_NEAR(s.cog.x(), m.cog.x(), 1e-5);
     EXPECT_NEAR(s.cog.y(), -m.cog.y(), 1e-5);
-    EXPECT_NEAR(s.zmp.y(), -m.zmp.y(), 1e-9);
+    EXPECT_NEAR(s.zmp.y(), -m.zmp.y(), 1e-7);
     for (int dof = 0; dof < hoap1().dof_count(); ++dof)
       EXPECT_NEAR(map.sign[dof] * s.state.theta[dof], m.state.theta[map.dof[dof]], 1e-3);
   }
