@@ -135,6 +135,17 @@ TEST(Retime, TableKeepsItsPath) {
   EXPECT_LT((a.samples[k].state.dtheta - 2 * b.samples[2 * k].state.dtheta).norm(), 1e-4);
 }
 
+// Goals move as their controller decides: mirrored they are, baked or retimed they are refused.
+TEST(Mirror, GoalsOfPhases) {
+  Pattern p = stand_pattern(hoap1(), 1.0);
+  p.phases[0].viip = StepGoal{4, {0.05, 0.02}, 0.1};
+  const auto goal = std::get<StepGoal>(*mirrored(hoap1(), p).phases[0].viip);
+  EXPECT_EQ(goal.velocity, Eigen::Vector2d(0.05, -0.02));
+  EXPECT_EQ(goal.turn, -0.1);
+  EXPECT_THROW(retimed(hoap1(), p, 2), Error);
+  EXPECT_THROW(baked(hoap1(), p, {}, "t.csv"), Error);
+}
+
 TEST(Retime, RefusesSenselessScales) {
   for (const double scale : {0.0, -1.0, 1e6, std::nan("")})
     EXPECT_THROW(retimed(hoap1(), rich(), scale), Error) << scale;

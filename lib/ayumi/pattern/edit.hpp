@@ -12,7 +12,8 @@ namespace ayumi {
 
 /// The motion as a table: theta, base, commanded COG, ZMP and f_z of every sample, under the file
 /// name `table`. Phases with their footholds, world, controller, scenario and tolerances stay; keys
-/// go, but for weights and foot poses. `series` is the pattern sampled.
+/// go, but for weights and foot poses. `series` is the pattern sampled. Throws Error(bad_pattern)
+/// for a phase with a goal, which has no motion of its own.
 Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
               const std::string& table);
 
@@ -31,7 +32,7 @@ Pattern mirrored(const RobotModel& model, const Pattern& pattern);
 
 /// The pattern in `scale` of its time. f_z keys keep the vertical acceleration that the new time
 /// gives; ZMP and f_z columns of a table no longer hold and are left to the full model. A push
-/// keeps its duration. Throws Error(usage) unless 0.01 <= scale <= 100.
+/// keeps its duration. Throws Error(usage) unless 0.01 <= scale <= 100, and as baked().
 Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 
 }  // namespace ayumi

@@ -163,9 +163,18 @@ class Mirror {
       phase.support = Support::right;
     else if (phase.support == Support::right)
       phase.support = Support::left;
+    if (phase.viip) mirror(*phase.viip);
     if (!phase.swing) return;
     phase.swing->foot = other(phase.swing->foot);
     phase.swing->to = of(phase.swing->to);
+  }
+
+  static void mirror(ViipGoal& goal) {
+    if (auto* cog = std::get_if<CogGoal>(&goal)) cog->displacement.y() *= -1;
+    if (auto* step = std::get_if<StepGoal>(&goal)) {
+      step->velocity.y() *= -1;
+      step->turn *= -1;
+    }
   }
 
   void mirror(Keyframe& key) const {
