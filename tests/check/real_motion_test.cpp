@@ -169,7 +169,8 @@ TEST(Sidecar, CompletesAUrdfOfAnotherFolder) {
   };
   const RobotSearch search = {.folders = {AYUMI_SOURCE_DIR "/robots/hoap1"}};
   const std::string file = write(
-      R"("links": { "torso": { "mass": 4, "com": [0, 0, 0.1], "inertia": [0.01, 0, 0, 0.01, 0, 0.01] } },
+      R"("links": { "torso": { "mass": 4, "com": [0, 0, 0.1],
+                                  "inertia": [0.01, 0, 0, 0.01, 0, 0.01] } },
                "position_limits_deg": { "l_knee": [1, 99] })");
   const RobotModel model = load_robot(file, search);
   const Inertia& torso = model.links()[model.find_link("torso")].inertia;
