@@ -28,10 +28,10 @@ Delta delta(const Instant& i) {
           i.rate(&SimulationSample::command_cog) - i.rate(&SimulationSample::measured_cog)};
 }
 
-double K(const Instant& i) { return i.gains.k ? *i.gains.k : 1 + i.gains.q; }
+double K(const Instant& i) { return long_term_k(i.gains); }
 double D(const Instant& i) {
   const double w = std::sqrt(kGravity / height(i.now()));
-  return (i.gains.d ? *i.gains.d : 1 + i.gains.q) / w;
+  return long_term_d(i.gains) / w;
 }
 
 Lines cog_numbers(const Instant& i) {

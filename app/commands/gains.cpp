@@ -133,9 +133,6 @@ std::vector<std::pair<std::string, double>> gain_list(const DtadParams& p) {
   return list;
 }
 
-double K(const DtadParams& p) { return p.k ? *p.k : 1 + p.q; }
-double D(const DtadParams& p) { return p.d ? *p.d : 1 + p.q; }
-
 std::string mode_text(const Complex& pole) {
   std::string line = "  decays with " + text::brief(-1 / pole.real()) + " s";
   if (std::abs(pole.imag()) > 1e-6)
@@ -150,7 +147,8 @@ std::string report(const RobotModel& model, const Design& d) {
                     " m above the soles, omega " + text::fixed(w, 2) + " /s\n";
   out += "gains, as a pattern or sidecar names them\n ";
   for (const auto& [name, value] : gain_list(p)) out += " " + name + "=" + text::brief(value);
-  out += "\n(18)(19)  K = " + text::brief(K(p)) + ", D = " + text::fixed(1e3 * D(p) / w, 1) +
+  out += "\n(18)(19)  K = " + text::brief(long_term_k(p)) +
+         ", D = " + text::fixed(1e3 * long_term_d(p) / w, 1) +
          " ms: the ZMP goes K times as far out as the COG\n";
   out += "short term  " + text::fixed(100 * p.ka / (1 + p.ka), 0) +
          " % of a ZMP error is taken up at once, measured over " +
@@ -186,8 +184,8 @@ Json json_of(const RobotModel& model, const Design& d) {
   return {{"robot", model.name()},
           {"omega_1_s", d.omega},
           {"gains", gains},
-          {"K", K(d.params)},
-          {"D_s", D(d.params) / d.omega},
+          {"K", long_term_k(d.params)},
+          {"D_s", long_term_d(d.params) / d.omega},
           {"stable", d.analysis.stable},
           {"decay_1_s", d.analysis.decay},
           {"frequency_Hz", d.analysis.frequency},

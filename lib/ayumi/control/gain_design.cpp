@@ -28,7 +28,7 @@ MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
   const double w = std::sqrt(kGravity / loop.height), w2 = w * w, dt = loop.tick;
   const double s = loop.stiffness / (loop.mass * kGravity * loop.height);
   const double T = loop.damping / loop.stiffness;
-  const double K = p.k ? *p.k : 1 + p.q, D = (p.d ? *p.d : 1 + p.q) / w;
+  const double K = long_term_k(p), D = long_term_d(p) / w;
   const int delay = static_cast<int>(std::lround(loop.delay / dt));
   const int n = kFixed + 3 * delay;  // and delayed (x, dx, zZ), newest first
   const auto unit = [&](int i) { return RowVectorXd(RowVectorXd::Unit(n, i)); };
