@@ -22,7 +22,14 @@ struct Standing {
   RobotData data{model};
 
   /// At rest with this bend of the knees, trunk upright and soles level.
-  explicit Standing(double knee) {
+  explicit Standing(double knee, bool at_stop = false) {
+    if (at_stop) {
+      RobotDescription description = model.description();
+      for (JointDescription& joint : description.joints)
+        if (joint.name.ends_with("_knee")) joint.lower = knee;
+      model = RobotModel(description);
+      data = RobotData(model);
+    }
     const CommandSeries series = sample(model, stand_pattern(model, 0.01));
     command = series.samples.front();
     RobotState& s = command.state;
@@ -84,7 +91,7 @@ TEST(Resolver, NearlyStraightKneesLetTheHeightGiveWay) {
 }
 
 TEST(Resolver, AKneeAtItsStopIsHeld) {
-  Standing robot(0.0);
+  Standing robot(0.8, true);
   const Resolution r = robot.solve({0, 0.03, 0.05});
   EXPECT_FALSE(r.held.empty());
   EXPECT_TRUE(r.yielding.height);
