@@ -80,6 +80,32 @@ TEST(DtadGaits, PushOnASlopeThatThePatternDoesNotKnow) {
   }
 }
 
+// What the servos received is what the table holds: played without control it moves the robot
+// alike.
+TEST(DtadGaits, TheExportedReferenceReplaysToTheSameLoci) {
+  const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
+  const CommandSeries series = sample(hoap1(), pattern);
+  SimulateOptions options;
+  options.world = pattern.world;
+  const SimulationLog closed = simulate(hoap1(), series, options);
+  const ReferenceTrajectory table = extract_reference(hoap1(), closed);
+  ASSERT_EQ(table.rows.size(), closed.samples.size());
+  CommandSeries replay = series;
+  replay.samples.resize(table.rows.size(), series.samples.back());
+  for (size_t k = 0; k < table.rows.size(); ++k) {
+    replay.samples[k].state.theta = table.rows[k].theta;
+    replay.samples[k].state.dtheta.setZero();  // the lead of the servos is in the table
+  }
+  options.controller.type = "none";
+  options.settle = 0;
+  const SimulationLog open = simulate(hoap1(), replay, options);
+  EXPECT_EQ(open.result.outcome, Outcome::stands);
+  double cog = 0;
+  for (size_t k = 0; k < std::min(open.samples.size(), closed.samples.size()); ++k)
+    cog = std::max(cog, (open.samples[k].cog - closed.samples[k].cog).norm());
+  EXPECT_LT(cog, 1e-6);
+}
+
 TEST(DtadGaits, TheLargeRobotWalksUnderItsPush) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/humanoid30");
   const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/humanoid30_walk.json");

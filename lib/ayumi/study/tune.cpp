@@ -184,7 +184,7 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
               .stand = standing_series(series),
               .phases = options.phases,
               .loop = single_support_loop(model, height(series.samples.front()), series.dt)};
-  if (tuner.phases.empty()) tuner.phases = default_push_phases(series);
+  if (tuner.phases.empty()) tuner.phases = default_push_phases(model, series, options.simulate);
   TuneResult result;
   for (const std::string& name : options.gains) result.start[name] = known.at(name);
   refuse_unstable(tuner.loop, dtad_params(model, tuner.controller(result.start)));
