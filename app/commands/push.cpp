@@ -160,7 +160,8 @@ PushMap push_map(const PatternInput& input, const std::vector<PushCase>& cases,
   map.remarks = summary_lines(cases, push, map.baseline);
   const size_t directions = static_cast<size_t>(push.directions);
   for (size_t p = 0; p < cases.size(); p += directions) {
-    PushMapPhase phase{.name = cases[p].phase.name};
+    PushMapPhase phase;
+    phase.name = cases[p].phase.name;
     phase.curves.resize(push.controllers.size() + 1);
     for (size_t i = p; i < p + directions; ++i) {
       const PushCase& c = cases[i];

@@ -35,10 +35,19 @@ constexpr double kOffsetLimit = 0.09;   // of the washed-out offset, times z
 
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   DtadParams p;
-  const std::map<std::string, double*> fields = {
-      {"q", &p.q},         {"ka", &p.ka},           {"ks", &p.ks},      {"kd", &p.kd},
-      {"tau_z", &p.tau_z}, {"margin", &p.margin},   {"kz", &p.kz},      {"dz", &p.dz},
-      {"kaz", &p.kaz},     {"washout", &p.washout}, {"ankle", &p.ankle}};
+  const std::map<std::string, double*> fields = {{"q", &p.q},
+                                                 {"ka", &p.ka},
+                                                 {"ks", &p.ks},
+                                                 {"kd", &p.kd},
+                                                 {"tau_z", &p.tau_z},
+                                                 {"margin", &p.margin},
+                                                 {"kz", &p.kz},
+                                                 {"dz", &p.dz},
+                                                 {"kaz", &p.kaz},
+                                                 {"washout", &p.washout},
+                                                 {"ankle", &p.ankle},
+                                                 {"long", &p.long_term},
+                                                 {"as_printed", &p.as_printed}};
   std::vector<std::string> names = {"k", "d"};
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where) {
@@ -74,8 +83,16 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   if (!p.k && p.q <= 0)
     fail(ErrorCode::usage, "controller gains: q must be positive (K = 1 + q must exceed 1)");
   if (p.tau_z <= 0) fail(ErrorCode::usage, "controller gains: tau_z must be positive");
+  if (p.as_printed != 0 && p.as_printed != 1)
+    fail(ErrorCode::usage, "controller gains: as_printed is 0 or 1");
   p.literal = spec.type == "dtad-literal";
   return p;
+}
+
+double long_term_k(const DtadParams& p) { return p.long_term * (p.k ? *p.k : 1 + p.q); }
+
+double long_term_d(const DtadParams& p) {
+  return (p.as_printed == 1 ? -1 : 1) * p.long_term * (p.d ? *p.d : 1 + p.q);
 }
 
 Dtad::Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadParams& params,
@@ -101,8 +118,7 @@ CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& e
   const double m = model_->mass(), weight = m * kGravity;
   const double z = command.cog.z() - command.zmp.z();
   const double w = std::sqrt(kGravity / z);
-  const double K = p.k ? *p.k : 1 + p.q;
-  const double D = (p.d ? *p.d : 1 + p.q) / w;
+  const double K = long_term_k(p), D = long_term_d(p) / w;
 
   const Vector3d e = command.cog - estimate.cog;
   const Vector3d de = command.dcog - estimate.dcog;

@@ -17,6 +17,8 @@ struct DtadParams {
   double q = 0.25;          ///< second pole of (18)(19): K = 1 + q, D = (1 + q)/omega
   std::optional<double> k;  ///< K given directly, with d; must exceed 1
   std::optional<double> d;  ///< D omega given directly, with k; must be positive
+  double long_term = 1;     ///< share of the long-term term; 0: ref ZMP is the commanded one
+  double as_printed = 0;    ///< 1: D of (18)(19) with the printed sign, a demonstration
   double ka = 1.5;          ///< short-term loop on the measured ZMP; grows towards (14)
   double ks = 1.5;          ///< pull of the reference COG to the command
   double kd = 1.5;          ///< damping of that pull
@@ -33,6 +35,10 @@ struct DtadParams {
 /// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
 /// unknown gain, K <= 1 or D <= 0, q together with k and d, or a value out of range.
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec);
+
+/// K and D (times omega) of (18)(19) as the law uses them, share and sign put in.
+double long_term_k(const DtadParams& params);
+double long_term_d(const DtadParams& params);
 
 class Dtad {
  public:

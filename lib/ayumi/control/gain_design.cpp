@@ -28,7 +28,7 @@ MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
   const double w = std::sqrt(kGravity / loop.height), w2 = w * w, dt = loop.tick;
   const double s = loop.stiffness / (loop.mass * kGravity * loop.height);
   const double T = loop.damping / loop.stiffness;
-  const double K = p.k ? *p.k : 1 + p.q, D = (p.d ? *p.d : 1 + p.q) / w;
+  const double K = long_term_k(p), D = long_term_d(p) / w;
   const int delay = static_cast<int>(std::lround(loop.delay / dt));
   const int n = kFixed + 3 * delay;  // and delayed (x, dx, zZ), newest first
   const auto unit = [&](int i) { return RowVectorXd(RowVectorXd::Unit(n, i)); };
@@ -114,15 +114,51 @@ DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2, Dt
   return params;
 }
 
+DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams params) {
+  const auto refuse = [](const std::string& what, double value, const std::string& why) {
+    fail(ErrorCode::usage, what + " " + text::brief(value) + ": " + why);
+  };
+  if (wishes.poles)
+    params = gains_from_poles((*wishes.poles)[0] / omega, (*wishes.poles)[1] / omega, params);
+  if (wishes.absorb) {
+    if (!(*wishes.absorb >= 0 && *wishes.absorb < 1))
+      refuse("absorbed share", *wishes.absorb, "from 0 (replay) to below 1 (the limit is (14))");
+    params.ka = *wishes.absorb / (1 - *wishes.absorb);
+  }
+  if (wishes.return_time) {
+    if (!(*wishes.return_time > 0)) refuse("return time", *wishes.return_time, "must be positive");
+    params.ks = params.kd = 1 / (omega * *wishes.return_time);
+  }
+  if (wishes.zmp_filter) {
+    if (!(*wishes.zmp_filter > 0)) refuse("ZMP filter", *wishes.zmp_filter, "must be positive");
+    params.tau_z = omega * *wishes.zmp_filter;
+  }
+  if (wishes.forget) {
+    if (!(*wishes.forget >= 0)) refuse("forgetting time", *wishes.forget, "must not be negative");
+    params.washout = omega * *wishes.forget;
+  }
+  return params;
+}
+
+// Stable gains below the first unstable one: the loop leaves stability once as ka grows.
+double largest_stable_ka(const LoopModel& loop, DtadParams params, double most) {
+  const auto stable = [&](double ka) {
+    params.ka = ka;
+    return analyze_loop(loop, params).stable;
+  };
+  if (stable(most)) return most;
+  double low = 0, high = most;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (low + high) / 2;
+    (stable(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 void refuse_unstable(const LoopModel& loop, const DtadParams& params) {
   const LoopAnalysis analysis = analyze_loop(loop, params);
   if (analysis.stable) return;
-  DtadParams other = params;
-  double low = 0, high = params.ka;
-  for (int i = 0; i < 40; ++i) {
-    other.ka = (low + high) / 2;
-    (analyze_loop(loop, other).stable ? low : high) = other.ka;
-  }
+  const double low = largest_stable_ka(loop, params, params.ka);
   fail(ErrorCode::usage,
        "controller gains: with ka = " + text::brief(params.ka) +
            ", tau_z = " + text::brief(params.tau_z) + " and sensors " + text::brief(loop.delay) +

@@ -3,7 +3,9 @@
 // finite stiffness, filter and washout, sensor delay, control tick. One horizontal axis, feet flat,
 // the ZMP away from the edge. docs/theory.md, "Gain design".
 
+#include <array>
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "ayumi/control/dtad.hpp"
@@ -38,6 +40,23 @@ LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params);
 /// real or a conjugate pair, Re < 0. Throws Error(usage) otherwise.
 DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2,
                             DtadParams params = {});
+
+/// What a designer may ask for in seconds; nothing asked leaves the gain as it was.
+struct GainWishes {
+  std::optional<std::array<std::complex<double>, 2>> poles;  ///< of the COG under (18)(19) [1/s]
+  std::optional<double> absorb;       ///< share of a ZMP error taken up at once, 0 to 1
+  std::optional<double> return_time;  ///< of the reference COG back to the command [s]
+  std::optional<double> zmp_filter;   ///< time constant of the measured ZMP [s]
+  std::optional<double> forget;       ///< of a lasting offset of the ZMP [s]; 0: never
+};
+
+/// Gains of a robot with this omega: K, D from the poles; ka = share / (1 - share), since a stiff
+/// robot's ZMP is [(x - cmdddx / w2) + ka refZ] / (1 + ka); ks = kd = 1 / (omega T), a double pole
+/// at -1 / T. Throws Error(usage) naming the wish that cannot be had.
+DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams params = {});
+
+/// Largest ka with which the loop is stable, other gains as they are; 0 when none is.
+double largest_stable_ka(const LoopModel& loop, DtadParams params, double most = 20);
 
 /// Throws Error(usage) with the mode that grows and the largest short-term gain that would be
 /// stable.

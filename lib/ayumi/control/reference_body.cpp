@@ -79,11 +79,7 @@ void ReferenceBody::advance(const CogReference& wanted, double z, const CommandS
 
   const Resolution resolution =
       resolve(*model_, limits_, reference_, data_, anchor_, dcog_, command, next, dt_, weight_);
-  if (resolution.scale < 1)
-    out.notes.push_back("speed limit of " + model_->dofs()[resolution.limiting_dof].name +
-                        " slows the reference");
-  for (int j : resolution.held)
-    out.notes.push_back("position limit holds " + model_->dofs()[j].name);
+  for (const std::string& note : limit_notes(*model_, resolution)) out.notes.push_back(note);
 
   reference_.dtheta = resolution.dtheta;
   reference_.theta += dt_ * resolution.dtheta;

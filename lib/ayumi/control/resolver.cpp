@@ -1,6 +1,9 @@
 // Unknown: dtheta. The anchored sole moves with the plan (at rest in stance), so the floating
 // velocity is V = map dtheta + rigid(anchor motion). Rows of J_U, u: COG 3, other foot 6, trunk 3;
 // angular rows are scaled by a length so that the damping treats them like metres.
+// A joint at a limit takes rates away. Then the COG height gives way first, the trunk's attitude
+// next: their rows are scaled down, so that the damping outweighs them. Feet and horizontal COG,
+// which keep the robot upright, come last: only then the whole motion becomes slower.
 #include "ayumi/control/resolver.hpp"
 
 #include <algorithm>
@@ -20,6 +23,9 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kSoft = 0.003;  // of the rows of a task that gives way
+constexpr double kMet = 0.002;   // of a task that does not [m/s]
+
 Vector3d rotation_between(const Matrix3d& from, const Matrix3d& to) {
   return log_rotation(Eigen::Quaterniond(Matrix3d(to * from.transpose())));
 }
@@ -30,6 +36,55 @@ MatrixXd anchored(const Rows& rows, const Eigen::Matrix<double, 6, Eigen::Dynami
   MatrixXd result = rows.rightCols(base.cols());
   result.noalias() += rows.template leftCols<6>().lazyProduct(base);
   return result;
+}
+
+/// Joint rates for these tasks; a joint that would leave its position limits is held there and the
+/// rest solved again, a joint too fast slows all down.
+Resolution within_limits(const RobotModel& model, const ActuatorLimits& limits,
+                         const RobotState& reference, MatrixXd J, VectorXd u,
+                         const VectorXd& weight, VectorXd x0, double dt,
+                         const ResolverOptions& options) {
+  const int n = model.dof_count();
+  Resolution result;
+  for (int pass = 0; pass < 4; ++pass) {
+    result.dtheta = weighted_least_norm(J, u, weight, x0, options.damping);
+    bool changed = false;
+    for (int j = 0; j < n; ++j) {
+      const Dof& dof = model.dofs()[j];
+      if (!dof.limited || std::find(result.held.begin(), result.held.end(), j) != result.held.end())
+        continue;
+      const double after = reference.theta[j] + dt * result.dtheta[j];
+      const double stop = std::clamp(after, dof.lower, dof.upper);
+      if (stop == after) continue;
+      const double rate = (stop - reference.theta[j]) / dt;
+      u -= J.col(j) * rate;
+      J.col(j).setZero();
+      x0[j] = rate;
+      result.held.push_back(j);
+      changed = true;
+    }
+    if (!changed) break;
+  }
+  for (int j = 0; j < n; ++j) {
+    const double speed = options.speed_share * limits.speed[j];
+    const double share = std::abs(result.dtheta[j]) > 0 ? speed / std::abs(result.dtheta[j]) : 2.0;
+    if (share < result.scale) {
+      result.scale = share;
+      result.limiting_dof = j;
+    }
+  }
+  result.dtheta *= result.scale;
+  return result;
+}
+
+void soften(MatrixXd& J, VectorXd& u, int first, int count) {
+  J.middleRows(first, count) *= kSoft;
+  u.segment(first, count) *= kSoft;
+}
+
+/// Whether the rates do the tasks; softened rows count as little as they weigh.
+bool meets(const MatrixXd& J, const VectorXd& u, const VectorXd& dtheta) {
+  return (J * dtheta - u).cwiseAbs().maxCoeff() < kMet;
 }
 
 }  // namespace
@@ -92,40 +147,44 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
   const VectorXd bias =
       command.state.dtheta + options.posture_rate * (command.state.theta - reference.theta);
 
-  // Joints that would leave their position limits are held there and the rest solved again.
   Resolution result;
-  VectorXd w = weight;
-  VectorXd x0 = bias;
-  for (int pass = 0; pass < 4; ++pass) {
-    result.dtheta = weighted_least_norm(J, u, w, x0, options.damping);
-    bool changed = false;
-    for (int j = 0; j < n; ++j) {
-      const Dof& dof = model.dofs()[j];
-      if (!dof.limited || std::find(result.held.begin(), result.held.end(), j) != result.held.end())
-        continue;
-      const double after = reference.theta[j] + dt * result.dtheta[j];
-      const double stop = std::clamp(after, dof.lower, dof.upper);
-      if (stop == after) continue;
-      const double rate = (stop - reference.theta[j]) / dt;
-      u -= J.col(j) * rate;
-      J.col(j).setZero();
-      x0[j] = rate;
-      result.held.push_back(j);
-      changed = true;
+  for (const Tasks yielding :
+       {Tasks{}, Tasks{.height = true}, Tasks{.height = true, .trunk = true}}) {
+    MatrixXd rows = J;
+    VectorXd wanted = u;
+    if (yielding.height) soften(rows, wanted, 2, 1);
+    if (yielding.trunk) soften(rows, wanted, 9, 3);
+    Resolution attempt =
+        within_limits(model, limits, reference, rows, wanted, weight, bias, dt, options);
+    if (yielding.height) {  // what made it yield is told
+      attempt.held.insert(attempt.held.end(), result.held.begin(), result.held.end());
+      std::sort(attempt.held.begin(), attempt.held.end());
+      attempt.held.erase(std::unique(attempt.held.begin(), attempt.held.end()), attempt.held.end());
+      if (attempt.limiting_dof < 0) attempt.limiting_dof = result.limiting_dof;
     }
-    if (!changed) break;
+    attempt.yielding = yielding;
+    result = attempt;
+    if (result.scale == 1 && (result.held.empty() || meets(rows, wanted, result.dtheta))) break;
   }
-
-  for (int j = 0; j < n; ++j) {
-    const double speed = options.speed_share * limits.speed[j];
-    const double share = std::abs(result.dtheta[j]) > 0 ? speed / std::abs(result.dtheta[j]) : 2.0;
-    if (share < result.scale) {
-      result.scale = share;
-      result.limiting_dof = j;
-    }
-  }
-  result.dtheta *= result.scale;
   return result;
+}
+
+std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& resolution) {
+  std::string yields;
+  if (resolution.yielding.height) yields = "the COG height";
+  if (resolution.yielding.trunk) yields += " and the trunk attitude";
+  if (resolution.scale < 1)
+    yields = (yields.empty() ? "" : yields + " give way and ") + "the whole motion becomes slower";
+  else if (!yields.empty())
+    yields += resolution.yielding.trunk ? " give way" : " gives way";
+  else
+    yields = "no task gives way";
+  std::vector<std::string> notes;
+  if (resolution.limiting_dof >= 0)
+    notes.push_back("speed limit of " + model.dofs()[resolution.limiting_dof].name + ": " + yields);
+  for (const int j : resolution.held)
+    notes.push_back("position limit of " + model.dofs()[j].name + ": " + yields);
+  return notes;
 }
 
 }  // namespace ayumi

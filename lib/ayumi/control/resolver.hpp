@@ -19,12 +19,22 @@ struct ResolverOptions {
   double speed_share = 0.98;    ///< of a joint's speed limit that may be used
 };
 
+/// Tasks that may give way to a joint's limit, in this order.
+struct Tasks {
+  bool height = false;  ///< of the COG
+  bool trunk = false;   ///< attitude
+};
+
 struct Resolution {
   Eigen::VectorXd dtheta;  ///< ref joint rates [rad/s]
   double scale = 1;        ///< below 1 where a speed limit made the whole motion slower
-  int limiting_dof = -1;   ///< the joint whose speed limit did it
+  int limiting_dof = -1;   ///< the joint whose speed limit made tasks give way, or the motion slow
   std::vector<int> held;   ///< joints held at a position limit
+  Tasks yielding;          ///< what gave way
 };
+
+/// One line per joint at a limit, with what gives way to it.
+std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& resolution);
 
 /// `reference`: the reference posture anchored on the planned sole of `anchor`; `data` holds its
 /// positions. `next_feet` are the planned sole frames one tick later (their motion is followed).

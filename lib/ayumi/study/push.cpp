@@ -11,13 +11,13 @@
 #include <limits>
 #include <map>
 #include <mutex>
-#include <thread>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/control/capture_bound.hpp"
 #include "ayumi/math/random.hpp"
 #include "ayumi/sim/simulator.hpp"
+#include "ayumi/study/runs.hpp"
 
 namespace ayumi {
 
@@ -26,34 +26,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kStandingPush = 0.5;   // [s] into the standing series
-constexpr double kStandingAfter = 2.5;  // of standing after the push [s]
-constexpr double kNear = 0.045;         // of xi to the plan, times z: 10 mm at z = 0.22 m
-constexpr double kSurelyAfter = 0.8;    // from the push; earlier nearness says nothing [s]
-constexpr double kNearTime = 0.3;       // xi must stay near this long [s]
+constexpr double kNear = 0.045;       // of xi to the plan, times z: 10 mm at z = 0.22 m
+constexpr double kSurelyAfter = 0.8;  // from the push; earlier nearness says nothing [s]
+constexpr double kNearTime = 0.3;     // xi must stay near this long [s]
 constexpr double kTiltedFoot = 2 * M_PI / 180;
 constexpr int kEdgeDirections = 72;
 constexpr long kChunk = 10;  // ticks between looks at a run
-
-/// The first posture of the pattern, held; by VIIP if the pattern has goals.
-CommandSeries standing_series(const CommandSeries& series) {
-  CommandSeries stand;
-  stand.dt = series.dt;
-  stand.joint_weight = series.joint_weight;
-  const double duration = kStandingPush + kStandingAfter;
-  stand.samples.assign(static_cast<size_t>(std::lround(duration / series.dt)) + 1,
-                       series.samples.front());
-  if (!series.viip.empty())
-    stand.viip = {{0, static_cast<long>(stand.samples.size()) - 1, CogGoal{}}};
-  return stand;
-}
-
-double divergence(const Simulator& run) {
-  const CommandSample& cmd = run.plan();
-  const Estimate& e = run.last_estimate();
-  const double w = std::sqrt(kGravity / (cmd.cog.z() - cmd.zmp.z()));
-  return ((e.cog - cmd.cog) + (e.dcog - cmd.dcog) / w).head<2>().norm();
-}
 
 double near_distance(const Simulator& run) {
   const CommandSample& cmd = run.plan();
@@ -214,32 +192,6 @@ void check_options(const PushOptions& options, const CommandSeries& series) {
                             phase.at + options.duration > series.duration()))
       refuse("time " + text::brief(phase.at) + " s is outside the pattern (" +
              text::brief(series.duration()) + " s)");
-}
-
-/// Runs job(0..count-1) on threads; the first exception stops all and is thrown on.
-template <typename Job>
-void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
-  std::atomic<size_t> next = 0;
-  std::exception_ptr error;
-  std::mutex mutex;
-  const auto work = [&] {
-    for (size_t i = next++; i < count && !stop; i = next++) {
-      try {
-        job(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!error) error = std::current_exception();
-        stop = true;
-      }
-    }
-  };
-  const size_t all = threads > 0 ? static_cast<size_t>(threads)
-                                 : std::max(1u, std::thread::hardware_concurrency());
-  std::vector<std::thread> pool;
-  for (size_t i = 1; i < std::min(all, count); ++i) pool.emplace_back(work);
-  work();
-  for (std::thread& thread : pool) thread.join();
-  if (error) std::rethrow_exception(error);
 }
 
 /// The whole study: what its jobs share.

@@ -1,0 +1,141 @@
+// An equation of the paper in words, with the numbers of one instant of a run put in.
+
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/run_folder.hpp"
+#include "commands.hpp"
+#include "equations.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string equation, run, log, robot;
+  std::vector<std::string> gains;
+};
+
+const Equation& find_equation(const std::string& word) {
+  std::string digits = word;
+  std::erase_if(digits, [](char c) { return c == '(' || c == ')'; });
+  for (const Equation& e : equations())
+    if (std::to_string(e.number) == digits) return e;
+  fail(ErrorCode::usage, "explain: there is no equation '" + word +
+                             "'; those of the paper are 1 to " +
+                             std::to_string(equations().back().number));
+}
+
+struct Place {
+  std::string run;
+  double t = 0;
+};
+
+Place place_of(const std::string& text) {
+  const size_t at = text.rfind('@');
+  if (at == std::string::npos)
+    fail(ErrorCode::usage, "explain: '" + text + "' names no instant; write RUN@SECONDS");
+  Place place{text.substr(0, at)};
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + at + 1, end, place.t);
+  if (error != std::errc() || rest != end || !std::isfinite(place.t))
+    fail(ErrorCode::usage, "explain: '" + text.substr(at + 1) + "' is not a time [s]");
+  return place;
+}
+
+std::string heading(const Equation& e) {
+  return "(" + std::to_string(e.number) + ")  " + e.formula;
+}
+
+/// Words broken into lines of at most 100 letters.
+std::string wrapped(const std::string& words) {
+  std::string out = "  ";
+  size_t column = 2;
+  for (size_t i = 0; i < words.size();) {
+    const size_t end = std::min(words.find(' ', i), words.size());
+    if (column + end - i > 100) {
+      out += "\n  ";
+      column = 2;
+    }
+    out += words.substr(i, end - i) + (end < words.size() ? " " : "");
+    column += end - i + 1;
+    i = end + 1;
+  }
+  return out + "\n";
+}
+
+struct Numbers {
+  std::vector<std::string> lines;
+  std::string where, controller;
+  double t = 0;
+};
+
+Numbers numbers_of(const Context& context, const Equation& e, const Options& options) {
+  const Place place = place_of(options.run);
+  const SimulationLog log = read_run_log(place.run, options.log);
+  if (log.samples.empty()) fail(ErrorCode::bad_file, place.run + ": the log has no samples");
+  const double end = log.dt * static_cast<double>(log.samples.size() - 1);
+  if (place.t < 0 || place.t > end + 0.5 * log.dt)
+    fail(ErrorCode::usage, "explain: t = " + text::brief(place.t) + " s is outside the run (0 to " +
+                               text::fixed(end, 3) + " s)");
+  const std::string robot = options.robot.empty() ? log.provenance.robot : options.robot;
+  const RobotModel model = load_robot(robot, robot_search(context));
+  if (model.dof_names() != log.joints)
+    fail(ErrorCode::usage, place.run + ": was made with other joints than those of " + robot);
+  ControllerSpec spec;
+  for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
+    spec.gains.emplace_back(name, value);
+  const Instant instant{log, model, dtad_params(model, spec),
+                        static_cast<size_t>(std::lround(place.t / log.dt))};
+  Numbers result;
+  if (e.numbers) result.lines = e.numbers(instant);
+  result.where = place.run;
+  result.controller = log.controller;
+  result.t = log.dt * static_cast<double>(instant.k);
+  return result;
+}
+
+void explain(Context& context, const Options& options) {
+  const Equation& e = find_equation(options.equation);
+  std::string out = heading(e) + "\n" + wrapped(e.words);
+  Json json = {{"equation", e.number}, {"formula", e.formula}, {"words", e.words}};
+  if (!options.run.empty()) {
+    const Numbers n = numbers_of(context, e, options);
+    out += n.where + ", " + n.controller + ", t = " + text::fixed(n.t, 3) + " s\n";
+    if (n.lines.empty()) out += "  a log keeps no numbers of this one\n";
+    for (const std::string& line : n.lines) out += "  " + line + "\n";
+    json.update({{"controller", n.controller}, {"t_s", n.t}, {"numbers", n.lines}});
+  }
+  context.print(out);
+  context.print_json(json.dump(2));
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app, Context& context) {
+  CLI::App* command =
+      app.add_subcommand("explain", "an equation of the paper in words, and in numbers of a run");
+  command->footer(
+      "Examples:\n  ayumi explain 18\n"
+      "  ayumi explain 14 out/hoap1_walk@3.05\n"
+      "  ayumi explain 14 out/hoap1_walk@3.05 --log open_loop\n"
+      "Gains are those of the robot, unless --gain names those of the run's pattern.");
+  auto options = std::make_shared<Options>();
+  command->add_option("EQ", options->equation, "number of the equation, 1 to 29")->required();
+  command->add_option("RUN@t", options->run, "a RUN folder or log file, and a time [s]");
+  command->add_option("--log", options->log, "which log of the RUN, e.g. open_loop");
+  command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
+  command->add_option("--gain", options->gains, "a gain of that run, as NAME=VALUE")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->callback([options, &context] { explain(context, *options); });
+}
+
+}  // namespace ayumi::app

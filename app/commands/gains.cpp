@@ -1,0 +1,246 @@
+// Gain design: wishes in seconds to the gains of DTAD, stability of the whole loop, and what the
+// robot can then recover from.
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/control/capture_bound.hpp"
+#include "ayumi/control/gain_design.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Complex = std::complex<double>;
+using Json = nlohmann::ordered_json;
+
+constexpr double kMostKa = 20;   // looked for
+constexpr double kShown = 1e-3;  // decays below this share of omega are not told as modes
+
+struct Options {
+  std::string robot;
+  std::vector<double> poles, time_constants;
+  double frequency = 0, damping = 0;
+  GainWishes wishes;
+  std::vector<std::string> gains;
+  std::optional<double> latency;
+};
+
+/// How far xi may be from the plan, and the impulse that brings it there, along one direction.
+struct Reach {
+  std::string support, direction;
+  double xi = 0, impulse = 0;  // [m], [N s]
+};
+
+struct Design {
+  double omega = 0;
+  LoopModel loop;
+  DtadParams params;
+  LoopAnalysis analysis;
+  double most_ka = 0;
+  std::vector<Reach> reaches;
+};
+
+void read_wishes(Options& options) {
+  const int ways = !options.poles.empty() + !options.time_constants.empty() +
+                   (options.frequency != 0 || options.damping != 0);
+  if (ways > 1)
+    fail(ErrorCode::usage,
+         "give the poles once: --poles, --time-constants, or --frequency with --damping");
+  if (!options.poles.empty())
+    options.wishes.poles = {{{Complex(options.poles[0]), Complex(options.poles[1])}}};
+  for (const double t : options.time_constants)
+    if (!(t > 0))
+      fail(ErrorCode::usage, "--time-constants: " + text::brief(t) + " s must be positive");
+  if (!options.time_constants.empty())
+    options.wishes.poles = {
+        {Complex(-1 / options.time_constants[0]), Complex(-1 / options.time_constants[1])}};
+  if (options.frequency != 0 || options.damping != 0) {
+    if (!(options.frequency > 0) || !(options.damping > 0))
+      fail(ErrorCode::usage, "--frequency and --damping belong together, both positive");
+    const double w = 2 * M_PI * options.frequency, d = options.damping;
+    const Complex root = std::sqrt(Complex(d * d - 1));
+    options.wishes.poles = {{w * (-d + root), w * (-d - root)}};
+  }
+}
+
+/// Standing on both feet, and on the left one with the COG over its middle.
+std::vector<Reach> reaches(const RobotModel& model) {
+  CommandSeries both = sample(model, stand_pattern(model, 0.01));
+  CommandSeries left = both;
+  for (CommandSample& s : left.samples) {
+    s.support = Support::left;
+    const Eigen::Vector2d c = model.sole(Side::left).center;
+    s.zmp = s.feet[0] * Eigen::Vector3d(c.x(), c.y(), 0);
+    s.cog.head<2>() = s.zmp.head<2>();
+  }
+  std::vector<Reach> result;
+  for (const bool one : {false, true}) {
+    const CaptureRegion region = capture_region(model, one ? left : both, 0);
+    for (const auto& [name, x, y] :
+         {std::tuple{"forward", 1.0, 0.0}, std::tuple{"back", -1.0, 0.0},
+          std::tuple{"left", 0.0, 1.0}, std::tuple{"right", 0.0, -1.0}}) {
+      const double impulse = capture_bound(region, {x, y});
+      result.push_back(
+          {one ? "left foot" : "both feet", name, impulse / region.impulse_per_length, impulse});
+    }
+  }
+  return result;
+}
+
+Design design(const RobotModel& model, Options options) {
+  read_wishes(options);
+  Design d;
+  const CommandSample first = sample(model, stand_pattern(model, 0.01)).samples.front();
+  const double z = first.cog.z() - first.zmp.z();
+  d.omega = std::sqrt(kGravity / z);
+  ControllerSpec spec;
+  for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
+    spec.gains.emplace_back(name, value);
+  d.params = design_gains(d.omega, options.wishes, dtad_params(model, spec));
+  d.loop = single_support_loop(model, z, model.description().servo_period);
+  if (options.latency) d.loop.delay = *options.latency;
+  d.analysis = analyze_loop(d.loop, d.params);
+  d.most_ka = largest_stable_ka(d.loop, d.params, kMostKa);
+  d.reaches = reaches(model);
+  refuse_unstable(d.loop, d.params);
+  return d;
+}
+
+std::vector<std::pair<std::string, double>> gain_list(const DtadParams& p) {
+  std::vector<std::pair<std::string, double>> list;
+  if (p.k)
+    list = {{"k", *p.k}, {"d", *p.d}};
+  else
+    list = {{"q", p.q}};
+  for (const auto& entry : std::vector<std::pair<std::string, double>>{{"ka", p.ka},
+                                                                       {"ks", p.ks},
+                                                                       {"kd", p.kd},
+                                                                       {"tau_z", p.tau_z},
+                                                                       {"margin", p.margin},
+                                                                       {"washout", p.washout},
+                                                                       {"kz", p.kz},
+                                                                       {"dz", p.dz},
+                                                                       {"kaz", p.kaz},
+                                                                       {"ankle", p.ankle}})
+    list.push_back(entry);
+  return list;
+}
+
+std::string mode_text(const Complex& pole) {
+  std::string line = "  decays with " + text::brief(-1 / pole.real()) + " s";
+  if (std::abs(pole.imag()) > 1e-6)
+    line += ", swings at " + text::fixed(std::abs(pole.imag()) / (2 * M_PI), 2) + " Hz";
+  return line + "\n";
+}
+
+std::string report(const RobotModel& model, const Design& d) {
+  const DtadParams& p = d.params;
+  const double w = d.omega;
+  std::string out = model.name() + ": COG " + text::fixed(d.loop.height, 3) +
+                    " m above the soles, omega " + text::fixed(w, 2) + " /s\n";
+  out += "gains, as a pattern or sidecar names them\n ";
+  for (const auto& [name, value] : gain_list(p)) out += " " + name + "=" + text::brief(value);
+  out += "\n(18)(19)  K = " + text::brief(long_term_k(p)) +
+         ", D = " + text::fixed(1e3 * long_term_d(p) / w, 1) +
+         " ms: the ZMP goes K times as far out as the COG\n";
+  out += "short term  " + text::fixed(100 * p.ka / (1 + p.ka), 0) +
+         " % of a ZMP error is taken up at once, measured over " +
+         text::fixed(1e3 * p.tau_z / w, 1) + " ms\n";
+  out += "return  the reference comes back to the command in " + text::fixed(1e3 / (w * p.ks), 0) +
+         " ms";
+  out += p.washout > 0
+             ? ", lasting offsets are forgotten in " + text::fixed(1e3 * p.washout / w, 0) + " ms\n"
+             : ", lasting offsets stay\n";
+  out += "loop on one foot: ankle " + text::brief(d.loop.stiffness) + " N m/rad, sensors " +
+         text::brief(1e3 * d.loop.delay) + " ms late; stable, ka up to " +
+         (d.most_ka >= kMostKa ? "more than " + text::brief(kMostKa) : text::fixed(d.most_ka, 2)) +
+         " would be; slowest modes\n";
+  int shown = 0;
+  for (const Complex& pole : d.analysis.poles)
+    if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);
+  out += "recoverable while the supports stay: xi = x + dx/omega off the plan, and the push\n";
+  for (const Reach& r : d.reaches)
+    out += "  " + r.support + ", " + r.direction + ": " + text::fixed(1e3 * r.xi, 1) + " mm, " +
+           text::fixed(r.impulse, 2) + " N s\n";
+  return out;
+}
+
+Json json_of(const RobotModel& model, const Design& d) {
+  Json gains = Json::object(), poles = Json::array(), reach = Json::array();
+  for (const auto& [name, value] : gain_list(d.params)) gains[name] = value;
+  for (const Complex& pole : d.analysis.poles) poles.push_back({pole.real(), pole.imag()});
+  for (const Reach& r : d.reaches)
+    reach.push_back({{"support", r.support},
+                     {"direction", r.direction},
+                     {"xi_m", r.xi},
+                     {"impulse_Ns", r.impulse}});
+  return {{"robot", model.name()},
+          {"omega_1_s", d.omega},
+          {"gains", gains},
+          {"K", long_term_k(d.params)},
+          {"D_s", long_term_d(d.params) / d.omega},
+          {"stable", d.analysis.stable},
+          {"decay_1_s", d.analysis.decay},
+          {"frequency_Hz", d.analysis.frequency},
+          {"largest_stable_ka", d.most_ka},
+          {"poles_1_s", poles},
+          {"recoverable", reach}};
+}
+
+void print_gains(Context& context, const Options& options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const Design d = design(model, options);
+  context.print(report(model, d));
+  context.print_json(json_of(model, d).dump(2));
+}
+
+}  // namespace
+
+void add_gains(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand(
+      "gains", "gains from poles or time constants; is the whole loop stable, what it recovers");
+  command->footer(
+      "Examples:\n  ayumi gains hoap1\n"
+      "  ayumi gains hoap1 --time-constants 0.16,0.64 --absorb 0.6 --return-time 0.1\n"
+      "  ayumi gains hoap1 --frequency 1 --damping 1 --latency 0.005\n"
+      "An unstable choice is refused with the mode that grows.");
+  auto options = std::make_shared<Options>();
+  command->add_option("ROBOT", options->robot, "robot")->required();
+  command->add_option("--poles", options->poles, "two real poles of the COG, e.g. -6.3,-1.6 [1/s]")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("P1,P2");
+  command->add_option("--time-constants", options->time_constants, "the same in seconds, positive")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("T1,T2");
+  command->add_option("--frequency", options->frequency, "of a pair of poles [Hz], with --damping")
+      ->type_name("F");
+  command->add_option("--damping", options->damping, "ratio of that pair")->type_name("Z");
+  command->add_option("--absorb", options->wishes.absorb, "share of a ZMP error taken up at once")
+      ->type_name("X");
+  command
+      ->add_option("--return-time", options->wishes.return_time,
+                   "of the reference back to the command [s]")
+      ->type_name("T");
+  command->add_option("--zmp-filter", options->wishes.zmp_filter, "time constant [s]")
+      ->type_name("T");
+  command->add_option("--forget", options->wishes.forget, "a lasting offset within [s]; 0: never")
+      ->type_name("T");
+  command->add_option("--gain", options->gains, "a gain by name, as NAME=VALUE")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--latency", options->latency, "of the sensors [s], instead of the robot's")
+      ->check(CLI::Range(0.0, 0.2).description(""))
+      ->type_name("T");
+  command->callback([options, &context] { print_gains(context, *options); });
+}
+
+}  // namespace ayumi::app

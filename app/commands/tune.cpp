@@ -1,0 +1,125 @@
+// Better DTAD gains for a pattern by search on a declared objective.
+
+#include "ayumi/study/tune.hpp"
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/text.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string pattern;
+  PatternOptions input;
+  std::vector<std::string> start;
+  std::vector<double> times;
+  TuneOptions tune;
+};
+
+Json figures_json(const TuneFigures& f) {
+  return {{"objective", f.objective},
+          {"recovery", f.recovery},
+          {"unpushed", f.unpushed},
+          {"falls", f.falls},
+          {"pushes", f.pushes}};
+}
+
+Json gains_json(const std::map<std::string, double>& gains) {
+  Json json = Json::object();
+  for (const auto& [name, value] : gains) json[name] = value;
+  return json;
+}
+
+std::string line(const std::string& label, const TuneFigures& f) {
+  return "  " + label + " objective " + text::fixed(f.objective, 4) + " = recovery " +
+         text::fixed(f.recovery, 4) + " + 10 x " + std::to_string(f.falls) + " falls of " +
+         std::to_string(f.pushes) + " + unpushed " + text::fixed(f.unpushed, 4) + "\n";
+}
+
+void tune(Context& context, Options& options) {
+  const PatternInput input = load_pattern(context, options.pattern, options.input);
+  TuneOptions& t = options.tune;
+  t.threads = context.threads;
+  t.simulate.profile = input.profile;
+  t.simulate.world = input.pattern.world;
+  t.simulate.seed = context.seed;
+  t.simulate.controller = {"dtad", {}};
+  if (input.pattern.controller.type == "dtad") t.simulate.controller = input.pattern.controller;
+  for (const auto& [name, value] : read_pairs(options.start, "--gain"))
+    t.simulate.controller.gains.emplace_back(name, value);
+  for (const double at : options.times)
+    t.phases.push_back({"t = " + text::fixed(at, 3) + " s", at, false});
+  const TuneResult result = tune_gains(input.model, input.series, t, context.progress());
+  std::string out = options.pattern + ": pushes of " + text::brief(t.level) + " B, actuators " +
+                    input.profile + "\n";
+  out += line("before", result.before) + line("after ", result.after) + "  \"gains\": {";
+  bool first = true;
+  for (const auto& [name, value] : result.gains) {
+    out += std::string(first ? " \"" : ", \"") + name + "\": " + text::brief(value);
+    first = false;
+  }
+  out += " }\n  " + std::to_string(result.choices) + " choices tried, " +
+         std::to_string(result.refused) +
+         " left out as unstable; judge them on pushes that were not tuned on: ayumi push\n";
+  context.print(out);
+  context.print_json(Json{
+      {"gains", gains_json(result.gains)},
+      {"start", gains_json(result.start)},
+      {"before", figures_json(result.before)},
+      {"after", figures_json(result.after)},
+      {"level", t.level},
+      {"choices", result.choices},
+      {"refused_unstable",
+       result.refused}}.dump(2));
+}
+
+}  // namespace
+
+void add_tune(CLI::App& app, Context& context) {
+  CLI::App* command =
+      app.add_subcommand("tune", "better DTAD gains by search on a declared objective");
+  command->footer(
+      "Examples:\n  ayumi tune patterns/hoap1_walk.json --profile hoap1-strong\n"
+      "  ayumi tune walk.json --tune ka,tau_z --level 1.0 --directions 8 --json\n"
+      "The objective, smaller is better: mean over the pushes of omega times the integral of\n"
+      "|xi - cmd xi| / z over 1.2 s, 10 for a push that fells the robot, plus the mean of\n"
+      "|ZMP - ref ZMP| / z of the unpushed pattern. Gains with an unstable loop are left out.");
+  auto options = std::make_shared<Options>();
+  TuneOptions& t = options->tune;
+  command->add_option("PATTERN", options->pattern, "pattern file")->required();
+  add_pattern_options(*command, options->input);
+  command->add_option("--gain", options->start, "start from this, as NAME=VALUE")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--tune", t.gains, "gains to change; left out: ka,q,ks,kd,tau_z,ankle")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  command->add_option("--level", t.level, "of the pushes, times the capture bound")
+      ->check(CLI::Range(0.01, 5.0).description(""))
+      ->capture_default_str()
+      ->type_name("X");
+  command->add_option("--directions", t.directions, "evenly spread, the first forward")
+      ->check(CLI::Range(1, 360).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      ->add_option("--times", options->times,
+                   "of the pushes [s], instead of standing and four gait phases")
+      ->delimiter(',')
+      ->type_name("T");
+  command->add_option("--rounds", t.rounds, "through all gains")
+      ->check(CLI::Range(1, 50).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_flag("--noise", t.simulate.sensor_noise,
+                    "sensor noise, bias and latency of the sidecar");
+  command->callback([options, &context] { tune(context, *options); });
+}
+
+}  // namespace ayumi::app

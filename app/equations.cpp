@@ -1,0 +1,217 @@
+#include "equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+
+namespace ayumi::app {
+
+using Eigen::Vector3d;
+using Lines = std::vector<std::string>;
+
+namespace {
+
+std::string mm(double metres) { return text::fixed(1e3 * metres, 1) + " mm"; }
+std::string fixed(double value, int digits) { return text::fixed(value, digits); }
+
+double height(const SimulationSample& s) { return s.command_cog.z() - s.command_zmp.z(); }
+
+struct Delta {
+  Vector3d e, de;
+};
+
+/// (21): command - measured.
+Delta delta(const Instant& i) {
+  return {i.now().command_cog - i.now().measured_cog,
+          i.rate(&SimulationSample::command_cog) - i.rate(&SimulationSample::measured_cog)};
+}
+
+double K(const Instant& i) { return long_term_k(i.gains); }
+double D(const Instant& i) {
+  const double w = std::sqrt(kGravity / height(i.now()));
+  return long_term_d(i.gains) / w;
+}
+
+Lines cog_numbers(const Instant& i) {
+  const SimulationSample& s = i.now();
+  Lines lines;
+  for (int a = 0; a < 3; ++a)
+    lines.push_back(std::string("COG ") + "xyz"[a] + ": true " + mm(s.cog[a]) + ", estimated " +
+                    mm(s.measured_cog[a]) + ", reference " + mm(s.reference_cog[a]) +
+                    ", commanded " + mm(s.command_cog[a]));
+  return lines;
+}
+
+Lines pendulum_numbers(const Instant& i) {
+  const SimulationSample& s = i.now();
+  const double w2 = i.omega_squared();
+  Lines lines;
+  for (int a = 0; a < 2; ++a) {
+    const double x = s.measured_cog[a], wanted = s.reference_zmp[a], real = s.measured_zmp[a];
+    lines.push_back(std::string(1, "xy"[a]) + ": asked " + fixed(w2, 1) + " /s2 x (" + mm(x) +
+                    " - " + mm(wanted) + ") = " + fixed(w2 * (x - wanted), 3) +
+                    " m/s2; the ground gives " + fixed(w2, 1) + " x (" + mm(x) + " - " + mm(real) +
+                    ") = " + fixed(w2 * (x - real), 3) + " m/s2");
+    lines.push_back(
+        "   the reference lacks w2 (ZMP - ref ZMP) = " + fixed(w2 * (real - wanted), 3) +
+        " m/s2; ka = " + text::brief(i.gains.ka) + " times that is added");
+  }
+  return lines;
+}
+
+Lines vertical_numbers(const Instant& i) {
+  const SimulationSample& s = i.now();
+  const double m = i.model.mass();
+  return {"z: ref f_z / m - g = " + fixed(s.reference_fz, 1) + " N / " + fixed(m, 2) +
+          " kg - g = " + fixed(s.reference_fz / m - kGravity, 3) + " m/s2; measured f_z " +
+          fixed(s.measured_fz, 1) + " N gives " + fixed(s.measured_fz / m - kGravity, 3) + " m/s2"};
+}
+
+Lines omega_numbers(const Instant& i) {
+  const SimulationSample& s = i.now();
+  const double w2 = i.omega_squared();
+  return {"w2 = " + fixed(s.reference_fz, 1) + " N / (" + fixed(i.model.mass(), 2) + " kg x " +
+          mm(height(s)) + ") = " + fixed(w2, 2) + " /s2, omega = " + fixed(std::sqrt(w2), 2) +
+          " /s: an error of the ZMP grows e-fold in " + fixed(1e3 / std::sqrt(w2), 0) + " ms"};
+}
+
+Lines zmp_numbers(const Instant& i) {
+  const SimulationSample& s = i.now();
+  const Delta d = delta(i);
+  Lines lines = {"K = " + text::brief(K(i)) + ", D = " + fixed(1e3 * D(i), 0) + " ms"};
+  for (int a = 0; a < 2; ++a) {
+    const double wanted = s.command_zmp[a] - K(i) * d.e[a] - D(i) * d.de[a];
+    const double cut = s.reference_zmp[a] - wanted;
+    lines.push_back(std::string(1, "xy"[a]) + ": " + mm(s.command_zmp[a]) + " - K x " + mm(d.e[a]) +
+                    " - D x " + fixed(1e3 * d.de[a], 1) + " mm/s = " + mm(wanted) +
+                    (std::abs(cut) > 1e-3
+                         ? "; cut to " + mm(s.reference_zmp[a]) + ", the nearest in the support"
+                         : "; in the support, so it is ref ZMP: " + mm(s.reference_zmp[a])));
+  }
+  return lines;
+}
+
+Lines force_numbers(const Instant& i) {
+  const SimulationSample& s = i.now();
+  const Delta d = delta(i);
+  const double m = i.model.mass(), w = std::sqrt(kGravity / height(s));
+  const double kz = i.gains.kz * w * w, dz = i.gains.dz * w;
+  return {"ref f_z = " + fixed(s.command_fz, 1) + " + " + fixed(m, 2) + " x (" + fixed(kz, 1) +
+          " x " + mm(d.e.z()) + " + " + fixed(dz, 1) + " x " + fixed(1e3 * d.de.z(), 1) +
+          " mm/s) = " + fixed(s.command_fz + m * (kz * d.e.z() + dz * d.de.z()), 1) +
+          " N; the log has " + fixed(s.reference_fz, 1) + " N"};
+}
+
+Lines delta_numbers(const Instant& i) {
+  const Delta d = delta(i);
+  Lines lines;
+  for (int a = 0; a < 3; ++a)
+    lines.push_back(std::string("Delta ") + "xyz"[a] + " = " + mm(d.e[a]) + ", its rate " +
+                    fixed(1e3 * d.de[a], 1) + " mm/s");
+  return lines;
+}
+
+Lines resolution_numbers(const Instant& i) {
+  const size_t n = i.log.samples.size();
+  const size_t a = i.k > 0 ? i.k - 1 : 0, b = std::min(i.k + 1, n - 1);
+  const double dt = i.log.dt * static_cast<double>(std::max<size_t>(1, b - a));
+  const Eigen::VectorXd rates =
+      (i.log.samples[b].reference_theta - i.log.samples[a].reference_theta) / dt;
+  const Vector3d cog = (i.log.samples[b].reference_cog - i.log.samples[a].reference_cog) / dt;
+  std::vector<int> order(static_cast<size_t>(rates.size()));
+  for (size_t j = 0; j < order.size(); ++j) order[j] = static_cast<int>(j);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int x, int y) { return std::abs(rates[x]) > std::abs(rates[y]); });
+  std::string joints;
+  for (size_t j = 0; j < std::min<size_t>(5, order.size()); ++j)
+    joints += (j ? ", " : "") + i.log.joints[static_cast<size_t>(order[j])] + " " +
+              fixed(rates[order[j]], 2);
+  return {"ref COG rate " + fixed(1e3 * cog.x(), 1) + ", " + fixed(1e3 * cog.y(), 1) + ", " +
+              fixed(1e3 * cog.z(), 1) + " mm/s is met by " + std::to_string(rates.size()) +
+              " joints together; the fastest [rad/s]:",
+          "  " + joints};
+}
+
+const char* kTree =
+    "Velocities add up along the tree of links: every point's velocity is linear in the joint "
+    "rates.";
+const char* kFloating =
+    "The COG's velocity is the mean of all links' velocities weighted with their masses, the "
+    "root's included; seen from the base it is linear in the joint rates.";
+const char* kAnchored =
+    "The robot is not bolted down: what holds still is the foot it stands on. That decides how "
+    "the base moves when the joints do.";
+const char* kCogJacobian =
+    "With the base's motion put in, one matrix J_G takes joint rates to the COG's velocity in the "
+    "world: the whole body moves the COG, not single joints.";
+const char* kPendulum =
+    "Seen from the ZMP the robot is an inverted pendulum: the ground force points from the ZMP "
+    "through the COG. The further the COG is from the ZMP, the faster it runs away from it. This "
+    "is the short term: when the ground does not give what was asked, the difference is taken up "
+    "by moving the reference COG.";
+const char* kLong =
+    "Long term: where the ZMP should be to bring the COG back to the command. It goes further out "
+    "than the COG has gone (K > 1), and further still when the COG is running away (D > 0; the "
+    "printed + is a misprint). What lies outside the feet is cut to the nearest point of the "
+    "support: no robot can do more.";
+const char* kResolve =
+    "Among all joint rates that give the COG its reference velocity while the free foot and the "
+    "trunk follow the plan, the ones nearest to the commanded rates, weighted with W, are taken "
+    "(v is u - J_U cmd dtheta; printed with the other sign).";
+const char* kJump =
+    "Height law of the variable impedant pendulum: a spring and damper between the COG and its "
+    "reference height. Gains of (25) hold without overshoot, of (26) throw the robot z_H high "
+    "from a stoop of z_d, of (27) catch it within z_d after touchdown. The corrected (25) needs "
+    "the mass: K_Dz^2 >= 4 m K_Pz.";
+const char* kSynergy = "(22)(23) without commanded rates: the whole body follows the COG alone.";
+
+}  // namespace
+
+Vector3d Instant::rate(Vector3d SimulationSample::*point) const {
+  const size_t a = k >= 2 ? k - 2 : 0, b = std::min(k + 2, log.samples.size() - 1);
+  if (a == b) return Vector3d::Zero();
+  return (log.samples[b].*point - log.samples[a].*point) / (log.dt * static_cast<double>(b - a));
+}
+
+double Instant::omega_squared() const {
+  return now().reference_fz / (model.mass() * height(now()));
+}
+
+const std::vector<Equation>& equations() {
+  static const std::vector<Equation> all = [] {
+    std::vector<Equation> list;
+    const auto add = [&](int first, int last, const char* formula, const char* words,
+                         Lines (*numbers)(const Instant&)) {
+      for (int n = first; n <= last; ++n) list.push_back({n, formula, words, numbers});
+    };
+    add(1, 4, "0v_k = 0J_k dtheta,  0w_k = 0J_wk dtheta", kTree, nullptr);
+    add(5, 7, "0dp_G = sum m_k 0dp_Gk / sum m_k = 0J_G dtheta", kFloating, cog_numbers);
+    add(8, 11, "w_0 = w_F - R_0 0J_wF dtheta,  dp_0 likewise, with the foot F at rest", kAnchored,
+        nullptr);
+    add(12, 13, "dp_G = J_G dtheta", kCogJacobian, cog_numbers);
+    add(14, 15, "ddx = w2 (x - x_Z),  ddy = w2 (y - y_Z)", kPendulum, pendulum_numbers);
+    add(16, 16, "ddz = f_z / m - g",
+        "The vertical ground force carries the weight; what is more or less accelerates the COG.",
+        vertical_numbers);
+    add(17, 17, "w2 = f_z / (m (z_G - z_Z))",
+        "The pendulum's rate: a lower robot falls faster. Without ground force it has no meaning.",
+        omega_numbers);
+    add(18, 19, "ref x_Z = cmd x_Z - K Delta x - D Delta dx, then the nearest point of the support",
+        kLong, zmp_numbers);
+    add(20, 20, "ref f_z = cmd f_z + m (K_z Delta z + D_z Delta dz), not below f_min",
+        "The same for the height: push harder when the COG is too low or sinks.", force_numbers);
+    add(21, 21, "Delta = cmd - measured",
+        "How far the robot is behind its command, in the frame of the foot it stands on.",
+        delta_numbers);
+    add(22, 23, "ref dtheta = cmd dtheta + W^-1 J_U' (J_U W^-1 J_U')^-1 v,  v = u - J_U cmd dtheta",
+        kResolve, resolution_numbers);
+    add(24, 27, "ref f_z = K_Pz (ref z - z) + K_Dz (ref dz - dz) + m g", kJump, vertical_numbers);
+    add(28, 29, "ref dtheta = W^-1 J_U' (J_U W^-1 J_U')^-1 u", kSynergy, resolution_numbers);
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,23 @@
+#!/bin/bash
+# The paper's Fig. 3 and Fig. 4 with this program: snapshots of HOAP-1 pushed while it walks, and the
+# loci of its COG along x, y, z with and without control. AYUMI names the program; left out, the
+# one that examples/quickstart.sh builds.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+ayumi=${AYUMI:-build/release/app/ayumi}
+if [ ! -x "$ayumi" ]; then
+  echo "$ayumi is not there: run examples/quickstart.sh first, or set AYUMI" >&2
+  exit 3
+fi
+out=${1:-out/paper_fig3_4}
+mkdir -p "$out"
+status=0
+"$ayumi" run patterns/hoap1_walk.json -o "$out/run" --force || status=$?
+[ "$status" -le 1 ] || exit "$status"
+cp "$out/run/snapshots.png" "$out/fig3_snapshots.png"
+"$ayumi" plot "$out/run" -o "$out/fig4_loci.svg" --force \
+  --title "HOAP-1 walking, pushed to the left at 3 s: open loop and DTAD"
+"$ayumi" plot "$out/run" --top -o "$out/fig4_from_above.svg" --force
+echo "written: $out/fig3_snapshots.png, fig4_loci.svg, fig4_from_above.svg"
+exit "$status"

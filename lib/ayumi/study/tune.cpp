@@ -1,0 +1,226 @@
+#include "ayumi/study/tune.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/control/capture_bound.hpp"
+#include "ayumi/control/gain_design.hpp"
+#include "ayumi/study/runs.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kFall = 10;        // of the objective, for a push that fells the robot
+constexpr double kGain = 1e-3;      // share by which a step must better the objective
+constexpr double kLead = 0.02;      // a branch starts this long before its push [s]
+constexpr double kSmallest = 1.03;  // steps smaller than this end the search
+
+using Gains = std::map<std::string, double>;
+
+/// The gains that may be tuned, of the numbers in force.
+Gains tunable(const DtadParams& p) {
+  return {{"q", p.q},         {"ka", p.ka},           {"ks", p.ks}, {"kd", p.kd},
+          {"tau_z", p.tau_z}, {"washout", p.washout}, {"kz", p.kz}, {"dz", p.dz},
+          {"kaz", p.kaz},     {"ankle", p.ankle}};
+}
+
+double height(const CommandSample& command) { return command.cog.z() - command.zmp.z(); }
+
+struct Tuner {
+  const RobotModel& model;
+  const CommandSeries& series;
+  const TuneOptions& options;
+  CommandSeries stand;
+  std::vector<PushPhase> phases;
+  LoopModel loop;
+  std::atomic<bool> stop = false;
+
+  ControllerSpec controller(const Gains& gains) const;
+  bool stable(const Gains& gains) const {
+    return analyze_loop(loop, dtad_params(model, controller(gains))).stable;
+  }
+  const CommandSeries& series_of(const PushPhase& phase) const {
+    return phase.standing ? stand : series;
+  }
+  Simulator begin(const PushPhase& phase, const Gains& gains) const;
+  double push(const Simulator& trunk, const PushPhase& phase, int direction) const;
+  double unpushed(const Gains& gains) const;
+  TuneFigures judge(const Gains& gains);
+};
+
+ControllerSpec Tuner::controller(const Gains& gains) const {
+  ControllerSpec spec = options.simulate.controller;
+  for (const auto& [name, value] : gains) {
+    std::erase_if(spec.gains, [&, &n = name](const auto& entry) { return entry.first == n; });
+    spec.gains.emplace_back(name, value);
+  }
+  return spec;
+}
+
+Simulator Tuner::begin(const PushPhase& phase, const Gains& gains) const {
+  SimulateOptions simulate = options.simulate;
+  simulate.controller = controller(gains);
+  simulate.scenario.clear();
+  Simulator run(model, series_of(phase), simulate);
+  run.keep_samples(false);
+  run.advance(std::max(0l, std::lround((phase.at - kLead) / series.dt)));
+  return run;
+}
+
+/// omega times the integral of |xi - cmd xi| / z; kFall when it fell.
+double Tuner::push(const Simulator& trunk, const PushPhase& phase, int direction) const {
+  const double angle = 2 * M_PI * direction / options.directions;
+  const CommandSeries& plan = series_of(phase);
+  const Vector2d u(std::cos(angle), std::sin(angle));
+  const long k = std::lround(phase.at / plan.dt);
+  const double bound = capture_bound(capture_region(model, plan, k), u);
+  if (!(bound > 0)) return 0;
+  Simulator run = trunk;
+  Disturbance d;
+  d.at = phase.at;
+  d.duration = options.duration;
+  d.direction = Vector3d(u.x(), u.y(), 0);
+  d.magnitude = options.level * bound;
+  run.set_scenario({d});
+  double sum = 0;
+  const double end = phase.at + options.duration + options.watched;
+  while (run.time() < end && run.advance(1) && !run.fell()) {
+    if (stop) throw Interrupted();
+    const double z = height(run.command(run.tick() - 1));
+    sum += std::sqrt(kGravity / z) * plan.dt * divergence(run) / z;
+  }
+  return run.fell() ? kFall : sum;
+}
+
+double Tuner::unpushed(const Gains& gains) const {
+  SimulateOptions simulate = options.simulate;
+  simulate.controller = controller(gains);
+  simulate.scenario.clear();
+  Simulator run(model, series, simulate);
+  run.keep_samples(false);
+  double sum = 0;
+  long ticks = 0;
+  for (; run.advance(1) && !run.fell(); ++ticks) {
+    if (stop) throw Interrupted();
+    const SimulationSample& s = run.last_sample();
+    sum += (s.measured_zmp - s.reference_zmp).head<2>().norm() / height(run.command(ticks));
+  }
+  return run.fell() ? kFall : sum / static_cast<double>(std::max(1l, ticks));
+}
+
+TuneFigures Tuner::judge(const Gains& gains) {
+  std::vector<std::optional<Simulator>> trunks(phases.size());
+  double still = 0;
+  in_parallel(phases.size() + 1, options.threads, stop, [&](size_t i) {
+    if (i == phases.size())
+      still = unpushed(gains);
+    else
+      trunks[i] = begin(phases[i], gains);
+  });
+  const size_t directions = static_cast<size_t>(options.directions);
+  std::vector<double> costs(phases.size() * directions);
+  in_parallel(costs.size(), options.threads, stop, [&](size_t i) {
+    costs[i] =
+        push(*trunks[i / directions], phases[i / directions], static_cast<int>(i % directions));
+  });
+  TuneFigures f;
+  f.pushes = static_cast<int>(costs.size());
+  for (const double cost : costs) {
+    if (cost >= kFall)
+      ++f.falls;
+    else
+      f.recovery += cost;
+  }
+  f.recovery /= f.pushes;
+  f.unpushed = still;
+  f.objective = f.recovery + kFall * f.falls / f.pushes + f.unpushed;
+  return f;
+}
+
+void check(const TuneOptions& options, const CommandSeries& series, const Gains& known) {
+  const auto refuse = [](const std::string& why) { fail(ErrorCode::usage, "tune: " + why); };
+  if (series.samples.empty()) fail(ErrorCode::bad_pattern, "the command series is empty");
+  if (options.simulate.controller.type != "dtad")
+    refuse("controller '" + options.simulate.controller.type + "' has no gains to tune; use dtad");
+  if (options.directions < 1 || options.directions > 360) refuse("directions: give 1 to 360");
+  if (!(options.level > 0)) refuse("level must be positive");
+  if (!(options.factor > 1)) refuse("factor must exceed 1");
+  if (options.rounds < 1) refuse("rounds must be at least 1");
+  if (options.gains.empty()) refuse("name a gain");
+  std::vector<std::string> names;
+  for (const auto& [name, value] : known) names.push_back(name);
+  for (const std::string& name : options.gains)
+    if (!known.count(name))
+      refuse("gain '" + name + "' cannot be tuned" + text::suggestion(name, names) +
+             " (those that can: " + text::join(names, ", ") + ")");
+  for (const PushPhase& phase : options.phases)
+    if (!phase.standing && (phase.at < kLead || phase.at + options.duration > series.duration()))
+      refuse("time " + text::brief(phase.at) + " s is outside the pattern (" +
+             text::brief(series.duration()) + " s)");
+}
+
+/// Four digits: what a person would write into a file.
+double rounded(double value) {
+  const std::string digits = text::brief(value);
+  std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  return value;
+}
+
+}  // namespace
+
+TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
+                      const TuneOptions& options, const Progress& progress) {
+  const Gains known = tunable(dtad_params(model, options.simulate.controller));
+  check(options, series, known);
+  Tuner tuner{.model = model,
+              .series = series,
+              .options = options,
+              .stand = standing_series(series),
+              .phases = options.phases,
+              .loop = single_support_loop(model, height(series.samples.front()), series.dt)};
+  if (tuner.phases.empty()) tuner.phases = default_push_phases(model, series, options.simulate);
+  TuneResult result;
+  for (const std::string& name : options.gains) result.start[name] = known.at(name);
+  refuse_unstable(tuner.loop, dtad_params(model, tuner.controller(result.start)));
+  result.gains = result.start;
+  result.before = result.after = tuner.judge(result.start);
+  if (result.before.unpushed >= kFall)
+    fail(ErrorCode::usage, "tune: the pattern falls unpushed with the gains to start from");
+
+  double factor = options.factor;
+  for (int round = 0; round < options.rounds && factor > kSmallest; ++round) {
+    bool better = false;
+    for (const std::string& name : options.gains) {
+      const double before = result.gains[name];
+      for (const double value : {rounded(before * factor), rounded(before / factor)}) {
+        Gains gains = result.gains;
+        gains[name] = value;
+        if (value == before) continue;
+        if (!tuner.stable(gains)) {
+          ++result.refused;
+          continue;
+        }
+        const TuneFigures figures = tuner.judge(gains);
+        ++result.choices;
+        report(progress,
+               {"tune", static_cast<double>(round) / options.rounds,
+                name + " = " + text::brief(value) + ": " + text::fixed(figures.objective, 4)});
+        if (figures.objective > (1 - kGain) * result.after.objective) continue;
+        result.gains = gains;
+        result.after = figures;
+        better = true;
+        break;
+      }
+    }
+    if (!better) factor = std::sqrt(factor);
+  }
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,123 @@
+// What gives way where a joint is at its limit, on the real HOAP-1.
+#include "ayumi/control/resolver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Standing {
+  RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  ActuatorLimits limits = model.limits("hoap1");
+  CommandSample command;
+  RobotData data{model};
+
+  /// At rest with this bend of the knees, trunk upright and soles level.
+  explicit Standing(double knee, bool at_stop = false) {
+    if (at_stop) {
+      RobotDescription description = model.description();
+      for (JointDescription& joint : description.joints)
+        if (joint.name.ends_with("_knee")) joint.lower = knee;
+      model = RobotModel(description);
+      data = RobotData(model);
+    }
+    const CommandSeries series = sample(model, stand_pattern(model, 0.01));
+    command = series.samples.front();
+    RobotState& s = command.state;
+    for (const char* side : {"l_", "r_"}) {
+      s.theta[model.find_dof(std::string(side) + "hip_pitch")] = -knee / 2;
+      s.theta[model.find_dof(std::string(side) + "knee")] = knee;
+      s.theta[model.find_dof(std::string(side) + "ankle_pitch")] = -knee / 2;
+    }
+    anchor_base(model, Side::left, command.feet[0], s, data);
+  }
+
+  Resolution solve(const Vector3d& velocity) {
+    return resolve(model, limits, command.state, data, Side::left, velocity, command, command,
+                   0.001, model.joint_weight());
+  }
+
+  /// Velocity of the COG and of the right sole that the rates give.
+  std::pair<Vector3d, Vector3d> moves(const Resolution& r) {
+    RobotState s = command.state;
+    RobotData now(model), next(model);
+    anchor_base(model, Side::left, command.feet[0], s, now);
+    const Vector3d cog = now.cog, foot = sole_pose(model, now, Side::right).translation();
+    s.theta += 1e-6 * r.dtheta;
+    anchor_base(model, Side::left, command.feet[0], s, next);
+    return {(next.cog - cog) / 1e-6,
+            (sole_pose(model, next, Side::right).translation() - foot) / 1e-6};
+  }
+};
+
+TEST(Resolver, BentKneesGiveAllTasks) {
+  Standing robot(0.8);
+  const Vector3d wanted(0.03, 0.04, 0.05);
+  const Resolution r = robot.solve(wanted);
+  EXPECT_TRUE(r.held.empty());
+  EXPECT_FALSE(r.yielding.height);
+  EXPECT_EQ(r.scale, 1);
+  EXPECT_TRUE(limit_notes(robot.model, r).empty());
+  const auto [cog, foot] = robot.moves(r);
+  EXPECT_NEAR((cog - wanted).norm(), 0, 1e-3);
+  EXPECT_NEAR(foot.norm(), 0, 1e-3);
+}
+
+TEST(Resolver, NearlyStraightKneesLetTheHeightGiveWay) {
+  Standing robot(0.05);
+  const Resolution r = robot.solve({0.03, 0.04, 0.3});
+  EXPECT_TRUE(r.yielding.height);
+  EXPECT_FALSE(r.yielding.trunk);
+  EXPECT_EQ(r.scale, 1) << "the rest is not slowed";
+  for (int j = 0; j < robot.model.dof_count(); ++j)
+    EXPECT_LE(std::abs(r.dtheta[j]), robot.limits.speed[j]);
+  const auto [cog, foot] = robot.moves(r);
+  EXPECT_NEAR(cog.x(), 0.03, 2e-3);
+  EXPECT_NEAR(cog.y(), 0.04, 2e-3);
+  EXPECT_NEAR(foot.norm(), 0, 2e-3);
+  const std::vector<std::string> notes = limit_notes(robot.model, r);
+  ASSERT_FALSE(notes.empty());
+  EXPECT_NE(notes[0].find("gives way"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("the COG height"), std::string::npos) << notes[0];
+}
+
+TEST(Resolver, AKneeAtItsStopIsHeld) {
+  Standing robot(0.8, true);
+  const Resolution r = robot.solve({0, 0.03, 0.05});
+  EXPECT_FALSE(r.held.empty());
+  EXPECT_TRUE(r.yielding.height);
+  for (int j = 0; j < robot.model.dof_count(); ++j) {
+    const Dof& dof = robot.model.dofs()[j];
+    const double after = robot.command.state.theta[j] + 0.001 * r.dtheta[j];
+    EXPECT_GE(after, dof.lower - 1e-12) << dof.name;
+    EXPECT_LE(after, dof.upper + 1e-12) << dof.name;
+    EXPECT_LE(std::abs(r.dtheta[j]), robot.limits.speed[j]) << dof.name;
+  }
+  bool knee = false;
+  for (const std::string& note : limit_notes(robot.model, r))
+    knee = knee || note.find("knee: the COG height") != std::string::npos;
+  EXPECT_TRUE(knee);
+}
+
+TEST(Resolver, WhatNoTaskCanGiveMakesTheMotionSlower) {
+  Standing robot(0.8);
+  const Resolution r = robot.solve({2.0, 0, 0});
+  EXPECT_LT(r.scale, 1);
+  for (int j = 0; j < robot.model.dof_count(); ++j)
+    EXPECT_LE(std::abs(r.dtheta[j]), robot.limits.speed[j]);
+  const std::vector<std::string> notes = limit_notes(robot.model, r);
+  ASSERT_FALSE(notes.empty());
+  EXPECT_NE(notes[0].find("the whole motion becomes slower"), std::string::npos) << notes[0];
+}
+
+}  // namespace
+}  // namespace ayumi
