@@ -35,6 +35,7 @@ class Judge {
   std::vector<SimulationEvent> events_;
   double zmp_square_sum_ = 0;
   long zmp_count_ = 0;
+  double level_ = 0;                         // commanded COG height, in flight that of lift-off [m]
   double airborne_ = 0;                      // of the present flight [s]
   std::array<double, 2> unloaded_ = {0, 0};  // time each foot has been off the ground [s]
   std::array<bool, 2> in_stance_ = {false, false};
