@@ -37,7 +37,7 @@ struct ProgressLine {
     }
     if (terminal)
       draw(event, now);
-    else if (fresh)
+    else if (fresh || event.detail.starts_with("iteration "))
       std::fprintf(stderr, "%s%s%s\n", event.stage.c_str(), event.detail.empty() ? "" : ": ",
                    event.detail.c_str());
     if (event.fraction >= 1) finish();

@@ -9,9 +9,11 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/results_json.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/table.hpp"
 #include "check_table.hpp"
-#include "pattern_input.hpp"
+#include "motion_words.hpp"
+#include "parameter_search.hpp"
+#include "repairing.hpp"
 
 namespace ayumi::app {
 
@@ -20,85 +22,122 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string pattern, out;
-  std::vector<std::string> locked, tolerances;
+  std::string pattern, out, trust = "posture", plot;
+  std::vector<std::string> locked, weights, tolerances;
+  bool baked = false;
   PatternOptions input;
   RepairOptions repair;
 };
 
-// Relative names in the file hold only from the folder they were written for.
-bool same_folder(const fs::path& a, const fs::path& b) {
-  return fs::absolute(a).lexically_normal().parent_path() ==
-         fs::absolute(b).lexically_normal().parent_path();
-}
+constexpr const char* kPartialMark =
+    "// PARTIAL: the repair of this pattern did not come to its end; it is not consistent.\n";
 
-bool names_files(const Pattern& pattern) {
-  return pattern.table || pattern.robot.find('/') != std::string::npos;
+fs::path table_beside(const fs::path& pattern) {
+  return fs::path(pattern).replace_extension(".csv");
 }
 
 // The author's text as it is but for the correction; parameters given on the command line, or
 // relative names that would break in another folder, make it a text of our own.
-void write_repaired(const Options& options, const Pattern& pattern, const RepairResult& result) {
-  Pattern corrected = pattern;
-  if (result.status == RepairStatus::repaired) corrected.correction = result.correction;
-  const bool keeps_text = options.input.set.empty() &&
-                          (same_folder(options.pattern, options.out) || !names_files(pattern));
-  if (!keeps_text) {
-    write_pattern(options.out, corrected);
+void write_repaired(const Context& context, const Options& options, const PatternInput& input,
+                    const RepairResult& result) {
+  Pattern corrected = input.pattern;
+  const bool unchanged = result.status == RepairStatus::already_consistent;
+  if (!unchanged) corrected.correction = result.correction;
+  if (options.baked) {
+    const Pattern dense =
+        dense_pattern(input.model, corrected, result.series, table_beside(options.out).string());
+    refuse_overwriting(context, table_beside(options.out));
+    write_file(table_beside(options.out), dense_table_csv(*dense.table));
+    write_pattern(options.out, dense);
     return;
   }
   const std::string text = read_file(options.pattern);
-  write_file(options.out, result.status == RepairStatus::repaired
-                              ? with_correction(text, result.correction)
-                              : text);
+  const std::string mark = result.partial || !result.check.consistent ? kPartialMark : "";
+  const std::string changed = unchanged ? text : mark + with_correction(text, result.correction);
+  if (options.input.set.empty() &&
+      write_with_companions(context, options.pattern, options.out, changed))
+    return;
+  write_pattern(options.out, corrected);
 }
 
-std::string in_words(const Options& options, const RepairResult& result, double wall) {
-  std::string out = options.pattern + ": " + name_of(result.status) + "\n";
+std::string steering_words(const Options& options) {
+  std::string out;
+  if (!options.locked.empty()) out += "  kept: " + text::join(options.locked, ", ") + "\n";
+  if (options.repair.trust != Trust::posture)
+    out += std::string("  trusted: ") + name_of(options.repair.trust) + "\n";
+  return out;
+}
+
+std::string in_words(const Options& options, const RobotModel& model, const RepairResult& result,
+                     double wall) {
+  std::string out = options.pattern + ": " +
+                    (result.partial ? "stopped, partial" : name_of(result.status)) + "\n";
   if (result.status == RepairStatus::already_consistent)
     return out + "  nothing changed; " + options.out + " is the pattern as it was\n";
-  out += "  moved at most " + text::fixed(result.max_joint_change * 180 / EIGEN_PI, 2) + " deg (" +
-         result.where + " at " + text::fixed(result.at, 3) + " s), COG " +
-         text::fixed(1000 * result.max_cog_change, 1) + " mm\n";
+  out += steering_words(options) + motion_words(model, result.moved, result.before, result.check);
   out += "  " + std::to_string(result.variables) + " variables, " +
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
          " iterations, " + text::fixed(wall, 2) + " s\n";
   for (const std::string& reason : result.reasons) out += "  because " + reason + "\n";
-  if (result.status == RepairStatus::repaired)
-    out += check_table(result.check) + "  written to " + options.out + "\n";
-  else
-    out += "  nothing written\n";
+  if (result.status == RepairStatus::repaired) out += check_table(result.check);
   return out;
+}
+
+std::string in_words(const std::vector<PassingValue>& values) {
+  std::string out;
+  for (const PassingValue& v : values)
+    out += "  with " + v.parameter + " = " + text::brief(v.passing) + " instead of " +
+           text::brief(v.given) + " the pattern passes as it is\n";
+  return out;
+}
+
+nlohmann::ordered_json in_json(const std::vector<PassingValue>& values) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const PassingValue& v : values)
+    json.push_back({{"name", v.parameter}, {"given", v.given}, {"passes", v.passing}});
+  return json;
+}
+
+Trust trust_of(const std::string& word) {
+  return word == "cog" ? Trust::cog : word == "zmp" ? Trust::zmp : Trust::posture;
+}
+
+int exit_code_of(const RepairResult& result) {
+  if (result.partial) return 130;
+  return result.status == RepairStatus::repaired ||
+                 result.status == RepairStatus::already_consistent
+             ? 0
+             : 4;
 }
 
 void repair_pattern(Context& context, Options options) {
   refuse_overwriting(context, options.out);
-  PatternInput input = load_pattern(context, options.pattern, options.input);
+  if (!options.plot.empty()) refuse_overwriting(context, options.plot);
+  const PatternInput input = load_pattern(context, options.pattern, options.input);
   options.repair.check = check_options(input, options.tolerances);
-  options.repair.locked_joints = options.locked;
+  options.repair.trust = trust_of(options.trust);
+  options.repair.joint_weights = read_pairs(options.weights, "--weight");
+  read_locks(options.locked, input, options.repair);
   const auto begin = std::chrono::steady_clock::now();
-  RepairResult result = repair(input.model, input.series, options.repair, context.progress());
-  if (result.status != RepairStatus::already_consistent && input.pattern.correction) {
-    // An older correction did not do: the least change is from what the author wrote.
-    Pattern plain = input.pattern;
-    plain.correction.reset();
-    result =
-        repair(input.model, sample(input.model, plain, {.dt = input.series.dt}, context.progress()),
-               options.repair, context.progress());
-  }
+  const RepairResult result = repair_input(context, input, options.repair);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const bool good =
-      result.status == RepairStatus::repaired || result.status == RepairStatus::already_consistent;
-  if (good) write_repaired(options, input.pattern, result);
-  context.print(in_words(options, result, wall));
+  context.exit_code = exit_code_of(result);
+  const bool written = context.exit_code == 0 || options.repair.keep_partial;
+  if (written) write_repaired(context, options, input, result);
+  std::vector<PassingValue> values;
+  if (context.exit_code == 4 && !input.pattern.parameters.empty())
+    values = passing_parameters(context, options.pattern, options.input, options.tolerances);
+  if (!options.plot.empty() && !result.series.samples.empty())
+    plot_motions(input.model, input.series, result.series, fs::path(options.pattern).stem(),
+                 options.plot);
+  context.print(in_words(options, input.model, result, wall) + in_words(values) +
+                (written ? "  written to " + options.out + "\n" : "  nothing written\n"));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(repair_json(result));
-  json["variables"] = result.variables;
-  json["constraints"] = result.constraints;
+  json["parameters"] = in_json(values);
   json["wall_s"] = wall;
-  json["output"] = good ? nlohmann::ordered_json(options.out) : nullptr;
+  json["output"] = written ? nlohmann::ordered_json(options.out) : nullptr;
   context.print_json(json.dump(2));
-  context.exit_code = good ? 0 : 4;
 }
 
 }  // namespace
@@ -108,14 +147,31 @@ void add_repair(CLI::App& app, Context& context) {
       app.add_subcommand("repair", "the nearest consistent pattern, by least change");
   command->footer(
       "Examples:\n  ayumi repair walk.json -o repaired.json\n"
-      "  ayumi repair walk.json -o repaired.json --lock l_elbow --lock r_elbow\n"
-      "  ayumi repair walk.json -o repaired.json --margin 0.005 --json");
+      "  ayumi repair walk.json -o repaired.json --lock l_elbow --lock foot:left --lock 1.2..1.8\n"
+      "  ayumi repair walk.json -o repaired.json --weight r_hip_roll=10 --plot moved.svg\n"
+      "  ayumi repair dense.json -o repaired.json --trust cog --baked");
   static Options options;
   command->add_option("PATTERN", options.pattern, "pattern file")->required();
   command->add_option("-o,--out", options.out, "pattern file to write")->required()->type_name("F");
-  command->add_option("--lock", options.locked, "a joint that must not change")
-      ->type_name("JOINT")
+  command
+      ->add_option("--lock", options.locked,
+                   "what must not change: a joint, foot:left, foot:right, keyframe:N (from 0), or "
+                   "a time window BEGIN..END [s]")
+      ->type_name("WHAT")
       ->allow_extra_args(false);
+  command->add_option("--weight", options.weights, "how much dearer than others a joint is to move")
+      ->type_name("JOINT=FACTOR")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--trust", options.trust,
+                   "what the others follow where they disagree: posture, cog or zmp")
+      ->check(CLI::IsMember({"posture", "cog", "zmp"}))
+      ->type_name("QUANTITY")
+      ->capture_default_str();
+  command->add_flag("--baked", options.baked, "write a dense table, not a correction");
+  command->add_flag("--keep-partial", options.repair.keep_partial,
+                    "after Ctrl-C or without success, write the motion that violates least");
+  command->add_option("--plot", options.plot, "before and after, .svg or .png")->type_name("F");
   command->add_option("--margin", options.repair.zmp_margin, "of the ZMP inside the support [m]")
       ->check(CLI::Range(0.0, 0.1))
       ->type_name("M")

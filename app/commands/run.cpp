@@ -24,6 +24,7 @@
 #include "ayumi/preview/loci.hpp"
 #include "ayumi/preview/strip.hpp"
 #include "pattern_input.hpp"
+#include "repairing.hpp"
 #include "report_input.hpp"
 #include "simulation.hpp"
 
@@ -151,7 +152,7 @@ bool MainJob::check(PatternInput& input) {
 void MainJob::repair_pattern(PatternInput& input) {
   RepairOptions options;
   options.check = check_options(input);
-  const RepairResult result = repair(input.model, input.series, options, context_.progress());
+  const RepairResult result = repair_input(context_, input, options);
   say("repair", std::string(name_of(result.status)) + ": " + std::to_string(result.iterations) +
                     " iterations, joints moved by at most " +
                     text::fixed(result.max_joint_change * 180 / EIGEN_PI, 2) + " deg, COG by " +

@@ -70,7 +70,6 @@ struct ThirdParty {
 inline const std::vector<ThirdParty>& third_parties() {
   static const std::vector<ThirdParty> table = {
       {"Eigen", std::regex("(unsupported/)?Eigen/.*"), {}},
-      {"FCL", std::regex("fcl/.*"), {"geometry"}},
       {"Ipopt", std::regex("Ip[A-Z].*|coin(-or)?/.*"), {"optimize"}},
       {"urdfdom", std::regex("(urdf|console_bridge|tinyxml).*"), {"io"}},
       {"assimp", std::regex("assimp/.*"), {"io"}},

@@ -112,6 +112,65 @@ TEST_F(CheckRepair, WhatCannotBeRepairedWritesNothing) {
   EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.json"});
 }
 
+TEST_F(CheckRepair, DiffTellsWhatMoved) {
+  plant_zmp_outside("outside.json");
+  ASSERT_EQ(ayumi({"repair", "outside.json", "-o", "good.json", "--plot", "moved.svg"}).exit_code,
+            0);
+  EXPECT_NE(contents(folder / "moved.svg").find("before"), std::string::npos);
+  const Output words = ayumi({"diff", "outside.json", "good.json"});
+  EXPECT_EQ(words.exit_code, 0) << words.err;
+  EXPECT_NE(words.out.find("outside.json: inconsistent"), std::string::npos) << words.out;
+  EXPECT_NE(words.out.find("good.json: consistent"), std::string::npos) << words.out;
+  EXPECT_NE(words.out.find(" deg at "), std::string::npos) << words.out;
+  const Json json = Json::parse(ayumi({"diff", "outside.json", "good.json", "--json"}).out);
+  EXPECT_FALSE(json["same"]);
+  EXPECT_GT(json["max"]["joint_rad"], 0.01);
+  EXPECT_FALSE(json["moved"]["joints"].empty());
+  EXPECT_GT(json["moved"]["joints"][0]["at_s"], 1.5);
+  EXPECT_LT(json["a"]["min_zmp_margin_m"], 0);
+  EXPECT_GT(json["b"]["min_zmp_margin_m"], 0.001);
+  EXPECT_TRUE(Json::parse(ayumi({"diff", kWalk, kWalk, "--json"}).out)["same"]);
+}
+
+TEST_F(CheckRepair, BakedAndTakenToAnotherFolder) {
+  plant_zmp_outside("outside.json");
+  ASSERT_EQ(ayumi({"repair", "outside.json", "-o", "dense.json", "--baked"}).exit_code, 0);
+  EXPECT_EQ(contents(folder / "dense.json").find("keyframes"), std::string::npos);
+  EXPECT_EQ(ayumi({"check", "dense.json"}).exit_code, 0);
+  // Consistent: the same bytes, with the table they name.
+  std::filesystem::create_directory(folder / "away");
+  const Output copied = ayumi({"repair", "dense.json", "-o", "away/copy.json"});
+  ASSERT_EQ(copied.exit_code, 0) << copied.err;
+  EXPECT_EQ(contents(folder / "away/copy.json"), contents(folder / "dense.json"));
+  EXPECT_EQ(contents(folder / "away/dense.csv"), contents(folder / "dense.csv"));
+  EXPECT_EQ(ayumi({"check", "away/copy.json"}).exit_code, 0);
+}
+
+TEST_F(CheckRepair, LocksInWords) {
+  plant_zmp_outside("outside.json");
+  for (const auto& [lock, message] :
+       std::vector<std::pair<std::string, std::string>>{{"foot:middle", "foot:left and foot:right"},
+                                                        {"keyframe:99", "numbered 0 to 20"},
+                                                        {"3..2", "must lie in the motion"},
+                                                        {"a..b", "two numbers of seconds"},
+                                                        {"l_kne", "did you mean 'l_knee'?"}}) {
+    const Output wrong = ayumi({"repair", "outside.json", "-o", "out.json", "--lock", lock});
+    EXPECT_EQ(wrong.exit_code, 2) << lock;
+    EXPECT_NE(wrong.err.find(message), std::string::npos) << wrong.err;
+  }
+  const Output weight = ayumi({"repair", "outside.json", "-o", "out.json", "--weight", "l_knee"});
+  EXPECT_EQ(weight.exit_code, 2);
+  // The step that is wrong is locked: what is in the way is told.
+  const Output locked =
+      ayumi({"repair", "outside.json", "-o", "out.json", "--lock", "2..2.9", "--json"});
+  EXPECT_EQ(locked.exit_code, 4) << locked.out << locked.err;
+  const Json json = Json::parse(locked.out);
+  ASSERT_FALSE(json["obstacles"].empty());
+  EXPECT_EQ(json["obstacles"][0]["kind"], "support_margin");
+  EXPECT_NE(std::string(json["reasons"][0]).find("that window is locked"), std::string::npos);
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"outside.json"});
+}
+
 TEST_F(CheckRepair, MistakesOfTheCall) {
   const Output joint = ayumi({"repair", kWalk, "-o", "out.json", "--lock", "l_kne"});
   EXPECT_EQ(joint.exit_code, 2) << joint.out << joint.err;

@@ -44,9 +44,9 @@ TEST(Distance, BoxesFaceToFace) {
   const Collider a(Box{{0.2, 0.1, 0.1}}), b(Box{{0.1, 0.1, 0.1}});
   Isometry3d A = Isometry3d::Identity(), B = A;
   B.translation().x() = 0.18;
-  EXPECT_NEAR(clearance(a, A, b, B), 0.03, 1e-6);
+  EXPECT_NEAR(clearance(a, A, b, B), 0.03, 1e-12);
   B.translation().x() = 0.14;
-  EXPECT_NEAR(clearance(a, A, b, B), -0.01, 1e-4);
+  EXPECT_NEAR(clearance(a, A, b, B), -0.01, 1e-9);
 }
 
 // A sphere against a box: distance of a point to a box in closed form, minus the radius.
@@ -58,14 +58,14 @@ TEST(Distance, SphereAndBoxInClosedForm) {
     const Isometry3d A = random_pose(random, 0.2), B = random_pose(random, 0.2);
     const Vector3d p = A.inverse() * B.translation();
     const double outside = (p.cwiseAbs() - half).cwiseMax(0).norm();
-    if (outside <= 0.03) continue;
-    EXPECT_NEAR(clearance(box, A, sphere, B), outside - 0.03, 1e-5);
+    if (outside <= 1e-6) continue;
+    EXPECT_NEAR(clearance(box, A, sphere, B), outside - 0.03, 1e-9);
   }
 }
 
-// Capsules go the closed-form way, cylinders the library's: a thin capsule and a thin cylinder of
+// Capsules go the closed-form way, cylinders the general one: a thin capsule and a thin cylinder of
 // the same length are nearly one shape.
-TEST(Distance, CapsulesAgreeWithTheLibrary) {
+TEST(Distance, CapsulesAgreeWithCylinders) {
   Random random(3);
   const Collider capsule(Capsule{0.001, 0.2}), cylinder(Cylinder{0.001, 0.2}),
       other(Capsule{0.02, 0.1});
@@ -95,7 +95,7 @@ TEST(Distance, BoundIsNeverAboveTheClearance) {
     const Isometry3d A = random_pose(random, 0.4), B = random_pose(random, 0.4);
     const double d = clearance(a, A, b, B);
     EXPECT_LE(clearance_bound(a, A, b, B), d + 1e-9);
-    EXPECT_NEAR(d, clearance(b, B, a, A), 1e-4);
+    EXPECT_NEAR(d, clearance(b, B, a, A), 1e-8);
   }
 }
 
@@ -109,4 +109,67 @@ TEST(Distance, MeshIsItsBox) {
   Isometry3d A = Isometry3d::Identity(), B = A;
   B.translation() = Vector3d(0.15, 0.05, 0.05);
   EXPECT_NEAR(clearance(a, A, b, B), 0.04, 1e-6);
+}
+
+// How deep two boxes are in each other: the least of the overlaps along the faces' normals and the
+// cross products of the edges (separating axes).
+TEST(Distance, DepthOfBoxesBySeparatingAxes) {
+  Random random(5);
+  int meeting = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d ha = Vector3d(0.1, 0.05, 0.07), hb(0.03, 0.08, 0.06);
+    const Isometry3d A = random_pose(random, 0.1), B = random_pose(random, 0.1);
+    std::vector<Vector3d> axes;
+    for (int j = 0; j < 3; ++j) {
+      axes.push_back(A.linear().col(j));
+      axes.push_back(B.linear().col(j));
+      for (int k = 0; k < 3; ++k) axes.push_back(A.linear().col(j).cross(B.linear().col(k)));
+    }
+    double depth = 1e9;
+    for (const Vector3d& axis : axes) {
+      if (axis.norm() < 1e-6) continue;
+      const Vector3d n = axis.normalized();
+      const double reach = (A.linear().transpose() * n).cwiseAbs().dot(ha) +
+                           (B.linear().transpose() * n).cwiseAbs().dot(hb);
+      depth = std::min(depth, reach - std::abs(n.dot(B.translation() - A.translation())));
+    }
+    const double d = clearance(Collider(Box{2 * ha}), A, Collider(Box{2 * hb}), B);
+    if (depth > 1e-6) {
+      ++meeting;
+      EXPECT_NEAR(d, -depth, 1e-8);
+    } else {
+      EXPECT_GE(d, -depth - 1e-9);  // an axis gives a lower bound of the distance
+    }
+  }
+  EXPECT_GT(meeting, 200);
+}
+
+// The nearest points have the clearance between them, and their normal is its slope, apart and
+// deep.
+TEST(Distance, SlopeOfTheClearance) {
+  Random random(6);
+  std::vector<Collider> shapes;
+  shapes.emplace_back(Box{{0.1, 0.2, 0.05}});
+  shapes.emplace_back(Sphere{0.06});
+  shapes.emplace_back(Cylinder{0.05, 0.2});
+  shapes.emplace_back(Capsule{0.05, 0.2});
+  int rough = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Collider &a = shapes[i % 4], &b = shapes[(i / 4) % 4];
+    const Isometry3d A = random_pose(random, 0.15), B = random_pose(random, 0.15);
+    const Closest c = closest(a, A, b, B);
+    EXPECT_NEAR(c.normal.norm(), 1, 1e-12);
+    EXPECT_NEAR(c.normal.dot(c.on_b - c.on_a), c.clearance, 1e-8);
+    const Vector3d way = random.vector(1.0), turn = random.vector(1.0);
+    auto moved = [&](double h) {
+      Isometry3d M = B;
+      M.translation() = B.translation() + h * way;
+      M.linear() = exp_rotation(h * turn).toRotationMatrix() * B.linear();
+      return clearance(a, A, b, M);
+    };
+    const double slope = c.normal.dot(way + turn.cross(c.on_b - B.translation()));
+    const double h = 1e-5;
+    if (std::abs((moved(h) - moved(-h)) / (2 * h) - slope) > 2e-3) ++rough;
+  }
+  EXPECT_LE(rough, 8);  // a kink between two features in a few of the poses
 }

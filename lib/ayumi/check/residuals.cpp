@@ -244,7 +244,6 @@ VectorXd motor_torques(const RobotModel& model, const RobotState& state,
           data.axis[i].dot(body.prismatic ? f : Vector3d(n - data.position[i].cross(f)));
     }
   }
-  constexpr double kCoulombRate = 0.01;  // [rad/s] over which dry friction turns its sign
   for (int i = 0; i < model.dof_count(); ++i) {
     const ServoDescription& servo = model.dofs()[i].servo;
     torque[i] += servo.rotor_inertia * acceleration[6 + i] + servo.viscous * state.dtheta[i] +

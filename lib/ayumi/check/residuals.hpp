@@ -61,6 +61,9 @@ std::array<Vector6d, 2> foot_wrenches(const RobotModel& model, Support support,
                                       const Eigen::Vector3d& base_position,
                                       const Vector6d& base_wrench);
 
+/// Dry friction turns its sign over twice this joint rate [rad/s].
+inline constexpr double kCoulombRate = 0.01;
+
 /// Motor torques [dof]: `force` of inverse_dynamics without what the ground gives at the feet, plus
 /// rotor inertia, viscous and Coulomb friction of the servo. `data` as inverse_dynamics left it.
 Eigen::VectorXd motor_torques(const RobotModel& model, const RobotState& state,

@@ -1,26 +1,22 @@
 #include "ayumi/geometry/distance.hpp"
 
-#include <fcl/fcl.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
-#include "ayumi/geometry/penetration.hpp"
+#include "ayumi/geometry/convex.hpp"
 
 namespace ayumi {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-// A sphere swept along z by +-half_length, or a shape of the collision library.
+// Everything within `rounding` of a convex core.
 struct Collider::Impl {
-  bool swept = false;
-  double sweep_radius = 0, half_length = 0;
-  Isometry3d offset = Isometry3d::Identity();  // library shape in the shape frame
-  std::unique_ptr<fcl::CollisionGeometryd> geometry;
-  Solid solid;  // the same for depths
+  bool swept = false;  // a sphere or capsule: the core is a point or a segment along z
+  ConvexCore core;
+  double rounding = 0;
+  Isometry3d offset = Isometry3d::Identity();  // core in the shape frame
 };
 
 namespace {
@@ -42,82 +38,13 @@ Bounds mesh_bounds(const MeshShape& mesh) {
   return b;
 }
 
-// Zero or less where the bodies meet: the library's own depth is not asked for, since its polytope
-// expansion ends the program on some of them.
-double library_distance(const fcl::CollisionGeometryd& a, const Isometry3d& pose_a,
-                        const fcl::CollisionGeometryd& b, const Isometry3d& pose_b) {
-  try {
-    fcl::DistanceRequestd request(false, false, 0, 0, 1e-7, fcl::GST_LIBCCD);
-    fcl::DistanceResultd result;
-    return fcl::distance(&a, pose_a, &b, pose_b, request, result);
-  } catch (const std::exception&) {
-    return 0;
-  }
-}
-
-}  // namespace
-
-Collider::Collider(const Shape& shape) : impl_(std::make_unique<Impl>()) {
-  Impl& impl = *impl_;
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    impl.swept = true;
-    impl.sweep_radius = radius_ = sphere->radius;
-    impl.geometry = std::make_unique<fcl::Sphered>(sphere->radius);
-    impl.solid = {Solid::Kind::capsule, Vector3d::Zero(), sphere->radius, 0};
-  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    impl.swept = true;
-    impl.sweep_radius = capsule->radius;
-    impl.half_length = 0.5 * capsule->length;
-    radius_ = impl.half_length + capsule->radius;
-    impl.geometry = std::make_unique<fcl::Capsuled>(capsule->radius, capsule->length);
-    impl.solid = {Solid::Kind::capsule, Vector3d::Zero(), capsule->radius, impl.half_length};
-  } else if (const auto* box = std::get_if<Box>(&shape)) {
-    radius_ = 0.5 * box->size.norm();
-    impl.geometry = std::make_unique<fcl::Boxd>(box->size);
-    impl.solid = {Solid::Kind::box, 0.5 * box->size, 0, 0};
-  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    radius_ = std::hypot(cylinder->radius, 0.5 * cylinder->length);
-    impl.geometry = std::make_unique<fcl::Cylinderd>(cylinder->radius, cylinder->length);
-    impl.solid = {Solid::Kind::cylinder, Vector3d::Zero(), cylinder->radius,
-                  0.5 * cylinder->length};
-  } else {
-    const Bounds bounds = mesh_bounds(std::get<MeshShape>(shape));
-    const Vector3d size = bounds.high - bounds.low;
-    center_ = 0.5 * (bounds.low + bounds.high);
-    radius_ = 0.5 * size.norm();
-    impl.offset.translation() = center_;
-    impl.geometry = std::make_unique<fcl::Boxd>(size);
-    impl.solid = {Solid::Kind::box, 0.5 * size, 0, 0};
-  }
-}
-
-Collider::Collider(Collider&&) noexcept = default;
-Collider& Collider::operator=(Collider&&) noexcept = default;
-Collider::~Collider() = default;
-
-double clearance(const Collider& a, const Isometry3d& pose_a, const Collider& b,
-                 const Isometry3d& pose_b) {
-  const Collider::Impl &ia = *a.impl_, &ib = *b.impl_;
-  if (ia.swept && ib.swept) {
-    const Vector3d za = ia.half_length * pose_a.linear().col(2);
-    const Vector3d zb = ib.half_length * pose_b.linear().col(2);
-    const Vector3d &ca = pose_a.translation(), &cb = pose_b.translation();
-    return segment_distance(ca - za, ca + za, cb - zb, cb + zb) - ia.sweep_radius - ib.sweep_radius;
-  }
-  const Isometry3d place_a = pose_a * ia.offset, place_b = pose_b * ib.offset;
-  const double apart = library_distance(*ia.geometry, place_a, *ib.geometry, place_b);
-  if (apart > 0) return apart;
-  return std::min(0.0, -overlap(ia.solid, place_a, ib.solid, place_b));
-}
-
-double clearance_bound(const Collider& a, const Isometry3d& pose_a, const Collider& b,
-                       const Isometry3d& pose_b) {
-  return (pose_a * a.center() - pose_b * b.center()).norm() - a.radius() - b.radius();
-}
+struct SegmentPoints {
+  Vector3d on_a, on_b;
+};
 
 // The minimum of a convex quadratic over the unit square: the free optimum, then clamped in turn.
-double segment_distance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,
-                        const Vector3d& b1) {
+SegmentPoints nearest_on_segments(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,
+                                  const Vector3d& b1) {
   const Vector3d u = a1 - a0, v = b1 - b0, w = a0 - b0;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v);
   const double uw = u.dot(w), vw = v.dot(w);
@@ -127,7 +54,76 @@ double segment_distance(const Vector3d& a0, const Vector3d& a1, const Vector3d& 
   if (vv > 0) t = std::clamp((uv * s + vw) / vv, 0.0, 1.0);
   if (uu > 0) s = std::clamp((uv * t - uw) / uu, 0.0, 1.0);
   if (vv > 0) t = std::clamp((uv * s + vw) / vv, 0.0, 1.0);
-  return (w + s * u - t * v).norm();
+  return {a0 + s * u, b0 + t * v};
+}
+
+ConvexPair swept_pair(const Vector3d& ca, const Vector3d& za, const Vector3d& cb,
+                      const Vector3d& zb) {
+  const SegmentPoints p = nearest_on_segments(ca - za, ca + za, cb - zb, cb + zb);
+  const Vector3d between = p.on_b - p.on_a;
+  ConvexPair pair{between.norm(), p.on_a, p.on_b, Vector3d::UnitZ()};
+  if (pair.distance > 1e-12) pair.normal = between / pair.distance;
+  return pair;
+}
+
+}  // namespace
+
+Collider::Collider(const Shape& shape) : impl_(std::make_unique<Impl>()) {
+  Impl& impl = *impl_;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    impl.swept = true;
+    impl.rounding = radius_ = sphere->radius;
+  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    impl.swept = true;
+    impl.rounding = capsule->radius;
+    impl.core.half.z() = 0.5 * capsule->length;
+    radius_ = impl.core.half.z() + capsule->radius;
+  } else if (const auto* box = std::get_if<Box>(&shape)) {
+    impl.core.half = 0.5 * box->size;
+    radius_ = impl.core.half.norm();
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    impl.core.half.z() = 0.5 * cylinder->length;
+    impl.core.disc = cylinder->radius;
+    radius_ = std::hypot(cylinder->radius, 0.5 * cylinder->length);
+  } else {
+    const Bounds bounds = mesh_bounds(std::get<MeshShape>(shape));
+    impl.core.half = 0.5 * (bounds.high - bounds.low);
+    center_ = 0.5 * (bounds.low + bounds.high);
+    radius_ = impl.core.half.norm();
+    impl.offset.translation() = center_;
+  }
+}
+
+Collider::Collider(Collider&&) noexcept = default;
+Collider& Collider::operator=(Collider&&) noexcept = default;
+Collider::~Collider() = default;
+
+Closest closest(const Collider& a, const Isometry3d& pose_a, const Collider& b,
+                const Isometry3d& pose_b) {
+  const Collider::Impl &ia = *a.impl_, &ib = *b.impl_;
+  const Isometry3d A = pose_a * ia.offset, B = pose_b * ib.offset;
+  const ConvexPair pair = ia.swept && ib.swept
+                              ? swept_pair(A.translation(), ia.core.half.z() * A.linear().col(2),
+                                           B.translation(), ib.core.half.z() * B.linear().col(2))
+                              : convex_pair(ia.core, A, ib.core, B);
+  return {pair.distance - ia.rounding - ib.rounding, pair.on_a + ia.rounding * pair.normal,
+          pair.on_b - ib.rounding * pair.normal, pair.normal};
+}
+
+double clearance(const Collider& a, const Isometry3d& pose_a, const Collider& b,
+                 const Isometry3d& pose_b) {
+  return closest(a, pose_a, b, pose_b).clearance;
+}
+
+double clearance_bound(const Collider& a, const Isometry3d& pose_a, const Collider& b,
+                       const Isometry3d& pose_b) {
+  return (pose_a * a.center() - pose_b * b.center()).norm() - a.radius() - b.radius();
+}
+
+double segment_distance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,
+                        const Vector3d& b1) {
+  const SegmentPoints p = nearest_on_segments(a0, a1, b0, b1);
+  return (p.on_b - p.on_a).norm();
 }
 
 }  // namespace ayumi

@@ -14,6 +14,9 @@ namespace ayumi {
 /// verdict, profile, findings[], summary{}
 std::string check_json(const ConsistencyReport& report);
 
+/// joints[], cog{}, foot{}, zmp{}, fz{}
+std::string motion_change_json(const MotionChange& change);
+
 /// status, moved{}, iterations, constraint_violation, reasons[], check{}
 std::string repair_json(const RepairResult& result);
 

@@ -9,11 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/optimize/motor_torque.hpp"
 
 namespace ayumi {
 
@@ -24,25 +26,25 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 const char* name_of(ConstraintGroup group) {
-  constexpr const char* kNames[] = {"support", "unilateral", "friction", "flight", "yaw",
-                                    "stance",  "swing",      "position", "speed"};
+  constexpr const char* kNames[] = {"support", "unilateral",   "friction", "flight",    "zmp",
+                                    "yaw",     "stance",       "path",     "swing",     "position",
+                                    "speed",   "acceleration", "torque",   "clearance", "cog"};
   return kNames[static_cast<int>(group)];
 }
 
 namespace {
 
-void wrench_derivatives(const RobotModel& model, RobotData& data, InstantState& state) {
-  const CorrectedMotion& m = state.motion;
+// Rows of inverse_dynamics by the correction's value, rate and acceleration.
+std::array<MatrixXd, 3> force_derivatives(const RobotModel& model, const CorrectedMotion& m,
+                                          RobotData& data) {
   InverseDynamicsDerivatives d;
   inverse_dynamics_derivatives(model, m.state, m.acceleration, data, d);
-  const MatrixXd Dq = d.configuration.topRows<6>(), Dv = d.velocity.topRows<6>(),
-                 Da = d.acceleration.topRows<6>();
-  const auto v = Dv.middleCols<3>(3), a = Da.middleCols<3>(3);
-  state.wrench_by = {Dq, Dv, Da};
-  state.wrench_by[0].middleCols<3>(3) =
-      Dq.middleCols<3>(3) * m.tangent + v * m.w_value + a * m.dw_value;
-  state.wrench_by[1].middleCols<3>(3) = v * m.w_rate + a * m.dw_rate;
-  state.wrench_by[2].middleCols<3>(3) = a * m.dw_acceleration;
+  const MatrixXd q = d.configuration.middleCols<3>(3), v = d.velocity.middleCols<3>(3),
+                 a = d.acceleration.middleCols<3>(3);
+  d.configuration.middleCols<3>(3) = q * m.tangent + v * m.w_value + a * m.dw_value;
+  d.velocity.middleCols<3>(3) = v * m.w_rate + a * m.dw_rate;
+  d.acceleration.middleCols<3>(3) = a * m.dw_acceleration;
+  return {std::move(d.configuration), std::move(d.velocity), std::move(d.acceleration)};
 }
 
 Matrix3d rotation_error(const Isometry3d& actual, const Isometry3d& planned) {
@@ -93,8 +95,18 @@ InstantState instant_state(const RobotModel& model, const CommandSample& sample,
                                   rows.transpose() * instant.weights.rate,
                                   rows.transpose() * instant.weights.acceleration);
   const CorrectedMotion& m = state.motion;
-  state.wrench = inverse_dynamics(model, m.state, m.acceleration, data).head<6>();
-  if (derivatives) wrench_derivatives(model, data, state);
+  state.data = &data;
+  const VectorXd force = inverse_dynamics(model, m.state, m.acceleration, data);
+  state.wrench = force.head<6>();
+  std::array<MatrixXd, 3> force_by;
+  if (derivatives) {
+    force_by = force_derivatives(model, m, data);
+    for (int k = 0; k < 3; ++k) state.wrench_by[k] = force_by[k].topRows<6>();
+    state.cog_by = cog_jacobian_floating(model, data);
+    state.cog_by.middleCols<3>(3) = (state.cog_by.middleCols<3>(3) * m.tangent).eval();
+  }
+  if (instant.torques)
+    fill_motor_torques(model, instant, force, derivatives ? &force_by : nullptr, data, state);
   for (Side side : {Side::left, Side::right}) {
     const int s = static_cast<int>(side);
     state.soles[s] = sole_pose(model, data, side);
@@ -106,85 +118,158 @@ InstantState instant_state(const RobotModel& model, const CommandSample& sample,
   return state;
 }
 
-std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block) {
+namespace {
+
+bool of_foot(ConstraintGroup group) {
+  return group >= ConstraintGroup::stance && group <= ConstraintGroup::swing;
+}
+
+// Where the block's joint moves alone: value, rate or acceleration of its own column.
+int order_of(ConstraintGroup group) {
+  return group == ConstraintGroup::position ? 0 : group == ConstraintGroup::speed ? 1 : 2;
+}
+
+bool of_joint(ConstraintGroup group) {
+  return group >= ConstraintGroup::position && group <= ConstraintGroup::acceleration;
+}
+
+const Isometry3d& reference(const ConstraintBlock& block, const Instant& instant) {
+  return block.group == ConstraintGroup::path ? instant.path[block.item]
+                                              : instant.ground[block.item];
+}
+
+VectorXd foot_values(const RobotModel& model, const ConstraintBlock& block, const Instant& instant,
+                     const InstantState& state) {
+  const Isometry3d &sole = state.soles[block.item], &ground = reference(block, instant);
+  VectorXd values(block.rows);
+  if (block.group != ConstraintGroup::swing) {
+    const Matrix3d E = rotation_error(sole, ground);
+    values << sole.translation() - ground.translation(),
+        0.5 * Vector3d(E(2, 1) - E(1, 2), E(0, 2) - E(2, 0), E(1, 0) - E(0, 1));
+    return values;
+  }
+  const Vector3d normal = ground.linear().col(2);
+  const auto points = corners(model, static_cast<Side>(block.item), sole);
+  for (int i = 0; i < block.rows; ++i) values[i] = normal.dot(points[i] - ground.translation());
+  return values;
+}
+
+MatrixXd foot_derivatives(const RobotModel& model, const ConstraintBlock& block,
+                          const Instant& instant, const InstantState& state) {
+  const Isometry3d &sole = state.soles[block.item], &ground = reference(block, instant);
+  const MatrixXd& J = state.sole_by[block.item];
+  MatrixXd by(block.rows, model.velocity_count());
+  if (block.group != ConstraintGroup::swing) {
+    const Matrix3d E = rotation_error(sole, ground);
+    by.topRows<3>() = J.topRows<3>();
+    by.bottomRows<3>() = 0.5 * (E.trace() * Matrix3d::Identity() - E) * J.bottomRows<3>();
+    return by;
+  }
+  const Vector3d normal = ground.linear().col(2);
+  const auto points = corners(model, static_cast<Side>(block.item), sole);
+  for (int i = 0; i < block.rows; ++i) {
+    const Vector3d arm = points[i] - sole.translation();
+    by.row(i) =
+        normal.transpose() * J.topRows<3>() + arm.cross(normal).transpose() * J.bottomRows<3>();
+  }
+  return by;
+}
+
+MatrixXd clearance_derivatives(const RobotModel& model, const ConstraintBlock& block,
+                               const Instant& instant, const InstantState& state) {
+  const CollisionModel::Pair& pair = instant.collisions->pairs()[block.item];
+  const Closest c = instant.collisions->closest(pair, *state.data);
+  const MatrixXd a = body_jacobian(model, *state.data, pair.a, c.on_a);
+  const MatrixXd b = body_jacobian(model, *state.data, pair.b, c.on_b);
+  MatrixXd by = c.normal.transpose() * (b.topRows<3>() - a.topRows<3>());
+  by.middleCols<3>(3) = (by.middleCols<3>(3) * state.motion.tangent).eval();
+  return by;
+}
+
+std::array<MatrixXd, 3> ground_derivatives(const ConstraintBlock& block, const Instant& instant,
+                                           const InstantState& state) {
+  const Matrix3d R = instant.plane.frame.linear().transpose();
+  const Vector3d base = state.motion.state.base.position;
+  const Vector3d arm = base - instant.plane.frame.translation();
+  Eigen::Matrix<double, 6, 6> P = Eigen::Matrix<double, 6, 6>::Zero();
+  P.topLeftCorner<3, 3>() = P.bottomRightCorner<3, 3>() = R;
+  P.bottomLeftCorner<3, 3>() = R * skew(arm);
+  const MatrixXd A = ground_gradient(block, plane_wrench(instant.plane, base, state.wrench)) * P;
+  std::array<MatrixXd, 3> by;
+  for (int i = 0; i < 3; ++i) by[i] = A * state.wrench_by[i];
+  by[0].leftCols<3>() -= A.rightCols<3>() * skew(Vector3d(state.wrench.head<3>()));
+  return by;
+}
+
+void add_path(const RobotModel& model, int body, std::vector<int>& columns) {
+  for (int i = body; i > 0; i = model.bodies()[i].parent)
+    columns.push_back(6 + model.bodies()[i].dof);
+}
+
+}  // namespace
+
+std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block,
+                               const Instant& instant) {
+  if (of_joint(block.group)) return {6 + block.item};
   std::vector<int> columns;
-  if (block.group == ConstraintGroup::position || block.group == ConstraintGroup::speed)
-    return {6 + block.item};
+  if (block.group == ConstraintGroup::clearance) {
+    const CollisionModel::Pair& pair = instant.collisions->pairs()[block.item];
+    add_path(model, pair.a, columns);
+    add_path(model, pair.b, columns);
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    return columns;
+  }
   for (int i = 0; i < 6; ++i) columns.push_back(i);
-  if (of_ground(block.group)) {
-    for (int i = 0; i < model.dof_count(); ++i) columns.push_back(6 + i);
-  } else {
+  if (of_foot(block.group)) {
     for (int i : model.leg(static_cast<Side>(block.item))) columns.push_back(6 + i);
     std::sort(columns.begin(), columns.end());
+  } else {
+    for (int i = 0; i < model.dof_count(); ++i) columns.push_back(6 + i);
   }
   return columns;
 }
 
 VectorXd block_values(const RobotModel& model, const ConstraintBlock& block, const Instant& instant,
                       const InstantState& state) {
-  const RobotState& robot = state.motion.state;
+  const CorrectedMotion& m = state.motion;
   if (of_ground(block.group))
-    return ground_values(block, plane_wrench(instant.plane, robot.base.position, state.wrench));
-  if (block.group == ConstraintGroup::position)
-    return VectorXd::Constant(1, robot.theta[block.item]);
-  if (block.group == ConstraintGroup::speed)
-    return VectorXd::Constant(1, block.scale * robot.dtheta[block.item]);
-  const Isometry3d &sole = state.soles[block.item], &ground = instant.ground[block.item];
-  VectorXd values(block.rows);
-  if (block.group == ConstraintGroup::stance) {
-    const Matrix3d E = rotation_error(sole, ground);
-    values << sole.translation() - ground.translation(),
-        0.5 * Vector3d(E(2, 1) - E(1, 2), E(0, 2) - E(2, 0), E(1, 0) - E(0, 1));
-  } else {
-    const Vector3d normal = ground.linear().col(2);
-    const auto points = corners(model, static_cast<Side>(block.item), sole);
-    for (int i = 0; i < block.rows; ++i) values[i] = normal.dot(points[i] - ground.translation());
+    return ground_values(block, plane_wrench(instant.plane, m.state.base.position, state.wrench));
+  if (of_foot(block.group)) return foot_values(model, block, instant, state);
+  switch (block.group) {
+    case ConstraintGroup::position:
+      return VectorXd::Constant(1, m.state.theta[block.item]);
+    case ConstraintGroup::speed:
+      return VectorXd::Constant(1, block.scale * m.state.dtheta[block.item]);
+    case ConstraintGroup::acceleration:
+      return VectorXd::Constant(1, block.scale * m.acceleration[6 + block.item]);
+    case ConstraintGroup::torque:
+      return VectorXd::Constant(1, block.scale * state.torque[block.item]);
+    case ConstraintGroup::clearance:
+      return VectorXd::Constant(
+          1, instant.collisions->clearance(instant.collisions->pairs()[block.item], *state.data,
+                                           std::numeric_limits<double>::infinity()));
+    default:
+      return state.data->cog - instant.cog;
   }
-  return values;
 }
 
 std::array<MatrixXd, 3> block_derivatives(const RobotModel& model, const ConstraintBlock& block,
                                           const Instant& instant, const InstantState& state) {
   std::array<MatrixXd, 3> by;
-  const int n = model.velocity_count();
-  if (of_ground(block.group)) {
-    const Matrix3d R = instant.plane.frame.linear().transpose();
-    const Vector3d arm = state.motion.state.base.position - instant.plane.frame.translation();
-    Eigen::Matrix<double, 6, 6> P = Eigen::Matrix<double, 6, 6>::Zero();
-    P.topLeftCorner<3, 3>() = P.bottomRightCorner<3, 3>() = R;
-    P.bottomLeftCorner<3, 3>() = R * skew(arm);
-    const Vector6d w = plane_wrench(instant.plane, state.motion.state.base.position, state.wrench);
-    const MatrixXd A = ground_gradient(block, w) * P;
-    for (int i = 0; i < 3; ++i) by[i] = A * state.wrench_by[i];
-    const Vector3d f = state.wrench.head<3>();
-    by[0].leftCols<3>() -= A.rightCols<3>() * skew(f);
-    return by;
-  }
-  if (block.group == ConstraintGroup::position) {
-    by[0] = MatrixXd::Zero(1, n);
-    by[0](0, 6 + block.item) = 1;
-    return by;
-  }
-  if (block.group == ConstraintGroup::speed) {
-    by[1] = MatrixXd::Zero(1, n);
-    by[1](0, 6 + block.item) = block.scale;
-    return by;
-  }
-  const Isometry3d &sole = state.soles[block.item], &ground = instant.ground[block.item];
-  const MatrixXd& J = state.sole_by[block.item];
-  by[0].resize(block.rows, n);
-  if (block.group == ConstraintGroup::stance) {
-    const Matrix3d E = rotation_error(sole, ground);
-    by[0].topRows<3>() = J.topRows<3>();
-    by[0].bottomRows<3>() = 0.5 * (E.trace() * Matrix3d::Identity() - E) * J.bottomRows<3>();
+  if (of_ground(block.group)) return ground_derivatives(block, instant, state);
+  if (of_foot(block.group)) {
+    by[0] = foot_derivatives(model, block, instant, state);
+  } else if (of_joint(block.group)) {
+    MatrixXd& own = by[order_of(block.group)];
+    own = MatrixXd::Zero(1, model.velocity_count());
+    own(0, 6 + block.item) = block.scale;
+  } else if (block.group == ConstraintGroup::torque) {
+    for (int k = 0; k < 3; ++k) by[k] = block.scale * state.torque_by[k].row(block.item);
+  } else if (block.group == ConstraintGroup::clearance) {
+    by[0] = clearance_derivatives(model, block, instant, state);
   } else {
-    const Vector3d normal = ground.linear().col(2);
-    const auto points = corners(model, static_cast<Side>(block.item), sole);
-    for (int i = 0; i < block.rows; ++i) {
-      const Vector3d arm = points[i] - sole.translation();
-      by[0].row(i) =
-          normal.transpose() * J.topRows<3>() + arm.cross(normal).transpose() * J.bottomRows<3>();
-    }
+    by[0] = state.cog_by;
   }
   return by;
 }

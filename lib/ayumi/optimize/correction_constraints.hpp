@@ -7,27 +7,37 @@
 #include <vector>
 
 #include "ayumi/check/residuals.hpp"
+#include "ayumi/check/self_collision.hpp"
 #include "ayumi/optimize/corrected_motion.hpp"
 #include "ayumi/pattern/correction.hpp"
 
 namespace ayumi {
 
 /// support: f_n (ZMP inside each edge - margin) / (m g) [m]; unilateral: f_n / (m g);
-/// yaw: (lever f_n -+ yaw moment about the ZMP) / (m g) [m], the lever held as it is in the motion;
 /// friction: (mu f_n - f_t) / (m g) on the sides of a pyramid inside the cone, linear where the
 /// cone itself would ask for its curvature; flight: ground force / (m g) and moment / (m g) about
-/// the planned COG; stance: sole from its place, position [m] and rotation [rad]; swing: corner
-/// heights [m]; position: joint angle [rad]; speed: joint speed / limit.
+/// the planned COG; zmp: f_n (ZMP - commanded ZMP) / (m g) [m]; yaw: (lever f_n -+ yaw moment about
+/// the ZMP) / (m g) [m], the lever held as it is in the motion; stance: sole from its place,
+/// position [m] and rotation [rad]; path: the same from where the motion has it; swing: corner
+/// heights [m]; position: joint angle [rad]; speed: joint speed / limit; acceleration: joint
+/// acceleration / limit; torque: motor torque / limit; clearance: between two bodies [m]; cog: from
+/// the commanded COG [m].
 enum class ConstraintGroup {
   support,
   unilateral,
   friction,
   flight,
+  zmp,
   yaw,
   stance,
+  path,
   swing,
   position,
-  speed
+  speed,
+  acceleration,
+  torque,
+  clearance,
+  cog
 };
 const char* name_of(ConstraintGroup group);
 
@@ -38,15 +48,19 @@ struct Instant {
   SupportPlane plane;                       ///< of the planned contacts
   std::array<bool, 2> contact = {};         ///< by Side
   std::array<Eigen::Isometry3d, 2> ground;  ///< by Side: where the foot stands, or the ground below
+  std::array<Eigen::Isometry3d, 2> path;    ///< by Side: where the motion has it
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< commanded [m]
+  bool torques = false;                           ///< some block asks for them
+  const CollisionModel* collisions = nullptr;     ///< of clearance blocks
 };
 
 /// Consecutive rows of the constraint vector that belong together.
 struct ConstraintBlock {
   ConstraintGroup group = ConstraintGroup::support;
   int instant = 0;        ///< index of its Instant
-  int item = 0;           ///< foot (by Side) or dof
+  int item = 0;           ///< foot (by Side), dof, or pair of bodies
   int row = 0, rows = 0;  ///< first and number
-  double scale = 1;       ///< of yaw rows: 1 / (m g); of speed rows: 1 / limit
+  double scale = 1;       ///< of yaw rows: 1 / (m g); of joint rows: 1 / limit
   double factor = 0;      ///< of yaw rows: friction times lever [m]
   Eigen::Matrix<double, Eigen::Dynamic, 6> wrench_rows;  ///< of linear ground groups
 };
@@ -58,13 +72,19 @@ struct InstantState {
   std::array<Eigen::MatrixXd, 3> wrench_by;  ///< 6 x (6+dof) by value, rate, acceleration
   std::array<Eigen::Isometry3d, 2> soles;    ///< by Side
   std::array<Eigen::MatrixXd, 2> sole_by;    ///< 6 x (6+dof) by value
+  Eigen::MatrixXd cog_by;                    ///< 3 x (6+dof) by value
+  Eigen::VectorXd torque;                    ///< where the instant asks for it [dof]
+  std::array<Eigen::MatrixXd, 3> torque_by;  ///< dof x (6+dof)
+  /// The workspace it was computed in; holds until the next instant_state().
+  RobotData* data = nullptr;
 };
 InstantState instant_state(const RobotModel& model, const CommandSample& sample,
                            const Instant& instant, const Eigen::MatrixXd& coefficients,
                            bool derivatives, RobotData& data);
 
 /// Columns of the correction that a block depends on.
-std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block);
+std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block,
+                               const Instant& instant);
 
 Eigen::VectorXd block_values(const RobotModel& model, const ConstraintBlock& block,
                              const Instant& instant, const InstantState& state);

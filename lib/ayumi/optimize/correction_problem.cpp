@@ -8,7 +8,6 @@
 #include <set>
 
 #include "ayumi/base/version.hpp"
-#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 
 namespace ayumi {
@@ -25,23 +24,12 @@ constexpr double kPositionWeight =
 constexpr double kRotationWeight = 4.0;  // of base rotation
 constexpr double kSmoothTime = 0.1;      // tau [s]
 constexpr double kObjectiveScale = 100.0;
-constexpr int kConeSides = 16;  // of the pyramid inside the friction cone
 
 constexpr double kValueGram[] = {2416.0 / 5040, 1191.0 / 5040, 120.0 / 5040, 1.0 / 5040};
 constexpr double kCurvatureGram[] = {8.0 / 3, -1.5, 0, 1.0 / 6};
 
 MatrixXd coefficients(const Eigen::MatrixXi& index, const VectorXd& x) {
   return index.unaryExpr([&x](int variable) { return variable < 0 ? 0.0 : x[variable]; });
-}
-
-ConstraintBlock block_of(ConstraintGroup group, int instant, int item, int rows, double scale = 1) {
-  ConstraintBlock block;
-  block.group = group;
-  block.instant = instant;
-  block.item = item;
-  block.rows = rows;
-  block.scale = scale;
-  return block;
 }
 
 }  // namespace
@@ -62,16 +50,25 @@ CorrectionProblem::CorrectionProblem(const RobotModel& model, const CommandSerie
   place_objective();
 }
 
+bool CorrectionProblem::inside_a_window(double begin, double end) const {
+  return std::any_of(spec_.windows.begin(), spec_.windows.end(),
+                     [&](const auto& w) { return begin >= w.first && end <= w.second; });
+}
+
+bool CorrectionProblem::locked_within(double begin, double end) const {
+  constexpr double kRounding = 1e-9;  // [s]
+  return std::any_of(spec_.locked_windows.begin(), spec_.locked_windows.end(), [&](const auto& w) {
+    return begin < w.second + kRounding && end > w.first - kRounding;
+  });
+}
+
 void CorrectionProblem::place_variables() {
   const int rows = static_cast<int>(zero_.coefficients.rows());
   const int columns = static_cast<int>(zero_.coefficients.cols());
   index_.setConstant(rows, columns, -1);
   for (int i = 3; i < rows - 3; ++i) {
     const double begin = (i - 3) * zero_.spacing, end = (i + 1) * zero_.spacing;
-    const bool free = std::any_of(spec_.windows.begin(), spec_.windows.end(), [&](const auto& w) {
-      return begin >= w.first && end <= w.second;
-    });
-    if (!free) continue;
+    if (!inside_a_window(begin, end) || locked_within(begin, end)) continue;
     for (int j = 0; j < columns; ++j) {
       if (j >= 6 && !spec_.locked.empty() && spec_.locked[j - 6]) continue;
       index_(i, j) = variable_count_++;
@@ -84,10 +81,9 @@ void CorrectionProblem::place_variables() {
 // What is wrong at an end has to be moved there too: one variable for the three control points of
 // that end, so that the motion still begins or ends as fast as it did.
 void CorrectionProblem::place_end(int first, double time) {
-  const bool wrong = std::any_of(spec_.windows.begin(), spec_.windows.end(), [&](const auto& w) {
-    return time >= w.first && time <= w.second;
-  });
-  if (!wrong || !spec_.free_ends[first == 0 ? 0 : 1]) return;
+  const double reach = (time == 0 ? 1 : -1) * zero_.spacing;  // of the three control points
+  if (!inside_a_window(time, time) || !spec_.free_ends[first == 0 ? 0 : 1]) return;
+  if (locked_within(std::min(time, time + 3 * reach), std::max(time, time + 3 * reach))) return;
   for (int j = 0; j < model_.velocity_count(); ++j)
     if (j < 6 || spec_.locked.empty() || !spec_.locked[j - 6])
       index_.block<3, 1>(first, j).setConstant(variable_count_++);
@@ -134,134 +130,14 @@ void CorrectionProblem::place_instants(const ContactPlan& plan) {
                                              : after.sole;
     }
     instant.plane = support_plane(model_, plan.support(k), instant.ground);
+    RobotData data(model_);
+    const CommandSample& sample = series_.samples[k];
+    update_positions(model_, sample.state, data);
+    instant.path = {sole_pose(model_, data, Side::left), sole_pose(model_, data, Side::right)};
+    instant.cog = sample.cog;
+    instant.collisions = spec_.collisions;
     if (instant.plane.empty()) instant.plane.frame.translation() = series_.samples[k].cog;
     instants_.push_back(std::move(instant));
-  }
-}
-
-void CorrectionProblem::add_block(ConstraintBlock block, double lower, double upper) {
-  block.row = static_cast<int>(lower_.size());
-  lower_.conservativeResize(block.row + block.rows);
-  upper_.conservativeResize(block.row + block.rows);
-  lower_.tail(block.rows).setConstant(lower);
-  upper_.tail(block.rows).setConstant(upper);
-  columns_.push_back(block_columns(model_, block));
-  blocks_.push_back(std::move(block));
-}
-
-void CorrectionProblem::place_constraints() {
-  for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
-    place_ground_blocks(i);
-    place_foot_blocks(i);
-    place_joint_blocks(i);
-  }
-}
-
-// What decides whether a limit is near: the motion, and where it has come to.
-std::array<const CommandSample*, 2> CorrectionProblem::watched(int instant) const {
-  const int k = instants_[instant].sample;
-  const CommandSeries& current = spec_.current ? *spec_.current : series_;
-  return {&series_.samples[k], &current.samples[k]};
-}
-
-void CorrectionProblem::place_ground_blocks(int instant) {
-  const SupportPlane& plane = instants_[instant].plane;
-  const double weight = model_.mass() * kGravity;
-  auto add = [&](ConstraintGroup group, const MatrixXd& rows, double lower, double upper) {
-    ConstraintBlock block = block_of(group, instant, 0, static_cast<int>(rows.rows()));
-    block.wrench_rows = rows / weight;
-    add_block(std::move(block), lower, upper);
-  };
-  if (plane.empty()) {
-    add(ConstraintGroup::flight, MatrixXd::Identity(6, 6), -0.01, 0.01);
-    return;
-  }
-  MatrixXd rows = support_rows(plane);
-  rows.col(2).array() -= spec_.zmp_margin;
-  add(ConstraintGroup::support, rows, 0, kNoBound);
-
-  RobotData data(model_);
-  double least_force = weight, most_grip = 0, most_yaw = 0, lever = 0;
-  for (const CommandSample* sample : watched(instant)) {
-    const Vector6d wrench =
-        inverse_dynamics(model_, sample->state, sample->acceleration, data).head<6>();
-    const GroundUse use =
-        ground_use(plane, plane_wrench(plane, sample->state.base.position, wrench), 0.02 * weight);
-    least_force = std::min(least_force, use.normal_force);
-    if (!use.has_zmp) continue;
-    const double grip = spec_.friction * use.normal_force;
-    most_grip = std::max(most_grip, use.tangential_force / grip);
-    const double arm = spec_.friction * yaw_lever(plane.polygon, use.zmp);
-    if (arm > 0) most_yaw = std::max(most_yaw, std::abs(use.yaw_moment) / (arm * use.normal_force));
-    if (arm > 0) lever = arm;  // the last one told: that of the current motion
-  }
-  if (least_force < 0.5 * weight) {
-    rows.setZero(1, 6);
-    rows(0, 2) = 1;
-    add(ConstraintGroup::unilateral, rows, spec_.force_share, kNoBound);
-  }
-  if (most_grip > spec_.watched_share) {
-    rows.setZero(kConeSides, 6);
-    for (int i = 0; i < kConeSides; ++i) {
-      rows(i, 0) = -std::cos(2 * i * M_PI / kConeSides);
-      rows(i, 1) = -std::sin(2 * i * M_PI / kConeSides);
-      rows(i, 2) = spec_.share * spec_.friction * std::cos(M_PI / kConeSides);
-    }
-    add(ConstraintGroup::friction, rows, 0, kNoBound);
-  }
-  if (lever > 0 && most_yaw > spec_.watched_share) {
-    ConstraintBlock block = block_of(ConstraintGroup::yaw, instant, 0, 2, 1 / weight);
-    block.factor = spec_.share * lever;
-    add_block(std::move(block), 0, kNoBound);
-  }
-}
-
-void CorrectionProblem::place_foot_blocks(int instant) {
-  constexpr double kNearGround = 0.004;  // a swinging sole higher than this is not watched [m]
-  RobotData data(model_);
-  for (Side side : {Side::left, Side::right}) {
-    const int s = static_cast<int>(side);
-    if (instants_[instant].contact[s]) {
-      add_block(block_of(ConstraintGroup::stance, instant, s, 6), -spec_.sole_position,
-                spec_.sole_position);
-      lower_.tail<3>().setConstant(-spec_.sole_angle);
-      upper_.tail<3>().setConstant(spec_.sole_angle);
-      continue;
-    }
-    double lowest = kNearGround;
-    for (const CommandSample* sample : watched(instant)) {
-      update_positions(model_, sample->state, data);
-      const SoleError error = sole_error(model_.sole(side), sole_pose(model_, data, side),
-                                         instants_[instant].ground[s]);
-      lowest = std::min(lowest, error.lowest);
-    }
-    const int corners = static_cast<int>(model_.sole(side).polygon.size());
-    if (lowest < kNearGround)
-      add_block(block_of(ConstraintGroup::swing, instant, s, corners), -spec_.sole_position,
-                kNoBound);
-  }
-}
-
-void CorrectionProblem::place_joint_blocks(int instant) {
-  const ActuatorLimits& limits = model_.limits(spec_.profile);
-  const double soft = model_.description().soft_limit_margin + spec_.joint_margin;
-  for (int i = 0; i < model_.dof_count(); ++i) {
-    if (!spec_.locked.empty() && spec_.locked[i]) continue;
-    const Dof& dof = model_.dofs()[i];
-    const double lower = dof.lower + soft, upper = dof.upper - soft, most = limits.speed[i];
-    double position = 0, speed = 0;
-    for (const CommandSample* sample : watched(instant)) {
-      const double theta = sample->state.theta[i];
-      if (dof.limited)
-        position =
-            std::max(position, std::abs(theta - 0.5 * (lower + upper)) / (0.5 * (upper - lower)));
-      speed = std::max(speed, std::abs(sample->state.dtheta[i]) / most);
-    }
-    if (position > spec_.watched_share)
-      add_block(block_of(ConstraintGroup::position, instant, i, 1), lower, upper);
-    if (speed > spec_.watched_share)
-      add_block(block_of(ConstraintGroup::speed, instant, i, 1, 1 / most), -spec_.share,
-                spec_.share);
   }
 }
 
@@ -285,6 +161,8 @@ void CorrectionProblem::place_objective() {
   weight.tail(model_.dof_count()) = series_.joint_weight.size() == model_.dof_count()
                                         ? series_.joint_weight
                                         : model_.joint_weight();
+  if (spec_.weights.size() == model_.dof_count())
+    weight.tail(model_.dof_count()) = weight.tail(model_.dof_count()).cwiseProduct(spec_.weights);
   const double h = zero_.spacing, smooth = std::pow(kSmoothTime, 4);
   std::vector<double> values;
   for (int point = 0; point < index_.rows(); ++point)

@@ -15,19 +15,28 @@
 #include <vector>
 
 #include "ayumi/check/contacts.hpp"
+#include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/optimize/correction_constraints.hpp"
 #include "ayumi/optimize/nlp.hpp"
+#include "ayumi/optimize/repair.hpp"
 
 namespace ayumi {
 
 /// What may move and what must hold.
 struct CorrectionSpec {
-  double spacing = 0.05;                           ///< of the knots [s]
-  int instants_per_knot = 2;                       ///< of the constraints
-  std::vector<std::pair<double, double>> windows;  ///< where control points are free [s]
-  std::array<bool, 2> free_ends = {};              ///< the first, the last posture may move
-  std::vector<bool> locked;                        ///< by dof; empty: none
+  double spacing = 0.05;                                  ///< of the knots [s]
+  int instants_per_knot = 2;                              ///< of the constraints
+  std::vector<std::pair<double, double>> windows;         ///< where control points are free [s]
+  std::array<bool, 2> free_ends = {};                     ///< the first, the last posture may move
+  std::vector<bool> locked;                               ///< by dof; empty: none
+  std::vector<std::pair<double, double>> locked_windows;  ///< where nothing may move [s]
+  std::array<bool, 2> locked_feet = {};                   ///< by Side: keep their way
+  Eigen::VectorXd weights;  ///< factors on those of the joints [dof]; empty: 1
+  Trust trust = Trust::posture;
+  const CollisionModel* collisions = nullptr;  ///< null: clearances are not watched
+  std::vector<int> near_pairs;                 ///< of bodies that are watched
   std::string profile;
+  std::array<double, kKindCount> tolerance = tolerances({});  ///< of the check, by Kind
   double friction = 0.8;
   double zmp_margin = 0.002;    ///< inside the support [m]
   double joint_margin = 1e-4;   ///< inside the position limits [rad]
@@ -35,6 +44,7 @@ struct CorrectionSpec {
   double force_share = 0.1;     ///< least normal force in contact over the weight
   double sole_position = 2e-4;  ///< band a supporting sole stays in [m]
   double sole_angle = 2e-3;     ///< [rad]
+  double clearance = 2.2e-3;    ///< between bodies that the motion does not bring nearer [m]
   /// A limit is constrained where the motion, or `current`, uses more than this share of it; the
   /// rest is looked at by the check of the result.
   double watched_share = 0.7;
@@ -71,11 +81,17 @@ class CorrectionProblem {
   void place_ground_blocks(int instant);
   void place_foot_blocks(int instant);
   void place_joint_blocks(int instant);
+  void place_torque_blocks(int instant);
+  void place_clearance_blocks(int instant);
+  void place_command_blocks(int instant);
+  double tolerance(Kind kind) const { return spec_.tolerance[static_cast<int>(kind)]; }
   std::array<const CommandSample*, 2> watched(int instant) const;
   void place_jacobian();
   void place_objective();
   void add_block(ConstraintBlock block, double lower, double upper);
   bool free_at(const SplineWeights& weights) const;
+  bool inside_a_window(double begin, double end) const;
+  bool locked_within(double begin, double end) const;
   void jacobian_values(const Eigen::VectorXd& x, Eigen::VectorXd& values) const;
 
   const RobotModel& model_;

@@ -1,6 +1,7 @@
 #include "ayumi/optimize/nlp.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <coin/IpIpoptApplication.hpp>
 #include <coin/IpTNLP.hpp>
 #include <exception>
@@ -14,6 +15,12 @@ using Ipopt::Index;
 using Ipopt::Number;
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 VectorXd vector(const Number* values, Index n) { return Eigen::Map<const VectorXd>(values, n); }
 
@@ -67,6 +74,7 @@ class Adapter : public Ipopt::TNLP {
       VectorXd g = VectorXd::Zero(m);
       nlp_.constraints(vector(x, n), g);
       std::copy_n(g.data(), m, values);
+      note(vector(x, n), g);
     });
   }
 
@@ -90,14 +98,15 @@ class Adapter : public Ipopt::TNLP {
     });
   }
 
-  bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number, Number infeasibility,
-                             Number, Number, Number, Number, Number, Number, Index,
-                             const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+  bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number objective,
+                             Number infeasibility, Number, Number, Number, Number, Number, Number,
+                             Index, const Ipopt::IpoptData*,
+                             Ipopt::IpoptCalculatedQuantities*) override {
     solution.iterations = iteration;
     if (!progress_) return true;
     return progress_({stage_, static_cast<double>(iteration) / options_.max_iterations,
                       "iteration " + std::to_string(iteration) + ", violation " +
-                          text::brief(infeasibility, 2)});
+                          text::brief(infeasibility, 2) + ", change " + text::brief(objective, 4)});
   }
 
   void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*,
@@ -121,11 +130,26 @@ class Adapter : public Ipopt::TNLP {
     return true;
   }
 
+  double violation(const VectorXd& g) const {
+    return std::max(
+        {0.0, (nlp_.constraint_lower - g).maxCoeff(), (g - nlp_.constraint_upper).maxCoeff()});
+  }
+
+  void note(const VectorXd& x, const VectorXd& g) {
+    if (!options_.least_violating || g.size() == 0 || !g.allFinite()) return;
+    const double size = violation(g);
+    if (size >= least_) return;
+    least_ = size;
+    *options_.least_violating = x;
+  }
+
   template <class Work>
   bool guarded(Work work) {
     if (thrown) return false;
+    const auto begin = Clock::now();
     try {
       work();
+      solution.function_seconds += seconds_since(begin);
       return true;
     } catch (...) {
       thrown = std::current_exception();
@@ -137,6 +161,7 @@ class Adapter : public Ipopt::TNLP {
   const NlpOptions& options_;
   const Progress& progress_;
   const std::string& stage_;
+  double least_ = kNoBound;  // violation of *options_.least_violating
 };
 
 void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
@@ -178,12 +203,14 @@ NlpSolution solve(const Nlp& nlp, const NlpOptions& options, const Progress& pro
   set_options(*application->Options(), options);
   if (application->Initialize("") != Ipopt::Solve_Succeeded)
     fail(ErrorCode::solver, "Ipopt does not start: is its MUMPS linear solver installed?");
+  const auto begin = Clock::now();
   const Ipopt::ApplicationReturnStatus status =
       application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(adapter)));
   if (adapter->thrown) std::rethrow_exception(adapter->thrown);
   if (status == Ipopt::User_Requested_Stop) throw Interrupted();
   NlpSolution solution = adapter->solution;
   solution.status = status_of(status);
+  solution.solver_seconds = seconds_since(begin) - solution.function_seconds;
   if (solution.x.size() == 0) solution.x = nlp.start;
   return solution;
 }

@@ -47,6 +47,8 @@ struct NlpOptions {
   double tolerance = 1e-6;             ///< of the optimality conditions
   double start_barrier = 1e-3;         ///< smaller from a start that is nearly right
   double constraint_tolerance = 1e-7;  ///< of g, unscaled
+  /// Kept up to date with the point of least violation seen, for work that is stopped.
+  Eigen::VectorXd* least_violating = nullptr;
 };
 
 enum class NlpStatus { solved, infeasible, iteration_limit, failed };
@@ -56,7 +58,8 @@ struct NlpSolution {
   Eigen::VectorXd x;
   int iterations = 0;
   double objective = 0;
-  double violation = 0;  ///< largest of any constraint or bound
+  double violation = 0;                             ///< largest of any constraint or bound
+  double function_seconds = 0, solver_seconds = 0;  ///< in the functions of the Nlp; in the rest
 };
 
 /// Throws Interrupted when `progress` stops the work. `stage` names the work to `progress`.

@@ -8,11 +8,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
+#include <set>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/check/collision_scan.hpp"
 #include "ayumi/optimize/correction_problem.hpp"
+#include "ayumi/optimize/elastic.hpp"
+#include "ayumi/optimize/obstacles.hpp"
 
 namespace ayumi {
 
@@ -22,6 +25,11 @@ const char* name_of(RepairStatus status) {
   constexpr const char* kNames[] = {"already_consistent", "repaired", "infeasible",
                                     "not_converged"};
   return kNames[static_cast<int>(status)];
+}
+
+const char* name_of(Trust trust) {
+  constexpr const char* kNames[] = {"posture", "cog", "zmp"};
+  return kNames[static_cast<int>(trust)];
 }
 
 namespace {
@@ -51,34 +59,18 @@ std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>
   return merged;
 }
 
-std::vector<bool> locked_dofs(const RobotModel& model, const std::vector<std::string>& names) {
-  std::vector<bool> locked(model.dof_count(), false);
-  for (const std::string& name : names) {
-    const int dof = model.find_dof(name);
-    if (dof < 0)
-      fail(ErrorCode::usage, "locked joint '" + name + "': the robot '" + model.name() +
-                                 "' has no such joint" + text::suggestion(name, model.dof_names()));
-    locked[dof] = true;
-  }
-  return locked;
+int find_joint(const RobotModel& model, const std::string& name, const char* use) {
+  const int dof = model.find_dof(name);
+  if (dof < 0)
+    fail(ErrorCode::usage, std::string(use) + " joint '" + name + "': the robot '" + model.name() +
+                               "' has no such joint" + text::suggestion(name, model.dof_names()));
+  return dof;
 }
 
-void note_changes(const RobotModel& model, const CommandSeries& before, RepairResult& result) {
-  RobotData data(model);
-  for (size_t k = 0; k < before.samples.size(); ++k) {
-    const RobotState &a = before.samples[k].state, &b = result.series.samples[k].state;
-    int joint = 0;
-    const double change = (b.theta - a.theta).cwiseAbs().maxCoeff(&joint);
-    if (change > result.max_joint_change) {
-      result.max_joint_change = change;
-      result.where = model.dofs()[joint].name;
-      result.at = before.dt * static_cast<double>(k);
-    }
-    update_positions(model, a, data);
-    const Eigen::Vector3d cog = data.cog;
-    update_positions(model, b, data);
-    result.max_cog_change = std::max(result.max_cog_change, (data.cog - cog).norm());
-  }
+std::vector<bool> locked_dofs(const RobotModel& model, const std::vector<std::string>& names) {
+  std::vector<bool> locked(model.dof_count(), false);
+  for (const std::string& name : names) locked[find_joint(model, name, "locked")] = true;
+  return locked;
 }
 
 // What is written to a file: numbers of nine decimals, and only the control points and joints that
@@ -110,72 +102,39 @@ CorrectionTrack trimmed(const CorrectionTrack& track) {
   return result;
 }
 
-std::string subject(const RobotModel& model, const ConstraintBlock& block) {
-  switch (block.group) {
-    case ConstraintGroup::position:
-      return model.dofs()[block.item].name + " cannot come inside its position limit";
-    case ConstraintGroup::speed:
-      return model.dofs()[block.item].name + " cannot stay below its speed limit";
-    case ConstraintGroup::stance:
-      return std::string("the ") + name_of(static_cast<Side>(block.item)) +
-             " foot cannot stay at its place";
-    case ConstraintGroup::swing:
-      return std::string("the ") + name_of(static_cast<Side>(block.item)) +
-             " foot cannot stay above the ground";
-    case ConstraintGroup::support:
-      return "the ZMP cannot come inside the support";
-    case ConstraintGroup::unilateral:
-      return "the ground would have to pull";
-    case ConstraintGroup::yaw:
-      return "the foot would turn on the ground";
-    case ConstraintGroup::friction:
-      return "the ground does not give enough friction";
-    default:
-      return "the flight cannot be ballistic";
+VectorXd weight_factors(const RobotModel& model, const std::map<std::string, double>& weights) {
+  VectorXd factors = VectorXd::Ones(model.dof_count());
+  for (const auto& [joint, factor] : weights) {
+    const int dof = find_joint(model, joint, "weighted");
+    if (!(factor > 0) || !std::isfinite(factor))
+      fail(ErrorCode::usage, "weight of joint '" + joint + "': " + text::exact(factor) +
+                                 " must be above 0 (lock the joint to keep it still)");
+    factors[dof] = factor;
   }
+  return factors;
 }
 
-// The largest violation of every group and item, worst first. Rows are metres, radians or shares
-// near one, so their sizes can be compared.
-std::vector<std::string> violated(const RobotModel& model, const CorrectionProblem& problem,
-                                  const VectorXd& x, double dt) {
-  struct Worst {
-    double size = 0, at = 0;
-    const ConstraintBlock* block = nullptr;
-  };
-  std::map<std::pair<int, int>, Worst> groups;
-  const VectorXd g = problem.constraints(x);
-  for (const ConstraintBlock& block : problem.blocks()) {
-    Worst& worst = groups[{static_cast<int>(block.group), block.item}];
-    for (int i = block.row; i < block.row + block.rows; ++i) {
-      const double size = std::max(problem.lower()[i] - g[i], g[i] - problem.upper()[i]);
-      if (size > worst.size) worst = {size, problem.instants()[block.instant].sample * dt, &block};
-    }
-  }
-  std::vector<Worst> ranked;
-  for (const auto& entry : groups)
-    if (entry.second.size > 1e-6) ranked.push_back(entry.second);
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Worst& a, const Worst& b) { return a.size > b.size; });
-  std::vector<std::string> reasons;
-  for (const Worst& w : ranked)
-    reasons.push_back(subject(model, *w.block) + " at " + text::fixed(w.at, 3) +
-                      " s: " + text::brief(w.size, 3) + " is missing");
-  return reasons;
-}
-
-std::string in_words(const Finding& f) {
-  return f.kind + " of " + f.where + " at " + text::fixed(f.at, 3) + " s, " + text::brief(f.worst) +
-         " against " + text::brief(f.limit) + " " + f.unit + ": " + f.hint;
+void require_windows(const std::vector<std::pair<double, double>>& windows) {
+  for (const auto& [begin, end] : windows)
+    if (!(begin <= end) || !std::isfinite(begin) || !std::isfinite(end))
+      fail(ErrorCode::usage, "locked window " + text::exact(begin) + ".." + text::exact(end) +
+                                 " s: the end must not come before the beginning");
 }
 
 class Repair {
  public:
   Repair(const RobotModel& model, const CommandSeries& series, const RepairOptions& options,
          const Progress& progress)
-      : model_(model), series_(series), options_(options), progress_(progress) {
+      : model_(model), series_(series), options_(options), progress_(progress), collisions_(model) {
+    require_windows(options.locked_windows);
     spec_.spacing = options.knot_spacing;
     spec_.locked = locked_dofs(model, options.locked_joints);
+    spec_.locked_feet = options.locked_feet;
+    spec_.locked_windows = options.locked_windows;
+    spec_.weights = weight_factors(model, options.joint_weights);
+    spec_.trust = options.trust;
+    spec_.collisions = &collisions_;
+    spec_.tolerance = tolerances(options.check);
     spec_.profile = options.check.profile;
     spec_.friction = options.check.friction;
     spec_.zmp_margin = options.zmp_margin + kMarginBetween;
@@ -183,26 +142,33 @@ class Repair {
 
   RepairResult run() {
     result_.series = series_;
-    result_.check = check_consistency(model_, series_, options_.check);
+    result_.check = result_.before = check_consistency(model_, series_, options_.check);
     if (result_.check.consistent) {
       result_.status = RepairStatus::already_consistent;
       return result_;
     }
     // COG, ZMP and f_z of the full model: what is left is wrong with the motion itself.
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
-    if (locked_out_of_limits()) return result_;
+    if (!locked_out()) solve_rounds();
+    conclude();
+    return result_;
+  }
+
+ private:
+  void solve_rounds() {
     free_ends();
     double pad = kPad;
     int unsolved = 0;
     // Wider windows help once against a program without a solution; twice was never seen to.
     for (int round = 0; round < kRounds && !result_.check.consistent && unsolved < 2; ++round) {
-      const auto now = result_.check.findings;
-      findings_.insert(findings_.end(), now.begin(), now.end());
-      for (const Finding& f : now)
-        if (f.severity == Severity::error && round > 0)
-          spec_.extra.insert(spec_.extra.end(), {f.begin, f.at, f.end});
-      spec_.windows = windows_around(findings_, pad);
-      last_status_ = solve_round(round);
+      choose_windows(round, pad);
+      try {
+        solve_round(round);
+      } catch (const Interrupted&) {
+        if (!options_.keep_partial) throw;
+        keep_partial();
+        return;
+      }
       if (last_status_ != NlpStatus::solved) {
         ++unsolved;
         pad *= 2;
@@ -210,23 +176,49 @@ class Repair {
       spec_.zmp_margin += kRoundMargin;
       spec_.joint_margin += kRoundJointMargin;
       spec_.share -= kRoundShare;
+      if (round + 2 == kRounds) spec_.spacing /= 2;
     }
-    conclude();
-    return result_;
+    if (!result_.check.consistent && last_status_ != NlpStatus::solved) solve_elastic();
   }
 
- private:
-  // A joint that may not move and is beyond its limits: there is nothing to solve.
-  bool locked_out_of_limits() {
+  void choose_windows(int round, double pad) {
+    const auto now = result_.check.findings;
+    findings_.insert(findings_.end(), now.begin(), now.end());
+    for (const Finding& f : now)
+      if (f.severity == Severity::error && round > 0)
+        spec_.extra.insert(spec_.extra.end(), {f.begin, f.at, f.end});
+    spec_.windows = windows_around(findings_, pad);
+    watch_clearances();
+  }
+
+  // Pairs of bodies that come near in the motion or in what it has become.
+  void watch_clearances() {
+    constexpr double kNear = 0.010;  // [m]
+    std::set<int> near(spec_.near_pairs.begin(), spec_.near_pairs.end());
+    scan_clearance(model_, result_.series, collisions_, kNear,
+                   [&](int pair, int, double clearance) {
+                     if (clearance < kNear) near.insert(pair);
+                   });
+    spec_.near_pairs.assign(near.begin(), near.end());
+  }
+
+  // A joint that may not move and is beyond its limits, or something wrong at a time that may not
+  // change: there is nothing to solve.
+  bool locked_out() {
     for (const Finding& f : result_.check.findings) {
-      const int dof = f.severity == Severity::error ? model_.find_dof(f.where) : -1;
-      if (dof < 0 || !spec_.locked[dof]) continue;
-      if (f.kind != "joint_position" && f.kind != "joint_speed" && f.kind != "servo_step") continue;
-      result_.status = RepairStatus::infeasible;
-      result_.reasons.push_back(f.where +
-                                " is locked, and that is where it is wrong: " + in_words(f));
+      if (f.severity != Severity::error || f.kind == "continuous_torque") continue;
+      const int dof = model_.find_dof(f.where);
+      const bool joint =
+          dof >= 0 && spec_.locked[dof] &&
+          (f.kind == "joint_position" || f.kind == "joint_speed" || f.kind == "servo_step");
+      const bool window =
+          std::any_of(spec_.locked_windows.begin(), spec_.locked_windows.end(),
+                      [&](const auto& w) { return f.at >= w.first && f.at <= w.second; });
+      if (!joint && !window) continue;
+      last_status_ = NlpStatus::infeasible;
+      return true;
     }
-    return !result_.reasons.empty();
+    return false;
   }
 
   // The first and last posture move only where they are themselves at fault. What the tick of an
@@ -242,57 +234,114 @@ class Repair {
   void take(const CorrectionTrack& track) {
     result_.correction = trimmed(track);
     result_.series = apply_correction(model_, series_, result_.correction);
-    result_.check = check_consistency(model_, result_.series, options_.check);
+    judge();
   }
 
-  NlpStatus solve_round(int round) {
+  // A trusted quantity is judged as it was commanded, not as the corrected motion has it.
+  void judge() {
+    if (options_.trust == Trust::posture) {
+      result_.check = check_consistency(model_, result_.series, options_.check);
+      return;
+    }
+    CommandSeries judged = result_.series;
+    for (size_t k = 0; k < judged.samples.size(); ++k) {
+      if (options_.trust == Trust::cog) judged.samples[k].cog = series_.samples[k].cog;
+      if (options_.trust == Trust::zmp) judged.samples[k].zmp = series_.samples[k].zmp;
+    }
+    result_.check = check_consistency(model_, judged, options_.check);
+  }
+
+  NlpOptions nlp_options(bool warm) {
+    NlpOptions options;
+    options.max_iterations = options_.max_iterations;
+    options.least_violating = &least_violating_;
+    if (warm) options.start_barrier = kWarmBarrier;
+    return options;
+  }
+
+  void note_work(const Nlp& nlp, const NlpSolution& solution) {
+    RepairWork& work = result_.work;
+    ++work.rounds;
+    work.iterations += solution.iterations;
+    work.variables = static_cast<int>(nlp.start.size());
+    work.constraints = static_cast<int>(nlp.constraint_lower.size());
+    work.jacobian_nonzeros = nlp.jacobian.size();
+    work.hessian_nonzeros = nlp.hessian.size();
+    work.function_seconds += solution.function_seconds;
+    work.solver_seconds += solution.solver_seconds;
+    result_.variables = work.variables;
+    result_.constraints = work.constraints;
+    result_.iterations = work.iterations;
+    result_.constraint_violation = solution.violation;
+  }
+
+  void solve_round(int round) {
     const CommandSeries current = result_.series;
     spec_.current = &current;
-    const CorrectionProblem problem(model_, series_, spec_);
-    NlpOptions nlp_options;
-    nlp_options.max_iterations = options_.max_iterations;
-    if (spec_.start.size() > 0) nlp_options.start_barrier = kWarmBarrier;
-    const NlpSolution solution =
-        solve(problem.nlp(), nlp_options, progress_, "repair round " + std::to_string(round + 1));
-    result_.variables = problem.variable_count();
-    result_.constraints = problem.constraint_count();
-    result_.iterations += solution.iterations;
-    result_.constraint_violation = solution.violation;
-    const CorrectionTrack track = problem.track(solution.x);
+    problem_.emplace(model_, series_, spec_);
+    const Nlp nlp = problem_->nlp();
+    const NlpSolution solution = solve(nlp, nlp_options(spec_.start.size() > 0), progress_,
+                                       "repair round " + std::to_string(round + 1));
+    note_work(nlp, solution);
+    last_status_ = solution.status;
+    const CorrectionTrack track = problem_->track(solution.x);
     take(track);
-    spec_.start = solution.status == NlpStatus::solved ? track.coefficients : Eigen::MatrixXd();
-    reasons_ = violated(model_, problem, solution.x, series_.dt);
-    if (round + 2 == kRounds) spec_.spacing /= 2;
+    spec_.start = last_status_ == NlpStatus::solved ? track.coefficients : Eigen::MatrixXd();
     spec_.current = nullptr;
-    return solution.status;
+  }
+
+  // The motion that violates least, in the order of what is worth most, tells what is in the way.
+  void solve_elastic() {
+    const Nlp hard = problem_->nlp();
+    const Nlp soft = elastic(*problem_, hard, series_.dt);
+    NlpOptions options = nlp_options(false);
+    options.least_violating = nullptr;
+    const NlpSolution solution = solve(soft, options, progress_, "repair, what is in the way");
+    const double violation = result_.constraint_violation;
+    note_work(soft, solution);
+    result_.constraint_violation = violation;
+    take(problem_->track(solution.x.head(problem_->variable_count())));
+  }
+
+  void keep_partial() {
+    result_.partial = true;
+    last_status_ = NlpStatus::iteration_limit;
+    if (problem_ && least_violating_.size() == problem_->variable_count())
+      take(problem_->track(least_violating_));
+    spec_.current = nullptr;
   }
 
   void conclude() {
-    if (result_.check.consistent) {
-      result_.status = RepairStatus::repaired;
-    } else {
-      result_.status = last_status_ == NlpStatus::infeasible ? RepairStatus::infeasible
+    const bool solved = result_.check.consistent && !result_.partial;
+    result_.status = solved                                  ? RepairStatus::repaired
+                     : last_status_ == NlpStatus::infeasible ? RepairStatus::infeasible
                                                              : RepairStatus::not_converged;
-      result_.reasons = reasons_;
-      for (const Finding& f : result_.check.findings)
-        if (f.severity == Severity::error) result_.reasons.push_back(in_words(f));
+    if (!solved && !result_.partial) {
+      result_.obstacles = obstacles(model_, result_.series, result_.check, options_);
+      for (const Obstacle& o : result_.obstacles) result_.reasons.push_back(o.text);
       const size_t count = result_.reasons.size();
       if (count > kReasons) {
         result_.reasons.resize(kReasons);
-        result_.reasons.push_back(std::to_string(count - kReasons) + " more findings like these");
+        result_.reasons.push_back(std::to_string(count - kReasons) + " more like these");
       }
     }
-    note_changes(model_, series_, result_);
+    result_.moved = motion_change(model_, series_, result_.series);
+    result_.max_joint_change = result_.moved.joint.size;
+    result_.max_cog_change = result_.moved.cog.size;
+    result_.at = result_.moved.joint.at;
+    if (!result_.moved.joints.empty()) result_.where = result_.moved.joints.front().joint;
   }
 
   const RobotModel& model_;
   const CommandSeries& series_;
   const RepairOptions& options_;
   const Progress& progress_;
+  const CollisionModel collisions_;
   CorrectionSpec spec_;
+  std::optional<CorrectionProblem> problem_;  // of the last round
+  Eigen::VectorXd least_violating_;
   RepairResult result_;
   std::vector<Finding> findings_;
-  std::vector<std::string> reasons_;
   NlpStatus last_status_ = NlpStatus::failed;
 };
 

@@ -38,6 +38,7 @@ JacobianFactors jacobian_factors(double f2) {
 
 void rotate_base(const Vector3d& r, const Vector3d& dr, const Vector3d& ddr,
                  CommandSample& sample) {
+  if (r.isZero(0) && dr.isZero(0) && ddr.isZero(0)) return;  // to the bit
   const JacobianFactors k = jacobian_factors(r.squaredNorm());
   const double df2 = 2 * r.dot(dr);
   const Vector3d rdr = r.cross(dr), rddr = r.cross(ddr);

@@ -1,0 +1,103 @@
+// What differs between two patterns: joints, COG, ZMP, f_z, contacts, verdicts.
+
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/results_json.hpp"
+#include "motion_words.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string a, b, plot;
+  PatternOptions input;
+};
+
+// First time at which the two have other feet on the ground; negative: never.
+double contacts_differ_at(const CommandSeries& a, const CommandSeries& b) {
+  const size_t count = std::min(a.samples.size(), b.samples.size());
+  for (size_t k = 0; k < count; ++k)
+    if (a.samples[k].support != b.samples[k].support) return a.dt * static_cast<double>(k);
+  return -1;
+}
+
+Json side_json(const std::string& file, const PatternInput& input,
+               const ConsistencyReport& report) {
+  return {{"pattern", file},
+          {"duration_s", input.series.duration()},
+          {"verdict", report.consistent ? "consistent" : "inconsistent"},
+          {"min_zmp_margin_m", report.summary.min_zmp_margin}};
+}
+
+std::string side_words(const std::string& file, const PatternInput& input,
+                       const ConsistencyReport& report) {
+  return file + ": " + (report.consistent ? "consistent" : "inconsistent") + ", " +
+         text::fixed(input.series.duration(), 2) + " s\n";
+}
+
+void diff(Context& context, const Options& options) {
+  if (!options.plot.empty()) refuse_overwriting(context, options.plot);
+  const PatternInput a = load_pattern(context, options.a, options.input);
+  const PatternInput b = load_pattern(context, options.b, options.input);
+  if (a.model.dof_names() != b.model.dof_names())
+    fail(ErrorCode::bad_pattern, options.b + ": is for '" + b.model.name() + "', " + options.a +
+                                     " for '" + a.model.name() +
+                                     "': patterns of different robots cannot be compared");
+  const ConsistencyReport check_a = check_consistency(a.model, a.series, check_options(a));
+  const ConsistencyReport check_b = check_consistency(b.model, b.series, check_options(b));
+  const MotionChange change = motion_change(a.model, a.series, b.series);
+  const double contacts = contacts_differ_at(a.series, b.series);
+  const bool same_length = a.series.samples.size() == b.series.samples.size();
+  const bool same =
+      same_length && contacts < 0 && change.joints.empty() &&
+      std::max({change.cog.size, change.zmp.size, change.fz.size, change.foot.size}) < 1e-9;
+  std::string words = side_words(options.a, a, check_a) + side_words(options.b, b, check_b);
+  if (same)
+    words += "  the same motion and commands\n";
+  else
+    words += motion_words(a.model, change, check_a, check_b);
+  if (!same_length)
+    words += "  compared over the first " + text::fixed(change.compared, 3) + " s\n";
+  if (contacts >= 0) words += "  contacts differ from " + text::fixed(contacts, 3) + " s on\n";
+  if (!options.plot.empty()) {
+    plot_motions(a.model, a.series, b.series, "before and after", options.plot);
+    words += "  drawn in " + options.plot + "\n";
+  }
+  context.print(words);
+  Json json = {{"same", same},
+               {"a", side_json(options.a, a, check_a)},
+               {"b", side_json(options.b, b, check_b)},
+               {"compared_s", change.compared},
+               {"contacts_differ_at_s", contacts >= 0 ? Json(contacts) : Json(nullptr)},
+               {"max",
+                {{"joint_rad", change.joint.size},
+                 {"cog_m", change.cog.size},
+                 {"zmp_m", change.zmp.size},
+                 {"fz_N", change.fz.size},
+                 {"foot_m", change.foot.size}}},
+               {"moved", Json::parse(motion_change_json(change))}};
+  context.print_json(json.dump(2));
+}
+
+}  // namespace
+
+void add_diff(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand("diff", "what moved from one pattern to another");
+  command->footer(
+      "Examples:\n  ayumi diff walk.json repaired.json\n"
+      "  ayumi diff walk.json repaired.json --plot moved.svg --json");
+  static Options options;
+  command->add_option("A", options.a, "pattern file")->required();
+  command->add_option("B", options.b, "pattern file, as it became")->required();
+  command->add_option("--plot", options.plot, "both against time, .svg or .png")->type_name("F");
+  add_pattern_options(*command, options.input);
+  command->callback([&context] { diff(context, options); });
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,33 @@
+#pragma once
+// What repair and run share: steering from words, and the repair of a pattern that may already
+// carry a correction.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/optimize/repair.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+/// Locks in words: a joint ("l_elbow"), a foot ("foot:left"), a keyframe ("keyframe:3", counted
+/// from 0 as in messages) or a time window ("1.2..1.8"). Throws Error(usage) for anything else.
+void read_locks(const std::vector<std::string>& words, const PatternInput& input,
+                RepairOptions& options);
+
+/// repair() of what the pattern samples to; where an older correction is there and does not do, of
+/// what the author wrote without it.
+RepairResult repair_input(const Context& context, const PatternInput& input,
+                          const RepairOptions& options);
+
+/// The motion as a table under the file name `table`, in place of keys and correction.
+Pattern dense_pattern(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
+                      const std::string& table);
+
+/// Writes `text`, a pattern read from `from`, as `to`: byte for byte, with the table and the
+/// posture libraries it names beside it when that is another folder. False, and nothing written,
+/// where they cannot go along: paths that leave the folder, or a robot by a relative path.
+bool write_with_companions(const Context& context, const std::string& from, const std::string& to,
+                           const std::string& text);
+
+}  // namespace ayumi::app

@@ -1,0 +1,269 @@
+// Both look at D = {p - q : p in a, q in b}, whose farthest point along d is a's along d minus b's
+// along -d. Apart: the point of D nearest to the origin, from simplices that come nearer each time;
+// which part of a simplex is nearest is found by trying all of its 15 at most. Meeting: the origin
+// is inside D, and the nearest face of a polytope inside D is pushed outwards until it is D's own.
+// A face the origin is outside of (distance below 0) counts as nearest, so any start will do.
+#include "ayumi/geometry/convex.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kTouch = 1e-10;      // nearer than this they meet [m]
+constexpr double kTolerance = 1e-12;  // relative, of squared distance
+constexpr int kSteps = 200;
+
+double sign(double x) { return x < 0 ? -1 : 1; }
+
+Vector3d farthest(const ConvexCore& core, const Isometry3d& pose, const Vector3d& direction) {
+  const Vector3d d = pose.linear().transpose() * direction;
+  Vector3d p(sign(d.x()) * core.half.x(), sign(d.y()) * core.half.y(), sign(d.z()) * core.half.z());
+  const double radial = std::hypot(d.x(), d.y());
+  if (core.disc > 0 && radial > 0) {
+    p.x() += core.disc * d.x() / radial;
+    p.y() += core.disc * d.y() / radial;
+  }
+  return pose * p;
+}
+
+struct Vertex {
+  Vector3d d, on_a, on_b;  // d = on_a - on_b
+};
+
+struct Sets {
+  const ConvexCore &a, &b;
+  const Isometry3d &pose_a, &pose_b;
+
+  Vertex vertex(const Vector3d& direction) const {
+    Vertex v;
+    v.on_a = farthest(a, pose_a, direction);
+    v.on_b = farthest(b, pose_b, -direction);
+    v.d = v.on_a - v.on_b;
+    return v;
+  }
+};
+
+struct Simplex {
+  std::vector<Vertex> vertices;
+  std::vector<double> weights;
+
+  Vector3d sum(Vector3d Vertex::*part) const {
+    Vector3d s = Vector3d::Zero();
+    for (size_t i = 0; i < vertices.size(); ++i) s += weights[i] * (vertices[i].*part);
+    return s;
+  }
+};
+
+// The point of the plane, line or point through `n` vertices nearest to the origin; false where it
+// is not between them.
+template <int n>
+bool nearest_inside(const std::vector<Vertex>& v, const std::array<int, 4>& pick,
+                    std::vector<double>& weights) {
+  weights.assign(n, 1);
+  if constexpr (n > 1) {
+    Eigen::Matrix<double, 3, n - 1> E;
+    for (int i = 1; i < n; ++i) E.col(i - 1) = v[pick[i]].d - v[pick[0]].d;
+    const Eigen::Matrix<double, n - 1, n - 1> G = E.transpose() * E;
+    double size = 1;
+    for (int i = 0; i < n - 1; ++i) size *= G(i, i);
+    if (!(G.determinant() > 1e-14 * size)) return false;
+    const Eigen::Matrix<double, n - 1, 1> mu = -G.inverse() * (E.transpose() * v[pick[0]].d);
+    weights[0] = 1 - mu.sum();
+    for (int i = 1; i < n; ++i) weights[i] = mu[i - 1];
+  }
+  for (const double w : weights)
+    if (w < 0) return false;
+  return true;
+}
+
+// Keeps of `simplex` the part nearest to the origin.
+void reduce(Simplex& simplex) {
+  const auto count = static_cast<int>(simplex.vertices.size());
+  Simplex best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int mask = 1; mask < (1 << count); ++mask) {
+    std::array<int, 4> pick = {};
+    int n = 0;
+    for (int i = 0; i < count; ++i)
+      if (mask & (1 << i)) pick[n++] = i;
+    Simplex part;
+    const bool inside = n == 1   ? nearest_inside<1>(simplex.vertices, pick, part.weights)
+                        : n == 2 ? nearest_inside<2>(simplex.vertices, pick, part.weights)
+                        : n == 3 ? nearest_inside<3>(simplex.vertices, pick, part.weights)
+                                 : nearest_inside<4>(simplex.vertices, pick, part.weights);
+    if (!inside) continue;
+    for (int i = 0; i < n; ++i) part.vertices.push_back(simplex.vertices[pick[i]]);
+    const double distance = part.sum(&Vertex::d).squaredNorm();
+    if (distance >= least) continue;
+    least = distance;
+    best = std::move(part);
+  }
+  simplex = std::move(best);
+}
+
+struct Face {
+  std::array<int, 3> v = {};
+  Vector3d normal = Vector3d::Zero();  // outwards
+  double distance = std::numeric_limits<double>::infinity();
+  bool dead = false;
+};
+
+class Polytope {
+ public:
+  explicit Polytope(const Sets& sets) : sets_(sets) {}
+
+  bool begin() {
+    add(Vector3d::UnitX());
+    add(-Vector3d::UnitX());
+    const Vector3d along = vertices_[1].d - vertices_[0].d;
+    if (along.norm() < kTouch) return false;
+    const Vector3d across = along.unitOrthogonal();
+    add_farther(across, along.cross(across));
+    if (vertices_.size() < 3) return false;
+    const Vector3d normal = along.cross(vertices_[2].d - vertices_[0].d).normalized();
+    add_farther(normal, normal);
+    if (vertices_.size() < 4) return false;
+    for (const auto& [a, b, c, opposite] :
+         {std::array{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}}) {
+      Face face = made(a, b, c);
+      if (face.normal.dot(vertices_[opposite].d - vertices_[a].d) > 0) face = made(a, c, b);
+      faces_.push_back(face);
+    }
+    return true;
+  }
+
+  ConvexPair expand() {
+    int nearest = 0;
+    for (int step = 0; step < kSteps; ++step) {
+      nearest = nearest_face();
+      const Face face = faces_[nearest];
+      const Vertex w = sets_.vertex(face.normal);
+      if (face.normal.dot(w.d) - face.distance < 1e-10) break;
+      vertices_.push_back(w);
+      if (!replace_visible(static_cast<int>(vertices_.size()) - 1)) break;
+    }
+    return pair_of(faces_[nearest]);
+  }
+
+ private:
+  void add(const Vector3d& direction) { vertices_.push_back(sets_.vertex(direction)); }
+
+  // A vertex off the line or plane of those there are: the farther of both ways along either.
+  void add_farther(const Vector3d& one, const Vector3d& other) {
+    double most = kTouch;
+    Vertex best;
+    for (const Vector3d& d : {one, Vector3d(-one), other, Vector3d(-other)}) {
+      const Vertex v = sets_.vertex(d);
+      const double out = d.normalized().dot(v.d - vertices_[0].d);
+      if (out <= most) continue;
+      most = out;
+      best = v;
+    }
+    if (most > kTouch) vertices_.push_back(best);
+  }
+
+  Face made(int a, int b, int c) const {
+    Face face;
+    face.v = {a, b, c};
+    const Vector3d n = (vertices_[b].d - vertices_[a].d).cross(vertices_[c].d - vertices_[a].d);
+    if (n.norm() < 1e-18) return face;  // a sliver: never nearest
+    face.normal = n.normalized();
+    face.distance = face.normal.dot(vertices_[a].d);
+    return face;
+  }
+
+  int nearest_face() const {
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < static_cast<int>(faces_.size()); ++i) {
+      if (faces_[i].dead || faces_[i].distance >= least) continue;
+      least = faces_[i].distance;
+      best = i;
+    }
+    return best;
+  }
+
+  bool replace_visible(int top) {
+    std::vector<std::pair<int, int>> horizon;
+    for (Face& face : faces_) {
+      if (face.dead || face.normal.dot(vertices_[top].d - vertices_[face.v[0]].d) <= 1e-13)
+        continue;
+      face.dead = true;
+      for (int i = 0; i < 3; ++i) {
+        const std::pair edge(face.v[i], face.v[(i + 1) % 3]);
+        const auto twin =
+            std::find(horizon.begin(), horizon.end(), std::pair(edge.second, edge.first));
+        if (twin != horizon.end())
+          horizon.erase(twin);
+        else
+          horizon.push_back(edge);
+      }
+    }
+    for (const auto& [a, b] : horizon) faces_.push_back(made(a, b, top));
+    return !horizon.empty();
+  }
+
+  ConvexPair pair_of(const Face& face) const {
+    ConvexPair pair;
+    pair.distance = -face.distance;
+    pair.normal = face.normal;
+    Simplex simplex;
+    for (const int v : face.v) simplex.vertices.push_back(vertices_[v]);
+    reduce(simplex);
+    pair.on_a = simplex.sum(&Vertex::on_a);
+    pair.on_b = simplex.sum(&Vertex::on_b);
+    return pair;
+  }
+
+  const Sets& sets_;
+  std::vector<Vertex> vertices_;
+  std::vector<Face> faces_;
+};
+
+}  // namespace
+
+ConvexPair convex_pair(const ConvexCore& a, const Isometry3d& pose_a, const ConvexCore& b,
+                       const Isometry3d& pose_b) {
+  const Sets sets{a, b, pose_a, pose_b};
+  Vector3d nearest = pose_a.translation() - pose_b.translation();
+  Simplex simplex{{sets.vertex(nearest.norm() > 0 ? Vector3d(-nearest) : Vector3d::UnitX())}, {1}};
+  nearest = simplex.vertices[0].d;
+  for (int step = 0; step < kSteps && nearest.norm() > kTouch; ++step) {
+    const Vertex w = sets.vertex(-nearest);
+    const double square = nearest.squaredNorm();
+    if (square - nearest.dot(w.d) <= kTolerance * square) break;
+    Simplex grown = simplex;
+    grown.vertices.push_back(w);
+    reduce(grown);
+    const Vector3d next = grown.sum(&Vertex::d);
+    if (!(next.squaredNorm() < square)) break;  // no nearer for rounding
+    simplex = std::move(grown);
+    nearest = next;
+  }
+  ConvexPair pair;
+  pair.distance = nearest.norm();
+  if (pair.distance > kTouch) {
+    pair.on_a = simplex.sum(&Vertex::on_a);
+    pair.on_b = simplex.sum(&Vertex::on_b);
+    pair.normal = -nearest / pair.distance;
+    return pair;
+  }
+  Polytope polytope(sets);
+  if (polytope.begin()) return polytope.expand();
+  pair.on_a = pair.on_b = simplex.sum(&Vertex::on_a);
+  const Vector3d apart = pose_b.translation() - pose_a.translation();
+  pair.normal = apart.norm() > 0 ? Vector3d(apart.normalized()) : Vector3d(Vector3d::UnitZ());
+  return pair;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,24 @@
+#pragma once
+// Distance and depth of two convex sets: Gilbert-Johnson-Keerthi for how far apart, an expanding
+// polytope for how deep. A set is a box, a segment, a point or an upright cylinder.
+
+#include <Eigen/Geometry>
+
+namespace ayumi {
+
+/// The set of points (x, y, z) + r (cos, sin, 0), |x| <= half.x and so on, r up to `disc` [m].
+struct ConvexCore {
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();
+  double disc = 0;
+};
+
+/// Nearest points, or those that have the depth when the sets meet.
+struct ConvexPair {
+  double distance = 0;         ///< minus the depth when they meet [m]
+  Eigen::Vector3d on_a, on_b;  ///< world [m]
+  Eigen::Vector3d normal;      ///< unit, along which b leaves a
+};
+ConvexPair convex_pair(const ConvexCore& a, const Eigen::Isometry3d& pose_a, const ConvexCore& b,
+                       const Eigen::Isometry3d& pose_b);
+
+}  // namespace ayumi

@@ -1,0 +1,240 @@
+// What must hold at every instant: a row for every limit that the motion, or where it has come to,
+// is near; the check of the result looks at the rest.
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/optimize/correction_problem.hpp"
+#include "ayumi/optimize/motor_torque.hpp"
+
+namespace ayumi {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int kConeSides = 16;  // of the pyramid inside the friction cone
+
+ConstraintBlock block_of(ConstraintGroup group, int instant, int item, int rows, double scale = 1) {
+  ConstraintBlock block;
+  block.group = group;
+  block.instant = instant;
+  block.item = item;
+  block.rows = rows;
+  block.scale = scale;
+  return block;
+}
+
+}  // namespace
+
+void CorrectionProblem::add_block(ConstraintBlock block, double lower, double upper) {
+  block.row = static_cast<int>(lower_.size());
+  lower_.conservativeResize(block.row + block.rows);
+  upper_.conservativeResize(block.row + block.rows);
+  lower_.tail(block.rows).setConstant(lower);
+  upper_.tail(block.rows).setConstant(upper);
+  columns_.push_back(block_columns(model_, block, instants_[block.instant]));
+  blocks_.push_back(std::move(block));
+}
+
+void CorrectionProblem::place_constraints() {
+  for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
+    place_ground_blocks(i);
+    place_foot_blocks(i);
+    place_joint_blocks(i);
+    place_torque_blocks(i);
+    place_clearance_blocks(i);
+    place_command_blocks(i);
+  }
+}
+
+// What decides whether a limit is near: the motion, and where it has come to.
+std::array<const CommandSample*, 2> CorrectionProblem::watched(int instant) const {
+  const int k = instants_[instant].sample;
+  const CommandSeries& current = spec_.current ? *spec_.current : series_;
+  return {&series_.samples[k], &current.samples[k]};
+}
+
+void CorrectionProblem::place_ground_blocks(int instant) {
+  const SupportPlane& plane = instants_[instant].plane;
+  const double weight = model_.mass() * kGravity;
+  auto add = [&](ConstraintGroup group, const MatrixXd& rows, double lower, double upper) {
+    ConstraintBlock block = block_of(group, instant, 0, static_cast<int>(rows.rows()));
+    block.wrench_rows = rows / weight;
+    add_block(std::move(block), lower, upper);
+  };
+  if (plane.empty()) {
+    // Half of what the check allows, in each of three axes.
+    const double share = 0.5 / std::sqrt(3.0);
+    add(ConstraintGroup::flight, MatrixXd::Identity(6, 6), 0, 0);
+    const double force = share * tolerance(Kind::ballistic) / kGravity;
+    const double moment = share * tolerance(Kind::angular_momentum) / weight;
+    upper_.tail<6>() << force, force, force, moment, moment, moment;
+    lower_.tail<6>() = -upper_.tail<6>();
+    return;
+  }
+  MatrixXd rows = support_rows(plane);
+  rows.col(2).array() -= spec_.zmp_margin;
+  add(ConstraintGroup::support, rows, 0, kNoBound);
+
+  RobotData data(model_);
+  double least_force = weight, most_grip = 0, most_yaw = 0, lever = 0;
+  for (const CommandSample* sample : watched(instant)) {
+    const Vector6d wrench =
+        inverse_dynamics(model_, sample->state, sample->acceleration, data).head<6>();
+    const GroundUse use =
+        ground_use(plane, plane_wrench(plane, sample->state.base.position, wrench), 0.02 * weight);
+    least_force = std::min(least_force, use.normal_force);
+    if (!use.has_zmp) continue;
+    const double grip = spec_.friction * use.normal_force;
+    most_grip = std::max(most_grip, use.tangential_force / grip);
+    const double arm = spec_.friction * yaw_lever(plane.polygon, use.zmp);
+    if (arm > 0) most_yaw = std::max(most_yaw, std::abs(use.yaw_moment) / (arm * use.normal_force));
+    if (arm > 0) lever = arm;  // the last one told: that of the current motion
+  }
+  if (least_force < 0.5 * weight) {
+    rows.setZero(1, 6);
+    rows(0, 2) = 1;
+    add(ConstraintGroup::unilateral, rows, spec_.force_share, kNoBound);
+  }
+  if (most_grip > spec_.watched_share * tolerance(Kind::friction)) {
+    const double most_used = spec_.share * tolerance(Kind::friction) * spec_.friction;
+    rows.setZero(kConeSides, 6);
+    for (int i = 0; i < kConeSides; ++i) {
+      rows(i, 0) = -std::cos(2 * i * M_PI / kConeSides);
+      rows(i, 1) = -std::sin(2 * i * M_PI / kConeSides);
+      rows(i, 2) = most_used * std::cos(M_PI / kConeSides);
+    }
+    add(ConstraintGroup::friction, rows, 0, kNoBound);
+  }
+  if (lever > 0 && most_yaw > spec_.watched_share * tolerance(Kind::yaw_moment)) {
+    ConstraintBlock block = block_of(ConstraintGroup::yaw, instant, 0, 2, 1 / weight);
+    block.factor = spec_.share * tolerance(Kind::yaw_moment) * lever;
+    add_block(std::move(block), 0, kNoBound);
+  }
+}
+
+void CorrectionProblem::place_foot_blocks(int instant) {
+  constexpr double kNearGround = 0.004;  // a swinging sole higher than this is not watched [m]
+  RobotData data(model_);
+  for (Side side : {Side::left, Side::right}) {
+    const int s = static_cast<int>(side);
+    if (instants_[instant].contact[s]) {
+      const double slack =
+          std::min({spec_.sole_position, 0.2 * tolerance(Kind::foot_slip),
+                    0.2 * tolerance(Kind::foot_penetration), 0.2 * tolerance(Kind::foot_float)});
+      add_block(block_of(ConstraintGroup::stance, instant, s, 6), -slack, slack);
+      lower_.tail<3>().setConstant(-spec_.sole_angle);
+      upper_.tail<3>().setConstant(spec_.sole_angle);
+    }
+    if (spec_.locked_feet[s]) {
+      constexpr double kSameWay = 1e-5;  // [m], [rad]
+      add_block(block_of(ConstraintGroup::path, instant, s, 6), -kSameWay, kSameWay);
+    }
+    if (instants_[instant].contact[s] || spec_.locked_feet[s]) continue;
+    double lowest = kNearGround;
+    for (const CommandSample* sample : watched(instant)) {
+      update_positions(model_, sample->state, data);
+      const SoleError error = sole_error(model_.sole(side), sole_pose(model_, data, side),
+                                         instants_[instant].ground[s]);
+      lowest = std::min(lowest, error.lowest);
+    }
+    const int corners = static_cast<int>(model_.sole(side).polygon.size());
+    if (lowest < kNearGround)
+      add_block(block_of(ConstraintGroup::swing, instant, s, corners), -spec_.sole_position,
+                kNoBound);
+  }
+}
+
+void CorrectionProblem::place_joint_blocks(int instant) {
+  const ActuatorLimits& limits = model_.limits(spec_.profile);
+  const double soft = model_.description().soft_limit_margin + spec_.joint_margin;
+  for (int i = 0; i < model_.dof_count(); ++i) {
+    if (!spec_.locked.empty() && spec_.locked[i]) continue;
+    const Dof& dof = model_.dofs()[i];
+    const double lower = dof.lower + soft, upper = dof.upper - soft;
+    const double fastest = limits.speed[i] * tolerance(Kind::joint_speed);
+    double position = 0, speed = 0, acceleration = 0;
+    for (const CommandSample* sample : watched(instant)) {
+      const double theta = sample->state.theta[i];
+      if (dof.limited)
+        position =
+            std::max(position, std::abs(theta - 0.5 * (lower + upper)) / (0.5 * (upper - lower)));
+      speed = std::max(speed, std::abs(sample->state.dtheta[i]));
+      acceleration = std::max(acceleration, std::abs(sample->acceleration[6 + i]));
+    }
+    if (position > spec_.watched_share)
+      add_block(block_of(ConstraintGroup::position, instant, i, 1), lower, upper);
+    if (speed > spec_.watched_share * fastest)
+      add_block(block_of(ConstraintGroup::speed, instant, i, 1, 1 / fastest), -spec_.share,
+                spec_.share);
+    // No rougher than a motion that is rough already: that is told, but no fault.
+    const double own = std::abs(watched(instant)[0]->acceleration[6 + i]);
+    const double roughest = std::max(tolerance(Kind::joint_acceleration), own);
+    if (acceleration > spec_.watched_share * roughest)
+      add_block(block_of(ConstraintGroup::acceleration, instant, i, 1, 1 / roughest), -1, 1);
+  }
+}
+
+void CorrectionProblem::place_torque_blocks(int instant) {
+  const Eigen::VectorXd most =
+      model_.limits(spec_.profile).peak_torque * tolerance(Kind::joint_torque);
+  RobotData data(model_);
+  Eigen::VectorXd ratio = Eigen::VectorXd::Zero(model_.dof_count());
+  for (const CommandSample* sample : watched(instant)) {
+    InstantState state;
+    state.motion.state = sample->state;
+    state.motion.acceleration = sample->acceleration;
+    const VectorXd force = inverse_dynamics(model_, sample->state, sample->acceleration, data);
+    state.wrench = force.head<6>();
+    fill_motor_torques(model_, instants_[instant], force, nullptr, data, state);
+    ratio = ratio.cwiseMax(state.torque.cwiseQuotient(most).cwiseAbs());
+  }
+  for (int i = 0; i < model_.dof_count(); ++i) {
+    if (ratio[i] <= spec_.watched_share) continue;
+    instants_[instant].torques = true;
+    add_block(block_of(ConstraintGroup::torque, instant, i, 1, 1 / most[i]), -spec_.share,
+              spec_.share);
+  }
+}
+
+// Not nearer than the margin, or than the motion comes by itself without meeting.
+void CorrectionProblem::place_clearance_blocks(int instant) {
+  constexpr double kNear = 0.010;    // [m]
+  constexpr double kTouch = 0.0005;  // [m]
+  RobotData data(model_);
+  for (const int pair : spec_.near_pairs) {
+    std::array<double, 2> clearance;
+    for (int i = 0; i < 2; ++i) {
+      update_positions(model_, watched(instant)[i]->state, data);
+      clearance[i] = spec_.collisions->clearance(spec_.collisions->pairs()[pair], data, kNear);
+    }
+    if (std::min(clearance[0], clearance[1]) >= kNear) continue;
+    const double least =
+        clearance[0] > kTouch ? std::min(spec_.clearance, clearance[0]) : spec_.clearance;
+    add_block(block_of(ConstraintGroup::clearance, instant, pair, 1), least, kNoBound);
+  }
+}
+
+// What is trusted beside the posture.
+void CorrectionProblem::place_command_blocks(int instant) {
+  const Instant& at = instants_[instant];
+  constexpr double kShare = 0.25;  // of what the check allows
+  if (spec_.trust == Trust::cog)
+    add_block(block_of(ConstraintGroup::cog, instant, 0, 3),
+              -kShare * tolerance(Kind::cog_residual), kShare * tolerance(Kind::cog_residual));
+  if (spec_.trust != Trust::zmp || at.plane.empty()) return;
+  const Eigen::Vector3d zmp = at.plane.frame.inverse() * series_.samples[at.sample].zmp;
+  ConstraintBlock block = block_of(ConstraintGroup::zmp, instant, 0, 2);
+  block.wrench_rows.setZero(2, 6);
+  block.wrench_rows.row(0) << 0, 0, -zmp.x(), 0, -1, 0;
+  block.wrench_rows.row(1) << 0, 0, -zmp.y(), 1, 0, 0;
+  block.wrench_rows /= model_.mass() * kGravity;
+  const double slack = kShare * tolerance(Kind::zmp_residual);
+  add_block(std::move(block), -slack, slack);
+}
+
+}  // namespace ayumi

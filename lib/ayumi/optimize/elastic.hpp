@@ -1,0 +1,25 @@
+#pragma once
+// A program without a solution made soft: rows may be violated, by groups, at a price. What it then
+// violates is what stands in the way.
+
+#include "ayumi/optimize/correction_problem.hpp"
+
+namespace ayumi {
+
+/// What gives way: `group` by row, -1 for rows that stay hard; by group what one of it is worth in
+/// the row, and its price.
+struct Slacks {
+  std::vector<int> group;
+  Eigen::VectorXd unit, price;
+};
+
+/// One more variable s >= 0 per group: g >= lower - unit s, g <= upper + unit s for its rows, and
+/// price . s in the objective (exact where the price exceeds the multipliers). Rows with two bounds
+/// appear twice. Refers to `nlp`, which must outlive it.
+Nlp elastic(const Nlp& nlp, const Slacks& slacks);
+
+/// The program of `problem` with every limit soft, per limit and tenth of a second. Feet on the
+/// ground and flight are the last to give way.
+Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt);
+
+}  // namespace ayumi
