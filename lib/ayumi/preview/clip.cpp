@@ -13,6 +13,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/preview/encoder.hpp"
+#include "ayumi/preview/scenery.hpp"
 #include "ayumi/preview/simplify.hpp"
 
 namespace ayumi {
@@ -229,7 +230,10 @@ Scene ClipRenderer::scene_at(double t, Overlay& overlay) const {
   Scene scene;
   scene.poses = body_poses(model_, sample.state);
   scene.camera = path_.at(t);
-  scene.ground_normal = ground_normal(log_.world);
+  const GroundPlane ground = ground_at(log_, t);
+  scene.ground_normal = ground.normal;
+  scene.ground_origin = ground.origin;
+  scene.scenery = make_scenery(log_.world);
   if (options_.overlay.heat) scene.heat = joint_heat(model_, log_.provenance.profile, sample);
   add_ghost(t, scene);
   overlay = make_overlay(model_, log_, pushes_, t, sample, scene.poses, height_, options_.overlay);

@@ -7,14 +7,16 @@ namespace ayumi {
 using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
-Ground make_ground(const Vector3d& normal, const Eigen::AlignedBox3d& box, const Vector3d& sun) {
+Ground make_ground(const Vector3d& origin, const Vector3d& normal, const Eigen::AlignedBox3d& box,
+                   const Vector3d& sun) {
   Ground ground;
+  ground.origin = origin;
   ground.normal = normal.normalized();
   ground.u = (Vector3d::UnitX() - ground.normal.x() * ground.normal).normalized();
   ground.v = ground.normal.cross(ground.u);
   Eigen::AlignedBox2d square;
   for (int i = 0; i < 8; ++i) {
-    Vector3d p = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    Vector3d p = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)) - origin;
     p -= sun * (ground.normal.dot(p) / ground.normal.dot(sun));
     square.extend(Eigen::Vector2d(ground.u.dot(p), ground.v.dot(p)));
   }

@@ -12,14 +12,14 @@ namespace ayumi {
 /// Frame of the ground plane and the square of it that the robot's shadow falls
 /// on.
 struct Ground {
-  Eigen::Vector3d u, v, normal;
+  Eigen::Vector3d origin, u, v, normal;
   Eigen::Vector2d center;
   double reach = 1;  ///< half edge of the square [m]
 };
 
-/// `box` bounds what throws the shadow, `sun` points to the light.
-Ground make_ground(const Eigen::Vector3d& normal, const Eigen::AlignedBox3d& box,
-                   const Eigen::Vector3d& sun);
+/// The plane through `origin`; `box` bounds what throws the shadow, `sun` points to the light.
+Ground make_ground(const Eigen::Vector3d& origin, const Eigen::Vector3d& normal,
+                   const Eigen::AlignedBox3d& box, const Eigen::Vector3d& sun);
 
 /// The sun over the camera's left shoulder, whatever side it looks from; unit.
 Eigen::Vector3d sun_behind(const Camera& camera, const Eigen::Vector3d& up);

@@ -64,6 +64,10 @@ Eigen::Vector3d ground_normal(const World& world) {
   return exp_rotation({world.slope.x(), world.slope.y(), 0}) * Eigen::Vector3d::UnitZ();
 }
 
+GroundPlane ground_at(const SimulationLog& log, double) {
+  return {Eigen::Vector3d::Zero(), ground_normal(log.world)};
+}
+
 std::vector<PushRecord> pushes(const SimulationLog& log) {
   std::vector<PushRecord> records;
   bool active = false;

@@ -18,6 +18,13 @@ SimulationSample sample_at(const SimulationLog& log, double t);
 /// Unit normal of the ground in the world.
 Eigen::Vector3d ground_normal(const World& world);
 
+/// The ground plane in the world: a point of it [m] and its unit normal.
+struct GroundPlane {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+};
+GroundPlane ground_at(const SimulationLog& log, double t);
+
 /// A stretch of ticks with an external force.
 struct PushRecord {
   double begin = 0, end = 0;                           ///< [s]; end excluded

@@ -14,21 +14,21 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4f;
 
-/// The plane through the origin and the size of the marks on it.
+/// The ground plane and the size of the marks on it.
 struct Plane {
-  Vector3d normal, u, v;
+  Vector3d normal, u, v, origin;
   double size;  ///< of the robot [m]
 
   /// Down along gravity onto the plane, then `layer` steps above it.
   Vector3d drop(const Vector3d& p, int layer) const {
-    const Vector3d on = p - Vector3d::UnitZ() * (normal.dot(p) / normal.z());
+    const Vector3d on = p - Vector3d::UnitZ() * (normal.dot(p - origin) / normal.z());
     return on + normal * (0.0008 * size * layer);
   }
 };
 
-Plane make_plane(const Vector3d& normal, double size) {
+Plane make_plane(const Vector3d& normal, const Vector3d& origin, double size) {
   const Vector3d u = (Vector3d::UnitX() - normal.x() * normal).normalized();
-  return {normal, u, normal.cross(u), size};
+  return {normal, u, normal.cross(u), origin, size};
 }
 
 Vector4f faded(Vector4f color, double opacity) {
@@ -113,16 +113,17 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
 
 std::vector<Vector3d> support_corners(const RobotModel& model,
                                       const std::vector<Eigen::Isometry3d>& poses,
-                                      const std::array<bool, 2>& contact, const Vector3d& normal) {
+                                      const std::array<bool, 2>& contact, const Vector3d& normal,
+                                      const Vector3d& origin) {
   if (!model.has_soles()) return {};
-  const Plane plane = make_plane(normal, 1);
+  const Plane plane = make_plane(normal, origin, 1);
   std::vector<Eigen::Vector2d> points;
   for (const Side side : {Side::left, Side::right}) {
     if (!contact[static_cast<size_t>(side)]) continue;
     const Sole& sole = model.sole(side);
     const Eigen::Isometry3d frame = poses[size_t(sole.body)] * sole.frame;
     for (const Eigen::Vector2d& corner : sole.polygon) {
-      const Vector3d p = plane.drop(frame * Vector3d(corner.x(), corner.y(), 0), 0);
+      const Vector3d p = plane.drop(frame * Vector3d(corner.x(), corner.y(), 0), 0) - origin;
       points.emplace_back(plane.u.dot(p), plane.v.dot(p));
     }
   }
@@ -130,7 +131,7 @@ std::vector<Vector3d> support_corners(const RobotModel& model,
   std::vector<Vector3d> corners;
   const ConvexPolygon hull(std::move(points));
   for (const Eigen::Vector2d& corner : hull.vertices())
-    corners.push_back(corner.x() * plane.u + corner.y() * plane.v);
+    corners.push_back(origin + corner.x() * plane.u + corner.y() * plane.v);
   return corners;
 }
 
@@ -163,9 +164,12 @@ Overlay make_overlay(const RobotModel& model, const SimulationLog& log,
                      double height, const OverlayOptions& options) {
   Overlay overlay;
   Triangles& target = overlay.triangles;
-  const Plane plane = make_plane(ground_normal(log.world), height);
+  const GroundPlane ground = ground_at(log, t);
+  const Plane plane = make_plane(ground.normal, ground.origin, height);
   if (options.support)
-    add_support(target, support_corners(model, poses, sample.planned_contact, plane.normal), plane);
+    add_support(target,
+                support_corners(model, poses, sample.planned_contact, ground.normal, ground.origin),
+                plane);
   if (options.trails && options.cog)
     add_trail(target, log, t, options, plane, &SimulationSample::cog, overlay_color::kCog, 3);
   if (options.trails && options.zmp)

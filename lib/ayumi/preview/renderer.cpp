@@ -138,13 +138,15 @@ Eigen::AlignedBox3d Renderer::Parts::bounds_of(const std::vector<Eigen::Isometry
 }
 
 void Renderer::Parts::draw_coverage(const Scene& scene, const Ground& plane, const Vector3d& sun) {
-  // p -> ((p - s (n.p)/(n.s)) . u - center) / reach, and the same for v; depth 0.
+  // With p from the plane's origin: p -> ((p - s (n.p)/(n.s)) . u - center) / reach, and the same
+  // for v; depth 0.
   const Eigen::Matrix3d fall =
       Eigen::Matrix3d::Identity() - sun * plane.normal.transpose() / plane.normal.dot(sun);
   Eigen::Matrix4d flatten = Eigen::Matrix4d::Zero();
   flatten.block<1, 3>(0, 0) = plane.u.transpose() * fall / plane.reach;
   flatten.block<1, 3>(1, 0) = plane.v.transpose() * fall / plane.reach;
-  flatten.topRightCorner<2, 1>() = -plane.center / plane.reach;
+  flatten.topRightCorner<2, 1>() =
+      -plane.center / plane.reach - flatten.topLeftCorner<2, 3>() * plane.origin;
   flatten(3, 3) = 1;
   gl.BindFramebuffer(GL_FRAMEBUFFER, flattened.framebuffer);
   gl.Viewport(0, 0, kShadowSize, kShadowSize);
@@ -239,12 +241,13 @@ void Renderer::Parts::draw_exposures(const Scene& scene) {
 
 void Renderer::Parts::draw_ground(const Scene& scene, const Matrix4f& view_projection,
                                   const Ground& plane) {
-  const Vector3d target = scene.camera.target;
+  const Vector3d target = scene.camera.target - plane.origin;
   const Eigen::Vector2d center(plane.u.dot(target), plane.v.dot(target));
-  const double distance = (scene.camera.eye - target).norm();
+  const double distance = (scene.camera.eye - scene.camera.target).norm();
   const auto place = [&](GLuint program, const Eigen::Vector2d& at, double reach) {
     gl.UseProgram(program);
     gl.set(program, "view_projection", view_projection);
+    gl.set(program, "origin", plane.origin);
     gl.set(program, "axis_u", plane.u);
     gl.set(program, "axis_v", plane.v);
     gl.set(program, "center", at.x(), at.y());
@@ -338,8 +341,8 @@ Image Renderer::render(const Scene& scene) {
   const Vector3d up = scene.ground_normal.normalized();
   const Vector3d sun = sun_behind(scene.camera, up);
   const bool with_shadow = p.options.ground && p.options.shadow && !box.isEmpty();
-  const Ground plane =
-      make_ground(up, box.isEmpty() ? Eigen::AlignedBox3d(up * 0.0, up * 0.0) : box, sun);
+  const Ground plane = make_ground(
+      scene.ground_origin, up, box.isEmpty() ? Eigen::AlignedBox3d(up * 0.0, up * 0.0) : box, sun);
   const Matrix4f view_projection =
       (projection_matrix(scene.camera, double(p.options.width) / p.options.height) *
        view_matrix(scene.camera))

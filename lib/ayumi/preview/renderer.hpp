@@ -32,8 +32,9 @@ struct Exposure {
 struct Scene {
   std::vector<Eigen::Isometry3d> poses;  ///< one per body, world
   Camera camera;
-  Eigen::Vector3d ground_normal = Eigen::Vector3d::UnitZ();  ///< of the plane through the origin
-  Triangles overlay;                                         ///< world frame
+  Eigen::Vector3d ground_normal = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d ground_origin = Eigen::Vector3d::Zero();  ///< a point of the plane [m]
+  Triangles overlay;                                        ///< world frame
   Triangles scenery;                ///< what stands on the ground plane, world frame
   std::vector<Exposure> exposures;  ///< drawn in their order
   std::vector<float> heat;          ///< empty, or by body: 0 its own colour, 1 red

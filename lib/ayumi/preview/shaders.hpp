@@ -79,6 +79,7 @@ void main() {
 inline constexpr const char* kGroundVertex = R"(
 layout(location = 0) in vec2 corner;
 uniform mat4 view_projection;
+uniform vec3 origin;
 uniform vec3 axis_u;
 uniform vec3 axis_v;
 uniform vec2 center;
@@ -86,7 +87,7 @@ uniform float reach;
 out vec2 plane;
 void main() {
   plane = center + reach * corner;
-  gl_Position = view_projection * vec4(plane.x * axis_u + plane.y * axis_v, 1.0);
+  gl_Position = view_projection * vec4(origin + plane.x * axis_u + plane.y * axis_v, 1.0);
 }
 )";
 

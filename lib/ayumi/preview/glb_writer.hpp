@@ -1,0 +1,52 @@
+#pragma once
+// The bytes of a binary glTF file as its parts are added: accessors, materials, pictures.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ayumi/base/text.hpp"
+
+namespace ayumi::glb {
+
+using Color = std::array<std::uint8_t, 4>;  ///< sRGB and alpha
+
+/// "[1,2.5]"
+template <typename Values>
+std::string list(const Values& values) {
+  std::string out = "[";
+  for (const auto& value : values) out += (out.size() > 1 ? "," : "") + text::exact(value);
+  return out + "]";
+}
+std::string quoted(const std::string& text);
+/// ",\"key\":[items]"; nothing without items.
+std::string joined(const std::string& key, const std::vector<std::string>& items);
+
+/// The members of the file as they grow; each call returns the number of what it added.
+class Writer {
+ public:
+  /// `components` values each; `with_bounds` where glTF asks for least and largest.
+  int add_floats(const std::vector<float>& values, int components, bool vertices, bool with_bounds);
+  int add_indices(const std::vector<std::uint32_t>& values);
+  /// The same again for the same colour.
+  int material(const Color& color, bool double_sided);
+  /// With the picture of a mesh; as `material` where there is none to embed.
+  int material(const Color& color, const std::string& texture);
+
+  /// The whole file around the text of its nodes (the first is the scene's root) and animations.
+  std::string file(const std::string& nodes, const std::string& animations) const;
+  std::vector<std::string> meshes;  ///< as JSON
+
+ private:
+  std::string binary_;
+  std::vector<std::string> views_, accessors_, materials_, images_, textures_;
+  std::map<std::pair<Color, bool>, int> known_materials_;
+  std::map<std::pair<Color, std::string>, int> known_textured_;
+
+  int add_view(const void* data, size_t bytes, int target);
+};
+
+}  // namespace ayumi::glb
