@@ -7,6 +7,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/profiles.hpp"
 #include "ayumi/io/pattern_table.hpp"
 #include "ayumi/io/results_json.hpp"
 #include "check_table.hpp"
@@ -40,15 +41,20 @@ void print_tolerances(const Context& context) {
 Json check_one(const Context& context, const Options& options, const std::string& file) {
   const auto begin = std::chrono::steady_clock::now();
   const PatternInput input = load_pattern(context, file, options.input);
-  const ConsistencyReport report =
-      check_consistency(input.model, input.series, check_options(input, options.tolerances));
+  const CheckOptions judged = check_options(input, options.tolerances);
+  ConsistencyReport report = check_consistency(input.model, input.series, judged);
+  const ActuatorNeed need = actuator_need(input.model, input.series, judged, report);
+  report.consistent = report.consistent && need.text.empty();
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   context.print(file + ": " + (report.consistent ? "consistent" : "INCONSISTENT") + ", " +
                 text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
-                check_table(report));
+                (need.text.empty() ? "" : "  " + need.text + "\n") + check_table(report));
   Json json = {{"pattern", file}};
   json.update(Json::parse(check_json(report)));
+  json["actuators"] = {{"enough", need.text.empty()},
+                       {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
+                       {"sufficient_profiles", need.sufficient}};
   json["wall_s"] = wall;
   return json;
 }

@@ -150,7 +150,10 @@ void export_table(ExportOptions options, Context& context) {
   if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
     fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
   const Source source = source_of(options, context);
-  if (options.safety.profile.empty()) options.safety.profile = source.reference.provenance.profile;
+  // What goes to the robot is judged by its own actuators, not by those a study has assumed.
+  if (options.safety.profile.empty())
+    options.safety.profile =
+        options.format == "hoap" ? source.model.limits().name : source.reference.provenance.profile;
   const SafeTable safe = make_safe(source.model, source.reference, options.safety);
   const bool write = safe.report.safe || options.force_unsafe;
   if (write)

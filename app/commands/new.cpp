@@ -12,6 +12,7 @@
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/postures.hpp"
 #include "ayumi/pattern/sample.hpp"
+#include "new_pattern.hpp"
 #include "pattern_input.hpp"
 
 namespace ayumi::app {
@@ -34,24 +35,9 @@ struct NewOptions {
 
 constexpr const char* kScaled = "; left out: HOAP-1's scaled to the robot";
 
-// The generated motion is sampled before it is written: a file that cannot be used is not made.
 void write_new(const Context& context, const RobotModel& model, Pattern pattern,
                const NewOptions& options, const std::vector<std::string>& comments) {
-  refuse_overwriting(context, options.out);
-  pattern.robot = options.robot;
-  pattern.name = std::filesystem::path(options.out).stem().string();
-  pattern.file = options.out;
-  const CommandSeries series = sample(model, pattern, {}, context.progress());
-  write_pattern(options.out, pattern, comments);
-  context.print(options.out + ": " + text::fixed(series.duration(), 2) + " s, " +
-                std::to_string(pattern.phases.size()) + " phases, " +
-                std::to_string(pattern.keyframes.size()) + " keyframes\n  COG " +
-                series.origin.at("cog") + "\n");
-  context.print_json(nlohmann::ordered_json{{"pattern", options.out},
-                                            {"duration_s", series.duration()},
-                                            {"phases", pattern.phases.size()},
-                                            {"keyframes", pattern.keyframes.size()}}
-                         .dump(2));
+  write_new_pattern(context, model, std::move(pattern), options.robot, options.out, comments);
 }
 
 void add_common(CLI::App& command, NewOptions& options) {
@@ -231,8 +217,11 @@ void add_sway(CLI::App& command, NewOptions& options) {
 void add_viip(CLI::App& command, NewOptions& options) {
   command.footer(
       "Examples:\n  ayumi new viip --cog 0.02,0,0 -o shift.json\n"
+      "  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new viip --steps 8 -o in_place.json\n"
+      "  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new viip --steps 14 --velocity 0.1 -o walk.json\n"
+      "  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new viip --steps 14 --velocity 0.05,0.01 --turn 15 -o turn.json");
   add_common(command, options);
   command.add_option("--cog", options.cog, "displacement over both feet: forward, left, up")
@@ -264,7 +253,7 @@ void add_squat(CLI::App& command, NewOptions& options) {
 
 void add_new(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
-      "new", "write a keyframed pattern to edit: walk, step, stand, sway, squat, viip");
+      "new", "write a keyframed pattern to edit: walk, step, stand, sway, squat, jump, viip");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  ayumi new walk -o walk.json\n"
@@ -272,6 +261,7 @@ void add_new(CLI::App& app, Context& context) {
       "  ayumi new step --robot humanoid30 --steps 4 -o step.json\n"
       "  ayumi new sway --side 0.03 -o sway.json\n"
       "  ayumi new squat --depth 0.04 --cycles 3 -o squat.json\n"
+      "  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new viip --steps 14 --velocity 0.1 -o viip_walk.json\n"
       "  ayumi new stand --duration 4 -o stand.json");
   auto shared = std::make_shared<NewOptions>();
@@ -294,6 +284,7 @@ void add_new(CLI::App& app, Context& context) {
       "viip", "goals in place of keys: COG displacement, steps, a walk at a velocity");
   add_viip(*viip, options);
   viip->callback([shared, &context] { new_viip(context, *shared); });
+  add_new_jump(*command, context);
   CLI::App* stand = command->add_subcommand("stand", "both feet on the ground");
   add_common(*stand, options);
   stand->add_option("--duration", options.duration, "of the pattern")

@@ -97,7 +97,9 @@ TEST(SampleErrors, SwingOfASupportingFoot) {
 
 TEST(SampleErrors, FlightNeedsMore) {
   expect_words(message_of([](Pattern& p) { p.phases[2].support = Support::none; }),
-               {"phases/2", "flight", "COG keys"});
+               {"phases/2", "flight", "key of cog height at lift-off and at touchdown"});
+  expect_words(message_of([](Pattern& p) { p.phases[0].support = Support::none; }),
+               {"phases/0", "a phase on the ground before and after"});
 }
 
 TEST(SampleErrors, FootOutOfReach) {

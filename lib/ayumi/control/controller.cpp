@@ -104,6 +104,7 @@ Handover Controller::handover() const {
   };
   if (const auto* dtad = std::get_if<Dtad>(&law_)) take(dtad->body());
   if (const auto* viip = std::get_if<Viip>(&law_)) take(viip->body());
+  if (const auto* jump = std::get_if<ViipJump>(&law_)) return jump->handover();
   return result;
 }
 
@@ -143,8 +144,12 @@ CommandSample Controller::placed(long k) const {
 
 void Controller::start_law(const ViipSpan* span) {
   if (span) {
-    Handover from = handover();
-    law_ = Viip(*model_, limits_, viip_params(*model_, spec_), series_->dt, from, placed(tick_));
+    const Handover from = handover();
+    const ViipParams params = viip_params(*model_, spec_);
+    if (const auto* jump = std::get_if<JumpGoal>(&span->goal))
+      law_ = ViipJump(*model_, limits_, params, series_->dt, from, placed(tick_), *jump);
+    else
+      law_ = Viip(*model_, limits_, params, series_->dt, from, placed(tick_));
   } else if (is_dtad(spec_.type) || spec_.type == "viip") {
     ControllerSpec spec = spec_;
     if (spec.type == "viip") spec = {"dtad", {}};
@@ -163,11 +168,14 @@ void Controller::enter(long k) {
   if (span == span_) return;
   if (!span) place(plan_);
   if (!span) plan_ = placed(k);
-  if (!span || !std::holds_alternative<Viip>(law_)) start_law(span);
+  const bool jumps = span && std::holds_alternative<JumpGoal>(span->goal);
+  if (!span || jumps || !std::holds_alternative<Viip>(law_)) start_law(span);
   span_ = span;
   if (!span) return;
-  if (std::holds_alternative<JumpGoal>(span->goal))
-    fail(ErrorCode::bad_pattern, "a phase with a jump cannot be carried yet");
+  if (jumps) {
+    plan_ = std::get<ViipJump>(law_).plan();
+    return;
+  }
   // Steps go on into following phases of steps.
   long end = span->end;
   for (const ViipSpan& next : series_->viip)
@@ -195,6 +203,9 @@ ControlOutput Controller::update(const Estimate& estimate) {
   if (auto* viip = std::get_if<Viip>(&law_)) {
     out = viip->update(estimate);
     plan_ = viip->plan();
+  } else if (auto* jump = std::get_if<ViipJump>(&law_)) {
+    out = jump->update(estimate);
+    plan_ = jump->plan();
   } else {
     if (placement_.moved)
       for (Side side : {Side::left, Side::right})

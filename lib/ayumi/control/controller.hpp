@@ -6,6 +6,7 @@
 
 #include "ayumi/control/dtad.hpp"
 #include "ayumi/control/viip.hpp"
+#include "ayumi/control/viip_jump.hpp"
 
 namespace ayumi {
 
@@ -59,7 +60,7 @@ class Controller {
   ActuatorLimits limits_;
   const CommandSeries* series_;
   ControllerSpec spec_;
-  std::variant<OpenLoop, Dtad, Viip> law_;
+  std::variant<OpenLoop, Dtad, Viip, ViipJump> law_;
   Placement placement_;
   CommandSample plan_;
   Eigen::VectorXd target_;  // last one [rad]

@@ -54,9 +54,10 @@ namespace {
 
 }  // namespace
 
-void solve_posture(const SampleJob& job, double t, CommandSample& sample, RobotData& data) {
+void solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
+                   CommandSample& sample, RobotData& data) {
   PostureTarget target;
-  target.trunk = trunk_attitude(job, t);
+  target.trunk = trunk;
   target.cog = sample.cog;
   for (const Side side : {Side::left, Side::right})
     target.feet[static_cast<int>(side)] = job.feet.pose(side, t);
@@ -70,14 +71,36 @@ void solve_posture(const SampleJob& job, double t, CommandSample& sample, RobotD
 
 namespace {
 
+// The parabola has keys on the way, and so has the author's own motion.
+bool is_ballistic(const Track& track, double begin, double end) {
+  return std::any_of(track.keys().begin(), track.keys().end(), [&](const TrackKey& key) {
+    return key.t > begin + 1e-9 && key.t < end - 1e-9;
+  });
+}
+
 void require_body_tracks(const SampleJob& job) {
-  for (size_t i = 0; i < job.feet.phases().size(); ++i)
-    if (job.feet.phases()[i].support == Support::none &&
-        !(job.tracks.cog[0] && job.tracks.cog[1] && job.tracks.cog[2]))
+  for (size_t i = 0; i < job.feet.phases().size(); ++i) {
+    const Phase& phase = job.feet.phases()[i];
+    if (phase.support != Support::none) continue;
+    const double begin = job.feet.begin(static_cast<int>(i));
+    const std::string place = in_file(job.pattern, "phases/" + std::to_string(i));
+    if (begin <= 0 || i + 1 == job.feet.phases().size())
       fail(ErrorCode::bad_pattern,
-           in_file(job.pattern, "phases/" + std::to_string(i)) +
-               ": a flight phase (support none) needs COG keys (x, y and height) or joint keys; "
-               "a ballistic COG is not solved yet");
+           place + ": a flight (support none) needs a phase on the ground before and after it");
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto& track = job.tracks.cog[axis];
+      if (axis < 2 && !track) continue;
+      if (track && is_ballistic(*track, begin, phase.until)) continue;
+      fail(ErrorCode::bad_pattern, place + ": the flight from " + text::exact(begin) + " s to " +
+                                       text::exact(phase.until) + " s needs a key of cog " +
+                                       (axis == 2   ? "height"
+                                        : axis == 0 ? "x"
+                                                    : "y") +
+                                       " at lift-off and at touchdown" +
+                                       (track ? "" : " and one on the ground before and after") +
+                                       "; the way between is the parabola");
+    }
+  }
 }
 
 void solve_samples(const SampleJob& job, const CogPlan& plan, CommandSeries& series) {
@@ -90,7 +113,7 @@ void solve_samples(const SampleJob& job, const CogPlan& plan, CommandSeries& ser
     if (k == 0) sample.state.theta = job.ik.start();
     sample.cog = {plan.cog[0].at(t).value, plan.cog[1].at(t).value, plan.cog[2].at(t).value};
     if (k > 0) sample.state.base.position += sample.cog - series.samples[k - 1].cog;
-    solve_posture(job, t, sample, data);
+    solve_posture(job, t, plan.trunk_at(job, t), sample, data);
   }
   fill_rates(series.samples, job.dt, job.tracks.rest_ends);
 }
@@ -105,8 +128,13 @@ double fill_ground(const SampleJob& job, const CogPlan& plan, CommandSeries& ser
     sample.zmp = plan.zmp_at(t);
     sample.fz = job.tracks.fz ? job.tracks.fz->at(t).value
                               : job.model.mass() * (sample.ddcog.z() + kGravity);
-    const Vector3d full = full_model_reaction(job.model, sample, data).zmp;
+    if (sample.support == Support::none && !job.tracks.fz) sample.fz = 0;
+    if (sample.support == Support::none) continue;
+    const GroundReaction reaction = full_model_reaction(job.model, sample, data);
+    const Vector3d full = reaction.zmp;
+    const bool weak = reaction.force.z() < kZmpShare * job.model.mass() * kGravity;
     for (int axis = 0; axis < 2; ++axis) {
+      if (plan.solved[axis] && weak) continue;
       if (plan.solved[axis])
         worst = std::max(worst, std::abs(full[axis] - sample.zmp[axis]));
       else if (!job.tracks.zmp)
@@ -141,12 +169,22 @@ void describe(const SampleJob& job, const CogPlan& plan, double worst, CommandSe
   origin["cog_height"] = job.tracks.cog[2] ? "keys" : "level, from the defaults";
   if (!job.tracks.fz) origin["fz"] = "from the COG height, (16)";
   origin["torso"] = job.tracks.torso ? "keys" : "level, along the mean heading of the feet";
+  if (flies(job)) {
+    origin["cog_height"] += "; parabolas in flight";
+    if (!job.tracks.torso)
+      origin["torso"] += ", turned around flights so that they have no angular momentum";
+  }
   origin["feet"] = "phases and swings";
   origin["base"] = "solved from feet, torso and COG";
   origin["joints"] = "legs by inverse kinematics, others from keys and default posture";
 }
 
 }  // namespace
+
+bool flies(const SampleJob& job) {
+  return std::any_of(job.feet.phases().begin(), job.feet.phases().end(),
+                     [](const Phase& phase) { return phase.support == Support::none; });
+}
 
 CommandSeries sample_body_driven(const SampleJob& job) {
   require_body_tracks(job);

@@ -5,6 +5,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/pattern/postures.hpp"
@@ -31,6 +32,15 @@ Isometry3d on_ground(const Vector3d& position, double yaw) {
   pose.translation() = Vector3d(position.x(), position.y(), 0);
   pose.linear() = rpy_to_matrix({0, 0, yaw});
   return pose;
+}
+
+// Of a flight: over which the feet take up, and give back, the speed of the COG [s].
+constexpr double kFlightRamp = 0.04;
+
+// From 0 to 1 with three derivatives that vanish at both ends.
+double smooth_step(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * u * u * (35 + u * (-84 + u * (70 - 20 * u)));
 }
 
 double lift_profile(double u) {
@@ -146,6 +156,7 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
   }
   if (keys[0].empty()) return;
   KeyedFoot track;
+  for (const TrackKey& key : keys[0]) track.times.push_back(key.t);
   for (int i = 0; i < 3; ++i) {
     track.position[i] = Track(keys[i]);
     track.rpy[i] = Track(keys[3 + i]);
@@ -173,6 +184,12 @@ const FootPlan::Move* FootPlan::move_at(Side side, double t) const {
 }
 
 Isometry3d FootPlan::pose(Side side, double t) const {
+  Isometry3d pose = pose_without_flight(side, t);
+  pose.translation().z() += flight_lift(side, t);
+  return pose;
+}
+
+Isometry3d FootPlan::pose_without_flight(Side side, double t) const {
   if (const auto& keyed = keyed_[index(side)]) {
     Foothold at;
     for (int i = 0; i < 3; ++i) {
@@ -190,19 +207,33 @@ Isometry3d FootPlan::pose(Side side, double t) const {
   Isometry3d pose = Isometry3d::Identity();
   pose.linear() = move->from.linear() * exp_rotation(s * turn).toRotationMatrix();
   pose.translation() = (1 - s) * move->from.translation() + s * move->to.translation();
-  pose.translation().z() += lift(side, t);
+  pose.translation().z() += swing_lift(side, t);
   return pose;
 }
 
-double FootPlan::lift(Side side, double t) const {
+double FootPlan::swing_lift(Side side, double t) const {
   const Move* move = move_at(side, t);
   if (keyed_[index(side)] || !move || t >= move->end) return 0;
   return move->lift * lift_profile((t - move->begin) / (move->end - move->begin));
 }
 
+double FootPlan::flight_lift(Side side, double t) const {
+  const int i = phase(t);
+  if (phases_[i].support != Support::none) return 0;
+  if (phases_[i].swing && phases_[i].swing->foot == side) return 0;
+  const double from = begin(i), length = phases_[i].until - from;
+  if (const auto& keyed = keyed_[index(side)])
+    for (const double key : keyed->times)
+      if (key > from + kInstant && key < phases_[i].until - kInstant) return 0;
+  const double after = std::clamp(t - from, 0.0, length), left = length - after;
+  const double ramp = std::min(kFlightRamp, length / 2);
+  return 0.5 * kGravity * after * left * smooth_step(after / ramp) * smooth_step(left / ramp);
+}
+
 double FootPlan::ground(double t) const {
   double sum = 0;
-  for (const Side side : kSides) sum += pose(side, t).translation().z() - lift(side, t);
+  for (const Side side : kSides)
+    sum += pose_without_flight(side, t).translation().z() - swing_lift(side, t);
   return 0.5 * sum;
 }
 

@@ -29,7 +29,9 @@ class FootPlan {
   FootPlan(const RobotModel& model, const Pattern& pattern);
 
   /// Pose of the sole frame in the world. A swing is minimum jerk along the ground with a lift
-  /// 64 h (s (1 - s))^3 on top: speed and acceleration are zero at both ends.
+  /// 64 h (s (1 - s))^3 on top: speed and acceleration are zero at both ends. In flight a foot that
+  /// neither swings nor has keys on the way takes up the COG's parabola within 40 ms and gives it
+  /// back before it lands: it rises as high as the COG does.
   Eigen::Isometry3d pose(Side side, double t) const;
 
   /// Mean height of both soles, lifts left out: the ground under the robot [m].
@@ -55,11 +57,14 @@ class FootPlan {
   };
   struct KeyedFoot {
     std::array<Track, 3> position, rpy;
+    std::vector<double> times;  // of its keys [s]
   };
   void read_phases(const Pattern& pattern);
   void read_foot_keys(const Pattern& pattern, Side side);
   const Move* move_at(Side side, double t) const;
-  double lift(Side side, double t) const;
+  double swing_lift(Side side, double t) const;
+  double flight_lift(Side side, double t) const;
+  Eigen::Isometry3d pose_without_flight(Side side, double t) const;
 
   std::vector<Phase> phases_;
   std::array<Eigen::Isometry3d, 2> start_;

@@ -1,5 +1,6 @@
 #pragma once
-// Generators of patterns a person then edits: `ayumi new walk`, `step`, `stand`, `sway`, `squat`.
+// Generators of patterns a person then edits: `ayumi new walk`, `step`, `stand`, `sway`, `squat`,
+// `jump`.
 
 #include "ayumi/pattern/pattern.hpp"
 
@@ -51,5 +52,20 @@ SquatParameters squat_defaults(const RobotModel& model);
 
 /// COG height keys; where the COG is over the ground is solved. Throws as walk_pattern.
 Pattern squat_pattern(const RobotModel& model, const SquatParameters& parameters);
+
+/// Stoop, lift-off, flight, touchdown, settle, as often as asked without a rest between.
+struct JumpParameters {
+  double height = 0.03;      ///< of the COG above ref z_G, where it leaves the ground and lands [m]
+  double stoop = 0.03;       ///< below ref z_G, before and after [m]
+  double cog_height = 0.22;  ///< ref z_G above the soles [m]
+  double forward = 0;        ///< way of each jump [m]
+  int times = 1;
+};
+JumpParameters jump_defaults(const RobotModel& model);
+
+/// COG height keys at the lowest points, at lift-off and at touchdown, foot keys where it travels;
+/// the way between is the parabola. Throws as walk_pattern, and when no push within the stoop
+/// reaches the height.
+Pattern jump_pattern(const RobotModel& model, const JumpParameters& parameters);
 
 }  // namespace ayumi

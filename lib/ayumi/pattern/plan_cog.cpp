@@ -8,8 +8,10 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/pattern/bounded_cog.hpp"
 #include "ayumi/pattern/differentiate.hpp"
+#include "ayumi/pattern/flight.hpp"
 #include "ayumi/pattern/postures.hpp"
 #include "ayumi/pattern/sample_job.hpp"
 
@@ -52,13 +54,20 @@ VectorXd omega_squared_of(const SampleJob& job, const CogPlan& plan, const Grid&
     const TrackPoint z = plan.cog[2].at(grid.t(k));
     const double above = z.value - plan.zmp[2].at(grid.t(k)).value;
     w2[k] = (z.acceleration + kGravity) / above;
-    if (!(above > 0) || !(w2[k] > 0))
+    if (job.feet.support(grid.t(k)) == Support::none || std::abs(w2[k]) < 1e-6) w2[k] = 0;
+    if (!(above > 0) || w2[k] < 0)
       fail(ErrorCode::bad_pattern,
            in_file(job.pattern, "COG height") + ": at t = " + text::fixed(grid.t(k), 3) +
                " s the COG is not above the ZMP or falls faster than gravity; raise the COG or "
                "slow the height keys down");
   }
   return w2;
+}
+
+TrunkTurn turn_around_flights(const SampleJob& job, const CogPlan& plan) {
+  return plan_trunk_turn(job, [&](double t) -> std::array<TrackPoint, 3> {
+    return {plan.cog[0].at(t), plan.cog[1].at(t), plan.cog[2].at(t)};
+  });
 }
 
 // COG and bumps while they are being corrected, on the grid.
@@ -70,6 +79,8 @@ struct CogSolver {
   std::array<VectorXd, 3> cog;
 
   void read_tracks();
+  void put_tracks();
+  void turn_trunk();
   void add_solution(int axis, const VectorXd& z);
   void solve_postures(bool first, std::vector<CommandSample>& samples) const;
   double measure(std::vector<CommandSample>& samples, std::array<VectorXd, 2>& error) const;
@@ -91,6 +102,19 @@ void CogSolver::add_solution(int axis, const VectorXd& z) {
   plan.bump[1][axis] += motion.end;
 }
 
+// The solution so far as tracks of the plan.
+void CogSolver::put_tracks() {
+  for (int axis = 0; axis < 2; ++axis)
+    if (plan.solved[axis]) plan.cog[axis] = spline_through(grid, cog[axis]);
+}
+
+// The trunk's turn around flights for the COG so far.
+void CogSolver::turn_trunk() {
+  if (!flies(job)) return;
+  put_tracks();
+  plan.turn = turn_around_flights(job, plan);
+}
+
 void CogSolver::solve_postures(bool first, std::vector<CommandSample>& samples) const {
   RobotData data(job.model);
   for (int k = 0; k <= grid.n; ++k) {
@@ -102,23 +126,32 @@ void CogSolver::solve_postures(bool first, std::vector<CommandSample>& samples) 
     const Vector3d wanted(cog[0][k], cog[1][k], cog[2][k]);
     if (!first) sample.state.base.position += wanted - sample.cog;
     sample.cog = wanted;
-    solve_posture(job, grid.t(k), sample, data);
+    solve_posture(job, grid.t(k), plan.trunk_at(job, grid.t(k)), sample, data);
   }
   fill_rates(samples, grid.h, true);
 }
 
-// cmd ZMP - full-model ZMP in the solved axes; returns the largest.
+// cmd ZMP - full-model ZMP in the solved axes; returns the largest, where the ground gives less
+// than the weight as the moment it makes over the weight.
 double CogSolver::measure(std::vector<CommandSample>& samples,
                           std::array<VectorXd, 2>& error) const {
   RobotData data(job.model);
+  const double weight = job.model.mass() * kGravity;
+  double worst = 0;
   error = {VectorXd::Zero(grid.n + 1), VectorXd::Zero(grid.n + 1)};
   for (int k = 0; k <= grid.n; ++k) {
     samples[k].zmp = plan.zmp_at(grid.t(k));
-    const Vector3d full = full_model_reaction(job.model, samples[k], data).zmp;
-    for (int axis = 0; axis < 2; ++axis)
-      if (plan.solved[axis]) error[axis][k] = samples[k].zmp[axis] - full[axis];
+    if (w2[k] == 0) continue;
+    const GroundReaction full = full_model_reaction(job.model, samples[k], data);
+    const double share = std::min(1.0, full.force.z() / weight);
+    if (share < kZmpShare) continue;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (!plan.solved[axis]) continue;
+      error[axis][k] = samples[k].zmp[axis] - full.zmp[axis];
+      worst = std::max(worst, share * std::abs(error[axis][k]));
+    }
   }
-  return std::max(error[0].cwiseAbs().maxCoeff(), error[1].cwiseAbs().maxCoeff());
+  return worst;
 }
 
 // Keeps the best pass: where the keys jump the error cannot vanish and passes may stop improving.
@@ -143,6 +176,7 @@ void CogSolver::correct() {
     if (worst <= kGoodEnough) break;
     for (int axis = 0; axis < 2; ++axis)
       if (plan.solved[axis]) add_solution(axis, error[axis]);
+    turn_trunk();
   }
   cog = best_cog;
   plan.bump = best_bump;
@@ -157,6 +191,12 @@ Vector3d CogPlan::zmp_at(double t) const {
   return z;
 }
 
+Eigen::Matrix3d CogPlan::trunk_at(const SampleJob& job, double t) const {
+  const Vector3d r(turn[0].at(t).value, turn[1].at(t).value, turn[2].at(t).value);
+  const Eigen::Matrix3d asked = trunk_attitude(job, t);
+  return r.isZero(0) ? asked : Eigen::Matrix3d(exp_rotation(r) * asked);
+}
+
 CogPlan plan_cog(const SampleJob& job) {
   CogPlan plan;
   plan.duration = job.dt * (job.count - 1);
@@ -169,7 +209,10 @@ CogPlan plan_cog(const SampleJob& job) {
     plan.solved[axis] = !job.tracks.cog[axis];
     if (!plan.solved[axis]) plan.cog[axis] = *job.tracks.cog[axis];
   }
-  if (!plan.solved[0] && !plan.solved[1]) return plan;
+  if (!plan.solved[0] && !plan.solved[1]) {
+    if (flies(job)) plan.turn = turn_around_flights(job, plan);
+    return plan;
+  }
 
   CogSolver solver{job, plan, grid, omega_squared_of(job, plan, grid), {}};
   plan.omega = {std::sqrt(solver.w2[0]), std::sqrt(solver.w2[grid.n])};
@@ -180,9 +223,10 @@ CogPlan plan_cog(const SampleJob& job) {
     for (int k = 0; k <= grid.n; ++k) z[k] = plan.zmp[axis].at(grid.t(k)).value;
     solver.add_solution(axis, z);
   }
+  solver.turn_trunk();
   if (job.pattern.full_model) solver.correct();
-  for (int axis = 0; axis < 2; ++axis)
-    if (plan.solved[axis]) plan.cog[axis] = spline_through(grid, solver.cog[axis]);
+  solver.put_tracks();
+  if (flies(job)) plan.turn = turn_around_flights(job, plan);
   return plan;
 }
 

@@ -22,12 +22,23 @@ struct SampleJob {
 /// theta of every joint track at t [rad].
 Eigen::VectorXd keyed_joints(const SampleJob& job, double t);
 
-/// Trunk attitude: torso keys, else level with the mean heading of the planned feet.
+/// Trunk attitude asked for: torso keys, else level with the mean heading of the planned feet.
 Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t);
+
+/// How far the trunk is turned from that around flights (flight.hpp): a rotation vector over time,
+/// world axes, left-multiplied [rad].
+using TrunkTurn = std::array<Track, 3>;
 
 /// Solves base and legs at time t for sample.cog, warm from sample.state; fills feet and support.
 /// Throws Error(bad_pattern) naming phase, time, foot and the missing millimetres.
-void solve_posture(const SampleJob& job, double t, CommandSample& sample, RobotData& data);
+void solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
+                   CommandSample& sample, RobotData& data);
+
+/// Some phase has no support.
+bool flies(const SampleJob& job);
+
+/// Of the weight: where the ground gives less there is no ZMP to correct, (17).
+inline constexpr double kZmpShare = 0.05;
 
 /// COG and ZMP of a motion driven by the body's tracks.
 struct CogPlan {
@@ -37,10 +48,12 @@ struct CogPlan {
   std::array<Eigen::Vector2d, 2> bump = {Eigen::Vector2d::Zero(),
                                          Eigen::Vector2d::Zero()};  ///< [begin, end](axis) [m]
   std::array<double, 2> omega = {1, 1};                             ///< at begin and end [1/s]
-  double duration = 0;                                              ///< [s]
+  TrunkTurn turn;
+  double duration = 0;  ///< [s]
 
   /// Commanded ZMP: the keys, moved where a start from rest asks for it.
   Eigen::Vector3d zmp_at(double t) const;
+  Eigen::Matrix3d trunk_at(const SampleJob& job, double t) const;
 };
 
 /// COG keys where given, the rest from the ZMP by (14)(15), corrected for the full model.

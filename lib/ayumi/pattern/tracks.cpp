@@ -8,6 +8,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/pattern/postures.hpp"
+#include "ayumi/pattern/quintic.hpp"
 
 namespace ayumi {
 
@@ -102,6 +103,41 @@ void KeyReader::read(const Keyframe& key) {
   if (key.fz) add(fz, key, *key.fz, model.mass() * kGravity, way);
   if (key.torso)
     for (int i = 0; i < 3; ++i) add(torso[i], key, (*key.torso)[i], 0, way);
+}
+
+bool same(double a, double b) { return std::abs(a - b) < kInstant; }
+
+// A flight between keys of a coordinate at its lift-off and its touchdown is a parabola, and so the
+// motion before and after meets its rate and acceleration. Keys on the way are the author's own.
+Keys with_flights(const FootPlan& feet, const Keys& keys, double acceleration) {
+  std::vector<QuinticEnd> ends;
+  std::vector<bool> moving(keys.size(), false);
+  for (const TrackKey& key : keys) ends.push_back({key.t, key.value, 0, 0});
+  const auto& phases = feet.phases();
+  for (size_t i = 0; i < phases.size(); ++i) {
+    if (phases[i].support != Support::none) continue;
+    for (size_t k = 0; k + 1 < keys.size(); ++k) {
+      if (!same(keys[k].t, feet.begin(static_cast<int>(i))) ||
+          !same(keys[k + 1].t, phases[i].until))
+        continue;
+      const double length = keys[k + 1].t - keys[k].t;
+      const double mean = (keys[k + 1].value - keys[k].value) / length;
+      ends[k] = {keys[k].t, keys[k].value, mean - acceleration * length / 2, acceleration};
+      ends[k + 1] = {keys[k + 1].t, keys[k + 1].value, mean + acceleration * length / 2,
+                     acceleration};
+      moving[k] = moving[k + 1] = true;
+    }
+  }
+  Keys result;
+  for (size_t k = 0; k < keys.size(); ++k) {
+    if (k > 0 && (moving[k - 1] || moving[k])) {
+      const Keys dense = quintic_keys({ends[k - 1], ends[k]});
+      result.insert(result.end(), dense.begin() + 1, dense.end());
+    } else {
+      result.push_back(keys[k]);
+    }
+  }
+  return result;
 }
 
 Eigen::VectorXd read_weights(const RobotModel& model, const Pattern& pattern) {
@@ -223,6 +259,8 @@ PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const
   KeyReader reader{model, pattern, feet, solved, height, {}, {}, {}, {}, {}, false, false, {}};
   reader.joints.resize(model.dof_count());
   for (const Keyframe& key : pattern.keyframes) reader.read(key);
+  for (int i = 0; i < 3; ++i)
+    reader.cog[i] = with_flights(feet, reader.cog[i], i == 2 ? -kGravity : 0.0);
 
   PatternTracks tracks;
   tracks.weight = read_weights(model, pattern);
@@ -267,7 +305,12 @@ std::array<Track, 3> default_zmp(const FootPlan& feet) {
   add(0, feet.support_center(0));
   const auto& phases = feet.phases();
   for (size_t i = 0; i < phases.size(); ++i) {
-    if (phases[i].support == Support::both || phases[i].support == Support::none) continue;
+    if (phases[i].support == Support::both) continue;
+    if (phases[i].support == Support::none) {
+      add(feet.begin(static_cast<int>(i)), feet.support_center(feet.begin(static_cast<int>(i))));
+      add(phases[i].until, feet.support_center(phases[i].until));
+      continue;
+    }
     const Side side = phases[i].support == Support::left ? Side::left : Side::right;
     const double begin = feet.begin(static_cast<int>(i));
     if (keys[0].size() == 1 && begin > kShift) add(begin - kShift, feet.support_center(0));

@@ -81,7 +81,9 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
   const bool fallen_before = r.fell_at >= 0;
   if (!fallen_before) {
     r.max_tilt = std::max(r.max_tilt, tilt);
-    r.apex = std::max(r.apex, sample.cog.z() - command.cog.z());
+    // In flight the command rises too: what counts is the height it left the ground with.
+    if (command.support != Support::none) level_ = command.cog.z();
+    r.apex = std::max(r.apex, sample.cog.z() - level_);
     r.max_penetration = std::max(r.max_penetration, report.max_penetration);
     r.max_contact_residual = std::max(r.max_contact_residual, report.contact_residual);
     r.max_contact_iterations = std::max(r.max_contact_iterations, report.contact_iterations);

@@ -40,6 +40,7 @@ class Judge {
   long zmp_count_ = 0;
   double iterations_ = 0;
   long ticks_ = 0;
+  double level_ = 0;                         // commanded COG height, in flight that of lift-off [m]
   double airborne_ = 0;                      // of the present flight [s]
   std::array<double, 2> unloaded_ = {0, 0};  // time each foot has been off the ground [s]
   std::array<bool, 2> in_stance_ = {false, false};

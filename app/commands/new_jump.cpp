@@ -1,0 +1,157 @@
+// ayumi new jump: a jump as keys, and the highest one that a profile's actuators allow.
+
+#include <algorithm>
+#include <memory>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "new_pattern.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+struct JumpOptions {
+  std::string robot = "hoap1", out, profile;
+  std::optional<double> height, stoop, cog_height;  // left out: HOAP-1's, scaled to the robot
+  double forward = 0;
+  int times = 1;
+  bool highest = false;
+};
+
+bool passes(const RobotModel& model, const JumpParameters& p, const std::string& profile) {
+  try {
+    const CommandSeries series = sample(model, jump_pattern(model, p));
+    CheckOptions options;
+    options.profile = profile;
+    return check_consistency(model, series, options).consistent;
+  } catch (const Error& error) {
+    // Out of the legs' reach, or no push of that shape.
+    if (error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage) return false;
+    throw;
+  }
+}
+
+// The first profile with which the check finds nothing; the last one when none is enough.
+std::string sufficient_profile(const RobotModel& model, const JumpParameters& p) {
+  const std::vector<std::string> names = model.profile_names();
+  for (const std::string& name : names)
+    if (passes(model, p, name)) return name;
+  return names.empty() ? std::string() : names.back();
+}
+
+constexpr double kStep = 2.5e-4;  // of the search for the highest jump [m]
+
+// Over a grid of lift-off heights and stoops, both in shares of the defaults: the greatest height
+// that passes, by doubling and halving from what the grid has given so far.
+JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std::string& profile,
+                            const Progress& progress) {
+  const JumpParameters scaled = jump_defaults(model);
+  JumpParameters best = p;
+  best.height = 0;
+  const std::vector<double> heights = {1.1, 1.05, 1, 0.95, 0.9, 0.86};
+  const std::vector<double> stoops = {1.2, 0.9, 0.6, 0.4, 0.25, 0.15};
+  int done = 0;
+  for (const double share : heights)
+    for (const double depth : stoops) {
+      report(progress, {"highest jump", done++ / 36.0, text::brief(1e3 * best.height, 3) + " mm"});
+      p.cog_height = share * scaled.cog_height;
+      p.stoop = depth * scaled.stoop;
+      const auto good = [&](double height) {
+        p.height = height;
+        return passes(model, p, profile);
+      };
+      double low = std::max(1e-3, best.height + kStep), high = low;
+      if (!good(low)) continue;
+      while (high < scaled.cog_height && good(2 * high)) high = low = 2 * high;
+      high = 2 * low;
+      while (high - low > kStep) {
+        const double middle = 0.5 * (low + high);
+        (good(middle) ? low : high) = middle;
+      }
+      best = p;
+      best.height = low;
+    }
+  return best;
+}
+
+std::vector<std::string> comments_of(const JumpParameters& p) {
+  const std::string way = p.forward == 0 ? "in place" : text::brief(p.forward) + " m forward each";
+  return {"Jumps " + std::to_string(p.times) + (p.times == 1 ? " time " : " times ") + way +
+              ": the COG rises " + text::brief(p.height) + " m above " + text::brief(p.cog_height) +
+              " m and stoops " + text::brief(p.stoop) + " m before and after.",
+          "Keys: stand, stoop, lift-off, touchdown, stoop, stand. In the flight (support none) the "
+          "COG is the",
+          "parabola through the keys at both its ends: a longer flight is a higher jump. Feet and "
+          "trunk follow."};
+}
+
+void new_jump(const Context& context, JumpOptions options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  JumpParameters p = jump_defaults(model);
+  p.height = options.height.value_or(p.height);
+  p.stoop = options.stoop.value_or(p.stoop);
+  p.cog_height = options.cog_height.value_or(p.cog_height);
+  p.forward = options.forward;
+  p.times = options.times;
+  if (options.highest) {
+    options.profile = model.limits(options.profile).name;
+    p = highest_jump(model, p, options.profile, context.progress());
+    if (p.height <= 0) {
+      context.print("profile " + options.profile +
+                    " allows no jump of 1 mm or more that the check accepts\n");
+      context.print_json("{\"pattern\": null}");
+      context.exit_code = 1;
+      return;
+    }
+    context.print("highest jump with profile " + options.profile + ": " +
+                  text::fixed(1e3 * p.height, 1) + " mm, from a COG height of " +
+                  text::fixed(p.cog_height, 3) + " m, stoop " + text::fixed(1e3 * p.stoop, 1) +
+                  " mm\n");
+  }
+  Pattern pattern = jump_pattern(model, p);
+  pattern.profile = options.profile.empty() ? sufficient_profile(model, p) : options.profile;
+  write_new_pattern(context, model, pattern, options.robot, options.out, comments_of(p));
+}
+
+}  // namespace
+
+void add_new_jump(CLI::App& parent, Context& context) {
+  auto shared = std::make_shared<JumpOptions>();
+  JumpOptions& options = *shared;
+  CLI::App* command = parent.add_subcommand("jump", "stoop, lift-off, flight, touchdown, settle");
+  command->footer(
+      "Examples:\n  ayumi new jump --height 0.02 -o jump.json\n"
+      "  ayumi new jump --times 3 -o hop.json\n"
+      "  ayumi new jump --forward 0.02 -o forward.json\n"
+      "  ayumi new jump --highest --profile hoap1 -o highest.json");
+  command->add_option("--robot", options.robot, "a bundled robot, a sidecar or a URDF")
+      ->type_name("ROBOT")
+      ->capture_default_str();
+  command->add_option("-o,--out", options.out, "pattern file to write")->type_name("F")->required();
+  const std::string scaled = "; left out: HOAP-1's scaled to the robot";
+  command->add_option("--height", options.height, "of the COG above ref z_G" + scaled)
+      ->type_name("M");
+  command->add_option("--stoop", options.stoop, "below ref z_G" + scaled)->type_name("M");
+  command
+      ->add_option("--cog-height", options.cog_height,
+                   "ref z_G, of lift-off and touchdown" + scaled)
+      ->type_name("M");
+  command->add_option("--forward", options.forward, "way of each jump")
+      ->capture_default_str()
+      ->type_name("M");
+  command->add_option("--times", options.times, "jumps in a row")
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      ->add_option("--profile", options.profile,
+                   "actuator profile to write; left out: the first one that is enough")
+      ->type_name("NAME");
+  command->add_flag("--highest", options.highest,
+                    "search height, ref z_G and stoop: the highest jump the profile allows");
+  command->callback([shared, &context] { new_jump(context, *shared); });
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,114 @@
+// The jumps of HOAP-1 carried by VIIP on the actuators of the paper's simulations, read from the
+// log: how high, how they land, what is conserved on the way.
+#include <gtest/gtest.h>
+
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/sim/simulate.hpp"
+#include "tests/support/jump_figures.hpp"
+
+namespace ayumi {
+namespace {
+
+constexpr double kRef = 0.22;  // ref z_G of the patterns [m]
+
+const RobotModel& hoap1() {
+  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  return model;
+}
+
+Pattern pattern_of(const std::string& name) {
+  return read_pattern(AYUMI_SOURCE_DIR "/patterns/" + name + ".json");
+}
+
+SimulationLog run(const Pattern& pattern, bool noise = false) {
+  SimulateOptions options;
+  options.controller = pattern.controller;
+  options.profile = pattern.profile;
+  options.world = pattern.world;
+  options.sensor_noise = noise;
+  options.seed = 1;
+  return simulate(hoap1(), sample(hoap1(), pattern), options);
+}
+
+Pattern with_goal(double height, double stoop, JumpGoal::Release release) {
+  Pattern pattern = pattern_of("hoap1_jump");
+  JumpGoal& goal = std::get<JumpGoal>(*pattern.phases[1].viip);
+  goal.height = height;
+  goal.stoop = stoop;
+  goal.release = release;
+  return pattern;
+}
+
+void expect_landing(const SimulationLog& log, double drift, const Eigen::Vector2d& way) {
+  EXPECT_EQ(log.result.outcome, Outcome::stands);
+  EXPECT_LE(test::feet_drift(hoap1(), log, way), drift);
+}
+
+TEST(Hoap1Jump, RisesAsPlannedLandsAndSettles) {
+  for (const double height : {0.02, 0.03, 0.04, 0.05}) {
+    SCOPED_TRACE(height);
+    const SimulationLog log = run(with_goal(height, 0.035, JumpGoal::Release::ref_z));
+    const auto jumps = test::jumps_of(hoap1(), log, kRef);
+    ASSERT_EQ(jumps.size(), 1u);
+    const test::JumpMeasured& j = jumps[0];
+    EXPECT_NEAR(j.apex, height, 0.05 * height);
+    EXPECT_NEAR(log.result.apex, j.apex, 1e-4);
+    EXPECT_NEAR(log.result.flight, j.touchdown - j.lift_off, 0.01);
+    EXPECT_GT(j.clearance, 0.003);
+    EXPECT_NEAR(j.stoop, 0.035, 0.15 * 0.035);
+    EXPECT_LT(j.momentum, 1e-6);
+    EXPECT_LT(test::settled_at(log, kRef, 0.003), j.lift_off + 0.7);
+    expect_landing(log, 0.010, Eigen::Vector2d::Zero());
+  }
+}
+
+TEST(Hoap1Jump, SpringHeldToItsEndRisesHigher) {
+  for (const double height : {0.03, 0.04}) {
+    SCOPED_TRACE(height);
+    const double stoop = 0.03;
+    const SimulationLog log = run(with_goal(height, stoop, JumpGoal::Release::spring));
+    const auto jumps = test::jumps_of(hoap1(), log, kRef);
+    ASSERT_EQ(jumps.size(), 1u);
+    const double expected = height + stoop * stoop / (4 * height);
+    EXPECT_NEAR(jumps[0].apex, expected, 0.1 * expected);
+    expect_landing(log, 0.010, Eigen::Vector2d::Zero());
+  }
+}
+
+TEST(Hoap1Jump, WithNoiseAndLatencyOfTheSensors) {
+  const SimulationLog log = run(pattern_of("hoap1_jump"), true);
+  const auto jumps = test::jumps_of(hoap1(), log, kRef);
+  ASSERT_EQ(jumps.size(), 1u);
+  EXPECT_NEAR(jumps[0].apex, 0.03, 0.05 * 0.03);
+  expect_landing(log, 0.010, Eigen::Vector2d::Zero());
+}
+
+TEST(Hoap1Jump, HopsThreeTimesInPlace) {
+  const SimulationLog log = run(pattern_of("hoap1_hop3"));
+  const auto jumps = test::jumps_of(hoap1(), log, kRef);
+  ASSERT_EQ(jumps.size(), 3u);
+  for (const test::JumpMeasured& j : jumps) EXPECT_NEAR(j.apex, 0.03, 0.1 * 0.03);
+  expect_landing(log, 0.020, Eigen::Vector2d::Zero());
+}
+
+TEST(Hoap1Jump, JumpsForward) {
+  const SimulationLog log = run(pattern_of("hoap1_jump_forward"));
+  ASSERT_EQ(test::jumps_of(hoap1(), log, kRef).size(), 1u);
+  expect_landing(log, 0.005, {0.02, 0});
+}
+
+TEST(Hoap1Jump, GeneratedKeysNeedTheStrongActuators) {
+  const Pattern pattern = jump_pattern(hoap1(), jump_defaults(hoap1()));
+  const CommandSeries series = sample(hoap1(), pattern);
+  EXPECT_TRUE(
+      check_consistency(hoap1(), series, {.profile = "hoap1-strong", .tolerances = {}}).consistent);
+  EXPECT_FALSE(
+      check_consistency(hoap1(), series, {.profile = "hoap1", .tolerances = {}}).consistent);
+}
+
+}  // namespace
+}  // namespace ayumi
