@@ -88,7 +88,7 @@ std::vector<std::string> comments_of(const JumpParameters& p) {
           "trunk follow."};
 }
 
-void new_jump(const Context& context, JumpOptions options) {
+void new_jump(Context& context, JumpOptions options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
   JumpParameters p = jump_defaults(model);
   p.height = options.height.value_or(p.height);
