@@ -51,13 +51,11 @@ void add_field(Triangles& target, const HeightField& field) {
 void add_patch(Triangles& target, const FrictionPatch& patch, double floor) {
   const auto share = static_cast<float>(std::clamp(patch.friction, 0.0, 1.0));
   const Vector4f color = {0.45f * share + 0.2f, 0.45f * share + 0.3f, 0.3f * share + 0.5f, 0.9f};
-  const Vector2d h = 0.5 * patch.size, c = patch.center;
-  add_face(
-      target,
-      {Vector3d(c.x() - h.x(), c.y() - h.y(), floor), Vector3d(c.x() + h.x(), c.y() - h.y(), floor),
-       Vector3d(c.x() + h.x(), c.y() + h.y(), floor),
-       Vector3d(c.x() - h.x(), c.y() + h.y(), floor)},
-      color);
+  const Vector2d &a = patch.low, &b = patch.high;
+  add_face(target,
+           {Vector3d(a.x(), a.y(), floor), Vector3d(b.x(), a.y(), floor),
+            Vector3d(b.x(), b.y(), floor), Vector3d(a.x(), b.y(), floor)},
+           color);
 }
 
 }  // namespace
@@ -68,7 +66,7 @@ Triangles make_scenery(const World& world) {
   for (const GroundBlock& block : world.blocks) add_block(local, block, world.height);
   for (const HeightField& field : world.fields) add_field(local, field);
   Eigen::Isometry3d slope = Eigen::Isometry3d::Identity();
-  slope.linear() = exp_rotation({world.slope.x(), world.slope.y(), 0});
+  slope.linear() = exp_rotation(Vector3d(world.slope.x(), world.slope.y(), 0)).toRotationMatrix();
   Triangles scenery;
   append(scenery, local, slope);
   return scenery;
