@@ -28,10 +28,11 @@ std::vector<TrackKey> quintic_keys(const std::vector<QuinticEnd>& points) {
   for (size_t i = 1; i < points.size(); ++i) {
     const QuinticEnd &from = points[i - 1], &to = points[i];
     const int steps = std::max(1, static_cast<int>(std::ceil((to.t - from.t) / kSpacing - 1e-9)));
-    for (int k = 1; k <= steps; ++k) {
-      const double t = k == steps ? to.t : from.t + (to.t - from.t) * k / steps;
+    for (int k = 1; k < steps; ++k) {
+      const double t = from.t + (to.t - from.t) * k / steps;
       keys.push_back({t, quintic_at(from, to, t).value, Interpolation::spline});
     }
+    keys.push_back({to.t, to.value, Interpolation::spline});
   }
   return keys;
 }
