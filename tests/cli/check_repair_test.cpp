@@ -1,5 +1,6 @@
 // The commands check and repair on the HOAP-1 walk, whole and with faults put into its file.
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
@@ -166,7 +167,8 @@ TEST_F(CheckRepair, LocksInWords) {
   EXPECT_EQ(locked.exit_code, 4) << locked.out << locked.err;
   const Json json = Json::parse(locked.out);
   ASSERT_FALSE(json["obstacles"].empty());
-  EXPECT_EQ(json["obstacles"][0]["kind"], "support_margin");
+  EXPECT_TRUE(std::any_of(json["obstacles"].begin(), json["obstacles"].end(),
+                          [](const Json& o) { return o["kind"] == "support_margin"; }));
   EXPECT_NE(std::string(json["reasons"][0]).find("that window is locked"), std::string::npos);
   EXPECT_EQ(folder.files(), std::vector<std::string>{"outside.json"});
 }

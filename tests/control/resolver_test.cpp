@@ -91,7 +91,7 @@ TEST(Resolver, NearlyStraightKneesLetTheHeightGiveWay) {
 }
 
 TEST(Resolver, AKneeAtItsStopIsHeld) {
-  Standing robot(0.8, true);
+  Standing robot(0.7, true);
   const Resolution r = robot.solve({0, 0.03, 0.05});
   EXPECT_FALSE(r.held.empty());
   EXPECT_TRUE(r.yielding.height);

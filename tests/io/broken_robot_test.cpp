@@ -215,7 +215,9 @@ TEST(BrokenRobot, WrongSidecars) {
             "robot.json: /profiles/a/l_hip: 0 is not possible; give a number above 0");
   const TemporaryFolder folder;
   folder.write("robot.json", sidecar(""));
-  EXPECT_EQ(message_of(folder, "robot.json"), "robot.urdf: no such file");
+  EXPECT_EQ(message_of(folder, "robot.json"),
+            "robot.json: /urdf: there is no robot.urdf, and no folder of --robot-path has "
+            "robot.urdf, itself or in urdf/");
   folder.write("robot.json", "");
   EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty, JSON is needed");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");

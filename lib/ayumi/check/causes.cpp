@@ -4,7 +4,8 @@
 //   foot      one foot out of its place shows as slip, depth and height: the largest is the cause
 //   posture   an angle beyond its limit, a collision, a foot out of place or a jump between two
 //             samples  ->  forces and residuals, as long as the posture is off the command; an
-//             angle also  ->  its rates and the feet on its leg
+//             angle also  ->  its rates and the feet on its leg; but not a ZMP outside the support
+//             that the command itself asks for
 //   phase     a foot that is said to land too early  ->  forces at the other end of that phase,
 //             where the other foot is let go too early
 //   flight    a COG that does not fall freely  ->  the moment of the same force, f_z, COG residual
@@ -139,6 +140,17 @@ class Causes {
     return false;
   }
 
+  // A ZMP outside the support because the command wants it there: no posture is to blame.
+  bool is_asked_for(const Violation& v) {
+    if (v.kind != Kind::support_margin) return false;
+    const Vector3d zmp = pass_.dynamics.at(v.sample, 1).use.zmp_world;
+    const Vector3d& command = pass_.series.samples[v.sample].zmp;
+    const SupportPlane& plane = pass_.dynamics.plane();
+    const Vector3d inside = plane.frame.inverse() * command;
+    return (zmp - command).norm() <= pass_.tolerance(Kind::zmp_residual) &&
+           plane.polygon.margin(inside.head<2>()) < -kRounding;
+  }
+
   void posture(Kind kind) {
     for (int i = 0; i < count(); ++i) {
       if (of(i).kind != kind || !open(i)) continue;
@@ -146,6 +158,7 @@ class Causes {
       const bool places_feet = joint && in_a_leg(of(i).item);
       blame(i, episode(i), [&](int j) {
         const Violation& v = of(j);
+        if (is_asked_for(v)) return false;
         if (is_need(v) || is_residual(v.kind)) return true;
         if (places_feet && is_foot(v.kind)) return true;
         const bool rate = v.kind == Kind::joint_speed || v.kind == Kind::servo_step;

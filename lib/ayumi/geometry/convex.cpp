@@ -249,6 +249,7 @@ ConvexPair convex_pair(const ConvexCore& a, const Isometry3d& pose_a, const Conv
     if (!(next.squaredNorm() < square)) break;  // no nearer for rounding
     simplex = std::move(grown);
     nearest = next;
+    if (simplex.vertices.size() == 4) nearest.setZero();  // the origin is inside
   }
   ConvexPair pair;
   pair.distance = nearest.norm();

@@ -166,9 +166,9 @@ std::vector<Obstacle> obstacles(const RobotModel& model, const CommandSeries& se
     o.time_factor = time_factor(model, series, o.finding, options.check);
     o.text = what(o.finding, o.excess) + " " + window_text(o.finding) + ", ";
     if (at_locked_joint(o.finding, options))
-      o.text += o.finding.where + " is locked: unlock it, or ";
+      o.text += o.finding.where + " is locked; unlock it, or else: ";
     else if (within_lock(o.finding, options))
-      o.text += "that window is locked: unlock it, or ";
+      o.text += "that window is locked; unlock it, or else: ";
     o.text += remedy(o);
     result.push_back(std::move(o));
   }
