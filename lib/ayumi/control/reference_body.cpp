@@ -28,9 +28,10 @@ VectorXd servo_lead(const RobotModel& model) {
 }
 
 ReferenceBody::ReferenceBody(const RobotModel& model, const ActuatorLimits& limits, double dt,
-                             const RobotState& start)
+                             const RobotState& start, const ResolverOptions& options)
     : model_(&model),
       limits_(limits),
+      options_(options),
       dt_(dt),
       data_(model),
       weight_(model.joint_weight()),
@@ -78,7 +79,8 @@ void ReferenceBody::advance(const CogReference& wanted, double z, const CommandS
   ref.dcog = dcog_;
 
   const Resolution resolution =
-      resolve(*model_, limits_, reference_, data_, anchor_, dcog_, command, next, dt_, weight_);
+      resolve(*model_, limits_, reference_, data_, anchor_, dcog_, command, next, dt_, weight_,
+              options_);
   for (const std::string& note : limit_notes(*model_, resolution)) out.notes.push_back(note);
 
   reference_.dtheta = resolution.dtheta;

@@ -42,7 +42,7 @@ Eigen::VectorXd servo_lead(const RobotModel& model);
 class ReferenceBody {
  public:
   ReferenceBody(const RobotModel& model, const ActuatorLimits& limits, double dt,
-                const RobotState& start);
+                const RobotState& start, const ResolverOptions& options = {});
 
   /// Goes on from what another law left.
   void take_over(const Handover& handover);
@@ -68,6 +68,7 @@ class ReferenceBody {
  private:
   const RobotModel* model_;
   ActuatorLimits limits_;
+  ResolverOptions options_;
   double dt_;
   RobotData data_;
   Eigen::VectorXd weight_, lead_, previous_target_;

@@ -164,6 +164,7 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
     }
     attempt.yielding = yielding;
     result = attempt;
+    if (!options.in_order) break;
     if (result.scale == 1 && (result.held.empty() || meets(rows, wanted, result.dtheta))) break;
   }
   return result;

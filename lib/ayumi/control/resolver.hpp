@@ -17,6 +17,7 @@ struct ResolverOptions {
   double damping = 1e-5;        ///< of J_U W^-1 J_U', times trace / rows
   double angular_length = 0.2;  ///< that makes angular rows comparable with linear ones [m]
   double speed_share = 0.98;    ///< of a joint's speed limit that may be used
+  bool in_order = true;         ///< tasks give way one after the other; false: all of them together
 };
 
 /// Tasks that may give way to a joint's limit, in this order.

@@ -120,7 +120,7 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
       dt_(dt),
       omega_(std::sqrt(kGravity / (held.cog.z() - ground_of(held.feet)))),
       height_(held.cog.z() - ground_of(held.feet)),
-      body_(model, limits, dt, start.reference),
+      body_(model, limits, dt, start.reference, {.in_order = false}),
       held_(held),
       plan_(held),
       footsteps_(model, start.plan.feet, (params.single + params.both) / omega_,

@@ -199,6 +199,7 @@ Resolution ViipJump::resolve_standing(const Vector3d& trunk_rate, double level) 
   wanted.state.base_angular_velocity = trunk_rate;
   ResolverOptions options;
   options.trunk_rate *= level;
+  options.in_order = false;  // the height is what a jump is about
   return resolve(*model_, limits_, reference_, data_, anchor_, dcog_, wanted, wanted, dt_, weight_,
                  options);
 }
