@@ -7,6 +7,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/io/robot_file.hpp"
 #include "tests/support/mujoco_model.hpp"
 #include "tests/support/random_robot.hpp"
@@ -58,6 +59,67 @@ TEST_P(MujocoRandomTrees, AgreeOnSameNumbers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MujocoRandomTrees, testing::Range(1u, 13u));
+
+/// Forward dynamics with rotors and viscous friction, COG Jacobian and centroidal momentum.
+TEST_P(MujocoRandomTrees, AgreeOnMotionUnderForces) {
+  const RobotModel model(test::random_tree(GetParam(), 6 + static_cast<int>(GetParam()), false));
+  auto other = test::MujocoRobot::from_model(model);
+  test::Random random(GetParam() + 300);
+  RobotData data(model);
+  TreeDynamics fast(model);
+  const int n = model.dof_count();
+  const JointDrive drive{random.vector(n, 0.01).cwiseAbs(), random.vector(n, 0.1).cwiseAbs(),
+                         Eigen::VectorXd::Zero(n)};
+  Eigen::VectorXd found;
+  for (int i = 0; i < kStates; ++i) {
+    const RobotState state = test::random_state(model, random);
+    const Eigen::VectorXd force = random.vector(model.velocity_count(), 2.0);
+    other.set_rotors(drive.rotor_inertia, drive.viscous);
+    other.set_state(state);
+    fast.forward(state, force, found, &drive);
+    EXPECT_LT(relative(other.acceleration(force), found), 1e-9) << "with drives, state " << i;
+    other.set_rotors(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n));
+    articulated_body_acceleration(model, state, force, data, found);
+    EXPECT_LT(relative(other.acceleration(force), found), 1e-9) << "state " << i;
+    fast.forward(state, force, found);
+    EXPECT_LT(relative(other.acceleration(force), found), 1e-9) << "link axes, state " << i;
+    EXPECT_LT(relative(other.cog_jacobian(), cog_jacobian_floating(model, data)), 1e-9);
+    const Momentum ours = centroidal_momentum(model, data);
+    const auto [linear, angular] = other.momentum();
+    EXPECT_LT(relative(linear, ours.linear), 1e-9);
+    EXPECT_LT(relative(angular, ours.angular), 1e-9);
+  }
+}
+
+/// Mimic joints, continuous joints, joints out of order: MuJoCo has the tree with every joint free,
+/// and the tie theta_free = G theta + offset reduces it to ours: M = G' M_free G and so on.
+TEST_P(MujocoRandomTrees, AgreeOnTiedJoints) {
+  const RobotModel model(test::odd_tree(GetParam(), 8 + static_cast<int>(GetParam())));
+  const test::FreedTree freed(model);
+  const Eigen::MatrixXd T = freed.map();
+  auto other = test::MujocoRobot::from_model(freed.model);
+  test::Random random(GetParam() + 400);
+  RobotData data(model);
+  Eigen::MatrixXd M;
+  Eigen::VectorXd found;
+  for (int i = 0; i < kStates; ++i) {
+    const RobotState state = test::random_state(model, random);
+    other.set_state(freed.state(state));
+    const Eigen::VectorXd force = random.vector(model.velocity_count(), 2.0);
+    const Eigen::VectorXd bias = bias_force(model, state, data);
+    mass_matrix(model, data, M);
+    const Eigen::MatrixXd their_mass = T.transpose() * other.mass_matrix() * T;
+    const Eigen::VectorXd their_bias = T.transpose() * other.bias_force();
+    EXPECT_LT(relative(other.cog(), data.cog), 1e-9);
+    EXPECT_LT(relative(their_mass, M), 1e-9) << "mass matrix, state " << i;
+    EXPECT_LT(relative(their_bias, bias), 1e-9) << "bias force, state " << i;
+    EXPECT_LT(relative(other.cog_jacobian() * T, cog_jacobian_floating(model, data)), 1e-9);
+    TreeDynamics(model).forward(state, force, found);
+    EXPECT_LT(relative(their_mass.llt().solve(force - their_bias), found), 1e-9);
+    const Momentum ours = centroidal_momentum(model, data);
+    EXPECT_LT(relative(other.momentum().second, ours.angular), 1e-9);
+  }
+}
 
 TEST(MujocoHoap1, AgreesOnSameNumbers) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1/robot.json");

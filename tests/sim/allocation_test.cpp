@@ -9,11 +9,14 @@
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/supports.hpp"
+#include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/plant.hpp"
 #include "ayumi/sim/sensors.hpp"
+#include "tests/support/random_robot.hpp"
 
 extern "C" void* __libc_malloc(size_t);
 extern "C" void* __libc_realloc(void*, size_t);
@@ -90,6 +93,35 @@ TEST(Allocations, DynamicsHaveNoneWithTheirWorkspace) {
               factor.solve(force);
             }),
             0);
+}
+
+TEST(Allocations, ForwardDynamicsAndDerivativesHaveNoneAfterTheFirstCall) {
+  for (const bool mimic : {false, true}) {
+    const RobotModel model(test::random_tree(3, 16, mimic));
+    ASSERT_EQ(mimic, static_cast<int>(model.bodies().size()) != model.dof_count() + 1);
+    RobotData data(model);
+    const RobotState state = model.rest_state();
+    const JointDrive drive = joint_drive(model);
+    const VectorXd force = VectorXd::Ones(model.velocity_count());
+    VectorXd acceleration;
+    InverseDynamicsDerivatives inverse;
+    ForwardDynamicsDerivatives forward;
+    Eigen::MatrixXd J;
+    Eigen::MatrixXd M;
+    TreeDynamics fast(model);
+    const auto work = [&] {
+      fast.inverse(state, force, acceleration);
+      fast.forward(state, force, acceleration, &drive);
+      fast.mass_matrix(state, M);
+      fast.inverse_derivatives(state, acceleration, inverse);
+      fast.forward_derivatives(state, force, forward, &drive);
+      update_positions(model, state, data);
+      held_base_cog_jacobian(model, data, J);
+      if (!mimic) articulated_body_acceleration(model, state, force, data, acceleration);
+    };
+    work();
+    EXPECT_EQ(allocations_of(work), 0);
+  }
 }
 
 }  // namespace

@@ -66,6 +66,33 @@ class MujocoRobot {
   }
   Eigen::Vector3d cog() const { return Eigen::Map<Eigen::Vector3d>(data_->subtree_com); }
 
+  Eigen::MatrixXd cog_jacobian() const {
+    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> J(3, model_->nv);
+    mj_jacSubtreeCom(model_.get(), data_.get(), J.data(), 1);
+    return J * to_ours();
+  }
+  /// Linear momentum, and angular momentum about the COG.
+  std::pair<Eigen::Vector3d, Eigen::Vector3d> momentum() const {
+    mj_subtreeVel(model_.get(), data_.get());
+    return {mass() * Eigen::Map<Eigen::Vector3d>(data_->subtree_linvel + 3),
+            Eigen::Map<Eigen::Vector3d>(data_->subtree_angmom + 3)};
+  }
+  void set_rotors(const Vector& inertia, const Vector& damping) {
+    for (size_t i = 0; i < columns_.size(); ++i) {
+      model_->dof_armature[columns_[i]] = inertia[static_cast<int>(i)];
+      model_->dof_damping[columns_[i]] = damping[static_cast<int>(i)];
+    }
+  }
+  /// Acceleration under a generalised force in the last state set, both in Ayumi's coordinates.
+  Vector acceleration(const Vector& force) {
+    const Matrix T = to_ours();  // a permutation and a turn: its inverse is its transpose
+    Eigen::Map<Vector>(data_->qfrc_applied, model_->nv) = T * force;
+    mj_forward(model_.get(), data_.get());
+    return T.transpose() * Eigen::Map<Vector>(data_->qacc, model_->nv);
+  }
+  /// What turns Ayumi's velocities, accelerations and forces into MuJoCo's in the last state set.
+  Matrix to_theirs() const { return to_ours(); }
+
   /// qfrc_bias in Ayumi's coordinates.
   Vector bias_force() const {
     return to_ours().transpose() * Eigen::Map<Vector>(data_->qfrc_bias, model_->nv);

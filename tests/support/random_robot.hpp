@@ -76,6 +76,71 @@ inline RobotDescription random_tree(unsigned seed, int links, bool mimic = true)
   return d;
 }
 
+/// A random tree of every kind the reader knows: continuous joints, chains of mimic joints anywhere
+/// (not only at a leaf), axes of any length, some along the axes of their frame, joints told out of
+/// order.
+inline RobotDescription odd_tree(unsigned seed, int links) {
+  RobotDescription d = random_tree(seed, links, false);
+  Random random(seed + 500);
+  std::string driver;
+  for (JointDescription& joint : d.joints) {
+    if (joint.type == JointType::fixed) continue;
+    const int kind = static_cast<int>(random.uniform(0, 6));
+    if (kind == 0 && joint.type == JointType::revolute) joint.type = JointType::continuous;
+    if (kind <= 2)
+      joint.axis = (kind == 0 ? -1 : 1) * Eigen::Vector3d::Unit(static_cast<int>(seed + 1) % 3);
+    if (kind == 2) joint.origin.linear().setIdentity();
+    if (kind == 5 && !driver.empty()) {
+      joint.mimic = driver;
+      joint.mimic_multiplier = random.uniform(-1.5, 1.5);
+      joint.mimic_offset = random.uniform(-0.3, 0.3);
+    }
+    if (kind >= 4) driver = joint.name;  // mimics of mimics among them
+    joint.axis *= random.uniform(0.5, 3);
+  }
+  for (size_t i = d.joints.size(); i > 1; --i)
+    std::swap(d.joints[i - 1],
+              d.joints[static_cast<size_t>(random.uniform(0, static_cast<double>(i) - 1e-9))]);
+  return d;
+}
+
+/// The same tree with its mimic joints set free, and what frees them:
+/// theta of the free tree = G theta + offset.
+struct FreedTree {
+  explicit FreedTree(const RobotModel& tied) : model(freed(tied.description())) {
+    G = Eigen::MatrixXd::Zero(model.dof_count(), tied.dof_count());
+    offset = Eigen::VectorXd::Zero(model.dof_count());
+    for (const Body& body : tied.bodies()) {
+      if (body.parent < 0) continue;
+      for (const Body& other : model.bodies())
+        if (other.name == body.name) {
+          G(other.dof, body.dof) = body.ratio;
+          offset[other.dof] = body.offset;
+        }
+    }
+  }
+  static RobotDescription freed(RobotDescription d) {
+    for (JointDescription& joint : d.joints) joint.mimic.clear();
+    return d;
+  }
+  RobotState state(const RobotState& s) const {
+    RobotState result = s;
+    result.theta = G * s.theta + offset;
+    result.dtheta = G * s.dtheta;
+    return result;
+  }
+  /// Generalised velocity of the free tree per that of the tied one.
+  Eigen::MatrixXd map() const {
+    Eigen::MatrixXd T = Eigen::MatrixXd::Zero(6 + G.rows(), 6 + G.cols());
+    T.topLeftCorner<6, 6>().setIdentity();
+    T.bottomRightCorner(G.rows(), G.cols()) = G;
+    return T;
+  }
+  RobotModel model;
+  Eigen::MatrixXd G;
+  Eigen::VectorXd offset;
+};
+
 inline RobotState random_state(const RobotModel& model, Random& random) {
   RobotState s;
   s.base.position = random.vector(1.0);

@@ -1,0 +1,29 @@
+#pragma once
+// What gears and motors add to the rigid tree of dynamics/inverse_dynamics.hpp: rotor inertia and
+// friction, one entry per dof. Inverse dynamics with drives is the tree's force plus
+// drive_torque(); forward dynamics takes them as an argument.
+
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+struct JointDrive {
+  Eigen::VectorXd rotor_inertia;  ///< reflected through the gear [kg m^2]
+  Eigen::VectorXd viscous;        ///< [N m s/rad]
+  Eigen::VectorXd coulomb;        ///< dry friction [N m]
+  double stick_rate = 1e-3;       ///< joint rate below which dry friction falls to zero [rad/s]
+};
+
+/// Of the robot's servos.
+JointDrive joint_drive(const RobotModel& model);
+
+/// Torque that friction takes from each dof and its derivative by the rate:
+/// viscous dq + coulomb clamp(dq / stick_rate, -1, 1).
+double friction_torque(const JointDrive& drive, int dof, double rate);
+double friction_slope(const JointDrive& drive, int dof, double rate);
+
+/// What the motors must give beyond the tree's force: rotor ddq + friction [N m], by dof.
+Eigen::VectorXd drive_torque(const JointDrive& drive, const Eigen::VectorXd& dtheta,
+                             const Eigen::VectorXd& ddtheta);
+
+}  // namespace ayumi

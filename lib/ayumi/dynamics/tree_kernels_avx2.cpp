@@ -1,0 +1,34 @@
+// Compiled with -mavx2 where the compiler knows it; empty otherwise. No fused multiply-add: every
+// instruction set gives the same bits.
+#include "ayumi/dynamics/tree_kernels.hpp"
+
+#ifdef __AVX2__
+
+namespace {
+typedef double Wide __attribute__((vector_size(32)));
+}
+#include "ayumi/dynamics/tree_kernels_body.hpp"
+
+namespace ayumi::kernels {
+
+const Kernels* avx2_kernels() {
+  static constexpr Kernels kernels = {"AVX2",
+                                      4,
+                                      inverse_dynamics<double>,
+                                      forward_dynamics<double>,
+                                      mass_matrix<double>,
+                                      inverse_dynamics<Wide>,
+                                      forward_dynamics<Wide>,
+                                      sines_and_cosines};
+  return &kernels;
+}
+
+}  // namespace ayumi::kernels
+
+#else
+
+namespace ayumi::kernels {
+const Kernels* avx2_kernels() { return nullptr; }
+}  // namespace ayumi::kernels
+
+#endif

@@ -1,0 +1,59 @@
+#pragma once
+// The same robot in the same states for Ayumi and every other library found: what each can do, and
+// a measurement in interleaved rounds, so that a busy machine slows all of them alike.
+
+#include <Eigen/Dense>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi::bench {
+
+/// A robot and random states of it, accelerations and forces (6+dof, Ayumi's conventions).
+struct Problem {
+  Problem(const RobotModel& robot, int count);
+  const RobotModel* model;
+  std::vector<RobotState> states;
+  std::vector<Eigen::VectorXd> accelerations, forces;
+};
+
+/// One job of one library.
+struct Kernel {
+  std::string job;                  ///< "RNEA", "ABA", ...
+  std::string who;                  ///< "Ayumi", "MuJoCo", ...
+  std::string note;                 ///< what is done where it is not quite the same
+  std::function<void(size_t)> run;  ///< on state i of the problem
+  /// What `run` found on state i, in Ayumi's conventions, the same list of numbers for every
+  /// library; empty: not compared.
+  std::function<Eigen::VectorXd(size_t)> result;
+  int states_per_call = 1;
+};
+
+using Kernels = std::vector<Kernel>;
+Kernels ayumi_kernels(const Problem& problem);
+Kernels mujoco_kernels(const Problem& problem);
+Kernels dart_kernels(const Problem& problem);
+Kernels bullet_kernels(const Problem& problem);
+Kernels pinocchio_kernels(const Problem& problem);
+Kernels rbdl_kernels(const Problem& problem);
+
+/// Base parts differ between libraries (axes, order), joint parts do not.
+inline Eigen::VectorXd joint_part(const Eigen::VectorXd& v) { return v.tail(v.size() - 6); }
+inline Eigen::VectorXd flat(const Eigen::MatrixXd& m) {
+  return Eigen::Map<const Eigen::VectorXd>(m.data(), m.size());
+}
+
+/// Largest difference to the first kernel of the same job over some states, relative to its norm;
+/// -1 where there is nothing to compare.
+double disagreement(const Kernels& kernels, const Kernel& kernel, const Problem& problem);
+
+/// Median over rounds of the median time per state [ns], by kernel.
+std::vector<double> measure(const Kernels& kernels, const Problem& problem, int rounds,
+                            double seconds_per_round);
+
+/// The real walking pattern in the closed loop, own plant and MuJoCo's: prints speed and physics.
+int run_closed_loop(int rounds);
+
+}  // namespace ayumi::bench

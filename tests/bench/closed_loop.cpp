@@ -1,0 +1,120 @@
+// Plant, sensors, estimator and controller on the walking pattern, 1 kHz, one core. The physics of
+// the run stands beside its speed: a fast step that sinks or slips is no faster.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <numeric>
+
+#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/simulator.hpp"
+#include "tests/bench/bench.hpp"
+#ifdef BENCH_HAS_MUJOCO
+#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#endif
+
+namespace ayumi::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Any plant; takes down how long each of its steps took [us].
+struct TimedPlant {
+  AnyPlant inner;
+  std::shared_ptr<double> step_time;
+  const RobotState& state() const { return inner.state(); }
+  const RobotData& data() const { return inner.data(); }
+  void set_state(const RobotState& state) { inner.set_state(state); }
+  const StepReport& step(const Eigen::VectorXd& targets,
+                         const std::vector<ExternalWrench>& wrenches, double dt) {
+    const auto start = Clock::now();
+    const StepReport& report = inner.step(targets, wrenches, dt);
+    *step_time = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    return report;
+  }
+};
+
+/// The run is the same in every round, so the least time of each tick is what it takes when nothing
+/// else gets in the way.
+struct Contender {
+  std::string name;
+  PlantKind kind;
+  std::vector<double> loop = {}, plant = {};  ///< least time of each tick [us]
+  SimulationLog log = {};
+};
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+void keep_least(std::vector<double>& times, size_t tick, double time) {
+  if (tick == times.size()) times.push_back(time);
+  times[tick] = std::min(times[tick], time);
+}
+
+void run_once(const RobotModel& model, const CommandSeries& series, SimulateOptions options,
+              Contender& contender) {
+  const auto step_time = std::make_shared<double>(0);
+  const PlantKind kind = contender.kind;
+  options.plant.name = kind.name;
+  options.plant.make = [kind, step_time](const RobotModel& robot, const ActuatorLimits& limits,
+                                         const World& world) {
+    return AnyPlant(TimedPlant{
+        kind.make ? kind.make(robot, limits, world) : AnyPlant(Plant(robot, limits, world)),
+        step_time});
+  };
+  Simulator simulator(model, series, options);
+  bool goes_on = true;
+  for (size_t tick = 0; goes_on; ++tick) {
+    const auto start = Clock::now();
+    goes_on = simulator.advance(1);
+    const double time = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    keep_least(contender.loop, tick, time);
+    keep_least(contender.plant, tick, *step_time);
+  }
+  contender.log = simulator.take_log();
+}
+
+void report(const Contender& c, const Contender& ours, double dt) {
+  const double loop = mean(c.loop), plant = mean(c.plant);
+  double residual = 0;
+  for (const SimulationSample& sample : c.log.samples)
+    residual = std::max(residual, sample.contact_residual);
+  const SimulationResult& r = c.log.result;
+  std::printf(
+      "%-8s %9.2f %9.2f %8.1fx %7.2f %7.2f   %s, penetration %.3f mm, slip %.2f mm, "
+      "residual %.0e m/s, COG at the end %.2f mm off\n",
+      c.name.c_str(), loop, plant, 1e6 * dt / loop, loop / mean(ours.loop),
+      plant / mean(ours.plant), name_of(r.outcome), 1e3 * r.max_penetration, 1e3 * r.max_slip,
+      residual, 1e3 * r.final_cog_error);
+}
+
+}  // namespace
+
+int run_closed_loop(int rounds) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
+  const CommandSeries series = sample(model, pattern);
+  SimulateOptions options;
+  options.controller = pattern.controller;
+  options.world = pattern.world;
+  std::vector<Contender> contenders;
+  contenders.push_back({"Ayumi", {}});
+#ifdef BENCH_HAS_MUJOCO
+  contenders.push_back({"MuJoCo", mujoco_plant_kind()});
+#endif
+  for (int round = 0; round < rounds; ++round)
+    for (Contender& each : contenders) run_once(model, series, options, each);
+  std::printf("hoap1_walk.json with its controller, least time of each step in %d rounds\n",
+              rounds);
+  std::printf("%-8s %9s %9s %9s %7s %7s\n", "plant", "loop us", "plant us", "real time", "loop",
+              "plant");
+  for (const Contender& each : contenders) report(each, contenders.front(), series.dt);
+  return 0;
+}
+
+}  // namespace ayumi::bench

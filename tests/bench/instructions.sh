@@ -1,0 +1,18 @@
+#!/bin/sh
+# Instructions per state of every kernel: two runs under callgrind that differ in their number of
+# calls alone, so that start and reading cancel. Usage: instructions.sh BENCH VALGRIND
+set -eu
+bench=$1 valgrind=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+count() {
+  "$valgrind" --tool=callgrind --callgrind-out-file="$folder/out" "$bench" --count "$1" "$2" "$3" \
+    2>/dev/null
+  sed -n 's/^\(summary\|totals\): *//p' "$folder/out" | tail -n 1
+}
+printf '%-28s %-18s %12s\n' job library 'Ir per state'
+"$bench" --list | while IFS="$(printf '\t')" read -r job who states; do
+  few=$(count "$job" "$who" 128)
+  many=$(count "$job" "$who" 384)
+  printf '%-28s %-18s %12d\n' "$job" "$who" $(((many - few) / 256 / states))
+done
