@@ -29,10 +29,9 @@ struct TimedPlant {
   const RobotState& state() const { return inner.state(); }
   const RobotData& data() const { return inner.data(); }
   void set_state(const RobotState& state) { inner.set_state(state); }
-  const StepReport& step(const Eigen::VectorXd& targets,
-                         const std::vector<ExternalWrench>& wrenches, double dt) {
+  const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt) {
     const auto start = Clock::now();
-    const StepReport& report = inner.step(targets, wrenches, dt);
+    const StepReport& report = inner.step(targets, input, dt);
     *step_time = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
     return report;
   }

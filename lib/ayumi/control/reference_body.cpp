@@ -78,9 +78,8 @@ void ReferenceBody::advance(const CogReference& wanted, double z, const CommandS
   if (dcog_.norm() > speed) dcog_ *= speed / dcog_.norm();
   ref.dcog = dcog_;
 
-  const Resolution resolution =
-      resolve(*model_, limits_, reference_, data_, anchor_, dcog_, command, next, dt_, weight_,
-              options_);
+  const Resolution resolution = resolve(*model_, limits_, reference_, data_, anchor_, dcog_,
+                                        command, next, dt_, weight_, options_);
   for (const std::string& note : limit_notes(*model_, resolution)) out.notes.push_back(note);
 
   reference_.dtheta = resolution.dtheta;

@@ -107,11 +107,20 @@ std::string what(const Finding& f, double excess) {
          text::brief(f.limit) + " " + f.unit;
 }
 
+// Whether playing it slower could change anything.
+bool of_time(const Finding& f) {
+  const bool of_command = f.kind.ends_with("_residual");
+  const bool of_place =
+      f.kind.starts_with("foot_") || f.kind == "joint_position" || f.kind == "self_collision";
+  const bool of_mean = f.kind == "continuous_torque";  // the window is the motor's
+  return !of_command && !of_place && !of_mean;
+}
+
 std::string remedy(const Obstacle& o) {
   if (o.time_factor > 1)
     return "that window needs to be " + text::fixed(std::ceil(10 * o.time_factor - 1e-9) / 10, 1) +
            " times longer";
-  return "slowing that window down does not help: " + o.finding.hint;
+  return (of_time(o.finding) ? "slowing that window down does not help: " : "") + o.finding.hint;
 }
 
 bool within_lock(const Finding& f, const RepairOptions& options) {
@@ -128,12 +137,7 @@ bool at_locked_joint(const Finding& f, const RepairOptions& options) {
 
 double time_factor(const RobotModel& model, const CommandSeries& series, const Finding& finding,
                    const CheckOptions& options) {
-  const bool of_command = finding.kind.ends_with("_residual");
-  const bool of_place = finding.kind.starts_with("foot_") || finding.kind == "joint_position" ||
-                        finding.kind == "self_collision";
-  const bool of_mean = finding.kind == "continuous_torque";  // the window is the motor's
-  if (of_command || of_place || of_mean || !passes(model, series, finding, kSlowest, options))
-    return 0;
+  if (!of_time(finding) || !passes(model, series, finding, kSlowest, options)) return 0;
   double low = 1, high = kSlowest;
   while (high - low > 0.01) {
     const double middle = 0.5 * (low + high);
