@@ -4,11 +4,17 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 ayumi=${AYUMI:-build/release/app/ayumi}
+if [ ! -x "$ayumi" ]; then
+  echo "$ayumi is not there: run examples/quickstart.sh first, or set AYUMI" >&2
+  exit 3
+fi
 
+out=${1:-out}
 for name in hoap1_viip_shift hoap1_viip_step hoap1_viip_walk; do
-  out=out/$name
-  "$ayumi" run "patterns/$name.json" -o "$out" --force
+  run=$out/$name
+  "$ayumi" run "patterns/$name.json" -o "$run" --force
   # Against time: COG, ref ZMP and ZMP in the frame of the feet. From above: with the footholds.
-  "$ayumi" --force plot "$out" --log closed_loop -o "$out/loci.svg"
-  "$ayumi" --force plot "$out" --log closed_loop --top -o "$out/top.png"
+  "$ayumi" --force plot "$run" --log closed_loop -o "$run/loci.svg"
+  "$ayumi" --force plot "$run" --log closed_loop --top -o "$run/top.png"
 done
+echo "Figures in $out/hoap1_viip_shift, hoap1_viip_step and hoap1_viip_walk"

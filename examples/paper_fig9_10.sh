@@ -5,9 +5,14 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 ayumi=${AYUMI:-build/release/app/ayumi}
+if [ ! -x "$ayumi" ]; then
+  echo "$ayumi is not there: run examples/quickstart.sh first, or set AYUMI" >&2
+  exit 3
+fi
 out=${1:-out/hoap1_jump}
 "$ayumi" simulate patterns/hoap1_jump.json -o "$out" --force
 "$ayumi" plot "$out" -o "$out/fig10_loci.svg" --force
-"$ayumi" preview "$out" -o "$out/fig9_snapshots.png" --force
+"$ayumi" preview "$out" -o "$out/fig9_snapshots.png" --strip 12 --from 0.5 --to 2.2 --columns 6 --view side \
+  --size 320x360 --force
 "$ayumi" preview "$out" -o "$out/jump.mp4" --speed 0.2 --force
 echo "Figures in $out"
