@@ -26,7 +26,8 @@ std::array<std::uint8_t, 4> to_bytes(const Vector4f& color) {
 
 std::uint32_t add_vertex(Triangles& target, const Vector3d& position, const Vector3d& normal,
                          const Vector4f& color) {
-  target.vertices.push_back({position.cast<float>(), normal.cast<float>(), to_bytes(color), {}});
+  target.vertices.push_back(
+      {position.cast<float>(), normal.cast<float>(), to_bytes(color), Eigen::Vector2f::Zero()});
   return static_cast<std::uint32_t>(target.vertices.size() - 1);
 }
 
