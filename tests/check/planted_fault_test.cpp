@@ -50,6 +50,7 @@ const Pattern& walk() {
 ConsistencyReport report_of(const Pattern& pattern) {
   CheckOptions options;
   options.friction = pattern.world.friction;
+  options.profile = pattern.profile;
   return check_consistency(hoap1(), sample(hoap1(), pattern), options);
 }
 
@@ -292,6 +293,50 @@ TEST(PlantedFault, SlipperyGround) {
   p.world.friction = 0.10;
   const ConsistencyReport r = report_of(p);
   EXPECT_EQ(error_kinds(r), Kinds{"friction"}) << print(r);
+}
+
+const Pattern& jump() {
+  static const Pattern pattern = [] {
+    Pattern p = named(jump_pattern(hoap1(), jump_defaults(hoap1())));
+    p.profile = "hoap1-strong";
+    return bake(p);
+  }();
+  return pattern;
+}
+
+TEST(PlantedFault, ASoundJumpPassesBaked) {
+  const ConsistencyReport r = report_of(jump());
+  EXPECT_TRUE(r.consistent) << print(r);
+}
+
+// Posture and command, each alone, and an arm that swings: none of them falls freely.
+TEST(PlantedFault, FlightIsNotBallistic) {
+  const auto [begin, end] = phase(jump(), Support::none, 0);
+  const double at = 0.5 * (begin + end), width = 0.9 * (end - begin);
+  for (const std::string fault : {"base", "cog", "both", "arm"}) {
+    Pattern p = jump();
+    for (size_t k = 0; k < p.table->cog.size(); ++k) {
+      const double rise = 0.004 * hill(static_cast<double>(k) * p.table->dt, at, width);
+      if (fault == "base" || fault == "both") p.table->base[k].position.z() += rise;
+      if (fault == "cog" || fault == "both") p.table->cog[k].z() += rise;
+    }
+    if (fault == "arm") bend(p, "l_shoulder_pitch", at, width, -0.5);
+    const ConsistencyReport r = report_of(p);
+    EXPECT_EQ(error_kinds(r), Kinds{"ballistic"}) << fault << "\n" << print(r);
+    EXPECT_NEAR(first(r, "ballistic").at, at, 0.002) << fault;
+    EXPECT_EQ(first(r, "ballistic").where, fault == "arm" ? "x" : "z");
+  }
+}
+
+TEST(PlantedFault, ForceInFlight) {
+  Pattern p = jump();
+  const auto [begin, end] = phase(jump(), Support::none, 0);
+  for (size_t k = 0; k < p.table->fz.size(); ++k)
+    p.table->fz[k] +=
+        30 * hill(static_cast<double>(k) * p.table->dt, 0.5 * (begin + end), 0.8 * (end - begin));
+  const ConsistencyReport r = report_of(p);
+  EXPECT_EQ(error_kinds(r), Kinds{"fz_residual"}) << print(r);
+  EXPECT_NEAR(first(r, "fz_residual").at, 0.5 * (begin + end), 0.002);
 }
 
 // Two faults at once, far apart, are two errors.

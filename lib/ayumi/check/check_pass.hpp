@@ -40,9 +40,10 @@ struct CheckPass {
 
   FindingWindows windows;
   CheckSummary summary;
-  Eigen::MatrixXd square_sum;         ///< of torques before a sample, dof x (samples + 1)
-  std::vector<double> cog_deviation;  ///< of the posture from the command, by sample [m]
-  std::vector<char> rough;            ///< a joint accelerates beyond the tolerance, by sample
+  Eigen::MatrixXd square_sum;                  ///< of torques before a sample, dof x (samples + 1)
+  std::vector<Eigen::Vector3d> flight_moment;  ///< about the COG, by sample; 0 on the ground [N m]
+  std::vector<double> cog_deviation;           ///< of the posture from the command, by sample [m]
+  std::vector<char> rough;  ///< a joint accelerates beyond the tolerance, by sample
 };
 
 /// Everything that one sample tells by itself.
@@ -50,6 +51,9 @@ void check_samples(CheckPass& pass);
 
 /// Steps between samples that the planned speed does not tell.
 void check_servo_steps(CheckPass& pass);
+/// Mean moment over a few samples of a flight: momentum must not change, while the rate of a single
+/// sample holds the rounding of differences.
+void check_angular_momentum(CheckPass& pass);
 /// RMS torque in the thermal window.
 void check_continuous_torque(CheckPass& pass);
 /// Bodies against each other: every 20 ms, then every sample around the places where they are near.

@@ -21,6 +21,30 @@ void note_clearance(CheckPass& pass, int pair, int k, double clearance) {
 
 }  // namespace
 
+void check_angular_momentum(CheckPass& pass) {
+  constexpr int kMean = 2;  // samples to either side
+  const auto flies = [&](int k) {
+    return k >= 0 && k < pass.count() && pass.series.samples[k].support == Support::none &&
+           !pass.at_flight_edge(k);
+  };
+  for (int k = 0; k < pass.count(); ++k) {
+    if (!flies(k)) continue;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int samples = 0;
+    for (int i = k - kMean; i <= k + kMean; ++i) {
+      if (!flies(i)) continue;
+      sum += pass.flight_moment[i];
+      ++samples;
+    }
+    const Eigen::Vector3d mean = sum / samples;
+    const double size = mean.norm(), limit = pass.tolerance(Kind::angular_momentum);
+    raise_to(pass.summary.max_momentum_rate, size);
+    int axis = 0;
+    mean.cwiseAbs().maxCoeff(&axis);
+    if (size > limit) pass.add(Kind::angular_momentum, 0, k, size, limit, size, axis);
+  }
+}
+
 void check_servo_steps(CheckPass& pass) {
   const double period = pass.model.description().servo_period, dt = pass.series.dt;
   const int ticks = std::max(1, static_cast<int>(std::lround(period / dt)));
