@@ -7,7 +7,7 @@ namespace {
 std::string overview(const CLI::App& app) {
   std::string text =
       "Ayumi checks, stabilizes and exports motion patterns of humanoid robots.\n\n"
-      "  robot + pattern -> check -> repair -> simulate (DTAD) -> tables, clips, plots\n\n"
+      "  robot + pattern -> check -> repair -> simulate (DTAD, VIIP) -> tables, clips, report\n\n"
       "Usage: ayumi COMMAND ...     ayumi COMMAND --help shows examples first\n\n";
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     std::string line = "  " + command->get_name();

@@ -217,11 +217,8 @@ void add_sway(CLI::App& command, NewOptions& options) {
 void add_viip(CLI::App& command, NewOptions& options) {
   command.footer(
       "Examples:\n  ayumi new viip --cog 0.02,0,0 -o shift.json\n"
-      "  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new viip --steps 8 -o in_place.json\n"
-      "  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new viip --steps 14 --velocity 0.1 -o walk.json\n"
-      "  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new viip --steps 14 --velocity 0.05,0.01 --turn 15 -o turn.json");
   add_common(command, options);
   command.add_option("--cog", options.cog, "displacement over both feet: forward, left, up")
@@ -286,6 +283,7 @@ void add_new(CLI::App& app, Context& context) {
   viip->callback([shared, &context] { new_viip(context, *shared); });
   add_new_jump(*command, context);
   CLI::App* stand = command->add_subcommand("stand", "both feet on the ground");
+  stand->footer("Examples:\n  ayumi new stand --duration 4 -o stand.json");
   add_common(*stand, options);
   stand->add_option("--duration", options.duration, "of the pattern")
       ->capture_default_str()
