@@ -6,17 +6,11 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/io/comma_cells.hpp"
 
 namespace ayumi {
 
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 class SequenceParser {
  public:
@@ -25,9 +19,7 @@ class SequenceParser {
 
   HoapSequence whole() {
     while (!rest_.empty()) {
-      const size_t end = std::min(rest_.find('\n'), rest_.size());
-      const std::string_view line = trimmed(rest_.substr(0, end));
-      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      const std::string_view line = take_line(rest_);
       ++line_;
       if (!line.empty()) row(line);
     }
@@ -47,13 +39,7 @@ class SequenceParser {
   }
 
   void row(std::string_view line) {
-    std::vector<std::string_view> cells;
-    while (true) {
-      const size_t comma = line.find(',');
-      cells.push_back(trimmed(line.substr(0, comma)));
-      if (comma == std::string_view::npos) break;
-      line.remove_prefix(comma + 1);
-    }
+    const std::vector<std::string_view> cells = cells_of(line);
     if (cells.size() > 1 && cells[1] != "2")
       stop("command '" + std::string(cells[1].substr(0, 16)) +
            "': only fixed commands (2) are read, general commands (3) are not");

@@ -9,6 +9,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/comma_cells.hpp"
 #include "ayumi/io/motion_import.hpp"
 
 namespace ayumi {
@@ -18,13 +19,6 @@ namespace {
 constexpr double kRadiansPerDegree = EIGEN_PI / 180;
 constexpr double kSmoothing = 0.050;  // to either side of a sample [s]
 constexpr double kBandDegrees = 0.1;  // of change by it; servos follow no better
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 std::optional<int> whole_number(std::string_view cell) {
   int value = 0;
@@ -48,9 +42,7 @@ class Reader {
 
   std::vector<Row> rows() {
     while (!rest_.empty()) {
-      const size_t end = std::min(rest_.find('\n'), rest_.size());
-      const std::string_view line = trimmed(rest_.substr(0, end));
-      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      const std::string_view line = take_line(rest_);
       ++line_;
       if (!line.empty()) read(line);
     }
@@ -66,13 +58,7 @@ class Reader {
   }
 
   void read(std::string_view line) {
-    std::vector<std::string_view> cells;
-    while (true) {
-      const size_t comma = line.find(',');
-      cells.push_back(trimmed(line.substr(0, comma)));
-      if (comma == std::string_view::npos) break;
-      line.remove_prefix(comma + 1);
-    }
+    const std::vector<std::string_view> cells = cells_of(line);
     const auto interval = whole_number(cells[0]);
     if (!interval || *interval < 1 || *interval > 60000)
       stop("'" + std::string(cells[0].substr(0, 24)) + "' is not an interval in milliseconds");

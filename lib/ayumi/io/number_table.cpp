@@ -7,17 +7,11 @@
 #include <string_view>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/io/comma_cells.hpp"
 
 namespace ayumi {
 
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 // A cell as it may appear in a message: short and printable.
 std::string shown(std::string_view cell) {
@@ -62,9 +56,7 @@ class CsvParser {
 
   bool next(std::string_view& line) {
     if (rest_.empty()) return false;
-    const size_t end = std::min(rest_.find('\n'), rest_.size());
-    line = trimmed(rest_.substr(0, end));
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    line = take_line(rest_);
     ++line_;
     return true;
   }
@@ -77,7 +69,7 @@ class CsvParser {
 
   void head_row(std::string_view line) {
     std::set<std::string> seen;
-    split(line, [&](std::string_view cell) {
+    for_each_cell(line, [&](std::string_view cell) {
       const std::string name(cell);
       double number = 0;
       if (std::from_chars(cell.data(), cell.data() + cell.size(), number).ec == std::errc())
@@ -91,7 +83,7 @@ class CsvParser {
 
   void data_row(std::string_view line) {
     const size_t begin = cells_.size();
-    split(line, [&](std::string_view cell) {
+    for_each_cell(line, [&](std::string_view cell) {
       const size_t column = cells_.size() - begin;
       if (column >= table_.columns.size()) stop(width_message(line));
       double number = 0;
@@ -108,16 +100,6 @@ class CsvParser {
   std::string width_message(std::string_view line) const {
     return std::to_string(std::count(line.begin(), line.end(), ',') + 1) +
            " values where the head row names " + std::to_string(table_.columns.size()) + " columns";
-  }
-
-  template <typename Use>
-  static void split(std::string_view line, const Use& use) {
-    while (true) {
-      const size_t comma = line.find(',');
-      use(trimmed(line.substr(0, comma)));
-      if (comma == std::string_view::npos) return;
-      line.remove_prefix(comma + 1);
-    }
   }
 
   std::string_view rest_;
