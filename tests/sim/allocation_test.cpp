@@ -16,6 +16,7 @@
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/plant.hpp"
 #include "ayumi/sim/sensors.hpp"
+#include "ayumi/sim/simulator.hpp"
 #include "tests/support/random_robot.hpp"
 
 extern "C" void* __libc_malloc(size_t);
@@ -75,6 +76,23 @@ TEST(Allocations, PlantSensorsAndEstimatorHaveNoneAfterTheFirstSteps) {
               for (const CommandSample& s : series.samples) step(s);
             }),
             0);
+}
+
+TEST(Allocations, ATickOfTheClosedLoopHasNoneAfterTheFirstSteps) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
+  const CommandSeries series = sample(model, pattern);
+  for (const char* controller : {"dtad", "none"}) {
+    SimulateOptions options;
+    options.controller.type = controller;
+    options.sensor_noise = true;
+    Simulator simulator(model, series, options);
+    simulator.keep_samples(false);  // the log itself grows
+    simulator.advance(2000);        // two steps: both kinds of support have been
+    for (int i = 0; i < 10; ++i)
+      EXPECT_EQ(allocations_of([&] { simulator.advance(200); }), 0)
+          << controller << " from " << simulator.time() - 0.2 << " s";
+  }
 }
 
 TEST(Allocations, DynamicsHaveNoneWithTheirWorkspace) {

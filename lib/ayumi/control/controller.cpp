@@ -197,8 +197,9 @@ void Controller::enter(long k) {
   plan_ = viip.plan();
 }
 
-ControlOutput Controller::update(const Estimate& estimate) {
-  ControlOutput out;
+const ControlOutput& Controller::update(const Estimate& estimate) {
+  ControlOutput& out = out_;
+  out.notes.clear();
   const long next = tick_ + 1;
   if (auto* viip = std::get_if<Viip>(&law_)) {
     out = viip->update(estimate);
@@ -213,9 +214,10 @@ ControlOutput Controller::update(const Estimate& estimate) {
           double& share = placement_.share[static_cast<int>(side)];
           share = std::max(0.0, share - series_->dt / kFootBlend);
         }
-    const CommandSample following = placed(next);
+    if (placement_.moved) following_ = placed(next);
+    const CommandSample& following = placement_.moved ? following_ : command(next);
     if (auto* dtad = std::get_if<Dtad>(&law_)) {
-      out = dtad->update(plan_, following, estimate);
+      dtad->update(plan_, following, estimate, out);
     } else {
       out.reference = plan_.state;
       out.target =

@@ -28,8 +28,8 @@ class Controller {
   /// The plan of the coming tick: the command where the robot's feet are, or VIIP's own.
   const CommandSample& plan() const { return plan_; }
 
-  /// One tick: goes on to the next.
-  ControlOutput update(const Estimate& estimate);
+  /// One tick: goes on to the next. The output holds until the next update.
+  const ControlOutput& update(const Estimate& estimate);
 
  private:
   /// The command itself on the servos.
@@ -62,7 +62,8 @@ class Controller {
   ControllerSpec spec_;
   std::variant<OpenLoop, Dtad, Viip, ViipJump> law_;
   Placement placement_;
-  CommandSample plan_;
+  CommandSample plan_, following_;  // of the coming tick, and after it where feet have moved
+  ControlOutput out_;
   Eigen::VectorXd target_;  // last one [rad]
   const ViipSpan* span_ = nullptr;
   long tick_ = 0;  // the coming one

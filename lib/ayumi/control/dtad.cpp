@@ -17,7 +17,6 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
-#include "ayumi/control/support.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 
 namespace ayumi {
@@ -123,8 +122,8 @@ CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& e
   const Vector3d e = command.cog - estimate.cog;
   const Vector3d de = command.dcog - estimate.dcog;
   CogReference ref;
-  const ConvexPolygon polygon =
-      support_polygon(*model_, command.feet, command.support).shrunk(p.margin * z);
+  const ConvexPolygon& polygon =
+      region_.update(*model_, command.feet, command.support, p.margin * z);
   const Vector2d wanted = command.zmp.head<2>() - K * e.head<2>() - D * de.head<2>();
   ref.zmp = command.zmp;
   ref.zmp.head<2>() = polygon.empty() ? wanted : polygon.project(wanted);
@@ -160,9 +159,8 @@ CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& e
   return ref;
 }
 
-ControlOutput Dtad::update(const CommandSample& command, const CommandSample& next,
-                           const Estimate& estimate) {
-  ControlOutput out;
+void Dtad::update(const CommandSample& command, const CommandSample& next, const Estimate& estimate,
+                  ControlOutput& out) {
   if (command.support == Support::left) anchor_ = Side::left;
   if (command.support == Support::right) anchor_ = Side::right;
   body_.anchor(anchor_, command.feet[static_cast<int>(anchor_)]);
@@ -170,9 +168,8 @@ ControlOutput Dtad::update(const CommandSample& command, const CommandSample& ne
   const CogReference wanted = cog_reference(command, estimate);
   const double z = command.cog.z() - command.zmp.z();
   const double forget = params_.washout / std::sqrt(kGravity / z);
-  const VectorXd offsets = body_.ankle_offsets(estimate, params_.ankle, forget);
+  const VectorXd& offsets = body_.ankle_offsets(estimate, params_.ankle, forget);
   body_.advance(wanted, z, command, next, offsets, out);
-  return out;
 }
 
 }  // namespace ayumi

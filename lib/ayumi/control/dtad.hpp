@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ayumi/control/reference_body.hpp"
+#include "ayumi/control/support.hpp"
 #include "ayumi/pattern/command_series.hpp"
 
 namespace ayumi {
@@ -50,8 +51,8 @@ class Dtad {
   void take_over(const Handover& handover, const CommandSample& plan);
 
   /// One tick: command now and one tick later, and what is measured.
-  ControlOutput update(const CommandSample& command, const CommandSample& next,
-                       const Estimate& estimate);
+  void update(const CommandSample& command, const CommandSample& next, const Estimate& estimate,
+              ControlOutput& out);
 
   const ReferenceBody& body() const { return body_; }
 
@@ -62,6 +63,7 @@ class Dtad {
   DtadParams params_;
   double dt_;
   ReferenceBody body_;
+  SupportRegion region_;
   Side anchor_ = Side::left;
   Eigen::Vector2d zmp_filtered_ = Eigen::Vector2d::Zero();  // z-hat [m]
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();        // washed-out offset z-hat_d [m]

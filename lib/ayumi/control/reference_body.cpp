@@ -53,16 +53,17 @@ void ReferenceBody::anchor(Side side, const Eigen::Isometry3d& sole) {
 // A foot that has tipped is turned back flat. A tilt that lasts is the ground's (or the sensor's)
 // and is forgotten like a lasting offset of the ZMP: levelling a foot that lies flat on a slope
 // would lean the body downhill.
-VectorXd ReferenceBody::ankle_offsets(const Estimate& estimate, double share, double forget) {
+const VectorXd& ReferenceBody::ankle_offsets(const Estimate& estimate, double share,
+                                             double forget) {
   if (forget > 0) slope_ += std::min(1.0, dt_ / forget) * (estimate.foot_tilt - slope_);
   const Vector3d tilt = estimate.foot_tilt - slope_;
-  VectorXd offsets = VectorXd::Zero(model_->dof_count());
+  offsets_.setZero(model_->dof_count());
   const std::vector<int>& leg = model_->leg(estimate.stance);
   for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i) {
     const int body = model_->dofs()[leg[i]].body;
-    offsets[leg[i]] = -share * data_.axis[body].dot(tilt);
+    offsets_[leg[i]] = -share * data_.axis[body].dot(tilt);
   }
-  return offsets;
+  return offsets_;
 }
 
 void ReferenceBody::advance(const CogReference& wanted, double z, const CommandSample& command,
@@ -78,14 +79,15 @@ void ReferenceBody::advance(const CogReference& wanted, double z, const CommandS
   if (dcog_.norm() > speed) dcog_ *= speed / dcog_.norm();
   ref.dcog = dcog_;
 
-  const Resolution resolution = resolve(*model_, limits_, reference_, data_, anchor_, dcog_,
-                                        command, next, dt_, weight_, options_);
-  for (const std::string& note : limit_notes(*model_, resolution)) out.notes.push_back(note);
+  resolve(*model_, limits_, reference_, data_, anchor_, dcog_, command, next, dt_, weight_,
+          options_, work_, resolution_);
+  if (resolution_.limiting_dof >= 0 || !resolution_.held.empty())
+    for (const std::string& note : limit_notes(*model_, resolution_)) out.notes.push_back(note);
 
-  reference_.dtheta = resolution.dtheta;
-  reference_.theta += dt_ * resolution.dtheta;
+  reference_.dtheta = resolution_.dtheta;
+  reference_.theta += dt_ * resolution_.dtheta;
   out.reference = reference_;
-  out.target = reference_.theta + lead_.cwiseProduct(resolution.dtheta) + offsets;
+  out.target = reference_.theta + lead_.cwiseProduct(resolution_.dtheta) + offsets;
   for (int j = 0; j < out.target.size(); ++j) {
     const Dof& dof = model_->dofs()[j];
     const double step = limits_.speed[j] * dt_;

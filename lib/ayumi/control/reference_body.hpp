@@ -58,7 +58,8 @@ class ReferenceBody {
 
   /// Turns of the two joints nearest to the stance foot that take back a share of its measured
   /// tilt. `forget`: time constant after which a lasting tilt counts as the ground's [s]; 0: never.
-  Eigen::VectorXd ankle_offsets(const Estimate& estimate, double share, double forget);
+  /// Holds until the next call.
+  const Eigen::VectorXd& ankle_offsets(const Estimate& estimate, double share, double forget);
 
   /// Integrates ref.ddcog (both bounded; the bounds scale with the COG height z [m]) and moves the
   /// posture; fills everything of `out` but the COG. `ref` receives the velocity.
@@ -71,7 +72,9 @@ class ReferenceBody {
   ResolverOptions options_;
   double dt_;
   RobotData data_;
-  Eigen::VectorXd weight_, lead_, previous_target_;
+  Eigen::VectorXd weight_, lead_, previous_target_, offsets_;
+  ResolverWork work_;
+  Resolution resolution_;
   RobotState reference_;
   Side anchor_ = Side::left;
   Eigen::Vector3d dcog_ = Eigen::Vector3d::Zero();   // ref COG velocity [m/s]

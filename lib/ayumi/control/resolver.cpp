@@ -10,14 +10,13 @@
 #include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/supports.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/math/weighted_solve.hpp"
 
 namespace ayumi {
 
 using Eigen::Isometry3d;
 using Eigen::Matrix3d;
-using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -30,24 +29,37 @@ Vector3d rotation_between(const Matrix3d& from, const Matrix3d& to) {
   return log_rotation(Eigen::Quaterniond(Matrix3d(to * from.transpose())));
 }
 
-/// Rows of a floating Jacobian per joint rate while the base moves with them: [B C] [base; 1].
-template <typename Rows>
-MatrixXd anchored(const Rows& rows, const Eigen::Matrix<double, 6, Eigen::Dynamic>& base) {
-  MatrixXd result = rows.rightCols(base.cols());
-  result.noalias() += rows.template leftCols<6>().lazyProduct(base);
-  return result;
+/// Adds what a unit rate of every joint from the root to `body` gives a point at p (from the base
+/// origin) on it, times `sign`: linear velocity from row `linear` on where that is not negative,
+/// angular velocity times `length` from row `angular` on.
+void add_chain(const RobotModel& model, const RobotData& data, int body, const Vector3d& p,
+               double sign, int linear, int angular, double length, BodyTasks& tasks) {
+  for (int i = body; i > 0; i = model.bodies()[i].parent) {
+    const Body& b = model.bodies()[i];
+    const Vector3d s = sign * b.ratio * data.axis[i];
+    double* column = tasks.J.data() + BodyTasks::kRows * b.dof;
+    if (linear >= 0)
+      Eigen::Map<Vector3d>(column + linear) +=
+          b.prismatic ? s : Vector3d(s.cross(p - data.position[i]));
+    if (!b.prismatic) Eigen::Map<Vector3d>(column + angular) += length * s;
+    int& lead = tasks.lead[static_cast<size_t>(b.dof)];
+    lead = std::max(lead, angular + 3);
+  }
 }
 
-/// Joint rates for these tasks; a joint that would leave its position limits is held there and the
-/// rest solved again, a joint too fast slows all down.
-Resolution within_limits(const RobotModel& model, const ActuatorLimits& limits,
-                         const RobotState& reference, MatrixXd J, VectorXd u,
-                         const VectorXd& weight, VectorXd x0, double dt,
-                         const ResolverOptions& options) {
+/// Joint rates for work.softened; a joint that would leave its position limits is held there and
+/// the rest solved again, a joint too fast slows all down.
+void within_limits(const RobotModel& model, const ActuatorLimits& limits,
+                   const RobotState& reference, const VectorXd& weight, double dt,
+                   const ResolverOptions& options, ResolverWork& work, Resolution& result) {
   const int n = model.dof_count();
-  Resolution result;
+  result.scale = 1;
+  result.limiting_dof = -1;
+  result.held.clear();
+  const BodyTasks* tasks = &work.softened;
+  work.start = work.bias;
   for (int pass = 0; pass < 4; ++pass) {
-    result.dtheta = weighted_least_norm(J, u, weight, x0, options.damping);
+    weighted_least_norm(*tasks, weight, work.start, options.damping, result.dtheta);
     bool changed = false;
     for (int j = 0; j < n; ++j) {
       const Dof& dof = model.dofs()[j];
@@ -57,9 +69,13 @@ Resolution within_limits(const RobotModel& model, const ActuatorLimits& limits,
       const double stop = std::clamp(after, dof.lower, dof.upper);
       if (stop == after) continue;
       const double rate = (stop - reference.theta[j]) / dt;
-      u -= J.col(j) * rate;
-      J.col(j).setZero();
-      x0[j] = rate;
+      if (tasks == &work.softened) {
+        work.moving = work.softened;
+        tasks = &work.moving;
+      }
+      work.moving.u -= work.moving.J.col(j) * rate;
+      work.moving.J.col(j).setZero();
+      work.start[j] = rate;
       result.held.push_back(j);
       changed = true;
     }
@@ -74,31 +90,29 @@ Resolution within_limits(const RobotModel& model, const ActuatorLimits& limits,
     }
   }
   result.dtheta *= result.scale;
-  return result;
 }
 
-void soften(MatrixXd& J, VectorXd& u, int first, int count) {
-  J.middleRows(first, count) *= kSoft;
-  u.segment(first, count) *= kSoft;
+void soften(BodyTasks& tasks, int first, int count) {
+  tasks.J.middleRows(first, count) *= kSoft;
+  tasks.u.segment(first, count) *= kSoft;
 }
 
 /// Whether the rates do the tasks; softened rows count as little as they weigh.
-bool meets(const MatrixXd& J, const VectorXd& u, const VectorXd& dtheta) {
-  return (J * dtheta - u).cwiseAbs().maxCoeff() < kMet;
+bool meets(const BodyTasks& tasks, const VectorXd& dtheta) {
+  return (tasks.J.lazyProduct(dtheta) - tasks.u).cwiseAbs().maxCoeff() < kMet;
 }
 
 }  // namespace
 
-Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
-                   const RobotState& reference, RobotData& data, Side anchor,
-                   const Vector3d& cog_velocity, const CommandSample& command,
-                   const CommandSample& next, double dt, const VectorXd& weight,
-                   const ResolverOptions& options) {
+void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotState& reference,
+             RobotData& data, Side anchor, const Vector3d& cog_velocity,
+             const CommandSample& command, const CommandSample& next, double dt,
+             const VectorXd& weight, const ResolverOptions& options, ResolverWork& work,
+             Resolution& result) {
   const int n = model.dof_count();
   const Side free = other(anchor);
   const int a = static_cast<int>(anchor), f = static_cast<int>(free);
-  const Eigen::Matrix<double, 6, Eigen::Dynamic> base =
-      anchored_velocity_map(model, data, anchor).topRows<6>();
+  const int stance = model.sole(anchor).body;
 
   // Motion of the planned anchor, as the rigid motion it gives to the whole robot.
   const Vector3d anchor_velocity =
@@ -109,17 +123,21 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
     return anchor_velocity + anchor_rate.cross(point - command.feet[a].translation());
   };
 
-  MatrixXd J(12, n);
-  VectorXd u(12);
-  J.topRows<3>() = anchored(cog_jacobian_floating(model, data), base);
+  // Relative to the anchored sole: its own chain counts backwards.
+  BodyTasks& tasks = work.tasks;
+  BodyTasks::Vector& u = tasks.u;
+  anchored_cog_jacobian(model, data, anchor, work.cog);
+  tasks.J.resize(BodyTasks::kRows, n);
+  tasks.J.topRows<3>() = work.cog;
+  tasks.J.bottomRows<9>().setZero();
+  tasks.lead.assign(static_cast<size_t>(n), 3);
   u.head<3>() = cog_velocity - carried(data.cog);
 
   const Isometry3d foot = sole_pose(model, data, free);
-  const MatrixXd foot_rows =
-      anchored(body_jacobian(model, data, model.sole(free).body, foot.translation()), base);
   const double length = options.angular_length;
-  J.middleRows<3>(3) = foot_rows.topRows<3>();
-  J.middleRows<3>(6) = length * foot_rows.bottomRows<3>();
+  const Vector3d foot_point = foot.translation() - data.base_position;
+  add_chain(model, data, model.sole(free).body, foot_point, 1, 3, 6, length, tasks);
+  add_chain(model, data, stance, foot_point, -1, 3, 6, length, tasks);
   u.segment<3>(3) = (next.feet[f].translation() - command.feet[f].translation()) / dt +
                     options.foot_rate * (command.feet[f].translation() - foot.translation()) -
                     carried(foot.translation());
@@ -130,32 +148,30 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
 
   // Trunk: attitude and angular velocity of the commanded posture.
   const int trunk = model.trunk_body();
-  const MatrixXd trunk_rows =
-      anchored(body_jacobian(model, data, trunk, data.base_position + data.position[trunk]), base);
+  add_chain(model, data, trunk, data.position[trunk], 1, -1, 9, length, tasks);
+  add_chain(model, data, stance, data.position[trunk], -1, -1, 9, length, tasks);
   Matrix3d commanded = command.state.base.attitude.toRotationMatrix();
   Vector3d commanded_rate = command.state.base_angular_velocity;
   if (trunk != 0) {
-    RobotData planned(model);
-    update_velocities(model, command.state, planned);
-    commanded = planned.rotation[trunk];
-    commanded_rate = planned.angular_velocity[trunk];
+    if (!work.planned) work.planned.emplace(model);
+    update_velocities(model, command.state, *work.planned);
+    commanded = work.planned->rotation[trunk];
+    commanded_rate = work.planned->angular_velocity[trunk];
   }
-  J.bottomRows<3>() = length * trunk_rows.bottomRows<3>();
   u.tail<3>() = length * (commanded_rate - anchor_rate +
                           options.trunk_rate * rotation_between(data.rotation[trunk], commanded));
 
-  const VectorXd bias =
-      command.state.dtheta + options.posture_rate * (command.state.theta - reference.theta);
+  work.bias = command.state.dtheta + options.posture_rate * (command.state.theta - reference.theta);
 
-  Resolution result;
+  result.held.clear();
+  result.limiting_dof = -1;
   for (const Tasks yielding :
        {Tasks{}, Tasks{.height = true}, Tasks{.height = true, .trunk = true}}) {
-    MatrixXd rows = J;
-    VectorXd wanted = u;
-    if (yielding.height) soften(rows, wanted, 2, 1);
-    if (yielding.trunk) soften(rows, wanted, 9, 3);
-    Resolution attempt =
-        within_limits(model, limits, reference, rows, wanted, weight, bias, dt, options);
+    work.softened = tasks;
+    if (yielding.height) soften(work.softened, 2, 1);
+    if (yielding.trunk) soften(work.softened, 9, 3);
+    Resolution& attempt = work.attempt;
+    within_limits(model, limits, reference, weight, dt, options, work, attempt);
     if (yielding.height) {  // what made it yield is told
       attempt.held.insert(attempt.held.end(), result.held.begin(), result.held.end());
       std::sort(attempt.held.begin(), attempt.held.end());
@@ -163,10 +179,21 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
       if (attempt.limiting_dof < 0) attempt.limiting_dof = result.limiting_dof;
     }
     attempt.yielding = yielding;
-    result = attempt;
+    std::swap(result, attempt);
     if (!options.in_order) break;
-    if (result.scale == 1 && (result.held.empty() || meets(rows, wanted, result.dtheta))) break;
+    if (result.scale == 1 && (result.held.empty() || meets(work.softened, result.dtheta))) break;
   }
+}
+
+Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
+                   const RobotState& reference, RobotData& data, Side anchor,
+                   const Vector3d& cog_velocity, const CommandSample& command,
+                   const CommandSample& next, double dt, const VectorXd& weight,
+                   const ResolverOptions& options) {
+  ResolverWork work;
+  Resolution result;
+  resolve(model, limits, reference, data, anchor, cog_velocity, command, next, dt, weight, options,
+          work, result);
   return result;
 }
 

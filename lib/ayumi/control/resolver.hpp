@@ -2,10 +2,12 @@
 // COG velocity -> whole-body joint rates, (22)(23) and (28)(29): the rates nearest to the commanded
 // ones that give the COG its reference velocity while the other foot and the trunk follow the plan.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ayumi/dynamics/robot_data.hpp"
+#include "ayumi/math/weighted_solve.hpp"
 #include "ayumi/pattern/command_series.hpp"
 
 namespace ayumi {
@@ -37,6 +39,15 @@ struct Resolution {
 /// One line per joint at a limit, with what gives way to it.
 std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& resolution);
 
+/// What resolve() keeps its room in.
+struct ResolverWork {
+  BodyTasks tasks, softened, moving;  ///< as they are; some yielding; without the joints held
+  Eigen::MatrixXd cog;
+  Eigen::VectorXd bias, start;
+  std::optional<RobotData> planned;  ///< where the trunk is not the root
+  Resolution attempt;
+};
+
 /// `reference`: the reference posture anchored on the planned sole of `anchor`; `data` holds its
 /// positions. `next_feet` are the planned sole frames one tick later (their motion is followed).
 Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
@@ -44,5 +55,12 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
                    const Eigen::Vector3d& cog_velocity, const CommandSample& command,
                    const CommandSample& next, double dt, const Eigen::VectorXd& weight,
                    const ResolverOptions& options = {});
+
+/// The same into `result`; allocates nothing when it is called again and no joint is at a limit.
+void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotState& reference,
+             RobotData& data, Side anchor, const Eigen::Vector3d& cog_velocity,
+             const CommandSample& command, const CommandSample& next, double dt,
+             const Eigen::VectorXd& weight, const ResolverOptions& options, ResolverWork& work,
+             Resolution& result);
 
 }  // namespace ayumi

@@ -2,6 +2,7 @@
 // The support region of planned feet, and the nearest admissible ZMP and vertical force.
 
 #include <array>
+#include <vector>
 
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/pattern/command_series.hpp"
@@ -11,5 +12,21 @@ namespace ayumi {
 /// Convex hull of the soles that support, seen from above, world axes [m].
 ConvexPolygon support_polygon(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet,
                               Support support);
+
+/// That polygon less a margin, worked out again only when feet or support have changed.
+class SupportRegion {
+ public:
+  /// Holds until the next call; allocates nothing once it has met its largest polygon.
+  const ConvexPolygon& update(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet,
+                              Support support, double margin);
+
+ private:
+  bool known_ = false;
+  std::array<Eigen::Isometry3d, 2> feet_;
+  Support support_ = Support::both;
+  double margin_ = 0;
+  ConvexPolygon whole_, region_;
+  std::vector<Eigen::Vector2d> points_, scratch_;
+};
 
 }  // namespace ayumi

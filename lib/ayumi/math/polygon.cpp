@@ -20,17 +20,20 @@ Vector2d nearest_on_segment(const Vector2d& a, const Vector2d& b, const Vector2d
 
 }  // namespace
 
+ConvexPolygon::ConvexPolygon(std::vector<Vector2d> points) { assign(points); }
+
 // Andrew's monotone chain.
-ConvexPolygon::ConvexPolygon(std::vector<Vector2d> points) {
+void ConvexPolygon::assign(std::vector<Vector2d>& points) {
   std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
   });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) {
-    vertices_ = std::move(points);
+    vertices_ = points;
     return;
   }
-  std::vector<Vector2d> hull(2 * points.size());
+  std::vector<Vector2d>& hull = vertices_;
+  hull.resize(2 * points.size());
   size_t k = 0;
   auto add = [&](const Vector2d& p, size_t floor) {
     while (k >= floor && cross(hull[k - 1] - hull[k - 2], p - hull[k - 1]) <= 0) --k;
@@ -40,7 +43,6 @@ ConvexPolygon::ConvexPolygon(std::vector<Vector2d> points) {
   const size_t lower = k + 1;
   for (size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
   hull.resize(k - 1);
-  vertices_ = std::move(hull);
 }
 
 double ConvexPolygon::margin(const Vector2d& p) const {
@@ -76,24 +78,36 @@ Vector2d ConvexPolygon::project(const Vector2d& p) const {
   return inside ? p : best;
 }
 
-// Clips the polygon by each edge moved inwards (Sutherland-Hodgman).
 ConvexPolygon ConvexPolygon::shrunk(double distance) const {
-  if (vertices_.size() < 3 || distance <= 0) return *this;
-  std::vector<Vector2d> kept = vertices_;
+  std::vector<Vector2d> kept, next;
+  ConvexPolygon result;
+  shrink_into(distance, kept, next, result);
+  return result;
+}
+
+// Clips the polygon by each edge moved inwards (Sutherland-Hodgman).
+void ConvexPolygon::shrink_into(double distance, std::vector<Vector2d>& kept,
+                                std::vector<Vector2d>& next, ConvexPolygon& result) const {
+  kept = vertices_;
+  if (vertices_.size() < 3 || distance <= 0) {
+    result.vertices_ = vertices_;
+    return;
+  }
   const size_t n = vertices_.size();
   for (size_t i = 0; i < n && !kept.empty(); ++i) {
     const Vector2d edge = (vertices_[(i + 1) % n] - vertices_[i]).normalized();
     auto depth = [&](const Vector2d& p) { return cross(edge, p - vertices_[i]) - distance; };
-    std::vector<Vector2d> next;
+    next.clear();
     for (size_t j = 0; j < kept.size(); ++j) {
       const Vector2d &a = kept[j], &b = kept[(j + 1) % kept.size()];
       const double da = depth(a), db = depth(b);
       if (da >= 0) next.push_back(a);
       if ((da >= 0) != (db >= 0)) next.push_back(a + da / (da - db) * (b - a));
     }
-    kept = std::move(next);
+    kept.swap(next);
   }
-  return kept.empty() ? ConvexPolygon({centroid()}) : ConvexPolygon(std::move(kept));
+  if (kept.empty()) kept.push_back(centroid());
+  result.assign(kept);
 }
 
 double ConvexPolygon::support(const Vector2d& n) const {

@@ -13,6 +13,9 @@ class ConvexPolygon {
   /// Convex hull of the points (any order, duplicates allowed).
   explicit ConvexPolygon(std::vector<Eigen::Vector2d> points);
 
+  /// Becomes the hull of `points`, which are left in another order; keeps its room.
+  void assign(std::vector<Eigen::Vector2d>& points);
+
   const std::vector<Eigen::Vector2d>& vertices() const { return vertices_; }
   bool empty() const { return vertices_.empty(); }
 
@@ -25,6 +28,10 @@ class ConvexPolygon {
   /// The polygon of points at least `distance` inside every edge; when nothing is left, the
   /// centroid alone.
   ConvexPolygon shrunk(double distance) const;
+
+  /// The same into `result`, with two lists to work in; all keep their room.
+  void shrink_into(double distance, std::vector<Eigen::Vector2d>& kept,
+                   std::vector<Eigen::Vector2d>& next, ConvexPolygon& result) const;
 
   /// max over the polygon of n.dot(x).
   double support(const Eigen::Vector2d& n) const;

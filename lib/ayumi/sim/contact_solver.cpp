@@ -113,6 +113,7 @@ void ContactSolver::resize(int n) {
     if (store_[k].size() < size) store_[k].resize(size);
   }
   friction_.resize(static_cast<size_t>(n));
+  closed_.reserve(static_cast<size_t>(n));
 }
 
 // One Gauss-Seidel sweep that goes `share` of the way; returns the largest change of a shifted

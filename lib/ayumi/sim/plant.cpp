@@ -85,6 +85,12 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
   for (int side = 0; side < 2 && model.has_soles(); ++side)
     report_.soles[side].resize(model.sole(static_cast<Side>(side)).polygon.size());
   kp_now_ = kd_now_ = viscous_now_ = coulomb_now_ = target_now_ = VectorXd::Zero(n);
+  const size_t usual = std::min<size_t>(points_.size(), 16);  // room for both soles
+  solver_.resize(static_cast<int>(usual));
+  J_.resize(usual * static_cast<size_t>(columns));
+  Y_.resize(J_.size());
+  compliance_.resize(usual);
+  shift_.resize(usual);
   active_.reserve(points_.size() + 64);
   last_active_.reserve(points_.size() + 64);
   outline_.reserve(16);

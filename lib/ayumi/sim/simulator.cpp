@@ -47,7 +47,8 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       estimator_(model, series.dt),
       judge_(model, limits_, options.world),
       schedule_(model, options.world, h_),
-      controller_(model, limits_, series, options.controller) {
+      controller_(model, limits_, series, options.controller),
+      saturated_(static_cast<size_t>(model.dof_count())) {
   model.sole(Side::left);  // says so when the robot has none
   const CommandSample& first = series.samples.front();
   set_scenario(options.scenario);
@@ -109,9 +110,10 @@ void Simulator::see_truth() {
   if (fz > kZmpShare * model_->mass() * kGravity) estimate_.zmp = moment / fz;
 }
 
-SimulationSample Simulator::sample(const CommandSample& cmd, const Estimate& estimate,
-                                   const ControlOutput& out) {
-  SimulationSample s;
+/// last_ from the plant, the plan and what the controller made of it; its lists keep their room.
+void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
+                            const ControlOutput& out) {
+  SimulationSample& s = last_;
   s.state = plant_.state();
   const RobotData& data = plant_.data();
   s.cog = data.cog;
@@ -131,28 +133,40 @@ SimulationSample Simulator::sample(const CommandSample& cmd, const Estimate& est
   s.measured_cog = estimate.cog;
   s.measured_zmp = estimate.zmp;
   s.measured_fz = estimate.fz;
+  take_forces(cmd);
+  s.push_force.setZero();
+  s.push_point.setZero();
+  for (const ExternalWrench& x : input_.wrenches) {
+    s.push_force += x.force;
+    s.push_point = x.body < 0 ? s.cog : x.point;
+  }
+  s.contact_residual = report_.contact_residual;
+  s.contact_iterations = report_.contact_iterations;
+  s.energy = energy();
+}
+
+void Simulator::take_forces(const CommandSample& cmd) {
+  SimulationSample& s = last_;
+  s.fz = 0;
   Vector3d moment = Vector3d::Zero();
   for (int side = 0; side < 2; ++side) {
     Vector3d weighted = Vector3d::Zero();
     double vertical = 0;
+    s.foot_force[side].setZero();
     for (const SoleForce& cell : report_.soles[side]) {
       s.foot_force[side] += cell.force;
       weighted += cell.force.z() * cell.position;
       vertical += cell.force.z();
     }
-    s.foot_cop[side] = vertical > 0
-                           ? Vector3d(weighted / vertical)
-                           : sole_pose(*model_, data, static_cast<Side>(side)).translation();
+    s.foot_cop[side] =
+        vertical > 0 ? Vector3d(weighted / vertical)
+                     : sole_pose(*model_, plant_.data(), static_cast<Side>(side)).translation();
     s.planned_contact[side] = supports(cmd.support, static_cast<Side>(side));
     s.fz += vertical;
     moment += weighted;
   }
   if (s.fz > kZmpShare * model_->mass() * kGravity) zmp_ = moment / s.fz;
   s.zmp = zmp_;
-  s.contact_residual = report_.contact_residual;
-  s.contact_iterations = report_.contact_iterations;
-  s.energy = energy();
-  return s;
 }
 
 void Simulator::note(double t, const std::vector<std::string>& texts) {
@@ -176,24 +190,23 @@ void Simulator::step_once() {
     estimate_.zmp = zmp_before;  // held in flight
     see_truth();
   }
-  const ControlOutput out = controller_.update(estimate_);
-  last_ = sample(cmd, estimate_, out);
+  const ControlOutput& out = controller_.update(estimate_);
+  take_sample(cmd, estimate_, out);
   if (!last_.state.theta.allFinite() || !last_.state.base.position.allFinite())
     fail(ErrorCode::internal,
          "the simulation left the finite numbers at t = " + text::fixed(t, 3) + " s");
   if (input_.floor) judge_.set_ground(input_.floor->pose);
-  if (judge_.observe(t, cmd, last_, report_, series_->dt)) {
+  if (judge_.observe(t, cmd, last_, plant_.data(), report_, series_->dt)) {
     fell_ = true;
     end_ = std::min(planned_, tick_ + std::lround(kAfterFall / series_->dt));
   }
   note(t, out.notes);
-  for (int j : report_.saturated)
+  for (int j : report_.saturated) {
+    if (saturated_[static_cast<size_t>(j)]) continue;
+    saturated_[static_cast<size_t>(j)] = true;
     note(t, {"torque limit of " + model_->dofs()[j].name + " reached"});
-
-  for (const ExternalWrench& x : input_.wrenches) {
-    last_.push_force += x.force;
-    last_.push_point = x.body < 0 ? last_.cog : x.point;
   }
+
   for (int i = 0; i < options_.substeps; ++i) {
     if (i > 0) schedule_.fill(step + i, plant_.data(), input_);
     report_ = plant_.step(out.target, input_, h_);

@@ -54,8 +54,8 @@ class Simulator {
   void step_once();
   double energy() const;
   void see_truth();
-  SimulationSample sample(const CommandSample& cmd, const Estimate& estimate,
-                          const ControlOutput& out);
+  void take_sample(const CommandSample& cmd, const Estimate& estimate, const ControlOutput& out);
+  void take_forces(const CommandSample& cmd);
   void note(double t, const std::vector<std::string>& texts);
 
   const RobotModel* model_;
@@ -74,6 +74,7 @@ class Simulator {
   StepReport report_;
   Eigen::Vector3d zmp_ = Eigen::Vector3d::Zero();
   std::set<std::string> noted_;
+  std::vector<char> saturated_;  // by dof: told already
   std::vector<SimulationEvent> events_;
   SimulationSample last_;
   Estimate estimate_;

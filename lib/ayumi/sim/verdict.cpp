@@ -66,16 +66,15 @@ const char* name_of(Outcome outcome) {
 Judge::Judge(const RobotModel& model, const ActuatorLimits& limits, const World& world)
     : model_(&model),
       limits_(limits),
-      normal_(exp_rotation({world.slope.x(), world.slope.y(), 0}).toRotationMatrix().col(2)),
-      data_(model) {
+      normal_(exp_rotation({world.slope.x(), world.slope.y(), 0}).toRotationMatrix().col(2)) {
   result_.apex = -1e9;
+  events_.reserve(64);  // of a usual run: a tick is not to allocate
 }
 
 bool Judge::observe(double t, const CommandSample& command, const SimulationSample& sample,
-                    const StepReport& report, double dt) {
-  update_positions(*model_, sample.state, data_);
+                    const RobotData& truth, const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
-  const Vector3d up = data_.rotation[model_->trunk_body()].col(2);
+  const Vector3d up = truth.rotation[model_->trunk_body()].col(2);
   const double tilt = std::acos(std::clamp(up.dot(normal_), -1.0, 1.0));
   SimulationResult& r = result_;
   const bool fallen_before = r.fell_at >= 0;
@@ -103,9 +102,10 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
       airborne_ += dt;
       r.flight += dt;
     }
-    observe_feet(t, command, report, dt);
+    observe_feet(t, command, truth, report, dt);
   }
 
+  if (fallen_before) return false;
   std::string reason;
   if (tilt > kFallTilt)
     reason = "trunk tilt " + text::fixed(tilt, 2) + " rad";
@@ -113,14 +113,14 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
     reason = "COG at " + text::fixed(normal_.dot(sample.cog), 3) + " m";
   else if (report.body_contact)
     reason = "touched the ground with something but a foot";
-  if (reason.empty() || fallen_before) return false;
+  if (reason.empty()) return false;
   r.fell_at = t;
   events_.push_back({t, "fell", reason});
   return true;
 }
 
-void Judge::observe_feet(double t, const CommandSample& command, const StepReport& report,
-                         double dt) {
+void Judge::observe_feet(double t, const CommandSample& command, const RobotData& truth,
+                         const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
   for (Side side : {Side::left, Side::right}) {
     const int i = static_cast<int>(side);
@@ -134,7 +134,7 @@ void Judge::observe_feet(double t, const CommandSample& command, const StepRepor
     unloaded_[i] = loaded ? 0.0 : unloaded_[i] + dt;
     // Slip is told from where the foot stood when it first carried load in its stance.
     const bool stance = supports(command.support, side) && loaded;
-    const Vector3d place = sole_pose(*model_, data_, side).translation();
+    const Vector3d place = sole_pose(*model_, truth, side).translation();
     if (stance && !in_stance_[i]) stance_start_[i] = place;
     if (stance) {
       const Vector3d moved = place - stance_start_[i];
@@ -147,19 +147,20 @@ void Judge::observe_feet(double t, const CommandSample& command, const StepRepor
 
 SimulationResult Judge::conclude(const CommandSample& command, const RobotState& state) {
   SimulationResult& r = result_;
-  update_velocities(*model_, state, data_);
+  RobotData data(*model_);
+  update_velocities(*model_, state, data);
   r.zmp_tracking_rms =
       zmp_count_ > 0 ? std::sqrt(zmp_square_sum_ / static_cast<double>(zmp_count_)) : 0.0;
-  const Vector3d cog = plan_to_world(*model_, data_, command, normal_).inverse() * data_.cog;
+  const Vector3d cog = plan_to_world(*model_, data, command, normal_).inverse() * data.cog;
   r.final_cog_error = (cog - command.cog).head<2>().norm();
-  r.final_speed = data_.dcog.norm();
+  r.final_speed = data.dcog.norm();
   if (r.fell_at >= 0) {
     r.outcome = Outcome::fell;
     return r;
   }
   const double z = command.cog.z() - command.zmp.z();
   const double omega = std::sqrt(kGravity / z);
-  const Vector3d up = data_.rotation[model_->trunk_body()].col(2);
+  const Vector3d up = data.rotation[model_->trunk_body()].col(2);
   const double tilt = std::acos(std::clamp(up.dot(normal_), -1.0, 1.0));
   const bool rest = r.final_cog_error < kRestError * z && r.final_speed < kRestSpeed * omega * z &&
                     tilt < kRestTilt;

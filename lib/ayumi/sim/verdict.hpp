@@ -18,9 +18,10 @@ class Judge {
   void set_ground(const Eigen::Isometry3d& pose) { normal_ = pose.linear().col(2); }
 
   /// One control tick: plan, true state and the last step's report. `sample` is the log entry of
-  /// this tick. Returns true once, at the tick of the fall.
+  /// this tick, `truth` holds the positions of its state. Returns true once, at the tick of the
+  /// fall.
   bool observe(double t, const CommandSample& command, const SimulationSample& sample,
-               const StepReport& report, double dt);
+               const RobotData& truth, const StepReport& report, double dt);
 
   /// After the last tick; `command` is the plan's end.
   SimulationResult conclude(const CommandSample& command, const RobotState& state);
@@ -28,12 +29,12 @@ class Judge {
   const std::vector<SimulationEvent>& events() const { return events_; }
 
  private:
-  void observe_feet(double t, const CommandSample& command, const StepReport& report, double dt);
+  void observe_feet(double t, const CommandSample& command, const RobotData& truth,
+                    const StepReport& report, double dt);
 
   const RobotModel* model_;
   ActuatorLimits limits_;
   Eigen::Vector3d normal_;
-  RobotData data_;
   SimulationResult result_;
   std::vector<SimulationEvent> events_;
   double zmp_square_sum_ = 0;
