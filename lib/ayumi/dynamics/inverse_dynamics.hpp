@@ -28,13 +28,6 @@ void mass_matrix(const RobotModel& model, RobotData& data, Eigen::MatrixXd& M);
 Eigen::VectorXd forward_dynamics(const RobotModel& model, const RobotState& state,
                                  const Eigen::VectorXd& force, RobotData& data);
 
-/// The same in O(n) by articulated bodies (R. Featherstone), into `acceleration`. Fills positions
-/// and velocities of `data`; allocates nothing after the first call. A robot whose mimic joints tie
-/// branches together goes through the mass matrix.
-void articulated_body_acceleration(const RobotModel& model, const RobotState& state,
-                                   const Eigen::VectorXd& force, RobotData& data,
-                                   Eigen::VectorXd& acceleration);
-
 /// Linear momentum [N s] and angular momentum about the COG [N m s], world axes.
 struct Momentum {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();

@@ -1,7 +1,5 @@
 #include "ayumi/dynamics/kinematics.hpp"
 
-#include <cmath>
-
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -11,95 +9,28 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-RobotData::RobotData(const RobotModel& model) {
-  const size_t n = model.bodies().size();
-  rotation.resize(n);
-  for (auto* field : {&position, &axis, &com, &angular_velocity, &velocity, &angular_acceleration,
-                      &acceleration, &force, &moment})
-    field->resize(n);
-  composite.resize(n);
-  subtree_mass.assign(n, 0.0);
-  for (size_t i = n; i-- > 0;) {
-    subtree_mass[i] += model.bodies()[i].inertia.mass;
-    if (i > 0) subtree_mass[model.bodies()[i].parent] += subtree_mass[i];
-  }
-  for (const Body& body : model.bodies()) {
-    int along = 0;
-    for (int k = 0; k < 3; ++k)
-      if (std::abs(body.axis[k]) == 1) along = body.axis[k] > 0 ? k + 1 : -k - 1;
-    aligned.push_back(along);
-    turned.push_back(body.placement.linear() != Matrix3d::Identity());
-  }
-}
-
-namespace {
-
-// R turned by q about its own column |aligned| - 1: two columns mix.
-void turn_about_column(Matrix3d& R, int aligned, double q) {
-  const int k = std::abs(aligned) - 1, a = (k + 1) % 3, b = (k + 2) % 3;
-  const double c = std::cos(q), s = aligned > 0 ? std::sin(q) : -std::sin(q);
-  const Vector3d x = R.col(a), y = R.col(b);
-  R.col(a) = c * x + s * y;
-  R.col(b) = c * y - s * x;
-}
-
-}  // namespace
-
 void update_positions(const RobotModel& model, const RobotState& state, RobotData& data) {
-  const std::vector<Body>& bodies = model.bodies();
+  const kernels::Job job = {.attitude = state.base.attitude.coeffs().data(),
+                            .theta = state.theta.data()};
+  Vector3d moment;
+  data.kernels->positions(data.tree(), job, data.bodies(), moment.data());
   data.base_position = state.base.position;
-  data.rotation[0] = state.base.attitude.toRotationMatrix();
-  data.position[0].setZero();
-  data.axis[0].setZero();
-  data.com[0] = data.rotation[0] * bodies[0].inertia.com;
-  Vector3d moment = bodies[0].inertia.mass * data.com[0];
-  for (size_t i = 1; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    const double q = body.ratio * state.theta[body.dof] + body.offset;
-    const Matrix3d& R = data.rotation[body.parent];
-    Matrix3d& Ri = data.rotation[i];
-    if (data.turned[i])
-      Ri.noalias() = R * body.placement.linear();
-    else
-      Ri = R;
-    data.position[i] = data.position[body.parent] + R * body.placement.translation();
-    const int aligned = data.aligned[i];
-    if (aligned)
-      data.axis[i] = (aligned > 0 ? 1.0 : -1.0) * Ri.col(std::abs(aligned) - 1);
-    else
-      data.axis[i] = Ri * body.axis;
-    if (body.prismatic)
-      data.position[i] += q * data.axis[i];
-    else if (aligned)
-      turn_about_column(Ri, aligned, q);
-    else
-      Ri = (Ri * Eigen::AngleAxisd(q, body.axis).toRotationMatrix()).eval();
-    data.com[i] = data.position[i] + data.rotation[i] * body.inertia.com;
-    moment += body.inertia.mass * data.com[i];
-  }
   data.cog_offset = moment / model.mass();
   data.cog = data.base_position + data.cog_offset;
 }
 
+void carry_velocities(const RobotModel& model, const RobotState& state, RobotData& data) {
+  const kernels::Job job = {.angular_velocity = state.base_angular_velocity.data(),
+                            .dtheta = state.dtheta.data(),
+                            .velocity = state.base_velocity.data()};
+  Vector3d momentum;
+  data.kernels->velocities(data.tree(), job, data.bodies(), momentum.data());
+  data.dcog = momentum / model.mass();
+}
+
 void update_velocities(const RobotModel& model, const RobotState& state, RobotData& data) {
   update_positions(model, state, data);
-  const std::vector<Body>& bodies = model.bodies();
-  data.velocity[0] = state.base_velocity;
-  data.angular_velocity[0] = state.base_angular_velocity;
-  Vector3d momentum =
-      bodies[0].inertia.mass * (data.velocity[0] + data.angular_velocity[0].cross(data.com[0]));
-  for (size_t i = 1; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    const double rate = body.ratio * state.dtheta[body.dof];
-    const Vector3d& w = data.angular_velocity[body.parent];
-    data.angular_velocity[i] = w;
-    data.velocity[i] =
-        data.velocity[body.parent] + w.cross(data.position[i] - data.position[body.parent]);
-    (body.prismatic ? data.velocity[i] : data.angular_velocity[i]) += rate * data.axis[i];
-    momentum += body.inertia.mass *
-                (data.velocity[i] + data.angular_velocity[i].cross(data.com[i] - data.position[i]));
-  }
-  data.dcog = momentum / model.mass();
+  carry_velocities(model, state, data);
 }
 
 void move_base(const BasePose& base, RobotData& data) {
@@ -116,15 +47,6 @@ void move_base(const BasePose& base, RobotData& data) {
   data.base_position = base.position;
   data.cog_offset = (turn * data.cog_offset).eval();
   data.cog = data.base_position + data.cog_offset;
-}
-
-void add_base_velocity(const Vector3d& velocity, const Vector3d& angular_velocity,
-                       RobotData& data) {
-  for (size_t i = 0; i < data.velocity.size(); ++i) {
-    data.angular_velocity[i] += angular_velocity;
-    data.velocity[i] += velocity + angular_velocity.cross(data.position[i]);
-  }
-  data.dcog += velocity + angular_velocity.cross(data.cog_offset);
 }
 
 Isometry3d link_pose(const RobotModel& model, const RobotData& data, int link) {

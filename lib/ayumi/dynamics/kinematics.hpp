@@ -11,12 +11,11 @@ void update_positions(const RobotModel& model, const RobotState& state, RobotDat
 /// Positions, then the velocity part: (1)(2) carried out along the tree.
 void update_velocities(const RobotModel& model, const RobotState& state, RobotData& data);
 
+/// The velocity part alone; needs update_positions().
+void carry_velocities(const RobotModel& model, const RobotState& state, RobotData& data);
+
 /// What changes in `data` when only the base pose of the state does; needs update_positions().
 void move_base(const BasePose& base, RobotData& data);
-
-/// What changes in `data` when the base velocities grow by these; needs update_velocities().
-void add_base_velocity(const Eigen::Vector3d& velocity, const Eigen::Vector3d& angular_velocity,
-                       RobotData& data);
 
 /// Pose of a link or of a sole frame in the world; needs update_positions().
 Eigen::Isometry3d link_pose(const RobotModel& model, const RobotData& data, int link);

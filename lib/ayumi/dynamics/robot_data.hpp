@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "ayumi/dynamics/tree_kernels.hpp"
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
@@ -17,18 +18,10 @@ struct SpatialInertia {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the base origin [kg m^2]
 };
 
-/// Of one body in articulated_body_acceleration(): spatial vectors (linear part first) about the
-/// base origin.
-struct ArticulatedBody {
-  using Vector = Eigen::Matrix<double, 6, 1>;
-  Eigen::Matrix<double, 6, 6> inertia;
-  Vector screw, bias, twist, acceleration, drift;  ///< drift: V x S dq
-  Vector force;                                    ///< U = I S
-  double inverse = 0, drive = 0;                   ///< 1 / S.U, tau - S.bias
-};
-
 struct RobotData {
-  explicit RobotData(const RobotModel& model);
+  /// Belongs to this model from now on: it holds its masses and placements.
+  explicit RobotData(const RobotModel& model,
+                     const kernels::Kernels& kernels = kernels::best_kernels());
 
   // Filled by update_positions().
   std::vector<Eigen::Matrix3d> rotation;  ///< R_WK of each body
@@ -44,17 +37,21 @@ struct RobotData {
   std::vector<Eigen::Vector3d> velocity;          ///< of each body origin [m/s]
   Eigen::Vector3d dcog;                           ///< [m/s]
 
-  // Scratch of inverse_dynamics() and mass_matrix().
-  std::vector<Eigen::Vector3d> angular_acceleration, acceleration;
-  std::vector<Eigen::Vector3d> force, moment;  ///< of each subtree, moment about the base origin
-  std::vector<SpatialInertia> composite;       ///< of each subtree
+  std::vector<SpatialInertia> composite;  ///< of each subtree; scratch of the Jacobians of the COG
 
-  std::vector<ArticulatedBody> articulated;  ///< sized by its first use
-
-  // Constants of the model that save work.
+  // Constants of the model.
   std::vector<double> subtree_mass;  ///< [kg]
-  std::vector<int> aligned;          ///< joint axis 1, 2, 3 for x, y, z, negative reversed; else 0
-  std::vector<char> turned;          ///< the joint frame is turned against its parent's
+  std::vector<kernels::Link> links;
+  std::vector<int> column_begin, column, rank;  ///< by velocity column, of a dense mass matrix
+  const kernels::Kernels* kernels;
+
+  struct alignas(64) Line {
+    double number[8];
+  };
+  std::vector<Line> scratch;  ///< of the kernels
+
+  kernels::Tree tree() const;
+  kernels::Bodies bodies();
 
   /// Pose of a body in the world.
   Eigen::Isometry3d pose(int body) const {

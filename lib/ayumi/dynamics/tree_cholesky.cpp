@@ -1,13 +1,14 @@
 #include "ayumi/dynamics/tree_cholesky.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 namespace ayumi {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-TreeCholesky::TreeCholesky(const RobotModel& model) {
+TreeCholesky::TreeCholesky(const RobotModel& model, const kernels::Kernels& kernels)
+    : kernels_(&kernels) {
   const int n = model.velocity_count();
   const std::vector<Body>& bodies = model.bodies();
   place_.assign(static_cast<size_t>(n), -1);
@@ -33,52 +34,61 @@ TreeCholesky::TreeCholesky(const RobotModel& model) {
     for (int k = 0; k < n; ++k) parent_[static_cast<size_t>(k)] = k - 1;
     for (size_t i = 1; i < bodies.size(); ++i) body_place_[i] = n - 1;
   }
-  L_.setZero(n, n);
+  size_t size = 0;
+  row_of_.resize(static_cast<size_t>(n));
+  entry_of_.resize(static_cast<size_t>(n));
+  for (int k = 0; k < n; ++k) {
+    depth_.push_back(parent(k) < 0 ? 0 : depth(parent(k)) + 1);
+    offset_.push_back(static_cast<int>(size));
+    row_of_[static_cast<size_t>(column_at(k))] = offset_.back();
+    entry_of_[static_cast<size_t>(column_at(k))] = depth_.back();
+    size += static_cast<size_t>(depth_.back() / 4 * 4 + 4);
+  }
+  rows_.assign(size, 0.0);
+  inverse_.assign(static_cast<size_t>(n), 0.0);
   scratch_.setZero(n);
 }
 
 bool TreeCholesky::factor(const MatrixXd& M) {
-  const int n = static_cast<int>(column_.size());
-  for (int k = 0; k < n; ++k)
-    for (int i = k; i >= 0; i = parent(i)) L_(i, k) = M(column_at(i), column_at(k));
-  for (int k = n - 1; k >= 0; --k) {
-    double* row = L_.col(k).data();
-    if (!(row[k] > 0)) return false;
-    row[k] = std::sqrt(row[k]);
-    const double inverse = 1.0 / row[k];
-    for (int i = parent(k); i >= 0; i = parent(i)) row[i] *= inverse;
-    for (int i = parent(k); i >= 0; i = parent(i)) {
-      double* above = L_.col(i).data();
-      const double factor = row[i];
-      for (int j = i; j >= 0; j = parent(j)) above[j] -= factor * row[j];
-    }
+  for (int k = 0; k < static_cast<int>(column_.size()); ++k) {
+    double* to = rows_.data() + row_begin(k);
+    for (int i = k; i >= 0; i = parent(i)) to[depth(i)] = M(column_at(i), column_at(k));
+    std::fill(to + depth(k) + 1, to + depth(k) / 4 * 4 + 4, 0.0);
   }
-  return true;
+  return factor_rows();
+}
+
+bool TreeCholesky::factor_rows() {
+  return kernels_->factor(paths(), rows_.data(), inverse_.data());
+}
+
+void TreeCholesky::multiply(const std::vector<double>& rows, const VectorXd& x, VectorXd& y) const {
+  y.setZero(x.size());
+  for (int k = 0; k < static_cast<int>(column_.size()); ++k) {
+    const double* entry = rows.data() + row_begin(k);
+    double sum = entry[depth(k)] * x[k];
+    for (int i = parent(k), t = depth(k) - 1; i >= 0; i = parent(i), --t) {
+      sum += entry[t] * x[i];
+      y[i] += entry[t] * x[k];
+    }
+    y[k] += sum;
+  }
 }
 
 void TreeCholesky::solve_lower(VectorXd& y) const {
-  const int n = static_cast<int>(column_.size());
-  for (int k = 0; k < n; ++k) {
-    const double* row = L_.col(k).data();
+  for (int k = 0; k < static_cast<int>(column_.size()); ++k) {
+    const double* entry = row(k);
     double sum = y[k];
-    for (int j = parent(k); j >= 0; j = parent(j)) sum -= row[j] * y[j];
-    y[k] = sum / row[k];
+    for (int i = parent(k), t = depth(k) - 1; i >= 0; i = parent(i), --t) sum -= entry[t] * y[i];
+    y[k] = sum * inverse_[static_cast<size_t>(k)];
   }
 }
 
 void TreeCholesky::solve_upper(VectorXd& y) const {
   for (int k = static_cast<int>(column_.size()) - 1; k >= 0; --k) {
-    const double* row = L_.col(k).data();
-    y[k] /= row[k];
-    for (int j = parent(k); j >= 0; j = parent(j)) y[j] -= row[j] * y[k];
-  }
-}
-
-void TreeCholesky::solve_chain(int last, Eigen::Vector3d* Y) const {
-  for (int k = last; k >= 0; k = parent(k)) {
-    const double* row = L_.col(k).data();
-    Y[k] /= row[k];
-    for (int j = parent(k); j >= 0; j = parent(j)) Y[j] -= row[j] * Y[k];
+    const double* entry = row(k);
+    y[k] *= inverse_[static_cast<size_t>(k)];
+    for (int i = parent(k), t = depth(k) - 1; i >= 0; i = parent(i), --t) y[i] -= entry[t] * y[k];
   }
 }
 

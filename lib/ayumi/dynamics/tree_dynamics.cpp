@@ -1,12 +1,11 @@
-// A body's axes are turned by a constant C so that its joint axis is x, y or z: with R = E P(q) the
-// body's attitude in its parent, C_p' R C = (C_p' E C) P'(q). Axes along -x and so on count q
-// backwards instead.
 #include "ayumi/dynamics/tree_dynamics.hpp"
 
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/tree_links.hpp"
 
 namespace ayumi {
 
@@ -31,66 +30,6 @@ const kernels::Kernels* kernels_for(InstructionSet set) {
   return &kernels::best_kernels();
 }
 
-void put(const Matrix3d& m, double* rows) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) rows[3 * i + j] = m(i, j);
-}
-
-// Fills axis and direction; returns C.
-Matrix3d align(const Body& body, kernels::Link& link) {
-  link.ratio = body.ratio;
-  link.offset = body.offset;
-  for (int k = 0; k < 3; ++k) {
-    if (std::abs(body.axis[k]) != 1) continue;
-    link.axis = k;
-    if (body.axis[k] < 0) {
-      link.ratio = -link.ratio;
-      link.offset = -link.offset;
-    }
-    return Matrix3d::Identity();
-  }
-  link.axis = 2;
-  Matrix3d C;
-  C.col(2) = body.axis;
-  C.col(0) = body.axis.unitOrthogonal();
-  C.col(1) = C.col(2).cross(C.col(0));
-  return C;
-}
-
-std::vector<kernels::Link> links_of(const RobotModel& model) {
-  const std::vector<Body>& bodies = model.bodies();
-  std::vector<kernels::Link> links(bodies.size());
-  std::vector<Matrix3d> turn(bodies.size(), Matrix3d::Identity());
-  for (size_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    kernels::Link& link = links[i];
-    if (i > 0) {
-      turn[i] = align(body, link);
-      link.parent = body.parent;
-      link.dof = body.dof;
-      link.prismatic = body.prismatic;
-      const Matrix3d& up = turn[static_cast<size_t>(body.parent)];
-      const Matrix3d E = up.transpose() * body.placement.linear() * turn[i];
-      link.turned = E != Matrix3d::Identity();
-      put(E, link.E);
-      Eigen::Map<Vector3d>(link.r) = up.transpose() * body.placement.translation();
-    }
-    const Vector3d com = turn[i].transpose() * body.inertia.com;
-    Matrix3d I = turn[i].transpose() * body.inertia.about_com * turn[i];
-    const double m = body.inertia.mass;
-    I += m * (com.squaredNorm() * Matrix3d::Identity() - com * com.transpose());
-    link.mass = m;
-    Eigen::Map<Vector3d>(link.moment) = m * com;
-    const double six[] = {I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2)};
-    std::copy(six, six + 6, link.I);
-  }
-  for (size_t i = links.size(); i-- > 0;) {
-    links[i].subtree_mass += links[i].mass;
-    if (i > 0) links[static_cast<size_t>(links[i].parent)].subtree_mass += links[i].subtree_mass;
-  }
-  return links;
-}
-
 }  // namespace
 
 const kernels::Kernels& kernels::best_kernels() {
@@ -101,13 +40,13 @@ const kernels::Kernels& kernels::best_kernels() {
 TreeDynamics::TreeDynamics(const RobotModel& model, InstructionSet set)
     : model_(&model),
       kernels_(kernels_for(set)),
-      links_(links_of(model)),
+      links_(tree_links(model)),
       scratch_(static_cast<size_t>(kernels::scratch_doubles(static_cast<int>(links_.size())) / 8)),
       packed_(static_cast<size_t>(kernels::kMaxWidth * (7 + 4 * model.velocity_count()))),
       still_(VectorXd::Zero(model.velocity_count())),
-      data_(model),
+      data_(model, *kernels_),
       rates_(model.bodies().size()),
-      factor_(model) {}
+      factor_(model, *kernels_) {}
 
 kernels::Tree TreeDynamics::tree() const {
   return {links_.data(), static_cast<int>(links_.size()), model_->dof_count(), kGravity};
@@ -163,9 +102,8 @@ void TreeDynamics::solve_tied(const RobotState& state, const VectorXd& force,
 }
 
 void TreeDynamics::mass_matrix(const RobotState& state, MatrixXd& M) {
-  M.resize(model_->velocity_count(), model_->velocity_count());
-  kernels_->mass_matrix(tree(), {state.base.attitude.coeffs().data(), nullptr, state.theta.data(),
-                                 nullptr, nullptr, nullptr, M.data(), scratch_[0].number});
+  update_positions(*model_, state, data_);
+  ayumi::mass_matrix(*model_, data_, M);
 }
 
 void TreeDynamics::inverse(std::span<const RobotState> states, const MatrixXd& acceleration,

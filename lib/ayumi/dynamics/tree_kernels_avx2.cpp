@@ -16,10 +16,17 @@ const Kernels* avx2_kernels() {
                                       4,
                                       inverse_dynamics<double>,
                                       forward_dynamics<double>,
-                                      mass_matrix<double>,
                                       inverse_dynamics<Wide>,
                                       forward_dynamics<Wide>,
-                                      sines_and_cosines};
+                                      sines_and_cosines,
+                                      body_positions,
+                                      body_velocities,
+                                      mass_entries,
+                                      newton_euler,
+                                      factor_rows,
+                                      solve_path,
+                                      gram,
+                                      solve_positive};
   return &kernels;
 }
 

@@ -9,8 +9,10 @@
 // Forward: the articulated f = M a + H alpha + p_f, n = H' a + I alpha + p_n go inwards with the
 // joint solved out, U = (H s, I s), D = s.I s + rotor:  (M H; H' I) -= U U' / D.
 
+#include "ayumi/dynamics/tree_kernels_fours.hpp"
 #include "ayumi/dynamics/tree_kernels_vectors.hpp"
 // The kernels one by one, on what stands above.
+#include "ayumi/dynamics/tree_kernels_factor.hpp"
 #include "ayumi/dynamics/tree_kernels_forward.hpp"
 #include "ayumi/dynamics/tree_kernels_inverse.hpp"
-#include "ayumi/dynamics/tree_kernels_mass.hpp"
+#include "ayumi/dynamics/tree_kernels_world.hpp"

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/dynamics/tree_kernels.hpp"
+
 namespace ayumi {
 
 using Eigen::Matrix2d;
@@ -65,10 +67,20 @@ Vector3d slide(const Matrix3d& D, const Vector3d& r, double mu) {
   return l;
 }
 
+/// D^-1 r of a symmetric positive definite D.
+Vector3d solve_three(const Matrix3d& D, const Vector3d& r) {
+  const double a = 1 / D(0, 0), l10 = a * D(1, 0), l20 = a * D(2, 0);
+  const double b = 1 / (D(1, 1) - l10 * D(1, 0)), e = D(2, 1) - l20 * D(1, 0), l21 = b * e;
+  const double c = 1 / (D(2, 2) - l20 * D(2, 0) - l21 * e);
+  const double y1 = r[1] - l10 * r[0], y2 = r[2] - l20 * r[0] - l21 * y1;
+  const double x2 = c * y2, x1 = b * y1 - l21 * x2;
+  return {a * r[0] - l10 * x1 - l20 * x2, x1, x2};
+}
+
 Vector3d solve_one(const Matrix3d& D, const Vector3d& r, double mu) {
   if (r[0] >= 0) return Vector3d::Zero();
   if (mu <= 0) return {-r[0] / D(0, 0), 0, 0};
-  const Vector3d stick = -D.llt().solve(r);
+  const Vector3d stick = -solve_three(D, r);
   if (stick[0] >= 0 && stick.tail<2>().norm() <= mu * stick[0]) return stick;
   return slide(D, r, mu);
 }
@@ -109,7 +121,7 @@ void ContactSolver::resize(int n) {
   n_ = n;
   const size_t rows = static_cast<size_t>(3 * n);
   for (size_t k = 0; k < store_.size(); ++k) {
-    const size_t size = k == 0 || k == 4 ? rows * rows : rows;
+    const size_t size = k == 0 ? rows * rows : k == 4 ? rows * (rows + 3) : rows;
     if (store_[k].size() < size) store_[k].resize(size);
   }
   friction_.resize(static_cast<size_t>(n));
@@ -135,6 +147,12 @@ double ContactSolver::sweep(Vector l, double share) {
   return change;
 }
 
+/// Whether a closed contact's row of the Newton step is that of one that sticks.
+bool ContactSolver::sticks(int i, const Vector3d& l, const Vector3d& u) const {
+  return l.tail<2>().norm() < friction_[static_cast<size_t>(i)] * l[0] * (1 - 1e-9) ||
+         u.tail<2>().norm() < 1e-12;
+}
+
 // Newton step on the contacts that are closed in impulse(), into the candidate. False where it has
 // no answer.
 bool ContactSolver::newton_step() {
@@ -143,42 +161,82 @@ bool ContactSolver::newton_step() {
   closed_.clear();
   for (int i = 0; i < n_; ++i)
     if (l[3 * i] > 0) closed_.push_back(i);
-  const int m = static_cast<int>(closed_.size());
-  Matrix G(store_[4].data(), 3 * m, 3 * m);
-  Vector F(store_[5].data(), 3 * m), u(store_[6].data(), 3 * n_);
+  const int rows = 3 * static_cast<int>(closed_.size());
+  Vector u(store_[6].data(), 3 * n_);
   u = b();
   for (int i : closed_)
     for (int k = 0; k < 3; ++k) u += l[3 * i + k] * matrix.col(3 * i + k);
+  bool all_stick = true;
+  for (int i : closed_)
+    all_stick = all_stick && sticks(i, l.segment<3>(3 * i), u.segment<3>(3 * i));
+  if (!(all_stick && stick_together(rows)) && !stick_and_slide(rows)) return false;
+  const Vector F(store_[5].data(), rows);
+  Vector next(store_[3].data(), 3 * n_);
+  next = l;
+  for (size_t a = 0; a < closed_.size(); ++a)
+    next.segment<3>(3 * closed_[a]) -= F.segment<3>(3 * static_cast<int>(a));
+  return next.allFinite();
+}
+
+// Where all stick the matrix is that of the problem: symmetric, positive definite.
+bool ContactSolver::stick_together(int rows) {
+  const Matrix matrix = A();
+  const int stride = (rows + 3) / 4 * 4;
+  for (int c = 0; c < rows; ++c) {
+    const auto from = matrix.col(3 * closed_[static_cast<size_t>(c / 3)] + c % 3);
+    double* to = store_[4].data() + c * stride;
+    for (size_t a = static_cast<size_t>(c / 3); a < closed_.size(); ++a)
+      for (int k = 0; k < 3; ++k) to[3 * static_cast<int>(a) + k] = from[3 * closed_[a] + k];
+    store_[5][static_cast<size_t>(c)] =
+        store_[6][static_cast<size_t>(3 * closed_[static_cast<size_t>(c / 3)] + c % 3)];
+  }
+  return kernels::best_kernels().solve_positive(store_[4].data(), rows, stride, store_[5].data());
+}
+
+bool ContactSolver::stick_and_slide(int rows) {
+  const Matrix matrix = A();
+  const Vector l = impulse(), u(store_[6].data(), 3 * n_);
+  Matrix G(store_[4].data(), rows, rows);
+  Vector F(store_[5].data(), rows);
+  const int m = rows / 3;
   for (int a = 0; a < m; ++a) {
     const int i = closed_[a];
     for (int c = 0; c < m; ++c)
       G.block<3, 3>(3 * a, 3 * c) = matrix.block<3, 3>(3 * i, 3 * closed_[c]);
     F.segment<3>(3 * a) = u.segment<3>(3 * i);
+    if (sticks(i, l.segment<3>(3 * i), u.segment<3>(3 * i))) continue;
     const double mu = friction_[i], normal = l[3 * i];
     const Vector2d lt = l.segment<2>(3 * i + 1), ut = u.segment<2>(3 * i + 1);
     const double speed = ut.norm();
-    if (lt.norm() < mu * normal * (1 - 1e-9) || speed < 1e-12) continue;  // sticks
     const Vector2d e = ut / speed;
     const Matrix2d turn = mu * normal / speed * (Matrix2d::Identity() - e * e.transpose());
-    for (int column = 0; column < 3 * m; ++column)
+    for (int column = 0; column < rows; ++column)
       G.block<2, 1>(3 * a + 1, column) = (turn * G.block<2, 1>(3 * a + 1, column)).eval();
     G.block<2, 2>(3 * a + 1, 3 * a + 1) += Matrix2d::Identity();
     G.block<2, 1>(3 * a + 1, 3 * a) += mu * e;
     F.segment<2>(3 * a + 1) = lt + mu * normal * e;
   }
-  if (!eliminate(store_[4].data(), store_[5].data(), 3 * m)) return false;
-  Vector next(store_[3].data(), 3 * n_);
-  next = l;
-  for (int a = 0; a < m; ++a) next.segment<3>(3 * closed_[a]) -= F.segment<3>(3 * a);
-  return next.allFinite();
+  return eliminate(store_[4].data(), store_[5].data(), rows);
 }
 
 ContactSolution ContactSolver::solve(double tolerance, int max_iterations) {
   ContactSolution result;
   if (n_ == 0) return result;
-  double change = sweep(impulse());
-  int sweeps = 1;
   Vector candidate(store_[3].data(), 3 * n_);
+  int sweeps = 0;
+  // Mostly the contacts are as they were: one Newton step from there is the answer.
+  bool closed = false;
+  for (int i = 0; i < n_; ++i) closed = closed || impulse()[3 * i] > 0;
+  if (closed && newton_step()) {
+    ++sweeps;
+    const double candidate_change = sweep(candidate);
+    if (candidate_change <= tolerance) {
+      impulse() = candidate;
+      return {sweeps, candidate_change};
+    }
+  }
+  double change = sweep(impulse());
+  ++sweeps;
   while (change > tolerance && sweeps < max_iterations) {
     const double candidate_change = newton_step() ? sweep(candidate) : change;
     ++sweeps;

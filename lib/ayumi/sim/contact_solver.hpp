@@ -46,6 +46,9 @@ class ContactSolver {
  private:
   double sweep(Vector impulse, double share = 1.0);
   bool newton_step();
+  bool stick_together(int rows);
+  bool stick_and_slide(int rows);
+  bool sticks(int i, const Eigen::Vector3d& l, const Eigen::Vector3d& u) const;
 
   int n_ = 0;
   // A, b, impulse, candidate, Newton matrix, Newton right side, velocities.

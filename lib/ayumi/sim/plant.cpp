@@ -77,7 +77,12 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
   points_ = contact_points(model);
   groups_ = group_points(points_);
   const int columns = model.velocity_count();
-  still_ = velocity_ = lower_ = VectorXd::Zero(columns);
+  still_ = velocity_ = lower_ = placed_ = momentum_ = VectorXd::Zero(columns);
+  mass_.resize(factor_.row_doubles());
+  for (int j = 0; j < n; ++j) {
+    const int place = factor_.place_of(6 + j);
+    joint_diagonal_.push_back(static_cast<size_t>(factor_.row_begin(place) + factor_.depth(place)));
+  }
   fixed_ = dry_ = report_.torque = VectorXd::Zero(n);
   saturated_.resize(static_cast<size_t>(n));
   sliding_.resize(static_cast<size_t>(n));
@@ -87,8 +92,10 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
   kp_now_ = kd_now_ = viscous_now_ = coulomb_now_ = target_now_ = VectorXd::Zero(n);
   const size_t usual = std::min<size_t>(points_.size(), 16);  // room for both soles
   solver_.resize(static_cast<int>(usual));
-  J_.resize(usual * static_cast<size_t>(columns));
+  J_.resize(usual * 4 * static_cast<size_t>(columns));
   Y_.resize(J_.size());
+  block_.resize(16 * usual * usual);
+  runs_.reserve(64);
   compliance_.resize(usual);
   shift_.resize(usual);
   active_.reserve(points_.size() + 64);
@@ -117,6 +124,7 @@ void Plant::set_state(const RobotState& state) {
   time_ = 0;
   state_ = state;
   update_velocities(moving(), state_, data_);
+  fill_mass();
   active_.clear();
 }
 
@@ -159,7 +167,9 @@ void Plant::load(const std::vector<CarriedMass>& payloads) {
     }
     loaded_.emplace(d);
   }
+  data_ = RobotData(moving());
   update_velocities(moving(), state_, data_);
+  fill_mass();
 }
 
 void Plant::take_joints(const VectorXd& targets, const StepInput& input) {
@@ -197,29 +207,41 @@ void Plant::push(const ExternalWrench& w, double dt) {
   external_.angular += torque + (point - data_.cog).cross(force);
 }
 
-// Fills M_ (with rotors), the momentum and bias terms and what the contact solve needs.
-void Plant::assemble(const StepInput& input, double dt) {
+// Of the posture in data_.
+void Plant::fill_mass() {
+  std::fill(mass_.begin(), mass_.end(), 0.0);
+  data_.kernels->mass_entries(data_.tree(), data_.bodies(), factor_.layout(), mass_.data());
+  for (size_t j = 0; j < joint_diagonal_.size(); ++j)
+    mass_[joint_diagonal_[j]] += rotor_[static_cast<Eigen::Index>(j)];
+}
+
+// Fills the momentum and bias terms and what the contact solve needs; returns the momentum so far.
+Momentum Plant::assemble(const StepInput& input, double dt) {
   newton_euler(moving(), state_, still_, data_, bias_);
-  mass_matrix(moving(), data_, M_);
-  M_.diagonal().tail(model_->dof_count()) += rotor_;
   velocity_ << state_.base_velocity, state_.base_angular_velocity, state_.dtheta;
-  momentum_.noalias() = M_ * velocity_;
+  for (int k = 0; k < velocity_.size(); ++k) placed_[k] = velocity_[factor_.column_at(k)];
+  factor_.multiply(mass_, placed_, lower_);
+  for (int k = 0; k < velocity_.size(); ++k) momentum_[factor_.column_at(k)] = lower_[k];
+  Momentum momentum{momentum_.head<3>(), momentum_.segment<3>(3)};
+  momentum.angular -= data_.cog_offset.cross(momentum.linear);
   momentum_ -= dt * bias_;
   external_.linear = {0, 0, -dt * moving().mass() * kGravity};
   external_.angular.setZero();
   for (const ExternalWrench& w : input.wrenches) push(w, dt);
   collect_contacts(dt);
   fill_contact_rows(dt);
+  return momentum;
 }
 
 // velocity_ and contact impulses with the joints' laws as they are decided now.
 void Plant::solve_velocity(double dt) {
   const int n = model_->dof_count();
-  system_ = M_;
+  std::vector<double>& system = factor_.rows();
+  system = mass_;
   velocity_ = momentum_;
   for (int j = 0; j < n; ++j) {
     const double theta = state_.theta[j];
-    double& diagonal = system_(6 + j, 6 + j);
+    double& diagonal = system[joint_diagonal_[static_cast<size_t>(j)]];
     double& force = velocity_[6 + j];
     diagonal += dt * viscous_now_[j];
     if (saturated_[j]) {
@@ -242,7 +264,7 @@ void Plant::solve_velocity(double dt) {
     }
   }
   const int columns = model_->velocity_count();
-  if (!factor_.factor(system_))
+  if (!factor_.factor_rows())
     fail(ErrorCode::internal, model_->name() + ": the mass matrix is not positive " +
                                   text::fixed(time_, 3) + " s after the plant's start");
   for (int k = 0; k < columns; ++k) lower_[k] = velocity_[factor_.column_at(k)];
@@ -252,19 +274,18 @@ void Plant::solve_velocity(double dt) {
     const ContactSolution solution = solver_.solve();
     report_.contact_iterations = solution.iterations;
     report_.contact_residual = solution.residual;
-    for (size_t i = 0; i < active_.size(); ++i) {
-      const Vector3d l = solver_.impulse().segment<3>(3 * static_cast<int>(i));
-      const Vector3d* Y = &Y_[i * static_cast<size_t>(columns)];
-      const int last = factor_.last_place(points_[static_cast<size_t>(active_[i].point)].body);
-      for (int k = last; k >= 0; k = factor_.parent(k)) lower_[k] += Y[k].dot(l);
+    for (const Run& run : runs_) {
+      const double* l = solver_.impulse().data() + 3 * run.first;
+      for (int k = run.last, t = factor_.depth(k); k >= 0; k = factor_.parent(k), --t) {
+        const double* Y = &Y_[run.begin + static_cast<size_t>(t * run.width)];
+        for (size_t r = 0; r < 3 * run.count; ++r) lower_[k] += Y[r] * l[r];
+      }
     }
   }
   factor_.solve_lower(lower_);
   for (int k = 0; k < columns; ++k) velocity_[factor_.column_at(k)] = lower_[k];
 }
 
-// Torques at the solved velocity; true when a joint has left its law, so that the step must be
-// solved again.
 bool Plant::limit_torques(double dt) {
   bool changed = false;
   for (int j = 0; j < model_->dof_count(); ++j) {
@@ -291,8 +312,7 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
   load(input.payloads);
   take_joints(targets, input);
   ground_.set(input);
-  assemble(input, dt);
-  Momentum momentum = centroidal_momentum(moving(), data_);
+  Momentum momentum = assemble(input, dt);
   const int n = model_->dof_count();
   // A joint that has left its servo's law, or sticking friction, keeps to that within the step.
   std::fill(saturated_.begin(), saturated_.end(), 0);
@@ -326,18 +346,31 @@ void Plant::advance(const Momentum& momentum, double dt) {
   state_.theta += dt * state_.dtheta;
   state_.base.attitude =
       (exp_rotation(dt * velocity_.segment<3>(3)) * state_.base.attitude).normalized();
-  state_.base_velocity.setZero();
-  state_.base_angular_velocity.setZero();
-  update_velocities(moving(), state_, data_);
-  const Momentum joints = centroidal_momentum(moving(), data_);
-  const Vector3d cog_velocity = momentum.linear / moving().mass();
-  const Vector3d w = locked_inertia(moving(), data_).llt().solve(momentum.angular - joints.angular);
+  update_positions(moving(), state_, data_);
+  fill_mass();
+  // What the joints alone do, and the inertia with the joints locked, both about the base origin.
+  Momentum joints;
+  Matrix3d locked;
+  const auto row = [&](int place) { return mass_.data() + factor_.row_begin(place); };
+  for (int j = 0; j < model_->dof_count(); ++j) {
+    const double* of_joint = row(factor_.place_of(6 + j));
+    joints.linear += state_.dtheta[j] * Eigen::Map<const Vector3d>(of_joint);
+    joints.angular += state_.dtheta[j] * Eigen::Map<const Vector3d>(of_joint + 3);
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j) locked(i, j) = locked(j, i) = row(3 + i)[3 + j];
+  const double mass = moving().mass();
+  const Vector3d& c = data_.cog_offset;
+  joints.angular -= c.cross(joints.linear);
+  locked -= mass * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());
+  const Vector3d cog_velocity = momentum.linear / mass;
+  const Vector3d w = locked.llt().solve(momentum.angular - joints.angular);
   state_.base_angular_velocity = w;
-  state_.base_velocity = cog_velocity - joints.linear / moving().mass() - w.cross(data_.cog_offset);
-  state_.base.position = cog + dt * cog_velocity - data_.cog_offset;
+  state_.base_velocity = cog_velocity - joints.linear / mass - w.cross(c);
+  state_.base.position = cog + dt * cog_velocity - c;
   data_.base_position = state_.base.position;
-  data_.cog = data_.base_position + data_.cog_offset;
-  add_base_velocity(state_.base_velocity, w, data_);
+  data_.cog = data_.base_position + c;
+  carry_velocities(moving(), state_, data_);
 }
 
 }  // namespace ayumi

@@ -45,6 +45,15 @@ class Plant {
     Eigen::Vector2d deflection = Eigen::Vector2d::Zero();  ///< of the tangential spring [m]
   };
 
+  /// Consecutive contacts of one body. Rows of their Jacobian stand side by side, three per contact
+  /// and filled up to a multiple of four, one line for each place on the path to the body.
+  struct Run {
+    int body = 0, last = 0;  ///< and the last place that moves it
+    size_t first = 0, count = 0;
+    int width = 0;
+    size_t begin = 0;  ///< in J_ and Y_
+  };
+
   void check_input(const Eigen::VectorXd& targets, const StepInput& input, double dt) const;
   void load(const std::vector<CarriedMass>& payloads);
   void take_joints(const Eigen::VectorXd& targets, const StepInput& input);
@@ -56,9 +65,12 @@ class Plant {
   bool far(double gap, int body, const Active& active, double dt) const;
   void place_frame(const Eigen::Vector3d& normal, Active& active) const;
   void remember_impulses();
-  void assemble(const StepInput& input, double dt);
+  Momentum assemble(const StepInput& input, double dt);
   void push(const ExternalWrench& wrench, double dt);
+  void fill_mass();
+  void find_runs();
   void fill_contact_rows(double dt);
+  void fill_jacobian(const Run& run);
   void fill_delassus();
   void solve_velocity(double dt);
   bool limit_torques(double dt);
@@ -84,12 +96,12 @@ class Plant {
   std::vector<Eigen::Vector3d> outline_;
   std::vector<InnerPoint> inner_;
   std::vector<double> weights_;
-  Eigen::MatrixXd M_, system_;
   TreeCholesky factor_;
-  /// Contact Jacobians (normal and tangents per velocity column) and L^-T times their transposes,
-  /// [contact * velocity_count + place]; filled along the chain of the contact's body only.
-  std::vector<Eigen::Vector3d> J_, Y_;
-  Eigen::VectorXd momentum_, bias_, still_, velocity_, lower_;
+  std::vector<double> mass_;            // rows of the mass matrix with rotors, of state_
+  std::vector<size_t> joint_diagonal_;  // in such rows, by dof
+  std::vector<Run> runs_;
+  std::vector<double> J_, Y_, block_;  // contact Jacobians, L^-T times their transposes
+  Eigen::VectorXd momentum_, bias_, still_, velocity_, lower_, placed_;
   std::vector<double> compliance_;
   std::vector<Eigen::Vector3d> shift_;
   std::vector<char> saturated_, sliding_;

@@ -149,36 +149,61 @@ void Plant::remember_impulses() {
   }
 }
 
-void Plant::fill_contact_rows(double dt) {
-  const size_t n = active_.size(), columns = static_cast<size_t>(model_->velocity_count());
-  solver_.resize(static_cast<int>(n));
-  if (J_.size() < n * columns) {
-    J_.resize(n * columns);
-    Y_.resize(n * columns);
+void Plant::find_runs() {
+  runs_.clear();
+  size_t size = 0;
+  for (size_t i = 0; i < active_.size(); ++i) {
+    const int body = points_[static_cast<size_t>(active_[i].point)].body;
+    if (runs_.empty() || runs_.back().body != body)
+      runs_.push_back({.body = body, .last = factor_.last_place(body), .first = i});
+    ++runs_.back().count;
   }
+  for (Run& run : runs_) {
+    run.width = static_cast<int>(3 * run.count + 3) / 4 * 4;
+    run.begin = size;
+    size += static_cast<size_t>((factor_.depth(run.last) + 1) * run.width);
+  }
+  if (J_.size() < size) {
+    J_.resize(size);
+    Y_.resize(size);
+  }
+}
+
+void Plant::fill_contact_rows(double dt) {
+  find_runs();
+  const size_t n = active_.size();
+  solver_.resize(static_cast<int>(n));
   compliance_.resize(n);
   shift_.resize(n);
   for (size_t i = 0; i < n; ++i) {
     const ContactPoint& point = points_[static_cast<size_t>(active_[i].point)];
     const double time = dt + point.damping_time, gap = active_[i].gap;
     compliance_[i] = 1.0 / (dt * point.stiffness * time);
-    const Matrix3d& to_ground = active_[i].to_contact;
     shift_[i] << (gap > 0 ? gap / dt : gap / time), active_[i].deflection / time;
-    shift_[i] -= to_ground * active_[i].ground_velocity;
+    shift_[i] -= active_[i].to_contact * active_[i].ground_velocity;
     solver_.impulse().segment<3>(3 * static_cast<int>(i)) = active_[i].impulse;
     solver_.friction()[i] = active_[i].friction;
+  }
+  for (const Run& run : runs_) fill_jacobian(run);
+}
 
-    Vector3d* row = &J_[i * columns];
-    for (int k = factor_.last_place(point.body); k >= 0; k = factor_.parent(k)) row[k].setZero();
-    const Vector3d p = active_[i].position - data_.base_position;
+void Plant::fill_jacobian(const Run& run) {
+  double* J = &J_[run.begin];
+  std::fill(J, J + (factor_.depth(run.last) + 1) * run.width, 0.0);
+  for (size_t i = 0; i < run.count; ++i) {
+    const Matrix3d& to_ground = active_[run.first + i].to_contact;
+    const Vector3d p = active_[run.first + i].position - data_.base_position;
+    const auto line = [&](int t) {
+      return Eigen::Map<Vector3d>(J + t * run.width + 3 * static_cast<int>(i));
+    };
     for (int k = 0; k < 3; ++k) {
-      row[k] = to_ground.col(k);
-      row[3 + k] = to_ground * Vector3d::Unit(k).cross(p);
+      line(k) = to_ground.col(k);
+      line(3 + k) = to_ground * Vector3d::Unit(k).cross(p);
     }
-    for (int b = point.body; b > 0; b = model_->bodies()[b].parent) {
+    for (int b = run.body; b > 0; b = model_->bodies()[b].parent) {
       const Body& body = model_->bodies()[b];
       const Vector3d a = body.ratio * data_.axis[b];
-      row[factor_.place_of(6 + body.dof)] +=
+      line(factor_.depth(factor_.place_of(6 + body.dof))) +=
           to_ground * (body.prismatic ? a : Vector3d(a.cross(p - data_.position[b])));
     }
   }
@@ -186,50 +211,56 @@ void Plant::fill_contact_rows(double dt) {
 
 // A = Y' Y + compliance with Y = L^-T J'; b = Y' lower_ + shift, lower_ = L^-T right side.
 void Plant::fill_delassus() {
-  const size_t n = active_.size(), columns = static_cast<size_t>(model_->velocity_count());
   auto A = solver_.A();
   auto b = solver_.b();
-  for (size_t i = 0; i < n; ++i) {
-    const int last = factor_.last_place(points_[static_cast<size_t>(active_[i].point)].body);
-    const Vector3d* row = &J_[i * columns];
-    Vector3d* Yi = &Y_[i * columns];
-    for (int k = last; k >= 0; k = factor_.parent(k)) Yi[k] = row[k];
-    factor_.solve_chain(last, Yi);
-    Vector3d free = shift_[i];
-    for (int k = last; k >= 0; k = factor_.parent(k)) free += lower_[k] * Yi[k];
-    b.segment<3>(3 * static_cast<int>(i)) = free;
-    for (size_t j = 0; j <= i; ++j) {
-      const Vector3d* Yj = &Y_[j * columns];
-      int ki = last;
-      int kj = factor_.last_place(points_[static_cast<size_t>(active_[j].point)].body);
-      while (ki != kj) (ki > kj ? ki : kj) = factor_.parent(ki > kj ? ki : kj);
-      Matrix3d block = Matrix3d::Zero();
-      for (int k = ki; k >= 0; k = factor_.parent(k)) block += Yi[k] * Yj[k].transpose();
-      const int r = 3 * static_cast<int>(i), c = 3 * static_cast<int>(j);
-      A.block<3, 3>(r, c) = block;
-      A.block<3, 3>(c, r) = block.transpose();
+  for (const Run& run : runs_) {
+    double* Y = &Y_[run.begin];
+    std::copy_n(&J_[run.begin], (factor_.depth(run.last) + 1) * run.width, Y);
+    factor_.solve_path(run.last, run.width, Y);
+    const auto first = static_cast<Eigen::Index>(3 * run.first);
+    const auto rows = static_cast<Eigen::Index>(3 * run.count);
+    for (size_t i = 0; i < run.count; ++i)
+      b.segment<3>(first + 3 * static_cast<int>(i)) = shift_[run.first + i];
+    for (int k = run.last, t = factor_.depth(k); k >= 0; k = factor_.parent(k), --t)
+      for (Eigen::Index r = 0; r < rows; ++r) b[first + r] += lower_[k] * Y[t * run.width + r];
+    for (const Run& other : runs_) {
+      if (other.first > run.first) break;
+      int k = run.last, j = other.last;
+      while (k != j) (k > j ? k : j) = factor_.parent(k > j ? k : j);
+      block_.resize(std::max(block_.size(), static_cast<size_t>(run.width * other.width)));
+      data_.kernels->gram(Y, run.width, &Y_[other.begin], other.width, factor_.depth(k) + 1,
+                          block_.data());
+      const auto from = static_cast<Eigen::Index>(3 * other.first);
+      for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(3 * other.count); ++c) {
+        const double* column = block_.data() + c * run.width;
+        for (Eigen::Index r = 0; r < rows; ++r) A(first + r, from + c) = column[r];
+        if (&other != &run)
+          for (Eigen::Index r = 0; r < rows; ++r) A(from + c, first + r) = column[r];
+      }
     }
-    A.block<3, 3>(3 * static_cast<int>(i), 3 * static_cast<int>(i)).diagonal().array() +=
-        compliance_[i];
   }
+  for (size_t i = 0; i < active_.size(); ++i)
+    A.diagonal().segment<3>(3 * static_cast<Eigen::Index>(i)).array() += compliance_[i];
 }
 
 void Plant::report_contacts(double dt) {
-  const size_t columns = static_cast<size_t>(model_->velocity_count());
   for (std::vector<SoleForce>& sole : report_.soles)
     for (SoleForce& cell : sole) cell = SoleForce{};
   report_.body_contact = false;
   report_.max_penetration = 0;
-  for (size_t i = 0; i < active_.size(); ++i) {
+  for (size_t i = 0, r = 0; i < active_.size(); ++i) {
     Active& active = active_[i];
     const ContactPoint& point = points_[static_cast<size_t>(active.point)];
+    if (i == runs_[r].first + runs_[r].count) ++r;
+    const double* J = &J_[runs_[r].begin + 3 * (i - runs_[r].first)];
     const Vector3d l = solver_.impulse().segment<3>(3 * static_cast<int>(i));
     const Vector3d force = active.to_contact.transpose() * l;
     external_.linear += force;
     external_.angular += (active_[i].position - data_.cog).cross(force);
     Vector3d motion = active.to_contact * -active.ground_velocity;
-    for (int k = factor_.last_place(point.body); k >= 0; k = factor_.parent(k))
-      motion += velocity_[factor_.column_at(k)] * J_[i * columns + static_cast<size_t>(k)];
+    for (int k = runs_[r].last, t = factor_.depth(k); k >= 0; k = factor_.parent(k), --t)
+      motion +=
+          velocity_[factor_.column_at(k)] * Eigen::Map<const Vector3d>(J + t * runs_[r].width);
     active.impulse = l;
     const bool touching = l[0] > 0;
     active.deflection.setZero();

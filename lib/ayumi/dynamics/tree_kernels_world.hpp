@@ -1,0 +1,217 @@
+// Part of tree_kernels_body.hpp: one state in world axes about the base origin, where parent and
+// child share one frame and the recursions are plain sums:
+//   w_i = w_p + s dq,  v_i = v_p + w_p x r,       alpha_i = alpha_p + s ddq + w_p x s dq,
+//   a_i = a_p + alpha_p x r + w_p x (w_p x r),    f = m (a_c + g z),  n = I alpha + w x I w + c x
+//   f, tau = s . (n_subtree - p x f_subtree).
+// A prismatic joint adds s ddq + 2 w_p x s dq to a_i in place of the angular terms.
+
+namespace {
+
+using ayumi::kernels::Bodies;
+using ayumi::kernels::Layout;
+
+template <int K>
+inline void turn_about(Columns& R, double c, double s) {
+  constexpr int a = (K + 1) % 3, b = (K + 2) % 3;
+  const Four x = R.c[a], y = R.c[b];
+  R.c[a] = c * x + s * y;
+  R.c[b] = c * y - s * x;
+}
+
+void body_positions(const Tree& tree, const Job& job, const Bodies& bodies, double* moment) {
+  auto* frames = reinterpret_cast<Columns*>(bodies.scratch);  // in link axes
+  auto* joints = reinterpret_cast<Joint<double>*>(frames + tree.count);
+  find_joints<double>(tree, job, joints);
+  const Attitude<double> base(job.attitude);
+  const double own_axes[9] = {base.R[0], base.R[3], base.R[6], base.R[1], base.R[4],
+                              base.R[7], base.R[2], base.R[5], base.R[8]};
+  frames[0] = load_columns(own_axes);
+  store_columns(bodies.rotation, frames[0]);
+  const Four zero{};
+  store_three(bodies.position, zero);
+  store_three(bodies.axis, zero);
+  const double* com = tree.links[0].com;
+  Four center = times_four(frames[0], com[0], com[1], com[2]);
+  store_three(bodies.com, center);
+  Four sum = tree.links[0].mass * center;
+  for (int i = 1; i < tree.count; ++i) {
+    const Link& link = tree.links[i];
+    const Columns& up = frames[link.parent];
+    Columns& R = frames[i];
+    if (link.turned)
+      for (int k = 0; k < 3; ++k) R.c[k] = times_four(up, link.E[k], link.E[3 + k], link.E[6 + k]);
+    else
+      R = up;
+    Four p = load_three(bodies.position + 3 * link.parent) +
+             times_four(up, link.r[0], link.r[1], link.r[2]);
+    const Four axis = R.c[link.axis];
+    if (link.prismatic)
+      p += joints[i].q * axis;
+    else if (link.axis == 0)
+      turn_about<0>(R, joints[i].c, joints[i].s);
+    else if (link.axis == 1)
+      turn_about<1>(R, joints[i].c, joints[i].s);
+    else
+      turn_about<2>(R, joints[i].c, joints[i].s);
+    Columns own = R;
+    if (link.skewed)
+      for (int k = 0; k < 3; ++k)
+        own.c[k] = times_four(R, link.C[3 * k], link.C[3 * k + 1], link.C[3 * k + 2]);
+    store_columns(bodies.rotation + 9 * i, own);
+    store_three(bodies.position + 3 * i, p);
+    store_three(bodies.axis + 3 * i, link.along * axis);
+    center = p + times_four(own, link.com[0], link.com[1], link.com[2]);
+    store_three(bodies.com + 3 * i, center);
+    sum += link.mass * center;
+  }
+  store_three(moment, sum);
+}
+
+void body_velocities(const Tree& tree, const Job& job, const Bodies& bodies, double* momentum) {
+  Four w = load_three(job.angular_velocity), v = load_three(job.velocity);
+  store_three(bodies.angular_velocity, w);
+  store_three(bodies.velocity, v);
+  Four sum = tree.links[0].mass * (v + cross_four(w, load_three(bodies.com)));
+  for (int i = 1; i < tree.count; ++i) {
+    const Link& link = tree.links[i];
+    const Four p = load_three(bodies.position + 3 * i);
+    w = load_three(bodies.angular_velocity + 3 * link.parent);
+    v = load_three(bodies.velocity + 3 * link.parent) +
+        cross_four(w, p - load_three(bodies.position + 3 * link.parent));
+    const Four rate = link.drive * job.dtheta[link.dof] * load_three(bodies.axis + 3 * i);
+    (link.prismatic ? v : w) += rate;
+    store_three(bodies.angular_velocity + 3 * i, w);
+    store_three(bodies.velocity + 3 * i, v);
+    sum += link.mass * (v + cross_four(w, load_three(bodies.com + 3 * i) - p));
+  }
+  store_three(momentum, sum);
+}
+
+// A subtree's first and second moment, and what a unit rate of its joint moves.
+struct Subtree {
+  Columns I;
+  Four h, v, w;
+};
+
+inline Columns about_origin(const Link& link, const double* rotation, const Four& c) {
+  Columns I = turned(load_columns(rotation), link.about_com);
+  const Four mc = link.mass * c;
+  const double square = dot_four(mc, c);
+  static constexpr double kUnit[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  for (int k = 0; k < 3; ++k) I.c[k] = I.c[k] + (square * load_four(kUnit[k]) - mc * c[k]);
+  return I;
+}
+
+// Of a column and one of lower rank, or of two that are the same.
+inline void add_entry(const Layout& at, double* M, int a, int b, double value) {
+  const bool swap = at.rank[a] < at.rank[b];
+  M[at.row[swap ? b : a] + at.entry[swap ? a : b]] += value;
+  if (at.both && a != b) M[at.row[swap ? a : b] + at.entry[swap ? b : a]] += value;
+}
+
+// What a unit rate of each joint moves, and each body's own inertia.
+inline void start_subtrees(const Tree& tree, const Bodies& bodies, Subtree* subtrees) {
+  for (int i = 0; i < tree.count; ++i) {
+    const Link& link = tree.links[i];
+    Subtree& t = subtrees[i];
+    const Four c = load_three(bodies.com + 3 * i);
+    t.I = about_origin(link, bodies.rotation + 9 * i, c);
+    t.h = link.mass * c;
+    const Four s = link.drive * load_three(bodies.axis + 3 * i);
+    if (link.prismatic) {
+      t.v = s;
+      t.w = Four{};
+    } else {
+      t.v = cross_four(load_three(bodies.position + 3 * i), s);
+      t.w = s;
+    }
+  }
+}
+
+inline void base_entries(const Subtree& root, double mass, const Layout& at, double* M) {
+  const Four& h = root.h;
+  const double crossed[3][3] = {{0, -h[2], h[1]}, {h[2], 0, -h[0]}, {-h[1], h[0], 0}};
+  for (int k = 0; k < 3; ++k) {
+    add_entry(at, M, k, k, mass);
+    for (int j = 0; j < 3; ++j) add_entry(at, M, 3 + k, j, crossed[k][j]);
+    for (int j = 0; j <= k; ++j) add_entry(at, M, 3 + k, 3 + j, root.I.c[j][k]);
+  }
+}
+
+// The mass matrix, added to zeros.
+void mass_entries(const Tree& tree, const Bodies& bodies, const Layout& at, double* M) {
+  auto* subtrees = reinterpret_cast<Subtree*>(bodies.scratch);
+  start_subtrees(tree, bodies, subtrees);
+  for (int i = tree.count - 1; i > 0; --i) {
+    const Link& link = tree.links[i];
+    const Subtree& t = subtrees[i];
+    const Four linear = link.subtree_mass * t.v + cross_four(t.w, t.h);
+    const Four angular = times_four(t.I, t.w) + cross_four(t.h, t.v);
+    const int column = 6 + link.dof;
+    double* row = M + at.row[column];
+    row[at.entry[column]] += dot_four(t.v, linear) + dot_four(t.w, angular);
+    store_three(row, load_three(row) + linear);
+    store_three(row + 3, load_three(row + 3) + angular);
+    if (at.both)
+      for (int k = 0; k < 6; ++k) M[at.row[k] + at.entry[column]] = row[k];
+    for (int j = link.parent; j > 0; j = tree.links[j].parent) {
+      const Four both = subtrees[j].v * linear + subtrees[j].w * angular;
+      const double value = (both[0] + both[1]) + both[2];
+      const int other = 6 + tree.links[j].dof;
+      add_entry(at, M, column, other, other == column ? 2 * value : value);
+    }
+    Subtree& p = subtrees[link.parent];
+    for (int k = 0; k < 3; ++k) p.I.c[k] += t.I.c[k];
+    p.h += t.h;
+  }
+  base_entries(subtrees[0], tree.links[0].subtree_mass, at, M);
+}
+
+struct Loaded {
+  Four alpha, a, f, n;
+};
+
+void newton_euler(const Tree& tree, const Job& job, const Bodies& bodies) {
+  auto* loads = reinterpret_cast<Loaded*>(bodies.scratch);
+  const double falling[3] = {job.input[0], job.input[1], job.input[2] + tree.gravity};
+  loads[0].a = load_three(falling);
+  loads[0].alpha = load_three(job.input + 3);
+  for (int i = 0; i < tree.count; ++i) {
+    const Link& link = tree.links[i];
+    Loaded& t = loads[i];
+    const Four p = load_three(bodies.position + 3 * i);
+    if (i > 0) {
+      const Loaded& up = loads[link.parent];
+      const Four wp = load_three(bodies.angular_velocity + 3 * link.parent);
+      const Four r = p - load_three(bodies.position + 3 * link.parent);
+      const Four axis = link.drive * load_three(bodies.axis + 3 * i);
+      const Four rate = job.dtheta[link.dof] * axis, drate = job.input[6 + link.dof] * axis;
+      t.a = up.a + cross_four(up.alpha, r) + cross_four(wp, cross_four(wp, r));
+      t.alpha = up.alpha;
+      if (link.prismatic)
+        t.a += drate + 2.0 * cross_four(wp, rate);
+      else
+        t.alpha += drate + cross_four(wp, rate);
+    }
+    const Four w = load_three(bodies.angular_velocity + 3 * i);
+    const Four com = load_three(bodies.com + 3 * i), c = com - p;
+    const Columns I = turned(load_columns(bodies.rotation + 9 * i), link.about_com);
+    t.f = link.mass * (t.a + cross_four(t.alpha, c) + cross_four(w, cross_four(w, c)));
+    t.n = times_four(I, t.alpha) + cross_four(w, times_four(I, w)) + cross_four(com, t.f);
+  }
+  for (int j = 0; j < tree.dofs; ++j) job.output[6 + j] = 0;
+  for (int i = tree.count - 1; i > 0; --i) {
+    const Link& link = tree.links[i];
+    const Loaded& t = loads[i];
+    const Four axis = load_three(bodies.axis + 3 * i);
+    const Four felt =
+        link.prismatic ? t.f : t.n - cross_four(load_three(bodies.position + 3 * i), t.f);
+    job.output[6 + link.dof] += link.drive * dot_four(axis, felt);
+    loads[link.parent].f += t.f;
+    loads[link.parent].n += t.n;
+  }
+  store_three(job.output, loads[0].f);
+  store_three(job.output + 3, loads[0].n);
+}
+
+}  // namespace
