@@ -16,6 +16,7 @@
 #include "ayumi/io/table.hpp"
 #include "ayumi/pattern/export_safety.hpp"
 #include "ayumi/pattern/sample.hpp"
+#include "ayumi/preview/gltf.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "commands.hpp"
 #include "pattern_input.hpp"
@@ -57,11 +58,16 @@ ReferenceTrajectory open_loop_reference(const RobotModel& model, const CommandSe
   return reference;
 }
 
+/// The robot asked for, else `recorded`; with meshes where they are drawn.
+RobotModel robot_named(const ExportOptions& options, const std::string& recorded,
+                       const Context& context) {
+  return load_robot(options.robot.empty() ? recorded : options.robot, robot_search(context),
+                    {.meshes = options.format == "gltf"});
+}
+
 Source source_of_pattern(const ExportOptions& options, const Context& context) {
   const Pattern pattern = read_pattern(options.input, read_pairs(options.set, "--set"));
-  Source source{
-      load_robot(options.robot.empty() ? robot_of(pattern) : options.robot, robot_search(context)),
-      {}};
+  Source source{robot_named(options, robot_of(pattern), context), {}};
   const CommandSeries series = sample(source.model, pattern, {}, context.progress());
   source.reference = open_loop_reference(source.model, series);
   source.reference.provenance = {
@@ -74,9 +80,7 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
 Source source_of_table(const ExportOptions& options, const Context& context,
                        ReferenceTrajectory reference) {
   const Provenance& made = reference.provenance;
-  Source source{
-      load_robot(options.robot.empty() ? made.robot : options.robot, robot_search(context)),
-      std::move(reference)};
+  Source source{robot_named(options, made.robot, context), std::move(reference)};
   require_joints(source.reference, source.model.dof_names(), options.input);
   if (!made.robot_sha256.empty() && made.robot_sha256 != source.model.description().sha256)
     fail(ErrorCode::bad_file, options.input + ": robot '" + source.model.name() +
@@ -105,6 +109,26 @@ Source source_of(const ExportOptions& options, const Context& context) {
   if (is_reference_table(options.input))
     return source_of_table(options, context, read_reference(options.input));
   return source_of_pattern(options, context);
+}
+
+constexpr double kGltfRate = 60;  // keys of an animation [Hz]; viewers draw evenly between them
+
+/// The table as an animation of the robot: to be looked at, so neither ramped nor judged.
+void export_gltf(const ExportOptions& options, Context& context) {
+  if (fs::path(options.output).extension() != ".glb")
+    fail(ErrorCode::usage, options.output + ": --format gltf writes a .glb");
+  const Source source = source_of(options, context);
+  const Motion motion = motion_of(source.reference, kGltfRate);
+  const std::string bytes = glb_bytes(source.model, {motion});
+  write_file(options.output, bytes);
+  context.print(options.output + ": " + std::to_string(motion.times.size()) + " postures in " +
+                text::brief(motion.times.back()) + " s, " +
+                std::to_string(source.reference.joints.size()) + " joints (gltf)\n");
+  const nlohmann::ordered_json json = {
+      {"format", options.format},          {"output", options.output},
+      {"rows", motion.times.size()},       {"rate_hz", kGltfRate},
+      {"joints", source.reference.joints}, {"bytes", bytes.size()}};
+  context.print_json(json.dump(2));
 }
 
 std::string bytes_of(const std::string& format, const Source& source,
@@ -149,6 +173,7 @@ std::string as_json(const ExportOptions& options, const SafeTable& safe, bool wr
 void export_table(ExportOptions options, Context& context) {
   if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
     fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
+  if (options.format == "gltf") return export_gltf(options, context);
   const Source source = source_of(options, context);
   // What goes to the robot is judged by its own actuators, not by those a study has assumed.
   if (options.safety.profile.empty())
@@ -171,9 +196,9 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("input", options->input, "a RUN folder, a pattern, or a reference table")
       ->required()
       ->type_name("RUN_OR_PATTERN");
-  command->add_option("--format", options->format, "csv, json or hoap")
+  command->add_option("--format", options->format, "csv, json, hoap or gltf")
       ->required()
-      ->check(CLI::IsMember({"csv", "json", "hoap"}));
+      ->check(CLI::IsMember({"csv", "json", "hoap", "gltf"}));
   command->add_option("-o,--out", options->output, "file to write")->required()->type_name("FILE");
   command->add_option("--ramp", options->safety.ramp, "approach ramp, at least this long [s]")
       ->check(CLI::Range(0.0, 60.0))
@@ -196,6 +221,7 @@ void add_export(CLI::App& app, Context& context) {
       "Examples:\n"
       "  ayumi export out/ --format hoap -o walk_hoap.csv\n"
       "  ayumi export out/ --format csv --log open_loop -o open_loop.csv\n"
+      "  ayumi export out/ --format gltf -o walk.glb\n"
       "  ayumi export patterns/hoap1_walk.json --format json --ramp 3 -o walk_table.json");
   command->callback([options, &context] { export_table(*options, context); });
 }

@@ -178,8 +178,12 @@ TEST(BrokenRobot, WrongMeshes) {
             "'nowhere_at_all' in the URDF's folder or above it; put the URDF inside its package or "
             "name the mesh relative to the URDF");
   const TemporaryFolder folder;
-  folder.write("r.urdf", with_mesh("trunk.obj"));
+  folder.write("r.urdf", with_mesh("Trunk.OBJ"));
   folder.write("trunk.obj", "this is no mesh\n");
+  EXPECT_EQ(message_of(folder, "r.urdf", {}),
+            "r.urdf: link trunk: mesh Trunk.OBJ: there is no file Trunk.OBJ, but trunk.obj; "
+            "capitals count, correct the name");
+  folder.write("r.urdf", with_mesh("trunk.obj"));
   const std::string corrupt = message_of(folder, "r.urdf", {.meshes = true});
   EXPECT_TRUE(corrupt.starts_with("r.urdf: link trunk: mesh trunk.obj: ")) << corrupt;
   folder.write("trunk.obj", "");

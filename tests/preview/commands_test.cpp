@@ -47,6 +47,18 @@ TEST_F(Commands, PlotDrawsAllLogsOfARun) {
   EXPECT_EQ(contents(folder / "c.svg").find("open loop"), std::string::npos);
 }
 
+TEST_F(Commands, ExportWritesTheReferenceAsGltf) {
+  const Output made = ayumi({"export", "run", "--format", "gltf", "-o", "a.glb", "--json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto json = nlohmann::json::parse(made.out);
+  EXPECT_EQ(json.at("rows"), 13);
+  const std::string bytes = contents(folder / "a.glb");
+  EXPECT_EQ(json.at("bytes"), bytes.size());
+  EXPECT_EQ(bytes.substr(0, 4), "glTF");
+  EXPECT_NE(bytes.find("\"name\":\"reference\""), std::string::npos);
+  EXPECT_GT(bytes.size(), 100'000u) << "with its meshes";
+}
+
 TEST_F(Commands, MistakesAreNamed) {
   const struct {
     std::vector<std::string> arguments;
@@ -62,6 +74,7 @@ TEST_F(Commands, MistakesAreNamed) {
                {{"preview", "run", "-o", "no/where/a.png"}, 3, "does not exist"},
                {{"preview", "nothing", "-o", "a.png"}, 3, "nothing"},
                {{"preview", "run", "--log", "third", "-o", "a.png"}, 3, "third"},
+               {{"export", "run", "--format", "gltf", "-o", "a.gltf"}, 2, "writes a .glb"},
                {{"plot", "run", "-o", "a.pdf"}, 2, "'.pdf' is not one of"},
                {{"plot", "nothing", "-o", "a.svg"}, 3, "nothing"},
                {{"plot", "run", "-o", "a.svg", "--from", "5"}, 2, "nothing to show from 5 s"}};

@@ -122,6 +122,27 @@ TEST(Gltf, AMotionOfAnotherRobotIsRefused) {
   }
 }
 
+TEST(Gltf, ATableBecomesAMotionWithItsFirstAndLastRow) {
+  ReferenceTrajectory table;
+  table.dt = 0.002;
+  for (int k = 0; k <= 107; ++k) {
+    ReferenceRow row;
+    row.theta = Eigen::VectorXd::Constant(2, k);
+    row.base.position.x() = k;
+    table.rows.push_back(row);
+  }
+  const Motion motion = motion_of(table, 50);
+  ASSERT_EQ(motion.times.size(), 12u) << "every tenth row, and the last";
+  EXPECT_EQ(motion.name, "reference");
+  EXPECT_DOUBLE_EQ(motion.times[3], 0.06);
+  EXPECT_EQ(motion.theta(1, 3), 30);
+  EXPECT_DOUBLE_EQ(motion.times.back(), 0.214);
+  EXPECT_EQ(motion.base.back().position.x(), 107);
+  EXPECT_EQ(motion_of(table, 1e6).times.size(), 108u) << "no row twice";
+  EXPECT_THROW(motion_of(table, 0), Error);
+  EXPECT_THROW(motion_of(ReferenceTrajectory{}, 50), Error);
+}
+
 TEST(Gltf, TheKhronosValidatorHasNoComplaint) {
   if (std::string(AYUMI_NODE).empty())
     GTEST_SKIP() << "built without npm: the Khronos glTF validator is not there";

@@ -36,10 +36,37 @@ TEST(LogReading, APushIsFoundWithItsValue) {
   EXPECT_EQ(push_text(pushes(log)[1]), "5 N") << "a long one by its force";
 }
 
-TEST(LogReading, GroundNormalTurnsAboutTheSlopeVector) {
-  const Eigen::Vector3d n = ground_normal({.slope = {0.1, 0}});
+TEST(LogReading, TheGroundIsTheSlopeWithEveryMotionOfTheFloor) {
+  SimulationLog log = test::box_run(test::box_robot());
+  log.world.slope = {0.1, 0};
+  log.world.height = -0.02;
+  EXPECT_FALSE(floor_moves(log));
+  const Eigen::Vector3d n = ground_at(log, 0.4).linear().col(2);
   EXPECT_NEAR(n.y(), -std::sin(0.1), 1e-12);
   EXPECT_NEAR(n.z(), std::cos(0.1), 1e-12);
+  EXPECT_TRUE(ground_at(log, 0.4).translation().isApprox(-0.02 * n, 1e-12));
+  // A shift by the world, there and back, and a tilt by the scenario, which stays.
+  log.world.motions = {
+      {.shape = MotionShape::half_sine, .at = 0, .duration = 0.8, .shift = {0, 0.05, 0}}};
+  Disturbance tilt{.type = DisturbanceType::floor, .at = 0.2, .duration = 0.2};
+  tilt.floor.tilt = {0.05, 0};
+  log.scenario = {tilt};
+  EXPECT_TRUE(floor_moves(log));
+  EXPECT_NEAR(floor_at(log, 0.4).translation().y(), 0.05, 1e-12);
+  EXPECT_NEAR(floor_at(log, 0.9).translation().y(), 0, 1e-12);
+  EXPECT_NEAR(floor_at(log, 0.1).linear()(2, 1), std::sin(0.1), 1e-12);
+  EXPECT_NEAR(floor_at(log, 0.3).linear()(2, 1), std::sin(0.125), 1e-12) << "half way";
+  EXPECT_NEAR(floor_at(log, 0.9).linear()(2, 1), std::sin(0.15), 1e-12);
+}
+
+TEST(LogReading, MarksLieOnTheHigherSupportingFoot) {
+  SimulationLog log = test::box_run(test::box_robot());
+  SimulationSample sample = log.samples[0];
+  EXPECT_EQ(marked_ground(log, 0, sample).translation().z(), 0) << "on the plane";
+  sample.foot_cop[0].z() = 0.012;
+  EXPECT_NEAR(marked_ground(log, 0, sample).translation().z(), 0.012, 1e-15);
+  sample.foot_force[0].setZero();
+  EXPECT_EQ(marked_ground(log, 0, sample).translation().z(), 0) << "nothing carries there";
 }
 
 TEST(Overlay, SupportPolygonIsTheHullOfThePlannedSoles) {
@@ -52,13 +79,13 @@ TEST(Overlay, SupportPolygonIsTheHullOfThePlannedSoles) {
     for (size_t i = 0; i < p.size(); ++i) sum += p[i].cross(p[(i + 1) % p.size()]).z() / 2;
     return sum;
   };
-  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  EXPECT_NEAR(area(support_corners(model, poses, {true, false}, up)), 0.09 * 0.05, 1e-12);
-  EXPECT_NEAR(area(support_corners(model, poses, {true, true}, up)), 0.09 * 0.13, 1e-12);
-  EXPECT_TRUE(support_corners(model, poses, {false, false}, up).empty());
-  const Eigen::Vector3d tilted = ground_normal({.slope = {0.1, 0.2}});
+  EXPECT_NEAR(area(support_corners(model, poses, {true, false})), 0.09 * 0.05, 1e-12);
+  EXPECT_NEAR(area(support_corners(model, poses, {true, true})), 0.09 * 0.13, 1e-12);
+  EXPECT_TRUE(support_corners(model, poses, {false, false}).empty());
+  Eigen::Isometry3d tilted = Eigen::Isometry3d::Identity();
+  tilted.rotate(Eigen::AngleAxisd(0.2, Eigen::Vector3d(0.6, 0.8, 0)));
   for (const Eigen::Vector3d& corner : support_corners(model, poses, {true, true}, tilted))
-    EXPECT_NEAR(tilted.dot(corner), 0, 1e-12);
+    EXPECT_NEAR(tilted.linear().col(2).dot(corner), 0, 1e-12);
 }
 
 TEST(Overlay, EveryMarkCanBeSwitchedOff) {

@@ -137,7 +137,7 @@ TEST(Renderer, ASlopeTiltsTheGround) {
                     {.width = 120, .height = 90, .shadow = false});
   Scene scene = ball_scene(0.3);
   scene.overlay = {};
-  scene.ground_normal = Vector3d(0, -std::sin(0.2), std::cos(0.2));  // rises with y
+  scene.ground.rotate(Eigen::AngleAxisd(0.2, Vector3d::UnitX()));  // rises with y
   add_sphere(scene.overlay, {0, 0.5, 0.5 * std::tan(0.2)}, 0.05, {0.9f, 0.05f, 0.05f, 1});
   scene.camera.eye = {3, 0, 0.3};
   const Image image = renderer.render(scene);

@@ -106,5 +106,23 @@ TEST(Triangles, AnArrowEndsAtItsTip) {
   EXPECT_TRUE(nothing.indices.empty());
 }
 
+TEST(Triangles, WeldingKeepsEveryTriangleAndSharesItsCorners) {
+  const Triangles box = tessellate(Shape(Box{{1, 2, 3}}), {1, 0, 0, 1});
+  Triangles loose;
+  for (const std::uint32_t index : box.indices) {
+    loose.indices.push_back(static_cast<std::uint32_t>(loose.vertices.size()));
+    loose.vertices.push_back(box.vertices[index]);
+  }
+  const Triangles joined = welded(loose);
+  EXPECT_EQ(joined.vertices.size(), 24u) << "four per face: their normals differ";
+  ASSERT_EQ(joined.indices.size(), loose.indices.size());
+  for (size_t i = 0; i < loose.indices.size(); ++i) {
+    const RenderVertex &a = joined.vertices[joined.indices[i]], &b = loose.vertices[i];
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.normal, b.normal);
+    EXPECT_EQ(a.color, b.color);
+  }
+}
+
 }  // namespace
 }  // namespace ayumi

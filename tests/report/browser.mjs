@@ -76,6 +76,13 @@ async function withScript() {
   expect(later.cursor - first.cursor > 100, "scrubbing moves the cursor");
   expect(/seconds, /.test(later.said), "the scrub bar speaks: " + later.said);
   expect(later.readout.startsWith("t " + later.time.toFixed(3)), "the readout: " + later.readout);
+  const floors = [0, 0.6 * last].map((t) => `window.ayumiReplay.show(${t}),
+    window.ayumiReplay.floor()`);
+  const [still, tilted] = await tab.run(`return [(${floors[0]}), (${floors[1]})];`);
+  expect(still.height === 0 && still.bumps === 0, "the floor begins level: " + still.height);
+  expect(Math.abs(tilted.height - 0.02) < 1e-6 && Math.abs(tilted.turn[0] - Math.sin(0.05)) < 1e-6,
+    "the floor moves: " + JSON.stringify(tilted));
+  expect(tilted.bumps === 1, "the bump comes up");
   await tab.shoot("replay.png");
   const clicked = await tab.run(`
     const svg = document.querySelector("[data-time-axis] svg");

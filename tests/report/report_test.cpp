@@ -20,6 +20,12 @@ struct Made {
     open.result.outcome = Outcome::fell;
     open.result.fell_at = 0.8;
     open.samples.resize(450);
+    Disturbance tilt{.type = DisturbanceType::floor, .at = 0.1, .duration = 0.3};
+    tilt.floor.tilt = {0.1, 0};
+    tilt.floor.shift = {0, 0, 0.02};
+    Disturbance bump{.type = DisturbanceType::bump, .at = 0.2, .duration = 9, .magnitude = 0.01};
+    closed.scenario = {tilt, bump};
+    closed.world.blocks = {{.low = {0.2, 0.2}, .high = {0.3, 0.4}, .height = 0.03}};
     closed.provenance.command_line = "ayumi run a<b>.json";
     closed.events.push_back({0.3, "push", "0.4 N s on cog"});
     input.title = "sway & <push>";
@@ -73,6 +79,9 @@ TEST(Report, KeepsItsSizeAndSaysWhatItLeftOut) {
   for (const std::string& cap : less.caps)
     EXPECT_NE(less.html.find(html::escaped(cap)), std::string::npos) << cap;
   EXPECT_NE(less.caps.back().find("0.4 MB"), std::string::npos) << less.caps.back();
+  small.max_bytes = 1000;
+  const Report least = make_report(made.model, made.input, small);
+  EXPECT_EQ(least.caps.back().find("the page is larger than 0.001 MB"), 0u) << least.caps.back();
 }
 
 TEST(Report, ARunIsNeeded) {

@@ -203,9 +203,11 @@ TriangleMesh load_mesh(const fs::path& path, const Eigen::Vector3d& scale) {
   const aiScene* scene = nullptr;
   std::string reason;
   try {
-    scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_GenSmoothNormals |
-                                                 aiProcess_JoinIdenticalVertices |
-                                                 aiProcess_SortByPType);
+    unsigned steps = aiProcess_Triangulate | aiProcess_GenSmoothNormals |
+                     aiProcess_JoinIdenticalVertices | aiProcess_SortByPType;
+    // STL has one normal per facet, often zero: round surfaces would look faceted, or edges round.
+    if (lower_extension(path) == ".stl") steps |= aiProcess_ForceGenNormals;
+    scene = importer.ReadFile(path.string(), steps);
     reason = importer.GetErrorString();
   } catch (const std::exception& error) {
     reason = error.what();

@@ -64,10 +64,11 @@ bool names_package(const fs::path& package_xml, const std::string& name) {
   return tag && tag->GetText() && name == tag->GetText();
 }
 
-// The folder of a package, looked for in `folder` and upwards; empty when there is none.
-fs::path package_folder(fs::path folder, const std::string& name) {
+// The folder of a package, looked for beside the URDF and upwards; empty when there is none.
+fs::path package_folder(const fs::path& urdf, const std::string& name) {
   std::error_code ignored;
-  for (folder = fs::absolute(folder).lexically_normal();; folder = folder.parent_path()) {
+  for (fs::path folder = fs::absolute(urdf).lexically_normal().parent_path();;
+       folder = folder.parent_path()) {
     if (folder.filename() == name) return folder;
     if (fs::is_directory(folder / name, ignored)) return folder / name;
     if (fs::is_regular_file(folder / "package.xml", ignored) &&
@@ -75,6 +76,27 @@ fs::path package_folder(fs::path folder, const std::string& name) {
       return folder;
     if (folder == folder.root_path()) return {};
   }
+}
+
+// The file whose name differs from `file` by capitals alone; empty when there is none.
+fs::path with_other_capitals(const fs::path& file) {
+  const auto lower = [](std::string name) {
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return name;
+  };
+  fs::path found = file.is_absolute() ? file.root_path() : fs::path(".");
+  std::error_code ignored;
+  for (const fs::path& part : file.relative_path()) {
+    fs::path next = found / part;
+    if (!fs::exists(next, ignored)) {
+      next.clear();
+      for (const auto& entry : fs::directory_iterator(found, ignored))
+        if (lower(entry.path().filename().string()) == lower(part.string())) next = entry.path();
+    }
+    if (next.empty()) return {};
+    found = next;
+  }
+  return found.lexically_normal();
 }
 
 std::string resolve_mesh(const RobotDescription& robot, const fs::path& urdf,
@@ -86,7 +108,7 @@ std::string resolve_mesh(const RobotDescription& robot, const fs::path& urdf,
     const std::string rest = name.substr(scheme.size());
     const size_t slash = std::min(rest.find('/'), rest.size());
     const std::string package = rest.substr(0, slash);
-    const fs::path folder = package_folder(urdf.parent_path(), package);
+    const fs::path folder = package_folder(urdf, package);
     if (folder.empty())
       complain_urdf(robot, "link " + link + ": mesh " + name + ": no package '" + package +
                                "' in the URDF's folder or above it; put the URDF inside its "
@@ -94,9 +116,14 @@ std::string resolve_mesh(const RobotDescription& robot, const fs::path& urdf,
     file = folder / rest.substr(std::min(slash + 1, rest.size()));
   }
   std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored))
+  if (!fs::is_regular_file(file, ignored)) {
+    const fs::path other = with_other_capitals(file.lexically_normal());
     complain_urdf(robot, "link " + link + ": mesh " + name + ": there is no file " +
-                             file.lexically_normal().string() + "; add it or correct the name");
+                             file.lexically_normal().string() +
+                             (other.empty() ? "; add it or correct the name"
+                                            : ", but " + other.string() +
+                                                  "; capitals count, correct the name"));
+  }
   return file.lexically_normal().string();
 }
 

@@ -13,7 +13,6 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/preview/encoder.hpp"
-#include "ayumi/preview/scenery.hpp"
 #include "ayumi/preview/simplify.hpp"
 
 namespace ayumi {
@@ -70,6 +69,16 @@ std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOption
                     std::to_string(triangle_count(surface)) + ", points moved by at most " +
                     text::brief(1e3 * std::sqrt(3.0) * cell, 2) + " mm");
   return surface;
+}
+
+/// What stands on the floor, and where a field takes the place of the plane.
+Scenery scenery_of(const SimulationLog& log) {
+  Scenery scenery = {make_scenery(log.world), {}};
+  for (const HeightField& field : log.world.fields) {
+    const Eigen::Vector2d size(double(field.heights.rows() - 1), double(field.heights.cols() - 1));
+    scenery.hole = {field.origin, field.origin + field.spacing * size};
+  }
+  return scenery;
 }
 
 CameraPath make_path(const SimulationLog& log, const ClipOptions& options, double height) {
@@ -208,7 +217,8 @@ ClipRenderer::ClipRenderer(const RobotModel& model, const SimulationLog& log,
       pushes_(pushes(log)),
       surface_(drawn_surface(model, options, notes_)),
       height_(robot_height(surface_, model, log)),
-      renderer_(surface_, options.picture),
+      bumps_(rising_bumps(model, log)),
+      renderer_(surface_, options.picture, scenery_of(log)),
       path_(make_path(log, options, height_)) {
   surface_ = {};
   notes_.insert(notes_.end(), renderer_.notes().begin(), renderer_.notes().end());
@@ -230,10 +240,9 @@ Scene ClipRenderer::scene_at(double t, Overlay& overlay) const {
   Scene scene;
   scene.poses = body_poses(model_, sample.state);
   scene.camera = path_.at(t);
-  const GroundPlane ground = ground_at(log_, t);
-  scene.ground_normal = ground.normal;
-  scene.ground_origin = ground.origin;
-  scene.scenery = make_scenery(log_.world);
+  scene.ground = ground_at(log_, t);
+  scene.floor = floor_at(log_, t);
+  scene.bumps = make_bumps(bumps_, log_.world.height, t);
   if (options_.overlay.heat) scene.heat = joint_heat(model_, log_.provenance.profile, sample);
   add_ghost(t, scene);
   overlay = make_overlay(model_, log_, pushes_, t, sample, scene.poses, height_, options_.overlay);

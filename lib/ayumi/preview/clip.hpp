@@ -10,6 +10,7 @@
 #include "ayumi/preview/camera.hpp"
 #include "ayumi/preview/overlay.hpp"
 #include "ayumi/preview/renderer.hpp"
+#include "ayumi/preview/scenery.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
@@ -62,6 +63,7 @@ class ClipRenderer {
   std::vector<std::string> notes_;
   std::vector<BodySurface> surface_;  ///< until the renderer has it
   double height_;                     ///< of the robot [m]
+  std::vector<RisingBump> bumps_;
   Renderer renderer_;
   CameraPath path_;
 

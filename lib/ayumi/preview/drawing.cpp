@@ -24,23 +24,6 @@ std::string number(double value) {
   return digits == "-0" ? "0" : digits;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 0x20)
-      out += c;
-  }
-  return out;
-}
-
 std::string hex(const Eigen::Vector4f& color) {
   constexpr const char* kDigits = "0123456789abcdef";
   std::string out = "#";
@@ -131,6 +114,23 @@ void draw(cairo_t* context, const DrawnText& text) {
 }
 
 }  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n')
+      out += c;
+  }
+  return out;
+}
 
 double text_width(const std::string& text, double size, bool bold) {
   const SurfacePointer scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1),

@@ -36,6 +36,9 @@ struct Drawing {
   std::vector<std::variant<DrawnPath, DrawnText>> items;  ///< in the order they are laid
 };
 
+/// Text between tags or in quotes of SVG and HTML; control characters but line ends are left out.
+std::string escaped(const std::string& text);
+
 /// Width of a text in the font of drawings [pixel].
 double text_width(const std::string& text, double size, bool bold = false);
 

@@ -14,6 +14,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/preview/planar_yuv.hpp"
 
 extern char** environ;
 
@@ -22,28 +23,22 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
+/// What to_yuv420 makes; players assume it for video of this size.
+const Arguments kVideoColor = {"-pix_fmt",         "yuv420p", "-colorspace", "bt709",
+                               "-color_primaries", "bt709",   "-color_trc",  "bt709",
+                               "-color_range",     "tv"};
+
+bool is_video(const std::filesystem::path& path) {
+  return path.extension() == ".mp4" || path.extension() == ".webm";
+}
+
 Arguments format_arguments(const std::filesystem::path& path, int width, int height) {
   const std::string extension = path.extension().string();
   const bool even = width % 2 == 0 && height % 2 == 0;
-  if ((extension == ".mp4" || extension == ".webm") && !even)
+  if (is_video(path) && !even)
     fail(ErrorCode::usage, path.string() + ": size " + std::to_string(width) + "x" +
                                std::to_string(height) + ": " + extension +
                                " needs an even width and height");
-  // Full-range RGB to the matrix and range that players assume for video of this size.
-  const Arguments color = {"-vf",
-                           "scale=out_color_matrix=bt709:out_range=tv",
-                           "-sws_flags",
-                           "accurate_rnd+bitexact+area",
-                           "-pix_fmt",
-                           "yuv420p",
-                           "-colorspace",
-                           "bt709",
-                           "-color_primaries",
-                           "bt709",
-                           "-color_trc",
-                           "bt709",
-                           "-color_range",
-                           "tv"};
   Arguments arguments;
   if (extension == ".mp4") {
     arguments = {"-c:v",      "libx264",   "-preset",      "veryfast",
@@ -64,7 +59,7 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
              "' is not one of .mp4, .webm, .gif, .apng, .png, .glb, or a folder for PNG "
              "frames");
   }
-  arguments.insert(arguments.end(), color.begin(), color.end());
+  arguments.insert(arguments.end(), kVideoColor.begin(), kVideoColor.end());
   return arguments;
 }
 
@@ -79,7 +74,7 @@ Arguments all_arguments(const std::string& program, const std::filesystem::path&
                    "-f",
                    "rawvideo",
                    "-pix_fmt",
-                   "rgb24",
+                   is_video(path) ? "yuv420p" : "rgb24",
                    "-s:v",
                    std::to_string(width) + "x" + std::to_string(height),
                    "-framerate",
@@ -169,8 +164,10 @@ void ClipEncoder::fail_with_log() {
 
 void ClipEncoder::add(const Image& frame) {
   require(frame.width == width_ && frame.height == height_, "frames of one clip differ in size");
-  const std::uint8_t* data = frame.rgb.data();
-  size_t left = frame.rgb.size();
+  if (is_video(path_)) to_yuv420(frame, planes_);
+  const std::vector<std::uint8_t>& bytes = is_video(path_) ? planes_ : frame.rgb;
+  const std::uint8_t* data = bytes.data();
+  size_t left = bytes.size();
   while (left > 0) {
     const ssize_t sent = send(pipe_, data, left, MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;

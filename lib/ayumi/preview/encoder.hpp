@@ -27,11 +27,12 @@ class ClipEncoder {
   void finish();
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path path_;  ///< its extension says the format
   std::string program_;
   int width_, height_;
   int pipe_ = -1, log_ = -1;
   int process_ = -1;
+  std::vector<std::uint8_t> planes_;  ///< of the frame last added
 
   int wait();
   [[noreturn]] void fail_with_log();

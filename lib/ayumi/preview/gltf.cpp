@@ -241,6 +241,27 @@ Motion motion_of(const SimulationLog& log, MotionSource source, double rate, dou
   return motion;
 }
 
+Motion motion_of(const ReferenceTrajectory& table, double rate) {
+  if (!(rate > 0)) fail(ErrorCode::usage, "the rate of a motion must be above 0");
+  if (table.rows.empty()) fail(ErrorCode::usage, "the table has no rows");
+  Motion motion;
+  motion.name = name_of(MotionSource::reference);
+  const size_t last = table.rows.size() - 1;
+  std::vector<size_t> rows;
+  for (size_t k = 0; rows.empty() || rows.back() < last; ++k)
+    rows.push_back(
+        std::min(last, std::max(rows.empty() ? 0 : rows.back() + 1,
+                                static_cast<size_t>(std::llround(double(k) / (rate * table.dt))))));
+  motion.theta.resize(table.rows[0].theta.size(), static_cast<Eigen::Index>(rows.size()));
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const ReferenceRow& row = table.rows[rows[i]];
+    motion.times.push_back(double(rows[i]) * table.dt);
+    motion.base.push_back(row.base);
+    motion.theta.col(static_cast<Eigen::Index>(i)) = row.theta;
+  }
+  return motion;
+}
+
 std::string glb_bytes(const RobotModel& model, const std::vector<Motion>& motions,
                       const GltfOptions& options) {
   for (const Motion& motion : motions) check(model, motion);

@@ -28,6 +28,10 @@ const char* name_of(MotionSource source);
 Motion motion_of(const SimulationLog& log, MotionSource source, double rate, double begin = 0,
                  double end = -1);
 
+/// Rows of a table 1/rate apart, and the last; named "reference". Throws Error(usage) for no rows
+/// or a rate not above 0.
+Motion motion_of(const ReferenceTrajectory& table, double rate);
+
 struct GltfOptions {
   size_t max_triangles = 0;  ///< beyond it the surface is simplified; 0: never
 };

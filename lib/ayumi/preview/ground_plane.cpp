@@ -7,22 +7,35 @@ namespace ayumi {
 using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
-Ground make_ground(const Vector3d& origin, const Vector3d& normal, const Eigen::AlignedBox3d& box,
+Ground make_ground(const Eigen::Isometry3d& frame, const Eigen::AlignedBox3d& box,
                    const Vector3d& sun) {
   Ground ground;
-  ground.origin = origin;
-  ground.normal = normal.normalized();
-  ground.u = (Vector3d::UnitX() - ground.normal.x() * ground.normal).normalized();
-  ground.v = ground.normal.cross(ground.u);
+  ground.origin = frame.translation();
+  ground.u = frame.linear().col(0);
+  ground.v = frame.linear().col(1);
+  ground.normal = frame.linear().col(2);
   Eigen::AlignedBox2d square;
   for (int i = 0; i < 8; ++i) {
-    Vector3d p = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)) - origin;
+    Vector3d p = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)) - ground.origin;
     p -= sun * (ground.normal.dot(p) / ground.normal.dot(sun));
     square.extend(Eigen::Vector2d(ground.u.dot(p), ground.v.dot(p)));
   }
   ground.center = square.center();
   ground.reach = 0.5 * square.sizes().maxCoeff() * 1.1;
   return ground;
+}
+
+// With p from the plane's origin: p -> ((p - s (n.p)/(n.s)) . u - center) / reach, the same for v.
+Eigen::Matrix4d flattening(const Ground& plane, const Vector3d& sun) {
+  const Eigen::Matrix3d fall =
+      Eigen::Matrix3d::Identity() - sun * plane.normal.transpose() / plane.normal.dot(sun);
+  Eigen::Matrix4d flatten = Eigen::Matrix4d::Zero();
+  flatten.block<1, 3>(0, 0) = plane.u.transpose() * fall / plane.reach;
+  flatten.block<1, 3>(1, 0) = plane.v.transpose() * fall / plane.reach;
+  flatten.topRightCorner<2, 1>() =
+      -plane.center / plane.reach - flatten.topLeftCorner<2, 3>() * plane.origin;
+  flatten(3, 3) = 1;
+  return flatten;
 }
 
 double horizon_height(const Camera& camera, const Vector3d& normal, const Matrix4f& to_clip) {
@@ -36,20 +49,32 @@ double horizon_height(const Camera& camera, const Vector3d& normal, const Matrix
 }
 
 void blur(std::vector<std::uint8_t>& image, int size, int radius) {
-  std::vector<std::uint8_t> line(static_cast<size_t>(size));
-  const auto smooth = [&](std::uint8_t* data, int stride) {
-    int sum = 0;
-    for (int i = 0; i < size; ++i) line[size_t(i)] = data[i * stride];
-    for (int i = 0; i < radius; ++i) sum += line[size_t(i)];
-    for (int i = 0; i < size; ++i) {
-      if (i + radius < size) sum += line[size_t(i + radius)];
-      if (i - radius - 1 >= 0) sum -= line[size_t(i - radius - 1)];
-      data[i * stride] = static_cast<std::uint8_t>(sum / (2 * radius + 1));
-    }
+  const auto n = static_cast<size_t>(size), r = static_cast<size_t>(radius), width = 2 * r + 1;
+  std::vector<std::uint8_t> smooth(image.size());  // along rows
+  std::vector<std::uint16_t> sums(n);              // of columns, a whole row at a time
+  const auto add_row = [&](size_t y, int sign) {
+    for (size_t x = 0; x < n; ++x)
+      sums[x] = static_cast<std::uint16_t>(sums[x] + sign * smooth[y * n + x]);
   };
   for (int pass = 0; pass < 2; ++pass) {
-    for (int i = 0; i < size; ++i) smooth(&image[size_t(i) * size_t(size)], 1);
-    for (int i = 0; i < size; ++i) smooth(&image[size_t(i)], size);
+    for (size_t y = 0; y < n; ++y) {
+      const std::uint8_t* from = &image[y * n];
+      size_t sum = 0;
+      for (size_t x = 0; x < std::min(r, n); ++x) sum += from[x];
+      for (size_t x = 0; x < n; ++x) {
+        if (x + r < n) sum += from[x + r];
+        if (x > r) sum -= from[x - r - 1];
+        smooth[y * n + x] = static_cast<std::uint8_t>(sum / width);
+      }
+    }
+    std::fill(sums.begin(), sums.end(), std::uint16_t(0));
+    for (size_t y = 0; y < std::min(r, n); ++y) add_row(y, 1);
+    for (size_t y = 0; y < n; ++y) {
+      if (y + r < n) add_row(y + r, 1);
+      if (y > r) add_row(y - r - 1, -1);
+      for (size_t x = 0; x < n; ++x)
+        image[y * n + x] = static_cast<std::uint8_t>(sums[x] / static_cast<std::uint16_t>(width));
+    }
   }
 }
 

@@ -17,9 +17,13 @@ struct Ground {
   double reach = 1;  ///< half edge of the square [m]
 };
 
-/// The plane through `origin`; `box` bounds what throws the shadow, `sun` points to the light.
-Ground make_ground(const Eigen::Vector3d& origin, const Eigen::Vector3d& normal,
-                   const Eigen::AlignedBox3d& box, const Eigen::Vector3d& sun);
+/// `frame` lies in the plane, z is its normal; `box` bounds what throws the shadow, `sun` points to
+/// the light.
+Ground make_ground(const Eigen::Isometry3d& frame, const Eigen::AlignedBox3d& box,
+                   const Eigen::Vector3d& sun);
+
+/// Along the sun onto the plane: the square of the shadow becomes -1..1, depth 0.
+Eigen::Matrix4d flattening(const Ground& ground, const Eigen::Vector3d& sun);
 
 /// The sun over the camera's left shoulder, whatever side it looks from; unit.
 Eigen::Vector3d sun_behind(const Camera& camera, const Eigen::Vector3d& up);

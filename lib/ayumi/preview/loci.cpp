@@ -34,21 +34,20 @@ Value component(Eigen::Vector3d SimulationSample::*quantity, int index) {
   return [quantity, index](const SimulationSample& s) { return (s.*quantity)[index]; };
 }
 
-/// Distance of the ZMP inside the hull of the soles planned down, where they really are; no number
-/// in flight.
-Value zmp_margin(const RobotModel& model, const Eigen::Vector3d& up) {
-  return [&model, up](const SimulationSample& s) {
+/// Distance, seen from above, of the ZMP inside the hull of the soles planned down, where they
+/// really are; no number in flight.
+Value zmp_margin(const RobotModel& model) {
+  return [&model](const SimulationSample& s) {
     std::vector<Vector2d> corners;
     for (const Eigen::Vector3d& corner :
-         support_corners(model, body_poses(model, s.state), s.planned_contact, up))
+         support_corners(model, body_poses(model, s.state), s.planned_contact))
       corners.push_back(corner.head<2>());
     const ConvexPolygon support(std::move(corners));
     return support.empty() ? std::nan("") : support.margin(s.zmp.head<2>());
   };
 }
 
-std::vector<PanelPlan> plan_panels(const LociOptions& options,
-                                   const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ()) {
+std::vector<PanelPlan> plan_panels(const LociOptions& options) {
   std::vector<PanelPlan> panels;
   using S = SimulationSample;
   const char* axis[] = {"x", "y", "z"};
@@ -66,7 +65,7 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options,
                         component(&S::command_zmp, i), component(&S::reference_zmp, i), 0.02,
                         false});
   if (options.zmp && options.model && options.model->has_soles())
-    panels.push_back({"margin [m]", zmp_margin(*options.model, up), {}, {}, 0.02, false});
+    panels.push_back({"margin [m]", zmp_margin(*options.model), {}, {}, 0.02, false});
   if (options.fz)
     panels.push_back({"f_z [N]",
                       [](const S& s) { return s.fz; },
@@ -211,7 +210,7 @@ void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
 
 Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) {
   const Interval time = time_range(runs, options);
-  const std::vector<PanelPlan> panels = plan_panels(options, ground_normal(runs.back().log->world));
+  const std::vector<PanelPlan> panels = plan_panels(options);
   if (panels.empty()) fail(ErrorCode::usage, "plot: every panel is switched off");
   Drawing drawing = start_drawing(runs, options, "Loci against time");
   const std::vector<PushRecord> pushed = all_pushes(runs, time);

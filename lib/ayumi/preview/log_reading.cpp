@@ -5,7 +5,6 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
 namespace {
@@ -60,12 +59,33 @@ SimulationSample sample_at(const SimulationLog& log, double t) {
   return sample;
 }
 
-Eigen::Vector3d ground_normal(const World& world) {
-  return exp_rotation({world.slope.x(), world.slope.y(), 0}) * Eigen::Vector3d::UnitZ();
+Eigen::Isometry3d floor_at(const SimulationLog& log, double t) {
+  std::vector<FloorMotion> motions;
+  for (const Disturbance& d : log.scenario)
+    if (d.type == DisturbanceType::floor) motions.push_back(floor_motion(d));
+  return floor_pose(log.world, motions, t);
 }
 
-GroundPlane ground_at(const SimulationLog& log, double) {
-  return {Eigen::Vector3d::Zero(), ground_normal(log.world)};
+Eigen::Isometry3d ground_at(const SimulationLog& log, double t) {
+  return floor_at(log, t) * Eigen::Translation3d(0, 0, log.world.height);
+}
+
+bool floor_moves(const SimulationLog& log) {
+  return !log.world.motions.empty() ||
+         std::any_of(log.scenario.begin(), log.scenario.end(),
+                     [](const Disturbance& d) { return d.type == DisturbanceType::floor; });
+}
+
+Eigen::Isometry3d marked_ground(const SimulationLog& log, double t,
+                                const SimulationSample& sample) {
+  constexpr double kLevel = 5e-4;  // soles sink in by less [m]
+  Eigen::Isometry3d ground = ground_at(log, t);
+  double height = 0;
+  for (size_t side = 0; side < 2; ++side)
+    if (sample.foot_force[side].norm() > 0.02 * sample.fz && sample.fz > 0)
+      height = std::max(height, (ground.inverse() * sample.foot_cop[side]).z());
+  if (height > kLevel) ground.translate(Eigen::Vector3d(0, 0, height));
+  return ground;
 }
 
 std::vector<PushRecord> pushes(const SimulationLog& log) {

@@ -15,15 +15,19 @@ double duration(const SimulationLog& log);
 /// contacts and push as of the tick before.
 SimulationSample sample_at(const SimulationLog& log, double t);
 
-/// Unit normal of the ground in the world.
-Eigen::Vector3d ground_normal(const World& world);
+/// The floor's frame in the world at `t`: the slope and every motion of the floor, those of the
+/// scenario included. What stands on the ground lies in this frame.
+Eigen::Isometry3d floor_at(const SimulationLog& log, double t);
 
-/// The ground plane in the world: a point of it [m] and its unit normal.
-struct GroundPlane {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-};
-GroundPlane ground_at(const SimulationLog& log, double t);
+/// Frame of the ground plane at `t`: the floor's, raised to the plane; z is its normal.
+Eigen::Isometry3d ground_at(const SimulationLog& log, double t);
+
+/// Whether the floor's frame changes during the run.
+bool floor_moves(const SimulationLog& log);
+
+/// Where marks on the ground are drawn at `t`: the ground plane, or the level above it that the
+/// higher foot in contact stands on.
+Eigen::Isometry3d marked_ground(const SimulationLog& log, double t, const SimulationSample& sample);
 
 /// A stretch of ticks with an external force.
 struct PushRecord {

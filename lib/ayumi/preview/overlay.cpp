@@ -26,9 +26,9 @@ struct Plane {
   }
 };
 
-Plane make_plane(const Vector3d& normal, const Vector3d& origin, double size) {
-  const Vector3d u = (Vector3d::UnitX() - normal.x() * normal).normalized();
-  return {normal, u, normal.cross(u), origin, size};
+Plane make_plane(const Eigen::Isometry3d& ground, double size) {
+  const Eigen::Matrix3d axes = ground.linear();
+  return {axes.col(2), axes.col(0), axes.col(1), ground.translation(), size};
 }
 
 Vector4f faded(Vector4f color, double opacity) {
@@ -113,17 +113,17 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
 
 std::vector<Vector3d> support_corners(const RobotModel& model,
                                       const std::vector<Eigen::Isometry3d>& poses,
-                                      const std::array<bool, 2>& contact, const Vector3d& normal,
-                                      const Vector3d& origin) {
+                                      const std::array<bool, 2>& contact,
+                                      const Eigen::Isometry3d& ground) {
   if (!model.has_soles()) return {};
-  const Plane plane = make_plane(normal, origin, 1);
+  const Plane plane = make_plane(ground, 1);
   std::vector<Eigen::Vector2d> points;
   for (const Side side : {Side::left, Side::right}) {
     if (!contact[static_cast<size_t>(side)]) continue;
     const Sole& sole = model.sole(side);
     const Eigen::Isometry3d frame = poses[size_t(sole.body)] * sole.frame;
     for (const Eigen::Vector2d& corner : sole.polygon) {
-      const Vector3d p = plane.drop(frame * Vector3d(corner.x(), corner.y(), 0), 0) - origin;
+      const Vector3d p = plane.drop(frame * Vector3d(corner.x(), corner.y(), 0), 0) - plane.origin;
       points.emplace_back(plane.u.dot(p), plane.v.dot(p));
     }
   }
@@ -131,7 +131,7 @@ std::vector<Vector3d> support_corners(const RobotModel& model,
   std::vector<Vector3d> corners;
   const ConvexPolygon hull(std::move(points));
   for (const Eigen::Vector2d& corner : hull.vertices())
-    corners.push_back(origin + corner.x() * plane.u + corner.y() * plane.v);
+    corners.push_back(plane.origin + corner.x() * plane.u + corner.y() * plane.v);
   return corners;
 }
 
@@ -164,12 +164,10 @@ Overlay make_overlay(const RobotModel& model, const SimulationLog& log,
                      double height, const OverlayOptions& options) {
   Overlay overlay;
   Triangles& target = overlay.triangles;
-  const GroundPlane ground = ground_at(log, t);
-  const Plane plane = make_plane(ground.normal, ground.origin, height);
+  const Eigen::Isometry3d ground = marked_ground(log, t, sample);
+  const Plane plane = make_plane(ground, height);
   if (options.support)
-    add_support(target,
-                support_corners(model, poses, sample.planned_contact, ground.normal, ground.origin),
-                plane);
+    add_support(target, support_corners(model, poses, sample.planned_contact, ground), plane);
   if (options.trails && options.cog)
     add_trail(target, log, t, options, plane, &SimulationSample::cog, overlay_color::kCog, 3);
   if (options.trails && options.zmp)

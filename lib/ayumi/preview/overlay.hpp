@@ -47,12 +47,12 @@ inline const Eigen::Vector4f kForce = {0.05f, 0.55f, 0.35f, 1};
 inline const Eigen::Vector4f kPush = {0.78f, 0.25f, 0.62f, 1};
 }  // namespace overlay_color
 
-/// Corners of the support polygon of the planned contact feet on the ground, counter-clockwise seen
-/// from above; empty without contact or without soles.
+/// Corners of the support polygon of the planned contact feet on the ground plane (z of its
+/// frame is the normal), counter-clockwise seen from above; empty without contact or without soles.
 std::vector<Eigen::Vector3d> support_corners(
     const RobotModel& model, const std::vector<Eigen::Isometry3d>& poses,
-    const std::array<bool, 2>& contact, const Eigen::Vector3d& ground_normal,
-    const Eigen::Vector3d& ground_origin = Eigen::Vector3d::Zero());
+    const std::array<bool, 2>& contact,
+    const Eigen::Isometry3d& ground = Eigen::Isometry3d::Identity());
 
 /// How near the joint of each body is to its limits of position, speed and torque, by body: 0 up to
 /// two thirds of the nearest limit, 1 at it. `profile` by name; the default one where unknown.

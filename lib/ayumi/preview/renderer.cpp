@@ -22,7 +22,8 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
-constexpr int kShadowSize = 512;
+constexpr int kShadowSize = 256;
+constexpr int kShadowBlur = 2;  // radius of the box
 constexpr int kSamples = 4;
 constexpr float kHorizon[3] = {0.74f, 0.77f, 0.80f};
 
@@ -45,42 +46,55 @@ struct Renderer::Parts {
   RenderOptions options;
   OffscreenContext context;
   Gl gl;
-  GLuint solid, textured, ground, sky, flat, shadow;
-  GlMesh robot, overlay, scenery, square;
+  GLuint solid, textured, standing, ground, sky, flat, shadow;
+  GlMesh robot, overlay, scenery, bumps, square;
   std::vector<BodyRanges> ranges;
   std::vector<Eigen::AlignedBox3d> boxes;  // of each body, body frame
   std::vector<std::string> notes;
   GlTarget drawn, resolved, flattened;
   GLuint coverage = 0;
+  std::vector<std::uint8_t> pixels;  // of the picture, as OpenGL gives it
+  IndexRange all_scenery;
+  Eigen::Vector4f hole = {0, 0, 0, 0};  // low x, y, high x, y; of the plane's coordinates
 
-  Parts(const std::vector<BodySurface>& surface, const RenderOptions& render_options);
+  Parts(const std::vector<BodySurface>& surface, const RenderOptions& render_options,
+        const Scenery& on_floor);
 
   void upload(const std::vector<BodySurface>& surface);
   Eigen::AlignedBox3d bounds_of(const std::vector<Eigen::Isometry3d>& poses) const;
-  void draw_coverage(const Scene& scene, const Ground& plane, const Vector3d& sun);
+  void draw_coverage(const Scene& scene, const Eigen::Matrix4d& flatten);
   void light(const Scene& scene, const Matrix4f& view_projection, const Vector3d& sun);
   template <typename Tint>
   void draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity, const Tint& tint);
-  void draw_scenery(const Scene& scene);
+  void draw_scenery(const Scene& scene, const Matrix4f& flatten, bool with_shadow);
   void draw_exposures(const Scene& scene);
-  void draw_ground(const Scene& scene, const Matrix4f& view_projection, const Ground& plane);
+  void draw_ground(const Scene& scene, const Matrix4f& view_projection, const Ground& plane,
+                   bool with_shadow);
   void draw_overlay(const Scene& scene);
   Image read();
 };
 
-Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOptions& chosen)
+Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOptions& chosen,
+                       const Scenery& on_floor)
     : options(chosen), context(chosen.way), gl(context) {
   using namespace shaders;
   solid = gl.link(kSolidVertex, kSolidFragment, kPlainInput);
   textured = gl.link(kSolidVertex, kSolidFragment, kTextureInput);
-  ground = gl.link(kGroundVertex, kGroundFragment);
+  standing = gl.link(kSceneryVertex, kSolidFragment, kSceneryInput);
   sky = gl.link(kSkyVertex, kSkyFragment);
   flat = gl.link(kFlatVertex, kFlatFragment);
-  shadow = gl.link(kGroundVertex, kShadowFragment);
+  const char* area = on_floor.hole.isEmpty() ? kWhole : kWithHole;
+  ground = gl.link(kGroundVertex, kGroundFragment, area);
+  shadow = gl.link(kGroundVertex, kShadowFragment, area);
   robot = gl.make_mesh();
   overlay = gl.make_mesh();
   scenery = gl.make_mesh();
+  bumps = gl.make_mesh();
   upload(surface);
+  gl.fill(scenery, on_floor.triangles, GL_STATIC_DRAW);
+  all_scenery.count = static_cast<GLsizei>(on_floor.triangles.indices.size());
+  if (!on_floor.hole.isEmpty())
+    hole << on_floor.hole.min().cast<float>(), on_floor.hole.max().cast<float>();
   gl.GenVertexArrays(1, &square.array);
   gl.BindVertexArray(square.array);
   gl.GenBuffers(1, &square.vertices);
@@ -127,7 +141,7 @@ void Renderer::Parts::upload(const std::vector<BodySurface>& surface) {
     for (const Triangles* part : parts_of(body)) box.extend(bounds(*part));
     boxes.push_back(box);
   }
-  gl.fill(robot, all, GL_STATIC_DRAW);
+  gl.fill(robot, welded(all), GL_STATIC_DRAW);
 }
 
 Eigen::AlignedBox3d Renderer::Parts::bounds_of(const std::vector<Eigen::Isometry3d>& poses) const {
@@ -137,17 +151,7 @@ Eigen::AlignedBox3d Renderer::Parts::bounds_of(const std::vector<Eigen::Isometry
   return all;
 }
 
-void Renderer::Parts::draw_coverage(const Scene& scene, const Ground& plane, const Vector3d& sun) {
-  // With p from the plane's origin: p -> ((p - s (n.p)/(n.s)) . u - center) / reach, and the same
-  // for v; depth 0.
-  const Eigen::Matrix3d fall =
-      Eigen::Matrix3d::Identity() - sun * plane.normal.transpose() / plane.normal.dot(sun);
-  Eigen::Matrix4d flatten = Eigen::Matrix4d::Zero();
-  flatten.block<1, 3>(0, 0) = plane.u.transpose() * fall / plane.reach;
-  flatten.block<1, 3>(1, 0) = plane.v.transpose() * fall / plane.reach;
-  flatten.topRightCorner<2, 1>() =
-      -plane.center / plane.reach - flatten.topLeftCorner<2, 3>() * plane.origin;
-  flatten(3, 3) = 1;
+void Renderer::Parts::draw_coverage(const Scene& scene, const Eigen::Matrix4d& flatten) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, flattened.framebuffer);
   gl.Viewport(0, 0, kShadowSize, kShadowSize);
   gl.Disable(GL_DEPTH_TEST);
@@ -165,7 +169,7 @@ void Renderer::Parts::draw_coverage(const Scene& scene, const Ground& plane, con
   }
   std::vector<std::uint8_t> cover(size_t(kShadowSize) * kShadowSize);
   gl.ReadPixels(0, 0, kShadowSize, kShadowSize, GL_RED, GL_UNSIGNED_BYTE, cover.data());
-  blur(cover, kShadowSize, 3);
+  blur(cover, kShadowSize, kShadowBlur);
   gl.BindTexture(GL_TEXTURE_2D, coverage);
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, kShadowSize, kShadowSize, 0, GL_RED, GL_UNSIGNED_BYTE,
                 cover.data());
@@ -173,13 +177,13 @@ void Renderer::Parts::draw_coverage(const Scene& scene, const Ground& plane, con
 
 void Renderer::Parts::light(const Scene& scene, const Matrix4f& view_projection,
                             const Vector3d& sun) {
-  for (const GLuint program : {textured, solid}) {
+  for (const GLuint program : {standing, textured, solid}) {
     gl.UseProgram(program);
     gl.set(program, "view_projection", view_projection);
     gl.set(program, "model", Matrix4f(Matrix4f::Identity()));
     gl.set(program, "eye", scene.camera.eye);
     gl.set(program, "sun", sun);
-    gl.set(program, "up", scene.ground_normal.normalized());
+    gl.set(program, "up", Vector3d(Vector3d::UnitZ()));
     gl.set(program, "opacity", 1.0);
     gl.set(program, "tint", kNoTint);
   }
@@ -221,10 +225,21 @@ void Renderer::Parts::draw_bodies(const std::vector<Eigen::Isometry3d>& poses, d
   gl.set(solid, "opacity", 1.0);
 }
 
-void Renderer::Parts::draw_scenery(const Scene& scene) {
-  if (scene.scenery.indices.empty()) return;
-  gl.fill(scenery, scene.scenery, GL_STREAM_DRAW);
-  gl.draw({static_cast<GLsizei>(scene.scenery.indices.size()), 0});
+/// Leaves `solid` in use.
+void Renderer::Parts::draw_scenery(const Scene& scene, const Matrix4f& flatten, bool with_shadow) {
+  if (!all_scenery.count && scene.bumps.indices.empty()) return;
+  gl.UseProgram(standing);
+  gl.set(standing, "model", Matrix4f(scene.floor.matrix().cast<float>()));
+  gl.set(standing, "flatten", flatten);
+  gl.set(standing, "strength", with_shadow ? 0.6 : 0.0);
+  gl.BindTexture(GL_TEXTURE_2D, coverage);
+  gl.BindVertexArray(scenery.array);
+  gl.draw(all_scenery);
+  if (!scene.bumps.indices.empty()) {
+    gl.fill(bumps, scene.bumps, GL_STREAM_DRAW);
+    gl.draw({static_cast<GLsizei>(scene.bumps.indices.size()), 0});
+  }
+  gl.UseProgram(solid);
 }
 
 void Renderer::Parts::draw_exposures(const Scene& scene) {
@@ -240,7 +255,7 @@ void Renderer::Parts::draw_exposures(const Scene& scene) {
 }
 
 void Renderer::Parts::draw_ground(const Scene& scene, const Matrix4f& view_projection,
-                                  const Ground& plane) {
+                                  const Ground& plane, bool with_shadow) {
   const Vector3d target = scene.camera.target - plane.origin;
   const Eigen::Vector2d center(plane.u.dot(target), plane.v.dot(target));
   const double distance = (scene.camera.eye - scene.camera.target).norm();
@@ -252,6 +267,7 @@ void Renderer::Parts::draw_ground(const Scene& scene, const Matrix4f& view_proje
     gl.set(program, "axis_v", plane.v);
     gl.set(program, "center", at.x(), at.y());
     gl.set(program, "reach", reach);
+    gl.set(program, "hole", hole);
   };
   gl.BindVertexArray(square.array);
   gl.Enable(GL_CULL_FACE);
@@ -269,7 +285,7 @@ void Renderer::Parts::draw_ground(const Scene& scene, const Matrix4f& view_proje
   gl.set(sky, "horizon_height", horizon_height(scene.camera, plane.normal, view_projection));
   gl.DepthMask(GL_FALSE);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  if (options.ground && options.shadow) {
+  if (with_shadow) {
     place(shadow, plane.center, plane.reach);
     gl.set(shadow, "strength", 0.42);
     gl.BindTexture(GL_TEXTURE_2D, coverage);
@@ -305,7 +321,7 @@ Image Renderer::Parts::read() {
     gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     gl.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved.framebuffer);
   }
-  std::vector<std::uint8_t> pixels(size_t(4) * width * height);
+  pixels.resize(size_t(4) * width * height);
   gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
   Image image{width, height, std::vector<std::uint8_t>(size_t(3) * width * height)};
   for (int y = 0; y < height; ++y) {
@@ -318,13 +334,14 @@ Image Renderer::Parts::read() {
   return image;
 }
 
-Renderer::Renderer(const std::vector<BodySurface>& robot, const RenderOptions& options) {
+Renderer::Renderer(const std::vector<BodySurface>& robot, const RenderOptions& options,
+                   const Scenery& scenery) {
   for (const int edge : {options.width, options.height})
     if (edge < 1 || edge > 4096)
       fail(ErrorCode::usage, "picture size " + std::to_string(options.width) + "x" +
                                  std::to_string(options.height) +
                                  ": each edge must be 1 to 4096 pixels");
-  parts_ = std::make_unique<Parts>(robot, options);
+  parts_ = std::make_unique<Parts>(robot, options, scenery);
 }
 
 Renderer::~Renderer() = default;
@@ -338,17 +355,20 @@ Image Renderer::render(const Scene& scene) {
     require(exposure.poses.size() == p.ranges.size(), "an exposure needs one pose per body");
   p.context.make_current();
   const Eigen::AlignedBox3d box = p.bounds_of(scene.poses);
-  const Vector3d up = scene.ground_normal.normalized();
-  const Vector3d sun = sun_behind(scene.camera, up);
-  const bool with_shadow = p.options.ground && p.options.shadow && !box.isEmpty();
-  const Ground plane = make_ground(
-      scene.ground_origin, up, box.isEmpty() ? Eigen::AlignedBox3d(up * 0.0, up * 0.0) : box, sun);
+  const Vector3d sun = sun_behind(scene.camera, Vector3d::UnitZ());
+  // A plane that the sun only grazes would carry a shadow without end.
+  const bool with_shadow = p.options.ground && p.options.shadow && !box.isEmpty() &&
+                           scene.ground.linear().col(2).dot(sun) > 0.2;
+  const Vector3d none = Vector3d::Zero();
+  const Ground plane =
+      make_ground(scene.ground, box.isEmpty() ? Eigen::AlignedBox3d(none, none) : box, sun);
+  const Eigen::Matrix4d flatten = flattening(plane, sun);
   const Matrix4f view_projection =
       (projection_matrix(scene.camera, double(p.options.width) / p.options.height) *
        view_matrix(scene.camera))
           .cast<float>();
   p.gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  if (with_shadow) p.draw_coverage(scene, plane, sun);
+  if (with_shadow) p.draw_coverage(scene, flatten);
   p.gl.BindFramebuffer(GL_FRAMEBUFFER, p.drawn.framebuffer);
   p.gl.Viewport(0, 0, p.options.width, p.options.height);
   p.gl.Enable(GL_DEPTH_TEST);
@@ -360,8 +380,8 @@ Image Renderer::render(const Scene& scene) {
   p.draw_bodies(scene.poses, 1.0, [&](size_t i) {
     return i < scene.heat.size() ? heat_tint(scene.heat[i]) : kNoTint;
   });
-  p.draw_scenery(scene);
-  p.draw_ground(scene, view_projection, plane);
+  p.draw_scenery(scene, flatten.cast<float>(), with_shadow);
+  p.draw_ground(scene, view_projection, plane, with_shadow);
   p.draw_exposures(scene);
   p.draw_overlay(scene);
   return p.read();

@@ -29,15 +29,21 @@ struct Exposure {
   double opacity = 0.35;
 };
 
+/// What stands on the ground from beginning to end.
+struct Scenery {
+  Triangles triangles;       ///< in the floor's frame
+  Eigen::AlignedBox2d hole;  ///< of the ground plane, where a field takes its place [m]
+};
+
 struct Scene {
   std::vector<Eigen::Isometry3d> poses;  ///< one per body, world
   Camera camera;
-  Eigen::Vector3d ground_normal = Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d ground_origin = Eigen::Vector3d::Zero();  ///< a point of the plane [m]
-  Triangles overlay;                                        ///< world frame
-  Triangles scenery;                ///< what stands on the ground plane, world frame
-  std::vector<Exposure> exposures;  ///< drawn in their order
-  std::vector<float> heat;          ///< empty, or by body: 0 its own colour, 1 red
+  Eigen::Isometry3d ground = Eigen::Isometry3d::Identity();  ///< frame of the plane, z its normal
+  Eigen::Isometry3d floor = Eigen::Isometry3d::Identity();   ///< frame of scenery and bumps
+  Triangles bumps;                                           ///< on the ground now, floor's frame
+  Triangles overlay;                                         ///< world frame
+  std::vector<Exposure> exposures;                           ///< drawn in their order
+  std::vector<float> heat;  ///< empty, or by body: 0 its own colour, 1 red
 };
 
 /// Holds the OpenGL context and the robot's surface in it. One thread at a time; several renderers
@@ -45,7 +51,8 @@ struct Scene {
 class Renderer {
  public:
   /// Throws Error(usage) for a size outside 1..4096, Error(internal) where OpenGL fails.
-  Renderer(const std::vector<BodySurface>& robot, const RenderOptions& options);
+  Renderer(const std::vector<BodySurface>& robot, const RenderOptions& options,
+           const Scenery& scenery = {});
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
-#include "ayumi/math/rotation.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/preview/log_reading.hpp"
 
 namespace ayumi {
 namespace {
@@ -36,16 +38,34 @@ void add_block(Triangles& target, const GroundBlock& block, double floor) {
   }
 }
 
-void add_field(Triangles& target, const HeightField& field) {
+/// A wall from the edge a-b of a field down or up to the plane, seen from both sides.
+void add_skirt(Triangles& target, const Vector3d& a, const Vector3d& b, double floor) {
+  const Vector3d c(b.x(), b.y(), floor), d(a.x(), a.y(), floor);
+  if (std::abs(a.z() - floor) + std::abs(b.z() - floor) < 1e-9) return;
+  add_face(target, {a, b, c, d}, kField);
+  add_face(target, {b, a, d, c}, kField);
+}
+
+void add_field(Triangles& target, const HeightField& field, double floor, int max_nodes) {
+  const Eigen::Index rows = field.heights.rows(), columns = field.heights.cols();
+  const Eigen::Index step = 1 + (std::max(rows, columns) - 1) / std::max(2, max_nodes);
   const auto node = [&](Eigen::Index i, Eigen::Index j) {
+    i = std::min(i, rows - 1);
+    j = std::min(j, columns - 1);
     return Vector3d(field.origin.x() + field.spacing * double(i),
                     field.origin.y() + field.spacing * double(j), field.heights(i, j));
   };
-  for (Eigen::Index i = 0; i + 1 < field.heights.rows(); ++i)
-    for (Eigen::Index j = 0; j + 1 < field.heights.cols(); ++j) {
-      add_face(target, {node(i, j), node(i + 1, j), node(i + 1, j + 1)}, kField);
-      add_face(target, {node(i, j), node(i + 1, j + 1), node(i, j + 1)}, kField);
+  for (Eigen::Index i = 0; i + 1 < rows; i += step)
+    for (Eigen::Index j = 0; j + 1 < columns; j += step) {
+      add_face(target, {node(i, j), node(i + step, j), node(i + step, j + step)}, kField);
+      add_face(target, {node(i, j), node(i + step, j + step), node(i, j + step)}, kField);
     }
+  for (Eigen::Index i = 0; i + 1 < rows; i += step)
+    for (const Eigen::Index j : {Eigen::Index(0), columns - 1})
+      add_skirt(target, node(i, j), node(i + step, j), floor);
+  for (Eigen::Index j = 0; j + 1 < columns; j += step)
+    for (const Eigen::Index i : {Eigen::Index(0), rows - 1})
+      add_skirt(target, node(i, j), node(i, j + step), floor);
 }
 
 void add_patch(Triangles& target, const FrictionPatch& patch, double floor) {
@@ -60,16 +80,48 @@ void add_patch(Triangles& target, const FrictionPatch& patch, double floor) {
 
 }  // namespace
 
-Triangles make_scenery(const World& world) {
-  Triangles local;
-  for (const FrictionPatch& patch : world.patches) add_patch(local, patch, world.height + 2e-4);
-  for (const GroundBlock& block : world.blocks) add_block(local, block, world.height);
-  for (const HeightField& field : world.fields) add_field(local, field);
-  Eigen::Isometry3d slope = Eigen::Isometry3d::Identity();
-  slope.linear() = exp_rotation(Vector3d(world.slope.x(), world.slope.y(), 0)).toRotationMatrix();
+Triangles make_scenery(const World& world, int max_nodes) {
   Triangles scenery;
-  append(scenery, local, slope);
+  for (const FrictionPatch& patch : world.patches) add_patch(scenery, patch, world.height + 2e-4);
+  for (const GroundBlock& block : world.blocks) add_block(scenery, block, world.height);
+  for (const HeightField& field : world.fields) add_field(scenery, field, world.height, max_nodes);
   return scenery;
+}
+
+std::vector<RisingBump> rising_bumps(const RobotModel& model, const SimulationLog& log) {
+  std::vector<RisingBump> bumps;
+  for (const Disturbance& d : log.scenario) {
+    if (d.type != DisturbanceType::bump) continue;
+    RisingBump bump = {{}, d.at, d.at + d.duration};
+    bump.block.kind = GroundBlock::Kind::disc;
+    bump.block.center = d.place;
+    if (d.foot) {
+      RobotData data(model);
+      update_positions(model, sample_at(log, d.at).state, data);
+      const Vector3d p = sole_pose(model, data, *d.foot) * Vector3d(d.place.x(), d.place.y(), 0);
+      bump.block.center = (floor_at(log, d.at).inverse() * p).head<2>();
+    }
+    bump.block.radius = d.radius;
+    bump.block.height = log.world.height + d.magnitude;
+    bumps.push_back(bump);
+  }
+  return bumps;
+}
+
+Triangles make_bumps(const std::vector<RisingBump>& bumps, double ground_height, double t) {
+  Triangles out;
+  for (const RisingBump& bump : bumps) {
+    if (t < bump.begin || t >= bump.end) continue;
+    GroundBlock block = bump.block;
+    block.height = ground_height + (block.height - ground_height) * bump_share(t - bump.begin);
+    if (block.height > ground_height) add_block(out, block, ground_height);
+  }
+  return out;
+}
+
+double bump_share(double since) {
+  const double s = std::clamp(since / kBumpRise, 0.0, 1.0);
+  return s * s * s * (10 - 15 * s + 6 * s * s);
 }
 
 }  // namespace ayumi

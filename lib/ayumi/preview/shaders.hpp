@@ -47,6 +47,37 @@ vec4 surface_color(vec4 base) {
 )";
 inline constexpr const char* kPlainInput = "vec4 surface_color(vec4 base) { return base; }\n";
 
+// What stands on the floor is darker where the robot's shadow falls on it; `place` is where the sun
+// casts it in the coverage.
+inline constexpr const char* kSceneryVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 color;
+uniform mat4 model;
+uniform mat4 view_projection;
+uniform mat4 flatten;
+out vec3 world_position;
+out vec3 world_normal;
+out vec4 base_color;
+out vec2 place;
+void main() {
+  vec4 world = model * vec4(position, 1.0);
+  world_position = world.xyz;
+  world_normal = mat3(model) * normal;
+  base_color = vec4(to_linear(color.rgb), color.a);
+  place = 0.5 + 0.5 * (flatten * world).xy;
+  gl_Position = view_projection * world;
+}
+)";
+inline constexpr const char* kSceneryInput = R"(
+in vec2 place;
+uniform sampler2D picture;
+uniform float strength;
+vec4 surface_color(vec4 base) {
+  return vec4(base.rgb * (1.0 - strength * texture(picture, place).r), base.a);
+}
+)";
+
 // Light from the whole sky, brighter from above; the sun; a dull highlight. A face seen from
 // behind, or with its normal turned away, is lit as if it were the front; a normal that is turned
 // away just so, at an outline, stays (turned, it would look down into the dark). Zero normal: an
@@ -91,6 +122,14 @@ void main() {
 }
 )";
 
+// Programs of their own with and without a hole: one that may leave pixels out hinders the early
+// depth test.
+inline constexpr const char* kWhole = "bool outside(vec2 p) { return true; }\n";
+inline constexpr const char* kWithHole = R"(
+uniform vec4 hole;
+bool outside(vec2 p) { return any(lessThan(p, hole.xy)) || any(greaterThan(p, hole.zw)); }
+)";
+
 inline constexpr const char* kGroundFragment = R"(
 in vec2 plane;
 uniform vec2 center;
@@ -106,6 +145,7 @@ float grid(vec2 p, vec2 footprint, float spacing, float width) {
 }
 void main() {
   vec2 footprint = max(fwidth(plane), vec2(1e-6));
+  if (!outside(plane)) discard;
   vec3 color = vec3(0.60, 0.605, 0.60);
   color = mix(color, vec3(0.36, 0.37, 0.38), 0.55 * grid(plane, footprint, 0.1, 0.0022));
   color = mix(color, vec3(0.20, 0.21, 0.23), 0.80 * grid(plane, footprint, 1.0, 0.006));
@@ -155,6 +195,7 @@ uniform sampler2D coverage;
 uniform float strength;
 out vec4 pixel;
 void main() {
+  if (!outside(plane)) discard;
   float cover = texture(coverage, 0.5 + 0.5 * (plane - center) / reach).r;
   pixel = vec4(0.03, 0.04, 0.07, strength * cover);
 }

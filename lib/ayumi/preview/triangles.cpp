@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <unordered_map>
 
@@ -189,6 +190,27 @@ void append(Triangles& target, const Triangles& part, const Eigen::Isometry3d& p
     target.vertices.push_back(vertex);
   }
   for (const std::uint32_t index : part.indices) target.indices.push_back(index + offset);
+}
+
+Triangles welded(const Triangles& surface) {
+  using Key = std::array<std::uint32_t, sizeof(RenderVertex) / 4>;
+  const auto hash = [](const Key& key) {
+    size_t sum = 0;
+    for (const std::uint32_t word : key) sum = (sum ^ word) * 0x9E3779B97F4A7C15;
+    return sum ^ sum >> 29;
+  };
+  std::unordered_map<Key, std::uint32_t, decltype(hash)> known(surface.vertices.size(), hash);
+  Triangles out;
+  out.indices.reserve(surface.indices.size());
+  for (const std::uint32_t index : surface.indices) {
+    const RenderVertex& vertex = surface.vertices[index];
+    Key key;
+    std::memcpy(key.data(), &vertex, sizeof key);
+    const auto [entry, fresh] = known.emplace(key, static_cast<std::uint32_t>(out.vertices.size()));
+    if (fresh) out.vertices.push_back(vertex);
+    out.indices.push_back(entry->second);
+  }
+  return out;
 }
 
 Triangles tessellate(const Shape& primitive, const Vector4f& color) {

@@ -28,6 +28,9 @@ struct Triangles {
 void append(Triangles& target, const Triangles& part,
             const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity());
 
+/// The same triangles, vertices that are alike to the bit being one.
+Triangles welded(const Triangles& surface);
+
 /// Surface of a box, sphere, cylinder or capsule in its own frame. Throws Error(internal) for a
 /// mesh.
 Triangles tessellate(const Shape& primitive, const Eigen::Vector4f& color);

@@ -4,23 +4,6 @@
 
 namespace ayumi::html {
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n')
-      out += c;
-  }
-  return out;
-}
-
 std::string base64(const std::string& bytes) {
   constexpr const char* kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -63,7 +46,9 @@ bool is_number(const std::string& cell, bool with_heads) {
 }  // namespace
 
 std::string table(const Table& table) {
-  std::string out = "<div class=\"wide\"><table>\n";
+  // Scrolls sideways where the page is narrow: with the keyboard as well.
+  std::string out = "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"" +
+                    escaped(table.caption.empty() ? "Table" : table.caption) + "\"><table>\n";
   if (!table.caption.empty()) out += "<caption>" + escaped(table.caption) + "</caption>\n";
   if (!table.head.empty()) {
     out += "<tr>";

@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/preview/drawing.hpp"
+
 namespace ayumi::html {
 
-/// Text between tags or in quotes.
-std::string escaped(const std::string& text);
+using ayumi::escaped;
 
 /// Base64 without line breaks.
 std::string base64(const std::string& bytes);

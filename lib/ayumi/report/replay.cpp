@@ -8,6 +8,7 @@
 #include "ayumi/preview/gltf.hpp"
 #include "ayumi/preview/log_reading.hpp"
 #include "ayumi/preview/robot_surface.hpp"
+#include "ayumi/preview/scenery.hpp"
 #include "ayumi/report/html.hpp"
 
 namespace ayumi {
@@ -15,6 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 using html::quoted;
+
+constexpr int kFieldNodes = 96;  // a side, of a field of heights in the page
 
 const std::vector<std::string> kColumns = {"t",
                                            "cog.x",
@@ -50,7 +53,19 @@ std::string list(const Vector3d& v) {
   return list({text::exact(v.x()), text::exact(v.y()), text::exact(v.z())});
 }
 
+/// Where a moving floor is, behind the columns above.
+const std::vector<std::string> kFloorColumns = {"floor.x",  "floor.y",  "floor.z", "floor.qx",
+                                                "floor.qy", "floor.qz", "floor.qw"};
+
+std::string pose_words(const Eigen::Isometry3d& pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  return "{\"position\":" + list(Vector3d(pose.translation())) + ",\"quaternion\":" +
+         list({text::exact(q.x()), text::exact(q.y()), text::exact(q.z()), text::exact(q.w())}) +
+         "}";
+}
+
 std::string series_bytes(const SimulationLog& log, const std::vector<double>& times) {
+  const bool moving = floor_moves(log);
   std::string bytes;
   const auto add = [&](double value) {
     const auto single = static_cast<float>(value);
@@ -71,6 +86,11 @@ std::string series_bytes(const SimulationLog& log, const std::vector<double>& ti
       add_vector(s.foot_cop[side]);
       add(s.planned_contact[side] ? 1 : 0);
     }
+    if (!moving) continue;
+    const Eigen::Isometry3d floor = floor_at(log, t);
+    const Eigen::Quaterniond q(floor.linear());
+    add_vector(floor.translation());
+    for (const double value : q.coeffs()) add(value);
   }
   return bytes;
 }
@@ -97,6 +117,35 @@ std::string pushes_words(const SimulationLog& log) {
                     ",\"from_cog\":" + list(push.from_cog) +
                     ",\"direction\":" + list(Vector3d(along.normalized())) +
                     ",\"text\":" + quoted(push_text(push)) + "}");
+  }
+  return list(words);
+}
+
+/// Corners of triangles, each a place and a colour, in the floor's frame.
+std::string scenery_bytes(const World& world) {
+  const Triangles scenery = make_scenery(world, kFieldNodes);
+  std::string bytes;
+  const auto add = [&](float value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (const std::uint32_t index : scenery.indices) {
+    const RenderVertex& vertex = scenery.vertices[index];
+    for (const float x : vertex.position) add(x);
+    for (size_t c = 0; c < 3; ++c) add(float(vertex.color[c]) / 255);
+  }
+  return bytes;
+}
+
+std::string bumps_words(const RobotModel& model, const SimulationLog& log) {
+  std::vector<std::string> words;
+  for (const RisingBump& bump : rising_bumps(model, log)) {
+    const GroundBlock& block = bump.block;
+    words.push_back("{\"begin\":" + text::exact(bump.begin) +
+                    ",\"end\":" + text::exact(std::min(bump.end, duration(log) + 1)) +
+                    ",\"rise\":" + text::exact(kBumpRise) +
+                    ",\"radius\":" + text::exact(block.radius) +
+                    ",\"center\":" + list(Vector3d(block.center.x(), block.center.y(), 0)) +
+                    ",\"height\":" + text::exact(block.height - log.world.height) + "}");
   }
   return list(words);
 }
@@ -129,11 +178,16 @@ ReplayData make_replay(const RobotModel& model, const ReportInput& input, const 
   data.series = series_bytes(log, motions.front().times);
   std::vector<std::string> columns;
   for (const std::string& name : kColumns) columns.push_back(quoted(name));
+  if (floor_moves(log))
+    for (const std::string& name : kFloorColumns) columns.push_back(quoted(name));
+  data.scenery = scenery_bytes(log.world);
   data.config = "{\"columns\":" + list(columns) + ",\"rate\":" + text::exact(plan.rate) +
                 ",\"height\":" + text::exact(height_of(model, log)) +
                 ",\"weight\":" + text::exact(9.80665 * model.mass()) +
-                ",\"ground_normal\":" + list(ground_normal(log.world)) +
-                ",\"start\":" + text::exact(data.start) + ",\"view\":\"iso\",\"label\":" +
+                ",\"floor\":" + pose_words(floor_at(log, 0)) +
+                ",\"ground_height\":" + text::exact(log.world.height) +
+                ",\"bumps\":" + bumps_words(model, log) + ",\"start\":" + text::exact(data.start) +
+                ",\"view\":\"iso\",\"label\":" +
                 quoted("3-D replay of " + input.title +
                        "; space plays, arrow keys step, Home and End go to the ends") +
                 ",\"soles\":" + soles_words(model) + ",\"pushes\":" + pushes_words(log) + "}";

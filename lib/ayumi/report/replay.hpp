@@ -14,9 +14,10 @@ struct ReplayPlan {
 };
 
 struct ReplayData {
-  std::string model;   ///< bytes of a .glb: the run, then its ghosts
-  std::string series;  ///< rows of 32-bit floats, little-endian
-  std::string config;  ///< JSON
+  std::string model;    ///< bytes of a .glb: the run, then its ghosts
+  std::string series;   ///< rows of 32-bit floats, little-endian
+  std::string scenery;  ///< corners of triangles: place and colour, 32-bit floats
+  std::string config;   ///< JSON
   std::vector<std::string> ghosts;
   double duration = 0, start = 0;  ///< [s]
 };

@@ -21,8 +21,6 @@
 namespace ayumi {
 namespace {
 
-using html::escaped;
-
 constexpr double kMostKeys = 4000;  // of the replay
 constexpr size_t kFewestTriangles = 4000;
 constexpr double kLeastRate = 10;  // [Hz]
@@ -169,6 +167,7 @@ std::string page(const RobotModel& model, const ReportInput& input, const Pieces
              "</noscript>\n";
     script = data_element("replay-config", "application/json", data.config) +
              data_element("replay-series", "text/plain", html::base64(data.series)) +
+             data_element("replay-scenery", "text/plain", html::base64(data.scenery)) +
              data_element("replay-model", "text/plain", html::base64(data.model)) + "<script>\n" +
              std::string(kReplayScript) + "</script>\n";
   }
@@ -196,6 +195,10 @@ bool reduce(Plan& plan, size_t& triangles) {
   return true;
 }
 
+std::string size_words(const ReportOptions& options) {
+  return text::brief(1e-6 * double(options.max_bytes)) + " MB";
+}
+
 std::vector<std::string> caps_of(const Plan& plan, const ReportOptions& options, size_t triangles,
                                  const std::string& no_replay) {
   std::vector<std::string> caps;
@@ -206,7 +209,7 @@ std::vector<std::string> caps_of(const Plan& plan, const ReportOptions& options,
   if (plan.with_replay)
     caps.push_back("the replay has " + text::brief(plan.replay.rate) +
                    " postures per second and moves evenly between them");
-  const std::string size = text::brief(1e-6 * double(options.max_bytes)) + " MB";
+  const std::string size = size_words(options);
   if (!plan.with_replay && no_replay.empty())
     caps.push_back("no replay: with it the page would be larger than " + size);
   if (!plan.with_snapshots)
@@ -240,9 +243,14 @@ Report make_report(const RobotModel& model, const ReportInput& input, const Repo
   const size_t triangles = triangle_count(robot_surface(model));
   size_t allowed = std::min(options.max_triangles, triangles);
   for (;;) {
-    const std::vector<std::string> caps = caps_of(plan, options, triangles, no_replay);
+    std::vector<std::string> caps = caps_of(plan, options, triangles, no_replay);
     Report made = {page(model, input, pieces, plan, caps), caps};
-    if (made.html.size() <= options.max_bytes || !reduce(plan, allowed)) return made;
+    if (made.html.size() <= options.max_bytes) return made;
+    if (!reduce(plan, allowed)) {
+      caps.push_back("the page is larger than " + size_words(options) +
+                     ": verdict, tables, loci and one picture stay");
+      return {page(model, input, pieces, plan, caps), caps};
+    }
     report(progress, {"report", 0.8, "smaller page"});
   }
 }

@@ -3,9 +3,9 @@
 
 import {
   AmbientLight, AnimationMixer, ArrowHelper, BufferAttribute, BufferGeometry, CircleGeometry, Color,
-  DirectionalLight, DoubleSide, GridHelper, Group, HemisphereLight, Line, LineBasicMaterial,
+  CylinderGeometry, DirectionalLight, DoubleSide, GridHelper, Group, HemisphereLight, Line, LineBasicMaterial,
   LineLoop, LoopOnce, Mesh, MeshBasicMaterial, MeshLambertMaterial, PCFShadowMap, PerspectiveCamera,
-  PlaneGeometry, RingGeometry, Scene, ShadowMaterial, SphereGeometry, Vector3, WebGLRenderer,
+  PlaneGeometry, Quaternion, RingGeometry, Scene, ShadowMaterial, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
@@ -75,11 +75,33 @@ function makeMarks(size) {
 const vector = (name, row) => new Vector3(
   row[columns[name + ".x"]], row[columns[name + ".y"]], row[columns[name + ".z"]]);
 
-/// The point of the ground plane below p.
-function onGround(p, lift) {
-  const n = new Vector3(...config.ground_normal);
-  const below = new Vector3(p.x, p.y, p.z - n.dot(p) / n.z);
-  return below.addScaledVector(n, lift);
+/// Frame of the floor: as it stands, or as a row says where it moves.
+function floorAt(row) {
+  const at = (name) => row[columns["floor." + name]];
+  if (columns["floor.x"] === undefined)
+    return { position: new Vector3(...config.floor.position),
+      quaternion: new Quaternion(...config.floor.quaternion) };
+  return { position: new Vector3(at("x"), at("y"), at("z")),
+    quaternion: new Quaternion(at("qx"), at("qy"), at("qz"), at("qw")).normalize() };
+}
+
+/// The plane that marks lie on: the ground, or the level above it of the higher foot in contact.
+function planeAt(row) {
+  const floor = floorAt(row);
+  const normal = new Vector3(0, 0, 1).applyQuaternion(floor.quaternion);
+  const origin = floor.position.clone().addScaledVector(normal, config.ground_height);
+  let level = 0;
+  for (const side of ["left", "right"])
+    if (vector(side + "_force", row).length() > 0.02 * row[columns.fz] && row[columns.fz] > 0)
+      level = Math.max(level, normal.dot(vector(side + "_cop", row).sub(origin)));
+  if (level > 5e-4) origin.addScaledVector(normal, level);
+  return { normal, origin };
+}
+
+/// The point of the plane below p.
+function onGround({ normal, origin }, p, lift) {
+  const below = new Vector3(p.x, p.y, p.z - normal.dot(p.clone().sub(origin)) / normal.z);
+  return below.addScaledVector(normal, lift);
 }
 
 function point(mark, from, force, scale) {
@@ -135,17 +157,53 @@ class Replay {
     this.scene.add(m.cog, m.zmp, m.reference, m.support, m.push, ...m.forces);
   }
 
+  /// Grid, what stands on it and what comes up from it, in the floor's frame.
   ground() {
-    const ground = new Group();
-    ground.quaternion.setFromUnitVectors(new Vector3(0, 0, 1),
-      new Vector3(...config.ground_normal).normalize());
+    const ground = this.floor = new Group(), plane = new Group();
     const fine = new GridHelper(6, 60, 0x9aa0a8, 0xb4bac2), bold = new GridHelper(20, 20, 0x6c737c,
       0x7b828b);
     for (const grid of [fine, bold]) grid.rotation.x = Math.PI / 2;
     const floor = new Mesh(new PlaneGeometry(40, 40), new ShadowMaterial({ opacity: 0.3 }));
     floor.receiveShadow = true;
-    ground.add(fine, bold, floor);
+    plane.add(fine, bold, floor);
+    plane.position.z = config.ground_height;
+    ground.add(plane);
+    const solid = (geometry, material) => {
+      const mesh = new Mesh(geometry, new MeshLambertMaterial(material));
+      mesh.receiveShadow = true;
+      plane.add(mesh);
+      return mesh;
+    };
+    const corners = new Float32Array(bytesOf("replay-scenery"));
+    if (corners.length) {
+      const pick = (from) => new BufferAttribute(Float32Array.from({ length: corners.length / 2 },
+        (_, i) => corners[6 * Math.floor(i / 3) + from + i % 3]), 3);
+      const color = pick(3);
+      for (let i = 0; i < color.array.length; ++i) color.array[i] **= 2.2;
+      const shape = new BufferGeometry().setAttribute("position", pick(0))
+        .setAttribute("color", color);
+      shape.computeVertexNormals();
+      solid(shape, { vertexColors: true, side: DoubleSide }).position.z = -config.ground_height;
+    }
+    this.bumps = config.bumps.map((bump) => {
+      const shape = new CylinderGeometry(bump.radius, bump.radius, bump.height, 8);
+      shape.rotateX(Math.PI / 2).rotateZ(Math.PI / 8).translate(0, 0, bump.height / 2);
+      const mesh = solid(shape, { color: 0xa89980 });
+      mesh.position.set(...bump.center);
+      return { mesh, ...bump };
+    });
     return ground;
+  }
+
+  placeFloor(row) {
+    const { position, quaternion } = floorAt(row);
+    this.floor.position.copy(position);
+    this.floor.quaternion.copy(quaternion);
+    for (const { mesh, begin, end, rise } of this.bumps) {
+      const share = Math.min(1, Math.max(0, (this.time - begin) / rise));
+      mesh.visible = share > 0 && this.time < end;
+      mesh.scale.z = Math.max(1e-3, share ** 3 * (10 - 15 * share + 6 * share ** 2));
+    }
   }
 
   /// glTF's y becomes the world's z again.
@@ -178,7 +236,8 @@ class Replay {
     this.camera.up.set(0, 0, 1);
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
-    canvas.setAttribute("role", "img");
+    canvas.setAttribute("role", "application");
+    canvas.setAttribute("aria-roledescription", "3-D replay");
     canvas.setAttribute("aria-label", config.label);
     this.stage.replaceChildren(canvas);
     this.orbit = new OrbitControls(this.camera, canvas);
@@ -207,8 +266,7 @@ class Replay {
   }
 
   focus(row) {
-    const cog = vector("cog", row);
-    return onGround(cog, 0.48 * config.height);
+    return onGround(planeAt(row), vector("cog", row), 0.48 * config.height);
   }
 
   /// Everything at time t: robot, ghosts, marks, camera, plots, controls.
@@ -228,6 +286,7 @@ class Replay {
     this.sun.target.position.copy(this.orbit.target);
     this.sun.position.copy(this.orbit.target).add(
       new Vector3(0.8, -0.9, 2.2).multiplyScalar(config.height));
+    this.placeFloor(row);
     this.place(row);
     tell(this.time, row);
     this.draw();
@@ -235,13 +294,16 @@ class Replay {
 
   place(row) {
     const m = this.marks, size = config.height, cog = vector("cog", row);
+    const plane = planeAt(row);
+    for (const mark of [m.zmp, m.reference])
+      mark.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), plane.normal);
     m.ball.position.copy(cog);
-    m.plumb.geometry.setFromPoints([cog, onGround(cog, 0.001 * size)]);
-    m.zmp.position.copy(onGround(vector("zmp", row), 0.004 * size));
-    m.reference.position.copy(onGround(vector("ref_zmp", row), 0.003 * size));
+    m.plumb.geometry.setFromPoints([cog, onGround(plane, cog, 0.001 * size)]);
+    m.zmp.position.copy(onGround(plane, vector("zmp", row), 0.004 * size));
+    m.reference.position.copy(onGround(plane, vector("ref_zmp", row), 0.003 * size));
     ["left", "right"].forEach((side, i) => point(m.forces[i], vector(side + "_cop", row),
       vector(side + "_force", row), 0.5 * size / config.weight));
-    this.placeSupport(row);
+    this.placeSupport(row, plane);
     const push = config.pushes.find((p) => this.time >= p.begin - 1e-6 &&
       this.time < Math.max(p.end, p.begin + 0.6));
     m.push.visible = Boolean(push) && shown("push");
@@ -255,14 +317,15 @@ class Replay {
     byId("push-now").textContent = push ? "push " + push.text : "";
   }
 
-  placeSupport(row) {
+  placeSupport(row, plane) {
     const corners = [];
     this.actors[0].root.updateMatrixWorld(true);
     for (const sole of config.soles) {
       if (row[columns[sole.side + "_planned"]] < 0.5) continue;
       const body = bodyOf(this.actors[0], sole.body);
       for (const corner of sole.corners) {
-        const p = onGround(body.localToWorld(new Vector3(...corner)), 0.002 * config.height);
+        const p = onGround(plane, body.localToWorld(new Vector3(...corner)),
+          0.002 * config.height);
         corners.push([p.x, p.y, p.z]);
       }
     }
@@ -388,6 +451,8 @@ function start(gltf) {
     show: (t) => replay.show(t),
     row: () => Object.fromEntries(config.columns.map((name, i) => [name,
       rowAt(series, replay.time)[i]])),
+    floor: () => ({ height: replay.floor.position.z, turn: replay.floor.quaternion.toArray(),
+      bumps: replay.bumps.filter((bump) => bump.mesh.visible).length }),
     position: (body) => {
       replay.actors[0].root.updateMatrixWorld(true);
       return bodyOf(replay.actors[0], body).getWorldPosition(new Vector3()).toArray();
