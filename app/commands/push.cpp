@@ -59,8 +59,12 @@ PushOptions push_options(const Context& context, const PatternInput& input,
   push.controllers = chosen_controllers(input, options);
   for (double t : options.times)
     push.phases.push_back({"t = " + text::fixed(t, 3) + " s", t, false});
-  if (push.phases.empty())
-    push.phases = default_push_phases(input.model, input.series, push.simulate);
+  if (push.phases.empty()) {
+    SimulateOptions gait = push.simulate;
+    for (const ControllerSpec& c : push.controllers)
+      if (c.type == "viip" && gait.controller.type != "viip") gait.controller = c;
+    push.phases = default_push_phases(input.model, input.series, gait);
+  }
   return push;
 }
 

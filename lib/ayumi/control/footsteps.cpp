@@ -47,8 +47,8 @@ std::vector<Vector2d> landing_offsets(const std::vector<Vector2d>& footholds, do
 }
 
 Footsteps::Footsteps(const RobotModel& model, const std::array<Isometry3d, 2>& feet, double period,
-                     double growth, double hold)
-    : period_(period), growth_(growth), hold_(hold) {
+                     double growth, double hold, double inside)
+    : period_(period), growth_(growth), hold_(hold), inside_(inside) {
   const GroundPose left = ground_pose(model, Side::left, feet[0]);
   const GroundPose right = ground_pose(model, Side::right, feet[1]);
   half_width_ = 0.5 * (left.position - right.position).norm();
@@ -59,6 +59,10 @@ Footsteps::Footsteps(const RobotModel& model, const std::array<Isometry3d, 2>& f
 
 GroundPose Footsteps::beside(const GroundPose& center, Side side) const {
   return {center.position + turned({0, sign_of(side) * half_width_}, center.yaw), center.yaw};
+}
+
+Vector2d Footsteps::zmp_on(Side side, const GroundPose& foot) const {
+  return foot.position - turned({0, sign_of(side) * inside_}, foot.yaw);
 }
 
 // Sideways the foot that leads goes twice as far and the other one closes up to it.
@@ -74,9 +78,9 @@ GroundPose Footsteps::moved(const GroundPose& center, const StepGoal& goal, Side
 
 PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose& foot, int left,
                             const Vector2d& rest) const {
-  PlannedStep result{stance, foot.position, {}, {}};
+  PlannedStep result{stance, zmp_on(stance, foot), {}, {}};
   Vector2d error = foot.position - beside(center_, stance).position;
-  std::vector<Vector2d> footholds;
+  std::vector<Vector2d> zmps;  // nominal ones, on each foothold
   GroundPose center = center_;
   Side side = other(stance);
   const int count = std::min(left, kPreview);
@@ -86,14 +90,15 @@ PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose&
     GroundPose place = beside(center, side);
     place.position += error;
     if (k == 0) result.landing = place;
-    footholds.push_back(place.position);
+    zmps.push_back(zmp_on(side, place));
   }
   const Vector2d after = count == left
                              ? Vector2d(center.position + error + turned(rest, center.yaw))
-                             : beside(moved(center, goal, side, left - count), side).position;
+                             : zmp_on(side, beside(moved(center, goal, side, left - count), side));
   // At the end xi stays where the robot is to stand; else one more step is guessed.
   const double share = count == left ? 1 : 1 / (growth_ + 1);
-  result.offset = landing_offsets(footholds, growth_, share * (after - footholds.back())).front();
+  result.offset = zmps.front() - result.landing.position +
+                  landing_offsets(zmps, growth_, share * (after - zmps.back())).front();
   return result;
 }
 

@@ -37,7 +37,7 @@ inline Eigen::Vector2d zmp_to_arrive(const Eigen::Vector2d& xi, const Eigen::Vec
 /// One single support to come: stance foot, landing foot, and where xi is to be when it lands.
 struct PlannedStep {
   Side stance = Side::left;
-  Eigen::Vector2d stance_place;  ///< centre of the stance sole [m]
+  Eigen::Vector2d stance_place;  ///< nominal ZMP on the stance sole [m]
   GroundPose landing;            ///< nominal
   Eigen::Vector2d offset;        ///< b of the landing foot
 };
@@ -45,9 +45,13 @@ struct PlannedStep {
 class Footsteps {
  public:
   /// `feet`: soles at the start; `period` of a step [s], `growth` of xi during it; `hold`: share of
-  /// an error of place that the next foothold takes back.
+  /// an error of place that the next foothold takes back; `inside`: way of the nominal ZMP from a
+  /// sole's centre towards the other foot [m].
   Footsteps(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet, double period,
-            double growth, double hold);
+            double growth, double hold, double inside = 0);
+
+  /// Nominal ZMP while `side` supports alone.
+  Eigen::Vector2d zmp_on(Side side, const GroundPose& foot) const;
 
   /// The step with `stance` on the ground where it now is. `left`: swings to come, this included;
   /// the last one closes. `rest`: xi wanted at the end, from the middle of the feet.
@@ -64,7 +68,7 @@ class Footsteps {
   GroundPose moved(const GroundPose& center, const StepGoal& goal, Side swing, int left) const;
   GroundPose beside(const GroundPose& center, Side side) const;
 
-  double period_, growth_, hold_, half_width_;
+  double period_, growth_, hold_, inside_, half_width_;
   double largest_error_;  // of place that is taken back [m]
   GroundPose center_;     // of the feet on the path
 };

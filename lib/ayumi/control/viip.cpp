@@ -73,7 +73,8 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
       {"q", &p.q},       {"goal", &p.goal},   {"ka", &p.ka},         {"av", &p.av},
       {"ax", &p.ax},     {"tau_z", &p.tau_z}, {"margin", &p.margin}, {"kz", &p.kz},
       {"dz", &p.dz},     {"ankle", &p.ankle}, {"single", &p.single}, {"both", &p.both},
-      {"lift", &p.lift}, {"reach", &p.reach}, {"hold", &p.hold}};
+      {"lift", &p.lift}, {"reach", &p.reach}, {"hold", &p.hold},
+      {"inside", &p.inside}};
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where) {
@@ -124,7 +125,7 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
       held_(held),
       plan_(held),
       footsteps_(model, start.plan.feet, (params.single + params.both) / omega_,
-                 std::exp(params.single + params.both), params.hold) {
+                 std::exp(params.single + params.both), params.hold, params.inside * height_) {
   body_.take_over(start);
   const GroundPose from = middle(model, held.feet);
   Vector3d from3(from.position.x(), from.position.y(), ground_of(held.feet));
@@ -163,7 +164,8 @@ void Viip::start_steps() {
   steps_left_ = steps_.steps > 0 ? steps_.steps : std::max(0, static_cast<int>(time / period));
   if (steps_left_ == 0 || stage_ != Stage::stand) return;
   footsteps_ =
-      Footsteps(*model_, plan_.feet, period, std::exp(params_.single + params_.both), params_.hold);
+      Footsteps(*model_, plan_.feet, period, std::exp(params_.single + params_.both),
+                params_.hold, params_.inside * height_);
   const bool left_first = steps_.velocity.y() > 0 || steps_.turn > 0;
   anchor_ = left_first ? Side::right : Side::left;
   stage_ = Stage::shift;
@@ -216,7 +218,8 @@ Vector2d Viip::regulate(const Vector2d& xi, int state) const {
       }
       // From foot to foot the ZMP goes gradually; what a push asks for beside that, at once.
       const Side foot = other(anchor_);
-      const Vector2d place = ground_pose(*model_, foot, plan_.feet[index(foot)]).position;
+      const Vector2d place =
+          footsteps_.zmp_on(foot, ground_pose(*model_, foot, plan_.feet[index(foot)]));
       const Vector2d after = arriving(foot, steps_left_, both - elapsed_ + single);
       return clipped((1 - share) * before + share * place + (after - place));
     }
@@ -379,7 +382,8 @@ ControlOutput Viip::update(const Estimate& estimate) {
   body_.anchor(anchor_, plan_.feet[index(anchor_)]);
   out.cog = body_.cog();
   const CogReference wanted = cog_reference(estimate);
-  const Eigen::VectorXd offsets = body_.ankle_offsets(estimate, params_.ankle, 6.6 / omega_);
+  const double ankle = params_.feedback ? params_.ankle : 0;
+  const Eigen::VectorXd offsets = body_.ankle_offsets(estimate, ankle, 6.6 / omega_);
   go_on(estimate);
   body_.advance(wanted, height_, plan_, next_, offsets, out);
   finish_plan();

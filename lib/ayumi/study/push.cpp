@@ -295,7 +295,7 @@ std::vector<Interval> left_steps(const CommandSeries& series) {
 CommandSeries carried(const RobotModel& model, const CommandSeries& series,
                       const SimulateOptions& options) {
   SimulateOptions simulate = options;
-  simulate.controller = {"viip", {}};
+  if (simulate.controller.type != "viip") simulate.controller = {"viip", {}};
   simulate.scenario.clear();
   Simulator run(model, series, simulate);
   run.keep_samples(false);
@@ -343,9 +343,18 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
                                   const PushOptions& options, const KnownCases& known,
                                   const PushCaseDone& done, const Progress& progress) {
   check_options(options, series);
-  const ControllerSpec open{series.viip.empty() ? "none" : "viip-nofeedback", {}};
+  // Phases and baseline are those of the gait that is studied: its gains set the step times.
+  const auto gait = std::find_if(options.controllers.begin(), options.controllers.end(),
+                                 [](const ControllerSpec& c) { return c.type == "viip"; });
+  ControllerSpec open{"none", {}};
+  if (!series.viip.empty()) {
+    open.type = "viip-nofeedback";
+    if (gait != options.controllers.end()) open.gains = gait->gains;
+  }
   Study study{model, series, options, standing_series(series), options.phases, {open}, {}};
-  if (study.phases.empty()) study.phases = default_push_phases(model, series, options.simulate);
+  SimulateOptions simulate = options.simulate;
+  if (gait != options.controllers.end()) simulate.controller = *gait;
+  if (study.phases.empty()) study.phases = default_push_phases(model, series, simulate);
   for (const ControllerSpec& c : options.controllers) study.controllers.push_back(c);
   const size_t count = study.phases.size() * static_cast<size_t>(options.directions);
   const bool all_known =

@@ -71,7 +71,8 @@ struct PushSummary {
 /// Standing, and around the middle step on the left foot: middle of the double support before it
 /// and 11, 44 and 78 % of the single support. Patterns without such a step: standing and their
 /// middle. With VIIP goals: the middle of the double support and 25 and 75 % of the single support
-/// of the middle step that VIIP makes under `options`.
+/// of the middle step that VIIP makes under `options`, with the gains of their controller if that
+/// is viip.
 std::vector<PushPhase> default_push_phases(const RobotModel& model, const CommandSeries& series,
                                            const SimulateOptions& options);
 
