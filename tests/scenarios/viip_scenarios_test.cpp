@@ -7,6 +7,7 @@
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "ayumi/study/push.hpp"
 
 namespace ayumi {
 namespace {
@@ -124,16 +125,30 @@ TEST(ViipHoap1, StepsWithNoisyLateSensors) {
               Outcome::stands);
 }
 
-// A third more than m omega times the way to the toes, 2.1 N s: only a step ahead can stop it.
+// m omega times the way to the toes is 2.1 N s: only a step ahead can stop this one.
 TEST(ViipHoap1, APushWhileSteppingMovesTheFeet) {
   const Pattern steps = goals({{0.3, CogGoal{}}, {7.0, walk(10, 0)}});
   Conditions pushed;
-  pushed.pushes = {push(2.5, {1, 0, 0}, 2.8)};
+  pushed.pushes = {push(2.5, {1, 0, 0}, 3.4)};
   const SimulationLog log = run(steps, pushed);
   EXPECT_EQ(log.result.outcome, Outcome::stands);
   double ahead = 0;
   for (const SimulationSample& s : log.samples) ahead = std::max(ahead, s.reference_zmp.x());
   EXPECT_GT(ahead, 0.07);  // the sole it stood on ends at 0.056
+}
+
+// The hardest case: weight goes over to the left foot, the push to its outer side, where no foot
+// can follow without crossing. The nominal ZMP inside the sole leaves the room for it.
+TEST(ViipHoap1, APushToTheOuterSideOfTheNextStanceFootIsTakenByTheSole) {
+  const Pattern steps = goals({{0.5, CogGoal{}}, {5.5, walk(12, 0)}});
+  SimulateOptions options;
+  options.profile = "hoap1-strong";
+  const std::vector<PushPhase> phases =
+      default_push_phases(hoap1(), sample(hoap1(), steps), options);
+  ASSERT_EQ(phases[0].name, "mid double support");
+  Conditions pushed;
+  pushed.pushes = {push(phases[0].at, {0, 1, 0}, 2.1)};
+  EXPECT_EQ(run(steps, pushed).result.outcome, Outcome::stands);
 }
 
 // DTAD -> VIIP walks ahead -> DTAD goes on with its keys where the feet are.

@@ -61,6 +61,9 @@ class Footsteps {
   /// Moves the path so that the stance foot is not farther from it than can be taken back.
   void meet(Side stance, const GroundPose& foot);
 
+  /// The path stays where it is in the world when the plan is found to be off by `error` [m].
+  void shift(const Eigen::Vector2d& error) { center_.position -= error; }
+
   /// The path goes on by the step just begun.
   void advance(const StepGoal& goal, Side stance, int left);
 

@@ -17,6 +17,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/control/support.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/pattern/foot_plan.hpp"
@@ -73,8 +74,7 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
       {"q", &p.q},       {"goal", &p.goal},   {"ka", &p.ka},         {"av", &p.av},
       {"ax", &p.ax},     {"tau_z", &p.tau_z}, {"margin", &p.margin}, {"kz", &p.kz},
       {"dz", &p.dz},     {"ankle", &p.ankle}, {"single", &p.single}, {"both", &p.both},
-      {"lift", &p.lift}, {"reach", &p.reach}, {"hold", &p.hold},
-      {"inside", &p.inside}};
+      {"lift", &p.lift}, {"reach", &p.reach}, {"hold", &p.hold},     {"inside", &p.inside}};
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where) {
@@ -122,6 +122,7 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
       omega_(std::sqrt(kGravity / (held.cog.z() - ground_of(held.feet)))),
       height_(held.cog.z() - ground_of(held.feet)),
       body_(model, limits, dt, start.reference, {.in_order = false}),
+      data_(model),
       held_(held),
       plan_(held),
       footsteps_(model, start.plan.feet, (params.single + params.both) / omega_,
@@ -163,9 +164,8 @@ void Viip::start_steps() {
   const double time = static_cast<double>(ticks_left_) * dt_ - (kSettle + kShiftTime) / omega_;
   steps_left_ = steps_.steps > 0 ? steps_.steps : std::max(0, static_cast<int>(time / period));
   if (steps_left_ == 0 || stage_ != Stage::stand) return;
-  footsteps_ =
-      Footsteps(*model_, plan_.feet, period, std::exp(params_.single + params_.both),
-                params_.hold, params_.inside * height_);
+  footsteps_ = Footsteps(*model_, plan_.feet, period, std::exp(params_.single + params_.both),
+                         params_.hold, params_.inside * height_);
   const bool left_first = steps_.velocity.y() > 0 || steps_.turn > 0;
   anchor_ = left_first ? Side::right : Side::left;
   stage_ = Stage::shift;
@@ -312,6 +312,14 @@ void Viip::swing(const Vector2d& xi) {
   next_.feet[index(foot)] = sole_frame(*model_, foot, at, ground + up * params_.lift * height_);
 }
 
+// Where the foot has landed, from where the plan has it: the plan does not follow, its path does.
+Vector2d Viip::missed(const Estimate& e, Side foot) {
+  update_positions(*model_, e.state, data_);
+  const Vector3d miss =
+      sole_pose(*model_, data_, foot).translation() - next_.feet[index(foot)].translation();
+  return miss.head<2>();
+}
+
 // Stages, feet and support of the next tick.
 void Viip::go_on(const Estimate& e) {
   next_ = plan_;
@@ -338,6 +346,7 @@ void Viip::go_on(const Estimate& e) {
     if (touched || elapsed_ >= single) {
       next_.feet[index(foot)].translation().z() = plan_.feet[index(anchor_)].translation().z();
       footsteps_.advance(steps_, anchor_, steps_left_);
+      if (params_.feedback) footsteps_.shift(missed(e, foot));
       --steps_left_;
       zmp_before_ = zmp_;
       stage_ = Stage::both;

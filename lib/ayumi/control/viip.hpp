@@ -25,8 +25,9 @@ struct ViipParams {
   double both = 0.4;     ///< of a double support, times 1/omega
   double lift = 0.09;    ///< of the swing sole, times z
   double reach = 0.5;    ///< largest departure from a nominal foothold, times z
-  double inside = 0.04;  ///< way of the nominal ZMP from the sole's centre to the other foot, times z
-  double hold = 0.3;     ///< share of a foot's error of place taken back by the next step
+  double inside =
+      0.04;           ///< way of the nominal ZMP from the sole's centre to the other foot, times z
+  double hold = 0.5;  ///< share of a foot's error of place taken back by the next step
   bool feedback = true;  ///< false: the reference pendulum alone, a demonstration
 };
 
@@ -71,12 +72,14 @@ class Viip {
   void start_steps();
   void start_single();
   void swing(const Eigen::Vector2d& xi);
+  Eigen::Vector2d missed(const Estimate& estimate, Side foot);
   void finish_plan();
 
   const RobotModel* model_;
   ViipParams params_;
   double dt_, omega_, height_;
   ReferenceBody body_;
+  RobotData data_;
   CommandSample held_, plan_, next_;
   Eigen::Vector3d offset_;  // held COG from the middle of the feet, axes of the feet [m]
   // Asked, and on the way there through two lags.
