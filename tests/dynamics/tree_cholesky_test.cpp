@@ -154,13 +154,22 @@ TEST(SmallMatrices, AgreeWithEigenAndDoNotDependOnTheInstructionSet) {
     std::vector<MatrixXd> products, squares;
     for (const kernels::Kernels* each : {&kernels::plain_kernels(), &kernels::best_kernels()}) {
       MatrixXd product(width, 8), square(width, width);
-      each->gram(A.data(), width, B.data(), 8, depth, product.data());
+      each->gram(A.data(), width, B.data(), 8, depth, width, 8, product.data(), width);
       EXPECT_LT((product - A * B.transpose()).norm(), 1e-13 * product.norm());
-      each->gram(A.data(), width, A.data(), width, depth, square.data());
+      each->gram(A.data(), width, A.data(), width, depth, width, width, square.data(), width);
+      MatrixXd part = MatrixXd::Constant(width + 2, width + 1, 7);
+      each->gram(A.data(), width, A.data(), width, depth, size, size, part.data(), width + 2);
+      EXPECT_EQ(part.topLeftCorner(size, size), square.topLeftCorner(size, size));
+      EXPECT_EQ(part.bottomRows(2 + width - size).minCoeff(), 7);
+      EXPECT_EQ(part.rightCols(1 + width - size).minCoeff(), 7);
+      VectorXd sum = x.replicate(1, 1), plain_sum = x + square.topLeftCorner(size, size) * x;
+      each->multiply_add(square.data(), size, size, width, x.data(), sum.data());
+      EXPECT_LT((sum - plain_sum).norm(), 1e-13 * plain_sum.norm());
       const MatrixXd inner = square.topLeftCorner(size, size);
-      VectorXd solved = x;
+      VectorXd solved = VectorXd::Zero(width);
+      solved.head(size) = x;
       ASSERT_TRUE(each->solve_positive(square.data(), size, width, solved.data()));
-      EXPECT_LT((inner * solved - x).norm(), 1e-10 * x.norm());
+      EXPECT_LT((inner * solved.head(size) - x).norm(), 1e-10 * x.norm());
       products.push_back(product);
       squares.push_back(square.topLeftCorner(size, size));
       square.setIdentity();

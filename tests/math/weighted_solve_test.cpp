@@ -56,31 +56,5 @@ TEST(WeightedLeastNorm, DampingBoundsASingularTask) {
   EXPECT_LT(damped.norm(), 10);
 }
 
-// Twelve rows known to be partly zero give what the general solve gives; so do tasks that say the
-// same thing twice, where the factor breaks down.
-TEST(WeightedLeastNorm, OfBodyTasksIsThatOfAnyTasks) {
-  test::Random random(5);
-  BodyTasks tasks;
-  const int n = 20;
-  tasks.J.setZero(BodyTasks::kRows, n);
-  for (int j = 0; j < n; ++j) {
-    tasks.lead.push_back(j < 8 ? 12 : j < 14 ? 9 : 3);
-    tasks.J.col(j).head(tasks.lead.back()) = random.vector(tasks.lead.back(), 1.0);
-  }
-  tasks.u = random.vector(BodyTasks::kRows, 1.0);
-  const VectorXd w = (random.vector(n, 1.0).array() + 1.5).matrix(), x0 = random.vector(n, 1.0);
-  VectorXd x;
-  for (const double damping : {0.0, 1e-5}) {
-    weighted_least_norm(tasks, w, x0, damping, x);
-    const VectorXd expected = weighted_least_norm(tasks.J, tasks.u, w, x0, damping);
-    EXPECT_LT((x - expected).norm(), 1e-11 * expected.norm());
-  }
-  EXPECT_LT((tasks.J * x - tasks.u).norm(), 1e-3);
-  tasks.J.row(1) = tasks.J.row(0);
-  tasks.u[1] = tasks.u[0];
-  weighted_least_norm(tasks, w, x0, 0, x);
-  EXPECT_LT((tasks.J * x - tasks.u).norm(), 1e-8);
-}
-
 }  // namespace
 }  // namespace ayumi

@@ -42,8 +42,6 @@ void add_chain(const RobotModel& model, const RobotData& data, int body, const V
       Eigen::Map<Vector3d>(column + linear) +=
           b.prismatic ? s : Vector3d(s.cross(p - data.position[i]));
     if (!b.prismatic) Eigen::Map<Vector3d>(column + angular) += length * s;
-    int& lead = tasks.lead[static_cast<size_t>(b.dof)];
-    lead = std::max(lead, angular + 3);
   }
 }
 
@@ -59,7 +57,7 @@ void within_limits(const RobotModel& model, const ActuatorLimits& limits,
   const BodyTasks* tasks = &work.softened;
   work.start = work.bias;
   for (int pass = 0; pass < 4; ++pass) {
-    weighted_least_norm(*tasks, weight, work.start, options.damping, result.dtheta);
+    solve_tasks(*tasks, weight, work.start, options.damping, work.weighted, result.dtheta);
     bool changed = false;
     for (int j = 0; j < n; ++j) {
       const Dof& dof = model.dofs()[j];
@@ -130,7 +128,6 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   tasks.J.resize(BodyTasks::kRows, n);
   tasks.J.topRows<3>() = work.cog;
   tasks.J.bottomRows<9>().setZero();
-  tasks.lead.assign(static_cast<size_t>(n), 3);
   u.head<3>() = cog_velocity - carried(data.cog);
 
   const Isometry3d foot = sole_pose(model, data, free);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/control/body_tasks.hpp"
 #include "ayumi/dynamics/robot_data.hpp"
-#include "ayumi/math/weighted_solve.hpp"
 #include "ayumi/pattern/command_series.hpp"
 
 namespace ayumi {
@@ -42,6 +42,7 @@ std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& 
 /// What resolve() keeps its room in.
 struct ResolverWork {
   BodyTasks tasks, softened, moving;  ///< as they are; some yielding; without the joints held
+  BodyTasks::Rows weighted;
   Eigen::MatrixXd cog;
   Eigen::VectorXd bias, start;
   std::optional<RobotData> planned;  ///< where the trunk is not the root

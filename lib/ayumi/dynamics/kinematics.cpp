@@ -134,13 +134,50 @@ MatrixXd cog_jacobian(const RobotModel& model, RobotData& data, Side support) {
          J.leftCols<6>() * base_map(model, data, model.sole(support).body);
 }
 
+namespace {
+
+/// Attitude (in link axes) and origin of a body in the base, by its own chain alone.
+void carry_to(const RobotState& state, const RobotData& data, int body, Matrix3d& R, Vector3d& p) {
+  if (body == 0) {
+    R.setIdentity();
+    p.setZero();
+    return;
+  }
+  const kernels::Link& link = data.links[static_cast<size_t>(body)];
+  carry_to(state, data, link.parent, R, p);
+  p += R * Eigen::Map<const Vector3d>(link.r);
+  if (link.turned)
+    R = (R * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(link.E)).eval();
+  const double q = link.ratio * state.theta[link.dof] + link.offset;
+  if (link.prismatic) {
+    p += q * R.col(link.axis);
+    return;
+  }
+  double s = 0, c = 0;
+  data.kernels->sine_cosine(&q, &s, &c, 1);
+  const int a = (link.axis + 1) % 3, b = (link.axis + 2) % 3;
+  const Vector3d x = R.col(a), y = R.col(b);
+  R.col(a) = c * x + s * y;
+  R.col(b) = c * y - s * x;
+}
+
+}  // namespace
+
 void anchor_base(const RobotModel& model, Side support, const Isometry3d& sole, RobotState& state,
                  RobotData& data) {
+  const Sole& own = model.sole(support);
+  Isometry3d body = Isometry3d::Identity();
+  Matrix3d R;
+  Vector3d p;
+  carry_to(state, data, own.body, R, p);
+  const kernels::Link& link = data.links[static_cast<size_t>(own.body)];
+  if (link.skewed) R = (R * Eigen::Map<const Matrix3d>(link.C)).eval();  // by rows: transposed
+  body.linear() = R;
+  body.translation() = p;
+  const Isometry3d base = sole * (body * own.frame).inverse();
+  state.base.position = base.translation();
+  state.base.attitude = Eigen::Quaterniond(base.linear()).normalized();
   update_positions(model, state, data);
-  const Isometry3d moved = sole * sole_pose(model, data, support).inverse() * data.pose(0);
-  state.base.position = moved.translation();
-  state.base.attitude = Eigen::Quaterniond(moved.linear()).normalized();
-  move_base(state.base, data);
 }
 
 }  // namespace ayumi

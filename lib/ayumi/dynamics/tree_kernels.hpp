@@ -67,6 +67,20 @@ struct Job {
 constexpr int kMaxWidth = 4;
 constexpr int scratch_doubles(int links) { return kMaxWidth * 64 * (links + 1); }
 
+/// The joints that move a body, each with the line of a contact's Jacobian that is its own.
+struct Chain {
+  int count;
+  const int *body, *line;
+  const Link* links;
+  const double *position, *axis;  ///< of Bodies
+};
+
+/// A point (from the base origin) and the axes in which it touches: rows of a matrix that stands
+/// column by column.
+struct Contact {
+  const double *point, *axes;
+};
+
 struct Kernels {
   const char* name;
   int width;
@@ -84,8 +98,12 @@ struct Kernels {
   bool (*factor)(const Paths&, double* rows, double* inverse);
   void (*solve_path)(const Paths&, const double* rows, const double* inverse, int last, int width,
                      double* Y);
-  void (*gram)(const double* A, int a, const double* B, int b, int depth, double* out);
+  void (*gram)(const double* A, int a, const double* B, int b, int depth, int rows, int columns,
+               double* out, int stride);
+  void (*multiply_add)(const double* A, int rows, int columns, int stride, const double* x,
+                       double* y);
   bool (*solve_positive)(double* A, int size, int stride, double* x);
+  void (*contact_lines)(const Contact& contact, const Chain& chain, int stride, double* lines);
 };
 
 /// What every processor has: two numbers at once.

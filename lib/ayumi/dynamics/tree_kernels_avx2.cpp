@@ -26,7 +26,9 @@ const Kernels* avx2_kernels() {
                                       factor_rows,
                                       solve_path,
                                       gram,
-                                      solve_positive};
+                                      multiply_add,
+                                      solve_positive,
+                                      contact_lines};
   return &kernels;
 }
 

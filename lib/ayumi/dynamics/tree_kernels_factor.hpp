@@ -12,9 +12,10 @@ bool factor_rows(const Paths& paths, double* rows, double* inverse) {
     const int depth = paths.depth[k];
     const double pivot = row[depth];
     if (!(pivot > 0)) return false;
-    row[depth] = __builtin_sqrt(pivot);
-    inverse[k] = 1.0 / row[depth];
-    for (int t = 0; t < depth; ++t) row[t] *= inverse[k];
+    const double root = __builtin_sqrt(pivot);
+    inverse[k] = 1.0 / root;
+    for (int t = 0; t < depth; t += 4) store_four(row + t, inverse[k] * load_four(row + t));
+    row[depth] = root;
     for (int i = paths.parent[k], t = depth - 1; t >= 0; i = paths.parent[i], --t) {
       double* above = rows + paths.offset[i];
       const double share = row[t];
@@ -41,48 +42,112 @@ void solve_path(const Paths& paths, const double* rows, const double* inverse, i
   }
 }
 
-// out = A' B of matrices with `depth` rows, row by row, of widths a and b (multiples of four); out
-// column by column with `a` numbers each.
-void gram(const double* A, int a, const double* B, int b, int depth, double* out) {
-  for (int j = 0; j < b; j += 4)
-    for (int i = 0; i < a; i += 4) {
-      Four sum[4] = {};
-      for (int t = 0; t < depth; ++t) {
-        const Four x = load_four(A + t * a + i);
-        const double* y = B + t * b + j;
-        for (int k = 0; k < 4; ++k) sum[k] += x * y[k];
+inline double sum_of(const Four& x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+
+struct Tile {
+  Four c0, c1, c2, c3;
+};
+
+inline void store_part(const Tile& tile, int rows, int columns, double* out, int stride) {
+  const Four c[4] = {tile.c0, tile.c1, tile.c2, tile.c3};
+  for (int k = 0; k < 4 && k < columns; ++k)
+    for (int l = 0; l < 4 && l < rows; ++l) out[k * stride + l] = c[k][l];
+}
+
+// out(i, j) = sum over t of A(t, i) B(t, j) for i < rows, j < columns; A and B have `depth` lines
+// of a and b numbers (multiples of four), the columns of `out` are `stride` apart.
+void gram(const double* A, int a, const double* B, int b, int depth, int rows, int columns,
+          double* out, int stride) {
+  for (int j = 0; j < columns; j += 4)
+    for (int i = 0; i < rows; i += 4) {
+      Tile sum = {};
+      const double *x = A + i, *y = B + j;
+      for (int t = 0; t < depth; ++t, x += a, y += b) {
+        const Four v = load_four(x);
+        sum.c0 += v * y[0];
+        sum.c1 += v * y[1];
+        sum.c2 += v * y[2];
+        sum.c3 += v * y[3];
       }
-      for (int k = 0; k < 4; ++k) store_four(out + (j + k) * a + i, sum[k]);
+      double* to = out + j * stride + i;
+      if (i + 4 > rows || j + 4 > columns) {
+        store_part(sum, rows - i, columns - j, to, stride);
+        continue;
+      }
+      store_four(to, sum.c0);
+      store_four(to + stride, sum.c1);
+      store_four(to + 2 * stride, sum.c2);
+      store_four(to + 3 * stride, sum.c3);
     }
 }
 
-// x <- A^-1 x of a symmetric positive definite matrix of `size` rows by its lower triangle, columns
-// `stride` (a multiple of four) apart; A becomes its factor. False where it is not safely positive;
-// x is as before then.
+// y <- y + A x of a matrix of `rows` by `columns`, columns `stride` apart.
+void multiply_add(const double* A, int rows, int columns, int stride, const double* x, double* y) {
+  int i = 0;
+  for (; i + 4 <= rows; i += 4) {
+    Four sum = load_four(y + i);
+    for (int k = 0; k < columns; ++k) sum += x[k] * load_four(A + k * stride + i);
+    store_four(y + i, sum);
+  }
+  for (; i < rows; ++i)
+    for (int k = 0; k < columns; ++k) y[i] += x[k] * A[k * stride + i];
+}
+
+// Takes from four columns, j to j + 3, what the columns before them have in common with them.
+inline void subtract_columns(double* A, int size, int stride, int j) {
+  for (int i = j; i < size; i += 4) {
+    Four sum[4];
+    for (int k = 0; k < 4; ++k) sum[k] = load_four(A + (j + k) * stride + i);
+    for (int t = 0; t < j; ++t) {
+      const double* column = A + t * stride;
+      const Four x = load_four(column + i);
+      for (int k = 0; k < 4; ++k) sum[k] -= x * column[j + k];
+    }
+    for (int k = 0; k < 4; ++k) store_four(A + (j + k) * stride + i, sum[k]);
+  }
+}
+
+// x <- A^-1 x of a symmetric positive definite matrix of `size` rows by its lower triangle; columns
+// `stride` apart, which is `size` filled up to fours, as many of them, and x has as many entries.
+// A becomes its factor. False where it is not safely positive; x is as before then.
 bool solve_positive(double* A, int size, int stride, double* x) {
   double largest = 0;
   for (int k = 0; k < size; ++k)
     if (A[k * stride + k] > largest) largest = A[k * stride + k];
   for (int j = 0; j < size; ++j) {
+    if ((j & 3) == 0) subtract_columns(A, size, stride, j);
     double* column = A + j * stride;
-    for (int i = j & ~3; i < size; i += 4) {
-      Four sum = load_four(column + i);
-      for (int k = 0; k < j; ++k) sum -= A[k * stride + j] * load_four(A + k * stride + i);
-      store_four(column + i, sum);
+    const int block = j & ~3;
+    for (int t = block; t < j; ++t) {
+      const double* before = A + t * stride;
+      for (int i = block; i < size; i += 4)
+        store_four(column + i, load_four(column + i) - before[j] * load_four(before + i));
     }
     if (!(column[j] > 1e-14 * largest)) return false;
     const double inverse = 1.0 / __builtin_sqrt(column[j]);
-    for (int i = j; i < size; ++i) column[i] *= inverse;
+    for (int i = block; i < size; i += 4) store_four(column + i, inverse * load_four(column + i));
   }
+  // What stands above the diagonal in its block of four has no meaning.
   for (int k = 0; k < size; ++k) {
     const double* column = A + k * stride;
-    x[k] /= column[k];
-    for (int i = k + 1; i < size; ++i) x[i] -= column[i] * x[k];
+    const double share = x[k] / column[k];
+    int i = k + 1;
+    for (; i < size && (i & 3); ++i) x[i] -= column[i] * share;
+    for (; i < size; i += 4) store_four(x + i, load_four(x + i) - share * load_four(column + i));
+    x[k] = share;
   }
+  for (int k = size; k < stride; ++k) x[k] = 0;
   for (int k = size - 1; k >= 0; --k) {
     const double* column = A + k * stride;
-    for (int i = k + 1; i < size; ++i) x[k] -= column[i] * x[i];
-    x[k] /= column[k];
+    double sum = x[k];
+    int i = k + 1;
+    for (; i < size && (i & 3); ++i) sum -= column[i] * x[i];
+    if (i < size) {
+      Four rest{};
+      for (; i < size; i += 4) rest += load_four(column + i) * load_four(x + i);
+      sum -= sum_of(rest);
+    }
+    x[k] = sum / column[k];
   }
   return true;
 }

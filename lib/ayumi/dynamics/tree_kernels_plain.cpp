@@ -22,7 +22,9 @@ const Kernels& plain_kernels() {
                                       factor_rows,
                                       solve_path,
                                       gram,
-                                      solve_positive};
+                                      multiply_add,
+                                      solve_positive,
+                                      contact_lines};
   return kernels;
 }
 

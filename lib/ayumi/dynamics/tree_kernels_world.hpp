@@ -8,6 +8,8 @@
 namespace {
 
 using ayumi::kernels::Bodies;
+using ayumi::kernels::Chain;
+using ayumi::kernels::Contact;
 using ayumi::kernels::Layout;
 
 template <int K>
@@ -212,6 +214,30 @@ void newton_euler(const Tree& tree, const Job& job, const Bodies& bodies) {
   }
   store_three(job.output, loads[0].f);
   store_three(job.output + 3, loads[0].n);
+}
+
+// Adds what a unit velocity of the base (lines 0 to 5) and of each joint gives a point that
+// touches, in the contact's axes: three numbers in each line, lines `stride` apart.
+void contact_lines(const Contact& contact, const Chain& chain, int stride, double* lines) {
+  const Columns axes = load_columns(contact.axes);
+  const double* q = contact.point;
+  const Four p = load_three(q);
+  const auto add = [&](int line, const Four& v) {
+    double* to = lines + line * stride;
+    store_three(to, load_three(to) + v);
+  };
+  for (int k = 0; k < 3; ++k) add(k, axes.c[k]);
+  add(3, times_four(axes, 0, -q[2], q[1]));
+  add(4, times_four(axes, q[2], 0, -q[0]));
+  add(5, times_four(axes, -q[1], q[0], 0));
+  for (int k = 0; k < chain.count; ++k) {
+    const int b = chain.body[k];
+    const Link& link = chain.links[b];
+    const Four s = link.drive * load_three(chain.axis + 3 * b);
+    add(chain.line[k],
+        times_four(axes,
+                   link.prismatic ? s : cross_four(s, p - load_three(chain.position + 3 * b))));
+  }
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // The weighted least-norm solve of (22)(23) and (28)(29).
 
 #include <Eigen/Dense>
-#include <vector>
 
 namespace ayumi {
 
@@ -12,19 +11,5 @@ namespace ayumi {
 Eigen::VectorXd weighted_least_norm(const Eigen::MatrixXd& J, const Eigen::VectorXd& u,
                                     const Eigen::VectorXd& w, const Eigen::VectorXd& x0,
                                     double damping = 0);
-
-/// Twelve rows of tasks by joint rates; only the first lead[j] rows of column j may differ from
-/// zero.
-struct BodyTasks {
-  static constexpr int kRows = 12;
-  using Vector = Eigen::Matrix<double, kRows, 1>;
-  Eigen::Matrix<double, kRows, Eigen::Dynamic> J;
-  std::vector<int> lead;
-  Vector u;
-};
-
-/// The same for those, into x; allocates nothing when x has its size.
-void weighted_least_norm(const BodyTasks& tasks, const Eigen::VectorXd& w,
-                         const Eigen::VectorXd& x0, double damping, Eigen::VectorXd& x);
 
 }  // namespace ayumi

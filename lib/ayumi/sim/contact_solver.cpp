@@ -12,8 +12,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/dynamics/tree_kernels.hpp"
-
 namespace ayumi {
 
 using Eigen::Matrix2d;
@@ -121,7 +119,7 @@ void ContactSolver::resize(int n) {
   n_ = n;
   const size_t rows = static_cast<size_t>(3 * n);
   for (size_t k = 0; k < store_.size(); ++k) {
-    const size_t size = k == 0 ? rows * rows : k == 4 ? rows * (rows + 3) : rows;
+    const size_t size = k == 0 ? rows * rows : k == 4 ? (rows + 3) * (rows + 3) : rows + 3;
     if (store_[k].size() < size) store_[k].resize(size);
   }
   friction_.resize(static_cast<size_t>(n));
@@ -164,8 +162,7 @@ bool ContactSolver::newton_step() {
   const int rows = 3 * static_cast<int>(closed_.size());
   Vector u(store_[6].data(), 3 * n_);
   u = b();
-  for (int i : closed_)
-    for (int k = 0; k < 3; ++k) u += l[3 * i + k] * matrix.col(3 * i + k);
+  kernels_->multiply_add(matrix.data(), 3 * n_, 3 * n_, 3 * n_, l.data(), u.data());
   bool all_stick = true;
   for (int i : closed_)
     all_stick = all_stick && sticks(i, l.segment<3>(3 * i), u.segment<3>(3 * i));
@@ -182,6 +179,12 @@ bool ContactSolver::newton_step() {
 bool ContactSolver::stick_together(int rows) {
   const Matrix matrix = A();
   const int stride = (rows + 3) / 4 * 4;
+  if (rows == 3 * n_) {
+    for (int c = 0; c < rows; ++c)
+      std::copy_n(matrix.data() + c * rows + c, rows - c, store_[4].data() + c * stride + c);
+    std::copy_n(store_[6].data(), rows, store_[5].data());
+    return kernels_->solve_positive(store_[4].data(), rows, stride, store_[5].data());
+  }
   for (int c = 0; c < rows; ++c) {
     const auto from = matrix.col(3 * closed_[static_cast<size_t>(c / 3)] + c % 3);
     double* to = store_[4].data() + c * stride;
@@ -190,7 +193,7 @@ bool ContactSolver::stick_together(int rows) {
     store_[5][static_cast<size_t>(c)] =
         store_[6][static_cast<size_t>(3 * closed_[static_cast<size_t>(c / 3)] + c % 3)];
   }
-  return kernels::best_kernels().solve_positive(store_[4].data(), rows, stride, store_[5].data());
+  return kernels_->solve_positive(store_[4].data(), rows, stride, store_[5].data());
 }
 
 bool ContactSolver::stick_and_slide(int rows) {

@@ -6,6 +6,8 @@
 #include <array>
 #include <vector>
 
+#include "ayumi/dynamics/tree_kernels.hpp"
+
 namespace ayumi {
 
 /// For contact i (rows 3i..3i+2: normal, tangent 1, tangent 2) find the impulse l and the shifted
@@ -50,6 +52,7 @@ class ContactSolver {
   bool stick_and_slide(int rows);
   bool sticks(int i, const Eigen::Vector3d& l, const Eigen::Vector3d& u) const;
 
+  const kernels::Kernels* kernels_ = &kernels::best_kernels();
   int n_ = 0;
   // A, b, impulse, candidate, Newton matrix, Newton right side, velocities.
   std::array<std::vector<double>, 7> store_;

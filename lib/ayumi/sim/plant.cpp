@@ -77,6 +77,14 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
   points_ = contact_points(model);
   groups_ = group_points(points_);
   const int columns = model.velocity_count();
+  chain_bodies_.resize(model.bodies().size());
+  chain_lines_.resize(model.bodies().size());
+  for (const PointGroup& group : groups_)
+    for (int b = group.body; b > 0; b = model.bodies()[b].parent) {
+      const int place = factor_.place_of(6 + model.bodies()[b].dof);
+      chain_bodies_[static_cast<size_t>(group.body)].push_back(b);
+      chain_lines_[static_cast<size_t>(group.body)].push_back(factor_.depth(place));
+    }
   still_ = velocity_ = lower_ = placed_ = momentum_ = VectorXd::Zero(columns);
   mass_.resize(factor_.row_doubles());
   for (int j = 0; j < n; ++j) {
@@ -94,7 +102,6 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
   solver_.resize(static_cast<int>(usual));
   J_.resize(usual * 4 * static_cast<size_t>(columns));
   Y_.resize(J_.size());
-  block_.resize(16 * usual * usual);
   runs_.reserve(64);
   compliance_.resize(usual);
   shift_.resize(usual);

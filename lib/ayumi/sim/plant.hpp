@@ -99,8 +99,9 @@ class Plant {
   TreeCholesky factor_;
   std::vector<double> mass_;            // rows of the mass matrix with rotors, of state_
   std::vector<size_t> joint_diagonal_;  // in such rows, by dof
+  std::vector<std::vector<int>> chain_bodies_, chain_lines_;  // by body that may touch
   std::vector<Run> runs_;
-  std::vector<double> J_, Y_, block_;  // contact Jacobians, L^-T times their transposes
+  std::vector<double> J_, Y_;  // contact Jacobians, L^-T times their transposes
   Eigen::VectorXd momentum_, bias_, still_, velocity_, lower_, placed_;
   std::vector<double> compliance_;
   std::vector<Eigen::Vector3d> shift_;

@@ -190,22 +190,17 @@ void Plant::fill_contact_rows(double dt) {
 void Plant::fill_jacobian(const Run& run) {
   double* J = &J_[run.begin];
   std::fill(J, J + (factor_.depth(run.last) + 1) * run.width, 0.0);
+  const auto body = static_cast<size_t>(run.body);
+  const kernels::Chain chain = {static_cast<int>(chain_bodies_[body].size()),
+                                chain_bodies_[body].data(),
+                                chain_lines_[body].data(),
+                                data_.links.data(),
+                                data_.position[0].data(),
+                                data_.axis[0].data()};
   for (size_t i = 0; i < run.count; ++i) {
-    const Matrix3d& to_ground = active_[run.first + i].to_contact;
-    const Vector3d p = active_[run.first + i].position - data_.base_position;
-    const auto line = [&](int t) {
-      return Eigen::Map<Vector3d>(J + t * run.width + 3 * static_cast<int>(i));
-    };
-    for (int k = 0; k < 3; ++k) {
-      line(k) = to_ground.col(k);
-      line(3 + k) = to_ground * Vector3d::Unit(k).cross(p);
-    }
-    for (int b = run.body; b > 0; b = model_->bodies()[b].parent) {
-      const Body& body = model_->bodies()[b];
-      const Vector3d a = body.ratio * data_.axis[b];
-      line(factor_.depth(factor_.place_of(6 + body.dof))) +=
-          to_ground * (body.prismatic ? a : Vector3d(a.cross(p - data_.position[b])));
-    }
+    const Active& active = active_[run.first + i];
+    const Vector3d p = active.position - data_.base_position;
+    data_.kernels->contact_lines({p.data(), active.to_contact.data()}, chain, run.width, J + 3 * i);
   }
 }
 
@@ -227,16 +222,14 @@ void Plant::fill_delassus() {
       if (other.first > run.first) break;
       int k = run.last, j = other.last;
       while (k != j) (k > j ? k : j) = factor_.parent(k > j ? k : j);
-      block_.resize(std::max(block_.size(), static_cast<size_t>(run.width * other.width)));
-      data_.kernels->gram(Y, run.width, &Y_[other.begin], other.width, factor_.depth(k) + 1,
-                          block_.data());
       const auto from = static_cast<Eigen::Index>(3 * other.first);
-      for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(3 * other.count); ++c) {
-        const double* column = block_.data() + c * run.width;
-        for (Eigen::Index r = 0; r < rows; ++r) A(first + r, from + c) = column[r];
-        if (&other != &run)
-          for (Eigen::Index r = 0; r < rows; ++r) A(from + c, first + r) = column[r];
-      }
+      const int columns = static_cast<int>(3 * other.count);
+      data_.kernels->gram(Y, run.width, &Y_[other.begin], other.width, factor_.depth(k) + 1,
+                          static_cast<int>(rows), columns, &A(first, from),
+                          static_cast<int>(A.rows()));
+      if (&other != &run)
+        for (Eigen::Index c = 0; c < columns; ++c)
+          for (Eigen::Index r = 0; r < rows; ++r) A(from + c, first + r) = A(first + r, from + c);
     }
   }
   for (size_t i = 0; i < active_.size(); ++i)

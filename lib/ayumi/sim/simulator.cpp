@@ -77,20 +77,21 @@ double Simulator::time() const { return static_cast<double>(tick_) * series_->dt
 /// Of the robot without what it carries.
 double Simulator::energy() const {
   const RobotData& data = plant_.data();
-  double sum = 0;
+  double twice = 0;
   for (size_t b = 0; b < model_->bodies().size(); ++b) {
     const Inertia& inertia = model_->bodies()[b].inertia;
     const Eigen::Matrix3d& R = data.rotation[b];
-    const Vector3d com = data.base_position + (data.position[b] + R * inertia.com);
-    const Vector3d w = R.transpose() * data.angular_velocity[b];
-    sum += inertia.mass * point_velocity(data, static_cast<int>(b), com).squaredNorm() +
-           w.dot(inertia.about_com * w) + 2 * inertia.mass * kGravity * com.z();
+    const Vector3d& w = data.angular_velocity[b];
+    const Vector3d c = R * inertia.com, own = R.transpose() * w;
+    twice += inertia.mass * (data.velocity[b] + w.cross(c)).squaredNorm() +
+             own.dot(inertia.about_com * own) +
+             2 * inertia.mass * kGravity * (data.base_position.z() + data.position[b].z() + c.z());
   }
   for (int j = 0; j < model_->dof_count(); ++j) {
     const double rate = plant_.state().dtheta[j];
-    sum += model_->dofs()[j].servo.rotor_inertia * rate * rate;
+    twice += model_->dofs()[j].servo.rotor_inertia * rate * rate;
   }
-  return 0.5 * sum;
+  return 0.5 * twice;
 }
 
 /// What the estimator cannot know: the world's truth in place of the plan frame.
