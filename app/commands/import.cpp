@@ -109,6 +109,9 @@ void add_import(CLI::App& app, Context& context) {
   command->add_option("--rate", options.import.rate, "of rows without a time column [1/s]")
       ->check(CLI::Range(1.0, 1e5))
       ->type_name("HZ");
+  command->add_flag("--commands", options.import.commands,
+                    "angles are what servos receive, as ayumi export writes them: take the lead "
+                    "kd/kp out again; of reference tables it always is");
   command->callback([&context] {
     options.import.degrees = unit == "deg";
     import_motion(context, options);

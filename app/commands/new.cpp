@@ -31,6 +31,7 @@ struct NewOptions {
   std::vector<double> cog, velocity;  // goals of VIIP
   int viip_steps = 0;
   std::optional<double> stride, period, lift, side, depth, hold;
+  double rise = 0;
 };
 
 constexpr const char* kScaled = "; left out: HOAP-1's scaled to the robot";
@@ -49,8 +50,11 @@ void add_common(CLI::App& command, NewOptions& options) {
 
 void new_walk(const Context& context, NewOptions options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
-  const WalkParameters scaled = walk_defaults(model);
+  const bool climbs = options.rise != 0;
+  const WalkParameters scaled = climbs ? stair_defaults(model, options.rise) : walk_defaults(model);
   WalkParameters& w = options.walk;
+  w.rise = options.rise;
+  if (climbs && w.cog_height == 0) w.cog_height = scaled.cog_height;
   w.stride = options.stride.value_or(scaled.stride);
   w.period = options.period.value_or(scaled.period);
   w.lift = options.lift.value_or(scaled.lift);
@@ -175,7 +179,9 @@ void add_gait(CLI::App& command, NewOptions& options) {
 }
 
 void add_walk(CLI::App& command, NewOptions& options) {
-  command.footer("Examples:\n  ayumi new walk --steps 10 --stride 0.025 --period 0.6 -o walk.json");
+  command.footer(
+      "Examples:\n  ayumi new walk --steps 10 --stride 0.025 --period 0.6 -o walk.json\n"
+      "  ayumi new walk --rise 0.01 --steps 3 -o stairs.json");
   add_common(command, options);
   add_gait(command, options);
   add_scaled(command, "--stride", options.stride, "between successive footholds, back is negative",
@@ -186,6 +192,11 @@ void add_walk(CLI::App& command, NewOptions& options) {
   command.add_option("--turn", options.turn_deg, "per step, to the left")
       ->capture_default_str()
       ->type_name("DEG");
+  command
+      .add_option("--rise", options.rise,
+                  "of stairs that the world gets: each stride leads onto one, the other foot "
+                  "joins")
+      ->type_name("M");
   command.add_option("--side", options.walk.side, "sideways per pair of steps, to the left")
       ->capture_default_str()
       ->type_name("M");

@@ -2,11 +2,15 @@
 // push, the large robot. Actuators as they are.
 #include <gtest/gtest.h>
 
+#include "ayumi/base/file.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/table.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace ayumi {
 namespace {
@@ -56,6 +60,24 @@ TEST(DtadGaits, Sideways) {
   expect_stands(run(hoap1(), pattern, {push(middle_of_step(pattern), 0, 1.1)}), 0.002);
 }
 
+TEST(DtadGaits, ClimbingStairsOfTenMillimetres) {
+  const Pattern pattern = walk_pattern(hoap1(), stair_defaults(hoap1(), 0.01));
+  ASSERT_EQ(pattern.world.blocks.size(), 3u);
+  EXPECT_NEAR(pattern.world.blocks.back().height, 0.03, 1e-12);
+  const CommandSeries series = sample(hoap1(), pattern);
+  EXPECT_NEAR(series.samples.back().cog.z() - series.samples.front().cog.z(), 0.03, 1e-6);
+  for (const char* profile : {"hoap1", "hoap1-strong"}) {
+    SCOPED_TRACE(profile);
+    SimulateOptions options;
+    options.profile = profile;
+    options.world = pattern.world;
+    options.scenario = {push(middle_of_step(pattern), M_PI / 2, 1.1)};
+    const SimulationLog log = simulate(hoap1(), series, options);
+    expect_stands(log.result, 0.002);
+    EXPECT_NEAR(log.samples.back().cog.z(), series.samples.back().cog.z(), 0.002);
+  }
+}
+
 TEST(DtadGaits, SuddenStopWithTheFeetApart) {
   Pattern pattern = walk_pattern(hoap1(), {.steps = 8});
   pattern.phases.resize(8);  // ends with the fourth step in the air
@@ -80,31 +102,43 @@ TEST(DtadGaits, PushOnASlopeThatThePatternDoesNotKnow) {
   }
 }
 
-// What the servos received is what the table holds: played without control it moves the robot
-// alike.
+/// Largest distance between the loci of two runs [m].
+double apart(const SimulationLog& a, const SimulationLog& b) {
+  double most = 0;
+  for (size_t k = 0; k < std::min(a.samples.size(), b.samples.size()); ++k)
+    most = std::max(most, (a.samples[k].cog - b.samples[k].cog).norm());
+  return most;
+}
+
+// What the servos received is what the table holds. As the table of a pattern it moves the robot
+// alike without control: the lead of the servos is not put in twice.
 TEST(DtadGaits, TheExportedReferenceReplaysToTheSameLoci) {
   const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
   const CommandSeries series = sample(hoap1(), pattern);
   SimulateOptions options;
   options.world = pattern.world;
-  const SimulationLog closed = simulate(hoap1(), series, options);
-  const ReferenceTrajectory table = extract_reference(hoap1(), closed);
-  ASSERT_EQ(table.rows.size(), closed.samples.size());
-  CommandSeries replay = series;
-  replay.samples.resize(table.rows.size(), series.samples.back());
-  for (size_t k = 0; k < table.rows.size(); ++k) {
-    replay.samples[k].state.theta = table.rows[k].theta;
-    replay.samples[k].state.dtheta.setZero();  // the lead of the servos is in the table
-  }
-  replay.samples.front() = series.samples.front();  // held before both runs alike
-  options.controller.type = "none";
   options.settle = 0;
-  const SimulationLog open = simulate(hoap1(), replay, options);
+  const SimulationLog closed = simulate(hoap1(), series, options);
+  const test::TemporaryFolder folder;
+  write_file(folder.path() / "reference.csv", reference_csv(extract_reference(hoap1(), closed)));
+  Pattern replay = pattern;
+  replay.keyframes.clear();
+  replay.table = read_dense_table(folder.path() / "reference.csv");
+  EXPECT_TRUE(replay.table->commands);
+  options.controller.type = "none";
+  const CommandSeries played = sample(hoap1(), replay);
+  const SimulationLog open = simulate(hoap1(), played, options);
   EXPECT_EQ(open.result.outcome, Outcome::stands);
-  double cog = 0;
-  for (size_t k = 0; k < std::min(open.samples.size(), closed.samples.size()); ++k)
-    cog = std::max(cog, (open.samples[k].cog - closed.samples[k].cog).norm());
-  EXPECT_LT(cog, 1e-5);
+  EXPECT_LT(apart(closed, open), 5e-5);
+  // The postures behind the table are the reference's: its COG is that of the posture.
+  RobotData data(hoap1());
+  for (const CommandSample& s : played.samples) {
+    update_positions(hoap1(), s.state, data);
+    EXPECT_LT((data.cog - s.cog).norm(), 1e-3);
+  }
+  // Taken as postures, the same table is led twice.
+  replay.table->commands = false;
+  EXPECT_GT(apart(closed, simulate(hoap1(), sample(hoap1(), replay), options)), 4e-4);
 }
 
 TEST(DtadGaits, TheLargeRobotWalksUnderItsPush) {

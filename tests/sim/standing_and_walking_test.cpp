@@ -60,9 +60,7 @@ TEST_P(Standing, IsStillAfterOneSecond) {
     least = std::min(least, log.samples[k].fz);
     most = std::max(most, log.samples[k].fz);
   }
-  // Under the softest servos the feedback still takes back their sag, slowly and without jitter.
-  const bool sagging = kp < 300 && controller != "none";
-  EXPECT_LT((high - low).norm(), sagging ? 1e-4 : 5e-5);
+  EXPECT_LT((high - low).norm(), 5e-5);
   EXPECT_LT(most - least, 0.05);
   EXPECT_NEAR(most, model.mass() * kGravity, 0.05);
 }

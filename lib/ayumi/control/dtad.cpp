@@ -29,6 +29,7 @@ namespace {
 
 constexpr double kMinForceShare = 0.1;  // of the weight: f_min of the projection of f_z
 constexpr double kOffsetLimit = 0.09;   // of the washed-out offset, times z
+constexpr double kLieTime = 0.33;  // after which a foot that lies has the ground's tilt, / omega
 
 }  // namespace
 
@@ -45,6 +46,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
                                                  {"kaz", &p.kaz},
                                                  {"washout", &p.washout},
                                                  {"ankle", &p.ankle},
+                                                 {"conform", &p.conform},
                                                  {"long", &p.long_term},
                                                  {"as_printed", &p.as_printed}};
   std::vector<std::string> names = {"k", "d"};
@@ -110,6 +112,7 @@ void Dtad::take_over(const Handover& handover, const CommandSample& plan) {
   zmp_filtered_ = plan.zmp.head<2>();
   fz_filtered_ = plan.fz;
   offset_.setZero();
+  first_ = false;
 }
 
 CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& estimate) {
@@ -129,6 +132,13 @@ CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& e
   ref.zmp.head<2>() = polygon.empty() ? wanted : polygon.project(wanted);
   ref.fz = std::max(kMinForceShare * weight,
                     command.fz + m * (p.kz * w * w * e.z() + p.dz * w * de.z()));
+
+  // At rest the ZMP is under the COG. What it is then off the one asked for is an offset already:
+  // servos that sag, a floor that slopes.
+  if (first_ && p.washout > 0 && !polygon.empty())
+    offset_ = -e.head<2>() -
+              (polygon.project(command.zmp.head<2>() - K * e.head<2>()) - command.zmp.head<2>());
+  first_ = false;
 
   const double filter = 1.0 - std::exp(-dt_ * w / p.tau_z);
   if (estimate.contact) {
@@ -168,7 +178,9 @@ void Dtad::update(const CommandSample& command, const CommandSample& next, const
   const CogReference wanted = cog_reference(command, estimate);
   const double z = command.cog.z() - command.zmp.z();
   const double forget = params_.washout / std::sqrt(kGravity / z);
-  const VectorXd& offsets = body_.ankle_offsets(estimate, params_.ankle, forget);
+  const double lie = params_.washout > 0 ? kLieTime / std::sqrt(kGravity / z) : 0;
+  const VectorXd& offsets =
+      body_.ankle_offsets(estimate, {params_.ankle, params_.conform, forget, lie});
   body_.advance(wanted, z, command, next, offsets, out);
 }
 

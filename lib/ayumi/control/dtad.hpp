@@ -30,6 +30,7 @@ struct DtadParams {
   double dz = 2.0;          ///< D_z of (20), times omega
   double kaz = 0.3;         ///< short-term loop on the measured f_z
   double ankle = 0.5;       ///< share of the stance foot's measured tilt taken back at the ankle
+  double conform = 0.5;     ///< share of one foot's slope against the ground's that its ankle takes
   bool literal = false;     ///< (14) integrated as printed, D sign corrected: a demonstration
 };
 
@@ -68,6 +69,7 @@ class Dtad {
   Eigen::Vector2d zmp_filtered_ = Eigen::Vector2d::Zero();  // z-hat [m]
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();        // washed-out offset z-hat_d [m]
   double fz_filtered_ = 0;                                  // [N]
+  bool first_ = true;                                       // no tick yet, from rest
 };
 
 }  // namespace ayumi

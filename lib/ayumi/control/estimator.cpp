@@ -26,7 +26,13 @@ Estimator::Estimator(const RobotModel& model, double dt)
     : model_(&model),
       data_(model),
       imu_(std::max(0, model.find_link(model.description().sensors.imu_link))),
-      filter_(1.0 - std::exp(-dt / kLoadFilter)) {}
+      filter_(1.0 - std::exp(-dt / kLoadFilter)) {
+  for (Side side : {Side::left, Side::right}) {
+    const int i = static_cast<int>(side);
+    sole_[i] = ConvexPolygon(model.sole(side).polygon);
+    widest_[i] = sole_[i].margin(model.sole(side).center);
+  }
+}
 
 const Estimate& Estimator::update(const Measurement& m, const std::array<Isometry3d, 2>& feet) {
   const double weight = model_->mass() * kGravity;
@@ -80,6 +86,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   const Matrix3d tilt = attitude * sole_in_base.linear() * feet[stance].linear().transpose();
   e.foot_tilt = log_rotation(Quaterniond(tilt));
   e.foot_tilt.z() = 0;
+  e.stance_inside = std::clamp(sole_[stance].margin(cop) / widest_[stance], 0.0, 1.0);
 
   e.fz = m.feet[0].fz + m.feet[1].fz;
   e.foot_fz = {m.feet[0].fz, m.feet[1].fz};

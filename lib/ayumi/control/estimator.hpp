@@ -6,6 +6,7 @@
 #include <array>
 
 #include "ayumi/dynamics/robot_data.hpp"
+#include "ayumi/math/polygon.hpp"
 
 namespace ayumi {
 
@@ -34,6 +35,8 @@ struct Estimate {
   Side stance = Side::left;                             ///< foot that carries the robot
   Eigen::Vector3d foot_tilt = Eigen::Vector3d::Zero();  ///< of the stance foot against the plan, as
                                                         ///< a rotation vector without yaw [rad]
+  double stance_inside = 1;  ///< way of the stance foot's centre of pressure from the nearest edge
+                             ///< of its sole, as a share of the most there is: 0 at the edge
 };
 
 class Estimator {
@@ -50,6 +53,8 @@ class Estimator {
  private:
   const RobotModel* model_;
   RobotData data_;
+  std::array<ConvexPolygon, 2> sole_;
+  std::array<double, 2> widest_;         // distance of the middle of each sole from its edge [m]
   int imu_;                              // link
   double filter_;                        // share of the new load taken per tick
   std::array<double, 2> load_ = {0, 0};  // low-passed f_z of each foot [N]

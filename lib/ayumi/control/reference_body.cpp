@@ -15,17 +15,9 @@ namespace {
 
 constexpr double kSpeedLimit = 0.8;       // of the reference COG, times omega z
 constexpr double kAccelerationLimit = 4;  // of the reference COG, times g
+constexpr double kLies = 0.15;            // of the way from the edge of the sole to its middle
 
 }  // namespace
-
-VectorXd servo_lead(const RobotModel& model) {
-  VectorXd lead(model.dof_count());
-  for (int j = 0; j < model.dof_count(); ++j) {
-    const ServoDescription& servo = model.dofs()[j].servo;
-    lead[j] = servo.kp > 0 ? servo.kd / servo.kp : 0.0;
-  }
-  return lead;
-}
 
 ReferenceBody::ReferenceBody(const RobotModel& model, const ActuatorLimits& limits, double dt,
                              const RobotState& start, const ResolverOptions& options)
@@ -52,16 +44,27 @@ void ReferenceBody::anchor(Side side, const Eigen::Isometry3d& sole) {
 
 // A foot that has tipped is turned back flat. A tilt that lasts is the ground's (or the sensor's)
 // and is forgotten like a lasting offset of the ZMP: levelling a foot that lies flat on a slope
-// would lean the body downhill.
-const VectorXd& ReferenceBody::ankle_offsets(const Estimate& estimate, double share,
-                                             double forget) {
-  if (forget > 0) slope_ += std::min(1.0, dt_ / forget) * (estimate.foot_tilt - slope_);
-  const Vector3d tilt = estimate.foot_tilt - slope_;
+// would lean the body downhill. A foot that tips carries on an edge of its sole; one that carries
+// inside of it lies, on a bump or a stone, and its tilt is soon taken for the ground's. The body
+// above need not lean with one foot: the ankle gives in.
+const VectorXd& ReferenceBody::ankle_offsets(const Estimate& estimate, const AnkleLaw& law) {
+  const bool lies = law.lie > 0 && estimate.stance_inside > kLies;
+  const auto share_of = [&](double time) { return time > 0 ? std::min(1.0, dt_ / time) : 0.0; };
+  Vector3d& under = slope_[static_cast<int>(estimate.stance)];
+  Vector3d& swing = slope_[static_cast<int>(other(estimate.stance))];
+  under += share_of(lies ? law.lie : law.forget) * (estimate.foot_tilt - under);
+  ground_ += share_of(law.forget) * (under - ground_);
+  if (law.lie > 0)
+    swing += share_of(law.lie) * (ground_ - swing);
+  else
+    swing = under;
   offsets_.setZero(model_->dof_count());
-  const std::vector<int>& leg = model_->leg(estimate.stance);
-  for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i) {
-    const int body = model_->dofs()[leg[i]].body;
-    offsets_[leg[i]] = -share * data_.axis[body].dot(tilt);
+  for (Side side : {Side::left, Side::right}) {
+    Vector3d turn = law.conform * (slope_[static_cast<int>(side)] - ground_);
+    if (side == estimate.stance) turn -= law.share * (estimate.foot_tilt - under);
+    const std::vector<int>& leg = model_->leg(side);
+    for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i)
+      offsets_[leg[i]] = data_.axis[model_->dofs()[leg[i]].body].dot(turn);
   }
   return offsets_;
 }

@@ -8,6 +8,7 @@
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/control/resolver.hpp"
 #include "ayumi/pattern/command_series.hpp"
+#include "ayumi/pattern/servo_lead.hpp"
 
 namespace ayumi {
 
@@ -35,10 +36,6 @@ struct Handover {
   CommandSample plan;                              ///< last plan: feet and support
 };
 
-/// Time by which a servo target must lead so that the joint does not lag: kd / kp of each joint
-/// [s].
-Eigen::VectorXd servo_lead(const RobotModel& model);
-
 class ReferenceBody {
  public:
   ReferenceBody(const RobotModel& model, const ActuatorLimits& limits, double dt,
@@ -56,10 +53,17 @@ class ReferenceBody {
   const Eigen::Vector3d& dcog() const { return dcog_; }
   const Eigen::VectorXd& target() const { return previous_target_; }
 
-  /// Turns of the two joints nearest to the stance foot that take back a share of its measured
-  /// tilt. `forget`: time constant after which a lasting tilt counts as the ground's [s]; 0: never.
+  /// Turns of the two joints nearest to the feet. A stance foot that tips is turned back by `share`
+  /// of its tilt against the ground under it; where that ground slopes otherwise than the ground
+  /// at large, the ankle gives in by `conform` of the difference.
+  struct AnkleLaw {
+    double share = 0, conform = 0;
+    double forget = 0;  ///< after which a lasting tilt counts as the ground's [s]; 0: never
+    double lie = 0;     ///< the same for a foot whose centre of pressure is inside its sole [s];
+                        ///< 0: as `forget`
+  };
   /// Holds until the next call.
-  const Eigen::VectorXd& ankle_offsets(const Estimate& estimate, double share, double forget);
+  const Eigen::VectorXd& ankle_offsets(const Estimate& estimate, const AnkleLaw& law);
 
   /// Integrates ref.ddcog (both bounded; the bounds scale with the COG height z [m]) and moves the
   /// posture; fills everything of `out` but the COG. `ref` receives the velocity.
@@ -77,8 +81,10 @@ class ReferenceBody {
   Resolution resolution_;
   RobotState reference_;
   Side anchor_ = Side::left;
-  Eigen::Vector3d dcog_ = Eigen::Vector3d::Zero();   // ref COG velocity [m/s]
-  Eigen::Vector3d slope_ = Eigen::Vector3d::Zero();  // lasting tilt of the stance foot [rad]
+  Eigen::Vector3d dcog_ = Eigen::Vector3d::Zero();  // ref COG velocity [m/s]
+  // Tilt of the ground under each foot, and at large [rad].
+  std::array<Eigen::Vector3d, 2> slope_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  Eigen::Vector3d ground_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace ayumi

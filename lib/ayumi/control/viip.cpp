@@ -354,7 +354,8 @@ ControlOutput Viip::update(const Estimate& estimate) {
   out.cog = body_.cog();
   const CogReference wanted = cog_reference(estimate);
   const double ankle = params_.feedback ? params_.ankle : 0;
-  const Eigen::VectorXd offsets = body_.ankle_offsets(estimate, ankle, 6.6 / omega_);
+  const Eigen::VectorXd offsets =
+      body_.ankle_offsets(estimate, {.share = ankle, .forget = 6.6 / omega_});
   go_on(estimate);
   body_.advance(wanted, height_, plan_, next_, offsets, out);
   finish_plan();

@@ -11,15 +11,17 @@
 namespace ayumi {
 
 struct ImportOptions {
-  std::string format;    ///< "hoap", "csv", "json"; "" by the content
-  bool degrees = false;  ///< unit of bare joint columns
-  double rate = 0;       ///< of rows without a time column [1/s]
+  std::string format;     ///< "hoap", "csv", "json"; "" by the content
+  bool degrees = false;   ///< unit of bare joint columns
+  double rate = 0;        ///< of rows without a time column [1/s]
+  bool commands = false;  ///< angles are what servos receive, as in Ayumi's reference tables
 };
 
 struct ImportedMotion {
   RawMotion motion;
   std::string format;               ///< "hoap", "csv" or "json"
   int rows = 0;                     ///< data rows of the file
+  bool commands = false;            ///< motion.theta is what servos receive
   std::vector<std::string> filled;  ///< what the file does not say, or says beside the motion
 };
 
@@ -38,7 +40,8 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
 ImportedMotion read_table_motion(const std::string& bytes, const std::string& file,
                                  const RobotModel& model, const ImportOptions& options = {});
 
-/// Either of them, by the content. `bytes` from `file`.
+/// Either of them, by the content. `bytes` from `file`. Postures: where the file holds commands,
+/// the servos' lead is taken out.
 ImportedMotion read_motion(const std::string& bytes, const std::string& file,
                            const RobotModel& model, const ImportOptions& options = {});
 

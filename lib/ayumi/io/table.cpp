@@ -12,7 +12,6 @@ namespace ayumi {
 
 namespace {
 
-constexpr const char* kReferenceFormat = "ayumi.reference/1";
 constexpr const char* kMotionFormat = "ayumi.motion/1";
 constexpr const char* kFrame = "world: x forward, y left, z up";
 constexpr const char* kUnits = "m, rad, s, N";
@@ -230,6 +229,7 @@ DenseTable read_dense_table(const std::filesystem::path& path) {
   dense.file = file;
   dense.dt = tick_of(table, layout, file);
   dense.joints = layout.joints;
+  dense.commands = holds_commands(table);
   const Eigen::Index rows = table.values.rows();
   if (static_cast<double>(rows) * dense.dt > 3600)
     fail(ErrorCode::bad_file, file + ": lasts " +
@@ -253,8 +253,9 @@ std::string dense_table_csv(const DenseTable& table) {
   if (!table.zmp.empty()) append(columns, kZmpColumns);
   if (!table.fz.empty()) columns.push_back("fz[N]");
   if (!table.base.empty()) append(columns, kBaseColumns);
-  std::string text =
-      csv_header(common_header(kMotionFormat, table.dt)) + text::join(columns, ",") + "\n";
+  auto header = common_header(kMotionFormat, table.dt);
+  if (table.commands) header.emplace_back("theta", "commands");
+  std::string text = csv_header(header) + text::join(columns, ",") + "\n";
   for (Eigen::Index k = 0; k < table.theta.rows(); ++k) {
     const auto at = static_cast<size_t>(k);
     std::vector<double> cells = {static_cast<double>(k) * table.dt};

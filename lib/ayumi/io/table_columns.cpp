@@ -144,6 +144,14 @@ double tick_of(const NumberTable& table, const TableLayout& layout, const std::s
   return dt;
 }
 
+bool holds_commands(const NumberTable& table) {
+  const auto says = [&](const char* key, const char* value) {
+    const auto found = table.header.find(key);
+    return found != table.header.end() && found->second == value;
+  };
+  return says("format", kReferenceFormat) || says("theta", "commands");
+}
+
 BasePose base_of(const NumberTable& table, const TableLayout& layout, Eigen::Index row,
                  const std::string& file) {
   const auto cell = [&](size_t i) { return table.values(row, layout.base[i]); };

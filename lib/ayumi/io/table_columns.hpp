@@ -10,6 +10,7 @@
 
 namespace ayumi {
 
+inline constexpr const char* kReferenceFormat = "ayumi.reference/1";
 inline const std::vector<std::string> kCogColumns = {"cog.x[m]", "cog.y[m]", "cog.z[m]"};
 inline const std::vector<std::string> kZmpColumns = {"zmp.x[m]", "zmp.y[m]", "zmp.z[m]"};
 inline const std::vector<std::string> kBaseColumns = {
@@ -29,6 +30,9 @@ struct TableLayout {
   std::vector<int> cog, zmp, base, contact;  ///< one per column of the group, or empty
 };
 TableLayout layout_of(const NumberTable& table, const std::string& file);
+
+/// Whether theta is what servos receive: a reference table, or the header says theta: commands.
+bool holds_commands(const NumberTable& table);
 
 /// dt of a table whose rows are k dt: the header's "dt", else from the time column. Throws
 /// Error(bad_file) for a time that is not k dt, naming the row.

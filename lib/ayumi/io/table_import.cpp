@@ -5,6 +5,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/motion_import.hpp"
 #include "ayumi/io/table_columns.hpp"
+#include "ayumi/pattern/servo_lead.hpp"
 
 namespace ayumi {
 
@@ -145,6 +146,18 @@ void fill_theta(const NumberTable& table, const TableLayout& layout, const Robot
       result.filled.push_back(model.dofs()[dof].name + ": not in the file, rests at home");
 }
 
+void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
+  DenseTable table;
+  table.dt = imported.motion.dt;
+  table.joints = model.dof_names();
+  table.theta = imported.motion.theta;
+  table.commands = true;
+  imported.motion.theta = postures_of(model, table).theta;
+  imported.commands = false;
+  imported.filled.push_back(
+      "angles: what servos receive; postures are without their lead of kd/kp");
+}
+
 bool looks_like_hoap(const std::string& bytes) {
   // Interval, 2 or 3, then more: no head row could begin so.
   size_t i = 0;
@@ -175,6 +188,7 @@ ImportedMotion read_table_motion(const std::string& bytes, const std::string& fi
                       ? "json"
                       : "csv";
   result.rows = static_cast<int>(table.values.rows());
+  result.commands = holds_commands(table);
   rename_columns(table, model, options, file);
   add_time(table, options, file);
   const TableLayout layout = layout_of(table, file);
@@ -196,6 +210,7 @@ ImportedMotion read_motion(const std::string& bytes, const std::string& file,
   const bool hoap = options.format == "hoap" || (options.format.empty() && looks_like_hoap(bytes));
   ImportedMotion result =
       hoap ? read_hoap_motion(bytes, file, model) : read_table_motion(bytes, file, model, options);
+  if (options.commands || result.commands) take_out_lead(model, result);
   if (result.motion.support.empty()) result.filled.push_back("contacts: detected from the motion");
   if (result.motion.base.empty())
     result.filled.push_back("base: from the feet that carry, level on the ground");

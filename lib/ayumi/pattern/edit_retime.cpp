@@ -7,6 +7,7 @@
 #include "ayumi/base/version.hpp"
 #include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/postures.hpp"
+#include "ayumi/pattern/servo_lead.hpp"
 
 namespace ayumi {
 
@@ -36,6 +37,7 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
   }
   for (Disturbance& push : result.scenario) push.at *= scale;
   if (result.table) {
+    *result.table = postures_of(model, *result.table);  // the lead is a time of the robot's
     result.table->dt *= scale;
     result.table->zmp.clear();
     result.table->fz.clear();

@@ -25,6 +25,11 @@ namespace {
 // Legs longer than this share of their straight length are bent to the second one.
 constexpr double kStraightLeg = 0.97, kBentLeg = 0.94;
 
+constexpr double kStairClearance = 0.002;  // least of a sole from the next stair [m]
+constexpr double kStairSpare = 0.006;      // the default one
+constexpr double kStairHalfWidth = 1;      // of the leg's length
+constexpr double kStairLeg = 0.88;         // of the straight leg, between hip and sole of both feet
+
 // Of both ends, in units of 1/omega: the ZMP rests, then shifts onto the first foot.
 constexpr double kRest = 4.5, kShift = 2.6;
 
@@ -40,6 +45,52 @@ double walking_height(const RobotModel& model, const Pattern& pattern, double le
   return to_tenth_millimetre(default_cog_height(model, pattern) - (reach - kBentLeg * leg));
 }
 
+/// How far a sole reaches ahead of its frame and behind it [m].
+struct SoleLength {
+  double front = 0, back = 0;
+};
+
+SoleLength sole_length(const RobotModel& model) {
+  SoleLength length;
+  for (const Side side : {Side::left, Side::right})
+    for (const Eigen::Vector2d& p : model.sole(side).polygon) {
+      length.front = std::max(length.front, p.x());
+      length.back = std::max(length.back, -p.x());
+    }
+  return length;
+}
+
+void check_stairs(const RobotModel& model, const WalkParameters& p) {
+  const SoleLength sole = sole_length(model);
+  if (p.turn != 0 || p.side != 0)
+    fail(ErrorCode::usage, "walk: rise goes straight ahead; leave turn and side out");
+  require_range("walk", "rise", p.rise, 0, 0.15 * leg_length(model), " m");
+  if (p.stride < sole.front + sole.back + 2 * kStairClearance)
+    fail(ErrorCode::usage, "walk: stride " + text::exact(p.stride) +
+                               " m is shorter than a stair has to be for a sole of " +
+                               text::brief(sole.front + sole.back) + " m; give at least " +
+                               text::brief(sole.front + sole.back + 2 * kStairClearance) + " m");
+}
+
+/// Stairs under the footholds, each from midway between the soles on it and before it.
+World stairs(const RobotModel& model, const WalkParameters& p) {
+  const SoleLength sole = sole_length(model);
+  const double spare = 0.5 * (p.stride - sole.front - sole.back);
+  World world;
+  for (int i = 1; i <= p.steps; ++i) {
+    GroundBlock stair;
+    const double from = i * p.stride - sole.back - spare;
+    stair.low = {to_tenth_millimetre(from), -kStairHalfWidth * leg_length(model)};
+    stair.high = {to_tenth_millimetre(from + (i < p.steps ? p.stride : 3 * p.stride)),
+                  kStairHalfWidth * leg_length(model)};
+    for (Eigen::Vector2d* corner : {&stair.low, &stair.high})
+      corner->y() = to_tenth_millimetre(corner->y());
+    stair.height = to_tenth_millimetre(i * p.rise);
+    world.blocks.push_back(stair);
+  }
+  return world;
+}
+
 void check_parameters(const RobotModel& model, const WalkParameters& p) {
   const double leg = leg_length(model);
   require_range("walk", "steps", p.steps, 1, 10000, "");
@@ -51,6 +102,7 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   require_range("walk", "turn", p.turn, -0.6, 0.6, " rad");
   if (p.cog_height != 0)
     require_range("walk", "cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
+  if (p.rise != 0) check_stairs(model, p);
 }
 
 ZmpKey::Place place_of(Side side) {
@@ -78,9 +130,11 @@ void write_step(PatternWriter& writer, const WalkParameters& p, Side swing_foot,
 }
 
 std::string title(const WalkParameters& p) {
-  std::string name =
-      "walk, " + std::to_string(p.steps) + " steps of " + text::brief(1e3 * p.stride) + " mm";
+  std::string name = "walk, " + std::to_string(p.steps) +
+                     (p.rise != 0 ? " stairs of " : " steps of ") + text::brief(1e3 * p.stride) +
+                     " mm";
   if (p.side != 0) name += ", " + text::brief(1e3 * p.side) + " mm sideways per pair";
+  if (p.rise != 0) name += ", rising " + text::brief(1e3 * p.rise) + " mm each";
   if (p.turn != 0) name += ", turning " + text::brief(p.turn * 180 / M_PI) + " deg per step";
   return name;
 }
@@ -93,6 +147,24 @@ WalkParameters walk_defaults(const RobotModel& model) {
   p.stride = 1e-3 * std::round(1e3 * size * p.stride);
   p.lift = 1e-3 * std::round(1e3 * size * p.lift);
   p.period = 0.01 * std::round(100 * slow * p.period);
+  return p;
+}
+
+WalkParameters stair_defaults(const RobotModel& model, double rise) {
+  WalkParameters p = walk_defaults(model);
+  const SoleLength sole = sole_length(model);
+  p.rise = rise;
+  p.steps = 3;
+  p.stride = 1e-3 * std::ceil(1e3 * (sole.front + sole.back + 2 * kStairSpare));
+  p.period *= 1.6;
+  p.lift = to_tenth_millimetre(rise + 0.02 * size_beside_hoap1(model));
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const Vector3d hip = data.pose(model.dofs()[model.leg(Side::left).front()].body).translation();
+  const double reach = (sole_pose(model, data, Side::left).translation() - hip).norm();
+  const double apart = 0.5 * p.stride, leg = kStairLeg * leg_length(model);
+  const double wanted = std::sqrt(std::max(0.0, leg * leg - apart * apart)) - 0.5 * rise;
+  p.cog_height = default_cog_height(model, {}) - std::max(0.0, reach - wanted);
   return p;
 }
 
@@ -121,9 +193,13 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   double yaw = 0;
   Side swing = p.first_swing;
   const Side leading = p.side > 0 ? Side::left : Side::right;
-  for (int i = 0; i <= p.steps; ++i) {
-    const bool closing = i == p.steps;
-    if (!closing) {
+  const int swings = p.rise != 0 ? 2 * p.steps : p.steps + 1;
+  if (p.rise != 0) pattern.world = stairs(model, p);
+  for (int i = 0; i < swings; ++i) {
+    const bool closing = i + 1 == swings;
+    if (p.rise != 0) {
+      if (i % 2 == 0) center += Vector3d(p.stride, 0, p.rise);
+    } else if (!closing) {
       const double turned = yaw + p.turn;
       const Vector3d move(p.stride, swing == leading ? p.side : 0.0, 0);
       center += rpy_to_matrix({0, 0, 0.5 * (yaw + turned)}) * move;

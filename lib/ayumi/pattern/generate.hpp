@@ -15,12 +15,18 @@ struct WalkParameters {
   double cog_height = 0;         ///< 0: of the home posture, lower if its legs are straight [m]
   double turn = 0;               ///< yaw change per step, left positive [rad]
   double side = 0;               ///< sideways distance per pair of steps, left positive [m]
+  double rise = 0;               ///< of a stair [m]; every stride then leads onto the next one,
+                                 ///< where the other foot joins, and the world has the stairs
   Side first_swing = Side::right;
 };
 
 /// The walk of HOAP-1 scaled to a robot: lengths with its home COG height, times with the root of
 /// it.
 WalkParameters walk_defaults(const RobotModel& model);
+
+/// The same for a staircase whose stairs rise by `rise` [m]: stairs a little longer than the sole,
+/// lower COG, slower and higher steps.
+WalkParameters stair_defaults(const RobotModel& model, double rise);
 
 /// Phases, ZMP keys and swing targets of a straight or turning walk that starts and ends at rest.
 /// Throws Error(usage) naming the parameter out of range.

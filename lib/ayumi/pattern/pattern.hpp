@@ -75,6 +75,7 @@ struct DenseTable {
   double dt = 0.001;                      ///< [s]
   std::vector<std::string> joints;        ///< columns of theta
   Eigen::MatrixXd theta;                  ///< rows x joints [rad]
+  bool commands = false;                  ///< theta is what servos receive, not the posture
   std::vector<BasePose> base;             ///< empty or one per row
   std::vector<Eigen::Vector3d> cog, zmp;  ///< empty or one per row, world [m]
   std::vector<double> fz;                 ///< empty or one per row [N]

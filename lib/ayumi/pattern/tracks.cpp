@@ -9,6 +9,7 @@
 #include "ayumi/base/version.hpp"
 #include "ayumi/pattern/postures.hpp"
 #include "ayumi/pattern/quintic.hpp"
+#include "ayumi/pattern/servo_lead.hpp"
 
 namespace ayumi {
 
@@ -196,8 +197,8 @@ void check_table(const Pattern& pattern, const FootPlan& feet) {
 
 void read_table(const RobotModel& model, const Pattern& pattern, KeyReader& reader,
                 PatternTracks& tracks) {
-  const DenseTable& table = *pattern.table;
   check_table(pattern, reader.feet);
+  const DenseTable table = postures_of(model, *pattern.table);
   const auto rows = static_cast<size_t>(table.theta.rows());
   tracks.rest_ends = false;
   for (size_t j = 0; j < table.joints.size(); ++j) {
