@@ -128,7 +128,8 @@ std::vector<std::pair<std::string, double>> gain_list(const DtadParams& p) {
                                                                        {"kz", p.kz},
                                                                        {"dz", p.dz},
                                                                        {"kaz", p.kaz},
-                                                                       {"ankle", p.ankle}})
+                                                                       {"ankle", p.ankle},
+                                                                       {"conform", p.conform}})
     list.push_back(entry);
   return list;
 }

@@ -91,6 +91,27 @@ TEST(WalkPattern, BendsTheLegsOfARobotThatStandsStraight) {
   EXPECT_EQ(walk_pattern(test::biped(), {}).cog_height, 0);  // home's, already bent
 }
 
+// Every foothold is on a stair, its whole sole, and both feet end on the last one.
+TEST(WalkPattern, StairsCarryTheWholeSole) {
+  const RobotModel& model = test::biped();
+  WalkParameters p = stair_defaults(model, 0.01);
+  const Pattern pattern = walk_pattern(model, p);
+  ASSERT_EQ(pattern.world.blocks.size(), 3u);
+  int swings = 0;
+  for (const Phase& phase : pattern.phases) {
+    if (!phase.swing) continue;
+    const Eigen::Vector3d& to = phase.swing->to.position;
+    const GroundBlock& stair = pattern.world.blocks[static_cast<size_t>(swings++ / 2)];
+    EXPECT_NEAR(to.z(), stair.height, 1e-12);
+    for (const Eigen::Vector2d& corner : model.sole(phase.swing->foot).polygon) {
+      const Eigen::Vector2d at = to.head<2>() + corner;
+      EXPECT_TRUE((at.array() > stair.low.array()).all() && (at.array() < stair.high.array()).all())
+          << at.transpose();
+    }
+  }
+  EXPECT_EQ(swings, 6);
+}
+
 TEST(WalkPattern, NamesTheParameterOutOfRange) {
   const auto with = [](auto change) {
     WalkParameters p;
@@ -105,6 +126,10 @@ TEST(WalkPattern, NamesTheParameterOutOfRange) {
   EXPECT_NE(with([](auto& p) { p.period = 0.1; }).find("from 0.2 to 10 s"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.double_support = 0; }).find("double_support"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.lift = 0; }).find("lift"), std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.rise = 0.01; }).find("shorter than a stair has to be"),
+            std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.rise = 0.01, p.turn = 0.1; }).find("rise goes straight ahead"),
+            std::string::npos);
   EXPECT_NE(with([](auto& p) { p.turn = 1; }).find("turn"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.side = -1; }).find("side"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.cog_height = 0.01; }).find("cog_height"), std::string::npos);

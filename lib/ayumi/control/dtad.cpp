@@ -29,6 +29,8 @@ namespace {
 
 constexpr double kMinForceShare = 0.1;  // of the weight: f_min of the projection of f_z
 constexpr double kOffsetLimit = 0.09;   // of the washed-out offset, times z
+constexpr double kLeanBack = 0.7;       // rate at which the trunk turns back, times omega
+constexpr double kMostLean = 0.35;      // of the trunk [rad]
 constexpr double kLieTime = 0.33;  // after which a foot that lies has the ground's tilt, / omega
 
 }  // namespace
@@ -47,6 +49,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
                                                  {"washout", &p.washout},
                                                  {"ankle", &p.ankle},
                                                  {"conform", &p.conform},
+                                                 {"trunk", &p.trunk},
                                                  {"long", &p.long_term},
                                                  {"as_printed", &p.as_printed}};
   std::vector<std::string> names = {"k", "d"};
@@ -130,6 +133,7 @@ CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& e
   const Vector2d wanted = command.zmp.head<2>() - K * e.head<2>() - D * de.head<2>();
   ref.zmp = command.zmp;
   ref.zmp.head<2>() = polygon.empty() ? wanted : polygon.project(wanted);
+  outside_ = wanted - ref.zmp.head<2>();
   ref.fz = std::max(kMinForceShare * weight,
                     command.fz + m * (p.kz * w * w * e.z() + p.dz * w * de.z()));
 
@@ -169,6 +173,19 @@ CogReference Dtad::cog_reference(const CommandSample& command, const Estimate& e
   return ref;
 }
 
+// A moment about the COG moves the point through which the ground force acts on it, and so does
+// what the ZMP cannot: L' / (m g) = z x (Z* - refZ) needs L' about the trunk. It turns back by
+// itself.
+void Dtad::lean_trunk(double w, double z) {
+  const Vector3d push = Vector3d(-outside_.y(), outside_.x(), 0) / z;
+  const Vector3d rate = params_.trunk * w * w * push - kLeanBack * kLeanBack * w * w * lean_ -
+                        2 * kLeanBack * w * lean_rate_;
+  lean_rate_ += dt_ * rate;
+  lean_ += dt_ * lean_rate_;
+  if (lean_.norm() > kMostLean) lean_ *= kMostLean / lean_.norm(), lean_rate_.setZero();
+  body_.lean(lean_, lean_rate_);
+}
+
 void Dtad::update(const CommandSample& command, const CommandSample& next, const Estimate& estimate,
                   ControlOutput& out) {
   if (command.support == Support::left) anchor_ = Side::left;
@@ -181,6 +198,7 @@ void Dtad::update(const CommandSample& command, const CommandSample& next, const
   const double lie = params_.washout > 0 ? kLieTime / std::sqrt(kGravity / z) : 0;
   const VectorXd& offsets =
       body_.ankle_offsets(estimate, {params_.ankle, params_.conform, forget, lie});
+  if (params_.trunk > 0) lean_trunk(std::sqrt(kGravity / z), z);
   body_.advance(wanted, z, command, next, offsets, out);
 }
 

@@ -31,7 +31,8 @@ struct DtadParams {
   double kaz = 0.3;         ///< short-term loop on the measured f_z
   double ankle = 0.5;       ///< share of the stance foot's measured tilt taken back at the ankle
   double conform = 0.5;     ///< share of one foot's slope against the ground's that its ankle takes
-  bool literal = false;     ///< (14) integrated as printed, D sign corrected: a demonstration
+  double trunk = 0;      ///< turn of the trunk where the ZMP wanted is outside the support; 0: off
+  bool literal = false;  ///< (14) integrated as printed, D sign corrected: a demonstration
 };
 
 /// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
@@ -59,6 +60,7 @@ class Dtad {
 
  private:
   CogReference cog_reference(const CommandSample& command, const Estimate& estimate);
+  void lean_trunk(double omega, double z);
 
   const RobotModel* model_;
   DtadParams params_;
@@ -69,6 +71,9 @@ class Dtad {
   Eigen::Vector2d zmp_filtered_ = Eigen::Vector2d::Zero();  // z-hat [m]
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();        // washed-out offset z-hat_d [m]
   double fz_filtered_ = 0;                                  // [N]
+  Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();       // ZMP wanted less the one asked for [m]
+  Eigen::Vector3d lean_ = Eigen::Vector3d::Zero();          // of the trunk [rad]
+  Eigen::Vector3d lean_rate_ = Eigen::Vector3d::Zero();     // [rad/s]
   bool first_ = true;                                       // no tick yet, from rest
 };
 

@@ -65,6 +65,12 @@ class ReferenceBody {
   /// Holds until the next call.
   const Eigen::VectorXd& ankle_offsets(const Estimate& estimate, const AnkleLaw& law);
 
+  /// The trunk leans by this rotation vector against its command, at this rate [rad, rad/s].
+  void lean(const Eigen::Vector3d& angle, const Eigen::Vector3d& rate) {
+    options_.lean = angle;
+    options_.lean_rate = rate;
+  }
+
   /// Integrates ref.ddcog (both bounded; the bounds scale with the COG height z [m]) and moves the
   /// posture; fills everything of `out` but the COG. `ref` receives the velocity.
   void advance(const CogReference& ref, double z, const CommandSample& command,

@@ -155,6 +155,8 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     commanded = work.planned->rotation[trunk];
     commanded_rate = work.planned->angular_velocity[trunk];
   }
+  if (!options.lean.isZero(0)) commanded = exp_rotation(options.lean) * commanded;
+  commanded_rate += options.lean_rate;
   u.tail<3>() = length * (commanded_rate - anchor_rate +
                           options.trunk_rate * rotation_between(data.rotation[trunk], commanded));
 

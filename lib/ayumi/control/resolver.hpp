@@ -19,7 +19,10 @@ struct ResolverOptions {
   double damping = 1e-5;        ///< of J_U W^-1 J_U', times trace / rows
   double angular_length = 0.2;  ///< that makes angular rows comparable with linear ones [m]
   double speed_share = 0.98;    ///< of a joint's speed limit that may be used
-  bool in_order = true;         ///< tasks give way one after the other; false: all of them together
+  Eigen::Vector3d lean = Eigen::Vector3d::Zero();       ///< of the trunk against the command, as a
+                                                        ///< rotation vector in world axes [rad]
+  Eigen::Vector3d lean_rate = Eigen::Vector3d::Zero();  ///< [rad/s]
+  bool in_order = true;  ///< tasks give way one after the other; false: all of them together
 };
 
 /// Tasks that may give way to a joint's limit, in this order.

@@ -25,9 +25,9 @@ using Gains = std::map<std::string, double>;
 
 /// The gains that may be tuned, of the numbers in force.
 Gains tunable(const DtadParams& p) {
-  return {{"q", p.q},         {"ka", p.ka},           {"ks", p.ks}, {"kd", p.kd},
-          {"tau_z", p.tau_z}, {"washout", p.washout}, {"kz", p.kz}, {"dz", p.dz},
-          {"kaz", p.kaz},     {"ankle", p.ankle}};
+  return {{"q", p.q},         {"ka", p.ka},           {"ks", p.ks},          {"kd", p.kd},
+          {"tau_z", p.tau_z}, {"washout", p.washout}, {"kz", p.kz},          {"dz", p.dz},
+          {"kaz", p.kaz},     {"ankle", p.ankle},     {"conform", p.conform}};
 }
 
 double height(const CommandSample& command) { return command.cog.z() - command.zmp.z(); }
