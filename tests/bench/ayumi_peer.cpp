@@ -55,13 +55,16 @@ Kernels ayumi_kernels(const Problem& problem) {
   };
   const auto aba = [w, p](size_t i) { w->fast.forward(p->states[i], p->forces[i], w->vector); };
   const auto crba = [w, p](size_t i) { w->fast.mass_matrix(p->states[i], w->M); };
-  const auto crba_world = [w, p](size_t i) {
+  const auto crba_rows = [w, p](size_t i) {
     update_positions(w->model, p->states[i], w->data);
-    mass_matrix(w->model, w->data, w->M);
+    std::vector<double>& rows = w->factor.rows();
+    std::fill(rows.begin(), rows.end(), 0.0);
+    w->data.kernels->mass_entries(w->data.tree(), w->data.bodies(), w->factor.layout(),
+                                  rows.data());
   };
-  const auto factored = [w, crba](size_t i) {
-    crba(i);
-    w->factor.factor(w->M);
+  const auto factored = [w, crba_rows](size_t i) {
+    crba_rows(i);
+    w->factor.factor_rows();
   };
   const auto cog = [w, p](size_t i) {
     update_positions(w->model, p->states[i], w->data);
@@ -107,9 +110,15 @@ Kernels ayumi_kernels(const Problem& problem) {
                        crba(i);
                        return joint_block(w->M);
                      }});
-  kernels.push_back({"CRBA", "Ayumi, world", "with kinematics, as the plant needs it", crba_world,
-                     [w, crba_world, joint_block](size_t i) {
-                       crba_world(i);
+  kernels.push_back({"CRBA", "Ayumi, sparse", "rows of the factor, as the plant needs it",
+                     crba_rows, [w, crba_rows, joint_block](size_t i) {
+                       crba_rows(i);
+                       const TreeCholesky& t = w->factor;
+                       w->M.setZero(w->model.velocity_count(), w->model.velocity_count());
+                       for (int k = 0; k < w->M.rows(); ++k)
+                         for (int j = k; j >= 0; j = t.parent(j))
+                           w->M(t.column_at(k), t.column_at(j)) =
+                               w->M(t.column_at(j), t.column_at(k)) = t.below(k, j);
                        return joint_block(w->M);
                      }});
   kernels.push_back({"CRBA and factor", "Ayumi", "with kinematics", factored, {}});

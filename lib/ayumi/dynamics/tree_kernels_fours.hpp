@@ -26,10 +26,8 @@ inline void store_three(double* to, const Four& x) {
 }
 inline Four next(const Four& a) { return __builtin_shuffle(a, FourIndex{1, 2, 0, 3}); }
 inline Four cross_four(const Four& a, const Four& b) { return next(a * next(b) - next(a) * b); }
-inline double dot_four(const Four& a, const Four& b) {
-  const Four t = a * b;
-  return (t[0] + t[1]) + t[2];
-}
+inline double sum_of_three(const Four& t) { return (t[0] + t[1]) + t[2]; }
+inline double dot_four(const Four& a, const Four& b) { return sum_of_three(a * b); }
 
 // Three by three by columns.
 struct Columns {

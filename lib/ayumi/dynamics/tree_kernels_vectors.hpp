@@ -158,17 +158,20 @@ inline void sines_and_cosines(const double* angle, double* sine, double* cosine,
   }
 }
 
+// Several joints of one state, or one joint of several states, go through the series at once.
 template <typename T>
 inline void find_joints(const Tree& tree, const Job& job, Joint<T>* joints) {
-  // Several joints of one state, or one joint of several states, go through the series at once.
   constexpr int kLanes = static_cast<int>(sizeof(Wide) / sizeof(T));
+  for (int i = 1; i < tree.count; ++i) {
+    const Link& link = tree.links[i];
+    joints[i].q = link.ratio * load<T>(job.theta, link.dof) + link.offset;
+  }
   for (int first = 1; first < tree.count; first += kLanes) {
-    alignas(64) T angle[kLanes] = {}, s[kLanes], c[kLanes];
-    const int count = first + kLanes <= tree.count ? kLanes : tree.count - first;
+    const int last = tree.count - 1;
+    T angle[kLanes], s[kLanes], c[kLanes];
     bool large = false;
-    for (int k = 0; k < count; ++k) {
-      const Link& link = tree.links[first + k];
-      angle[k] = link.ratio * load<T>(job.theta, link.dof) + link.offset;
+    for (int k = 0; k < kLanes; ++k) {
+      angle[k] = joints[first + k <= last ? first + k : last].q;
       large = large || any_large(angle[k]);
     }
     Wide all, sines, cosines;
@@ -179,7 +182,10 @@ inline void find_joints(const Tree& tree, const Job& job, Joint<T>* joints) {
       sine_cosine(all, sines, cosines);
     __builtin_memcpy(s, &sines, sizeof s);
     __builtin_memcpy(c, &cosines, sizeof c);
-    for (int k = 0; k < count; ++k) joints[first + k] = {angle[k], s[k], c[k]};
+    for (int k = 0; k < kLanes && first + k <= last; ++k) {
+      joints[first + k].s = s[k];
+      joints[first + k].c = c[k];
+    }
   }
 }
 

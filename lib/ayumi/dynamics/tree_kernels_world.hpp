@@ -13,58 +13,73 @@ using ayumi::kernels::Contact;
 using ayumi::kernels::Layout;
 
 template <int K>
-inline void turn_about(Columns& R, double c, double s) {
+inline Columns turned_about(const Columns& R, double c, double s) {
   constexpr int a = (K + 1) % 3, b = (K + 2) % 3;
-  const Four x = R.c[a], y = R.c[b];
-  R.c[a] = c * x + s * y;
-  R.c[b] = c * y - s * x;
+  Columns result;
+  result.c[K] = R.c[K];
+  result.c[a] = c * R.c[a] + s * R.c[b];
+  result.c[b] = c * R.c[b] - s * R.c[a];
+  return result;
+}
+
+struct Frame {
+  Columns R;  // in link axes
+  Four p;
+};
+
+// A body from the frame its joint starts from (in link axes; it becomes the body's); returns its
+// first moment.
+template <int K>
+inline Four place_body(const Link& link, const Joint<double>& joint, Columns R, Four p,
+                       Frame& frame, const Bodies& bodies, int i) {
+  store_three(bodies.axis + 3 * i, link.along * R.c[K]);
+  if (link.prismatic)
+    p += joint.q * R.c[K];
+  else
+    R = turned_about<K>(R, joint.c, joint.s);
+  frame = {R, p};
+  if (link.skewed)
+    R = {{times_four(R, link.C[0], link.C[1], link.C[2]),
+          times_four(R, link.C[3], link.C[4], link.C[5]),
+          times_four(R, link.C[6], link.C[7], link.C[8])}};
+  store_columns(bodies.rotation + 9 * i, R);
+  store_three(bodies.position + 3 * i, p);
+  const Four com = p + times_four(R, link.com[0], link.com[1], link.com[2]);
+  store_three(bodies.com + 3 * i, com);
+  return link.mass * com;
 }
 
 void body_positions(const Tree& tree, const Job& job, const Bodies& bodies, double* moment) {
-  auto* frames = reinterpret_cast<Columns*>(bodies.scratch);  // in link axes
+  auto* frames = reinterpret_cast<Frame*>(bodies.scratch);
   auto* joints = reinterpret_cast<Joint<double>*>(frames + tree.count);
   find_joints<double>(tree, job, joints);
   const Attitude<double> base(job.attitude);
   const double own_axes[9] = {base.R[0], base.R[3], base.R[6], base.R[1], base.R[4],
                               base.R[7], base.R[2], base.R[5], base.R[8]};
-  frames[0] = load_columns(own_axes);
-  store_columns(bodies.rotation, frames[0]);
+  frames[0] = {load_columns(own_axes), Four{}};
+  store_columns(bodies.rotation, frames[0].R);
   const Four zero{};
   store_three(bodies.position, zero);
   store_three(bodies.axis, zero);
   const double* com = tree.links[0].com;
-  Four center = times_four(frames[0], com[0], com[1], com[2]);
+  const Four center = times_four(frames[0].R, com[0], com[1], com[2]);
   store_three(bodies.com, center);
   Four sum = tree.links[0].mass * center;
   for (int i = 1; i < tree.count; ++i) {
     const Link& link = tree.links[i];
-    const Columns& up = frames[link.parent];
-    Columns& R = frames[i];
+    const Frame& up = frames[link.parent];
+    Columns R = up.R;
+    const Four p = up.p + times_four(R, link.r[0], link.r[1], link.r[2]);
     if (link.turned)
-      for (int k = 0; k < 3; ++k) R.c[k] = times_four(up, link.E[k], link.E[3 + k], link.E[6 + k]);
-    else
-      R = up;
-    Four p = load_three(bodies.position + 3 * link.parent) +
-             times_four(up, link.r[0], link.r[1], link.r[2]);
-    const Four axis = R.c[link.axis];
-    if (link.prismatic)
-      p += joints[i].q * axis;
-    else if (link.axis == 0)
-      turn_about<0>(R, joints[i].c, joints[i].s);
+      R = {{times_four(R, link.E[0], link.E[3], link.E[6]),
+            times_four(R, link.E[1], link.E[4], link.E[7]),
+            times_four(R, link.E[2], link.E[5], link.E[8])}};
+    if (link.axis == 0)
+      sum += place_body<0>(link, joints[i], R, p, frames[i], bodies, i);
     else if (link.axis == 1)
-      turn_about<1>(R, joints[i].c, joints[i].s);
+      sum += place_body<1>(link, joints[i], R, p, frames[i], bodies, i);
     else
-      turn_about<2>(R, joints[i].c, joints[i].s);
-    Columns own = R;
-    if (link.skewed)
-      for (int k = 0; k < 3; ++k)
-        own.c[k] = times_four(R, link.C[3 * k], link.C[3 * k + 1], link.C[3 * k + 2]);
-    store_columns(bodies.rotation + 9 * i, own);
-    store_three(bodies.position + 3 * i, p);
-    store_three(bodies.axis + 3 * i, link.along * axis);
-    center = p + times_four(own, link.com[0], link.com[1], link.com[2]);
-    store_three(bodies.com + 3 * i, center);
-    sum += link.mass * center;
+      sum += place_body<2>(link, joints[i], R, p, frames[i], bodies, i);
   }
   store_three(moment, sum);
 }
@@ -104,11 +119,14 @@ inline Columns about_origin(const Link& link, const double* rotation, const Four
   return I;
 }
 
-// Of a column and one of lower rank, or of two that are the same.
-inline void add_entry(const Layout& at, double* M, int a, int b, double value) {
-  const bool swap = at.rank[a] < at.rank[b];
-  M[at.row[swap ? b : a] + at.entry[swap ? a : b]] += value;
-  if (at.both && a != b) M[at.row[swap ? a : b] + at.entry[swap ? b : a]] += value;
+// Of a column and one of another rank, or of two that are the same; without ties the column of
+// the body further out is the one of higher rank, and nothing comes twice.
+template <bool kTied>
+inline void put_entry(const Layout& at, double* M, int a, int b, double value) {
+  const bool swap = kTied && at.rank[a] < at.rank[b];
+  double& entry = M[at.row[swap ? b : a] + at.entry[swap ? a : b]];
+  entry = kTied ? entry + value : value;
+  if (at.both && (!kTied || a != b)) M[at.row[swap ? a : b] + at.entry[swap ? b : a]] = entry;
 }
 
 // What a unit rate of each joint moves, and each body's own inertia.
@@ -134,35 +152,52 @@ inline void base_entries(const Subtree& root, double mass, const Layout& at, dou
   const Four& h = root.h;
   const double crossed[3][3] = {{0, -h[2], h[1]}, {h[2], 0, -h[0]}, {-h[1], h[0], 0}};
   for (int k = 0; k < 3; ++k) {
-    add_entry(at, M, k, k, mass);
-    for (int j = 0; j < 3; ++j) add_entry(at, M, 3 + k, j, crossed[k][j]);
-    for (int j = 0; j <= k; ++j) add_entry(at, M, 3 + k, 3 + j, root.I.c[j][k]);
+    put_entry<false>(at, M, k, k, mass);
+    for (int j = 0; j < 3; ++j) put_entry<false>(at, M, 3 + k, j, crossed[k][j]);
+    for (int j = 0; j <= k; ++j) put_entry<false>(at, M, 3 + k, 3 + j, root.I.c[j][k]);
   }
 }
 
-// The mass matrix, added to zeros.
+template <bool kTied>
+inline void put_columns(const Tree& tree, const Subtree* subtrees, int i, const Layout& at,
+                        double* M) {
+  const Link& link = tree.links[i];
+  const Subtree& t = subtrees[i];
+  Four linear = link.subtree_mass * t.v + cross_four(t.w, t.h);
+  Four angular = times_four(t.I, t.w) + cross_four(t.h, t.v);
+  const int column = 6 + link.dof;
+  for (int j = i; j > 0; j = tree.links[j].parent) {
+    const double value = sum_of_three(subtrees[j].v * linear + subtrees[j].w * angular);
+    const int other = 6 + tree.links[j].dof;
+    put_entry<kTied>(at, M, column, other, kTied && j != i && other == column ? 2 * value : value);
+  }
+  double* row = M + at.row[column];
+  if (kTied) {
+    linear += load_three(row);
+    angular += load_three(row + 3);
+  }
+  store_three(row, linear);
+  store_three(row + 3, angular);
+  if (!at.both) return;
+  double* across = M + at.entry[column];
+  for (int k = 0; k < 3; ++k) {
+    across[at.row[k]] = linear[k];
+    across[at.row[3 + k]] = angular[k];
+  }
+}
+
+// The mass matrix; what it leaves out is zero before.
 void mass_entries(const Tree& tree, const Bodies& bodies, const Layout& at, double* M) {
   auto* subtrees = reinterpret_cast<Subtree*>(bodies.scratch);
   start_subtrees(tree, bodies, subtrees);
+  const bool tied = tree.count != tree.dofs + 1;
   for (int i = tree.count - 1; i > 0; --i) {
-    const Link& link = tree.links[i];
+    if (tied)
+      put_columns<true>(tree, subtrees, i, at, M);
+    else
+      put_columns<false>(tree, subtrees, i, at, M);
     const Subtree& t = subtrees[i];
-    const Four linear = link.subtree_mass * t.v + cross_four(t.w, t.h);
-    const Four angular = times_four(t.I, t.w) + cross_four(t.h, t.v);
-    const int column = 6 + link.dof;
-    double* row = M + at.row[column];
-    row[at.entry[column]] += dot_four(t.v, linear) + dot_four(t.w, angular);
-    store_three(row, load_three(row) + linear);
-    store_three(row + 3, load_three(row + 3) + angular);
-    if (at.both)
-      for (int k = 0; k < 6; ++k) M[at.row[k] + at.entry[column]] = row[k];
-    for (int j = link.parent; j > 0; j = tree.links[j].parent) {
-      const Four both = subtrees[j].v * linear + subtrees[j].w * angular;
-      const double value = (both[0] + both[1]) + both[2];
-      const int other = 6 + tree.links[j].dof;
-      add_entry(at, M, column, other, other == column ? 2 * value : value);
-    }
-    Subtree& p = subtrees[link.parent];
+    Subtree& p = subtrees[tree.links[i].parent];
     for (int k = 0; k < 3; ++k) p.I.c[k] += t.I.c[k];
     p.h += t.h;
   }
