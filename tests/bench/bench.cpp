@@ -86,6 +86,7 @@ Kernels all_kernels(const Problem& problem) {
   Kernels all = ayumi_kernels(problem);
   for (auto* find : {mujoco_kernels, dart_kernels, bullet_kernels, pinocchio_kernels, rbdl_kernels})
     for (Kernel& kernel : find(problem)) all.push_back(std::move(kernel));
+  for (Kernel& kernel : tick_kernels()) all.push_back(std::move(kernel));
   return all;
 }
 

@@ -38,6 +38,8 @@ Kernels dart_kernels(const Problem& problem);
 Kernels bullet_kernels(const Problem& problem);
 Kernels pinocchio_kernels(const Problem& problem);
 Kernels rbdl_kernels(const Problem& problem);
+/// A tick of the closed loop on the walking pattern, from the run's start, by plant.
+Kernels tick_kernels();
 
 /// Base parts differ between libraries (axes, order), joint parts do not.
 inline Eigen::VectorXd joint_part(const Eigen::VectorXd& v) { return v.tail(v.size() - 6); }

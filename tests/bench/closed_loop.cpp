@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/robot_file.hpp"
@@ -92,27 +93,60 @@ void report(const Contender& c, const Contender& ours, double dt) {
       residual, 1e3 * r.final_cog_error);
 }
 
+/// The walk in the closed loop.
+struct Walk {
+  Walk() {
+    options.controller = pattern.controller;
+    options.world = pattern.world;
+  }
+  RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
+  CommandSeries series = sample(model, pattern);
+  SimulateOptions options;
+};
+
+Kernel tick_of(const std::string& name, const PlantKind& kind) {
+  struct Run : Walk {
+    std::optional<Simulator> simulator;
+  };
+  const auto made = std::make_shared<std::optional<Run>>();  // only when it is asked for
+  return {"walking tick",
+          name,
+          "closed loop, without the log",
+          [made, kind](size_t) {
+            if (!*made) made->emplace().options.plant = kind;
+            Run* run = &**made;
+            if (run->simulator && run->simulator->advance(1)) return;
+            run->simulator.emplace(run->model, run->series, run->options);
+            run->simulator->keep_samples(false);
+          },
+          {}};
+}
+
 }  // namespace
 
+Kernels tick_kernels() {
+  Kernels kernels = {tick_of("Ayumi", {})};
+#ifdef BENCH_HAS_MUJOCO
+  kernels.push_back(tick_of("MuJoCo", mujoco_plant_kind()));
+#endif
+  return kernels;
+}
+
 int run_closed_loop(int rounds) {
-  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
-  const CommandSeries series = sample(model, pattern);
-  SimulateOptions options;
-  options.controller = pattern.controller;
-  options.world = pattern.world;
+  const Walk walk;
   std::vector<Contender> contenders;
   contenders.push_back({"Ayumi", {}});
 #ifdef BENCH_HAS_MUJOCO
   contenders.push_back({"MuJoCo", mujoco_plant_kind()});
 #endif
   for (int round = 0; round < rounds; ++round)
-    for (Contender& each : contenders) run_once(model, series, options, each);
+    for (Contender& each : contenders) run_once(walk.model, walk.series, walk.options, each);
   std::printf("hoap1_walk.json with its controller, least time of each step in %d rounds\n",
               rounds);
   std::printf("%-8s %9s %9s %9s %7s %7s\n", "plant", "loop us", "plant us", "real time", "loop",
               "plant");
-  for (const Contender& each : contenders) report(each, contenders.front(), series.dt);
+  for (const Contender& each : contenders) report(each, contenders.front(), walk.series.dt);
   return 0;
 }
 
