@@ -30,24 +30,23 @@ async function call(method, path, body) {
   return value;
 }
 
-async function open(javascript, dark) {
-  const prefs = javascript ? {} : { "profile.managed_default_content_settings.javascript": 2 };
+async function open() {
   const args = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1100,900",
     "--enable-unsafe-swiftshader", "--use-angle=swiftshader"];
-  if (dark) args.push("--force-dark-mode", "--blink-settings=preferredColorScheme=0");
   const { sessionId } = await call("POST", "", { capabilities: { alwaysMatch: {
-    browserName: "chrome", "goog:chromeOptions": { args, prefs },
+    browserName: "chrome", "goog:chromeOptions": { args },
     "goog:loggingPrefs": { browser: "ALL", performance: "ALL" } } } });
   const run = (script, ...args) => call("POST", `/${sessionId}/execute/sync`, { script, args });
-  await call("POST", `/${sessionId}/url`, { url: pathToFileURL(page).href });
-  return { id: sessionId, run, log: (type) => call("POST", `/${sessionId}/se/log`, { type }),
+  const load = () => call("POST", `/${sessionId}/url`, { url: pathToFileURL(page).href });
+  const tool = (cmd, params) => call("POST", `/${sessionId}/goog/cdp/execute`, { cmd, params });
+  return { id: sessionId, run, load, tool, log: (type) => call("POST", `/${sessionId}/se/log`, { type }),
     end: () => call("DELETE", `/${sessionId}`),
     shoot: async (name) => { if (shot) writeFileSync(shot + name,
       Buffer.from(await call("GET", `/${sessionId}/screenshot`), "base64")); } };
 }
 
-async function withScript() {
-  const tab = await open(true, false);
+async function withScript(tab) {
+  await tab.load();
   let state;
   for (let i = 0; i < 300 && !state; ++i) {
     state = await tab.run("return document.documentElement.dataset.replay");
@@ -123,11 +122,16 @@ async function withScript() {
     .filter((m) => m.method === "Network.requestWillBeSent").map((m) => m.params.request.url)
     .filter((url) => !/^(data|blob|about|chrome):/.test(url) && url !== pathToFileURL(page).href);
   expect(requests.length === 0, "requests: " + requests.join(" "));
-  await tab.end();
 }
 
-async function withoutScript() {
-  const tab = await open(false, true);
+/// The page with its scripts held back, as a dark one.
+async function withoutScript(tab) {
+  await tab.tool("Emulation.setScriptExecutionDisabled", { value: true });
+  await tab.tool("Emulation.setEmulatedMedia", { features: [
+    { name: "prefers-color-scheme", value: "dark" }] });
+  await tab.load();
+  const replay = await tab.run("return document.documentElement.dataset.replay || 'none'");
+  expect(replay === "none", "scripts are held back: " + replay);
   await tab.shoot("dark.png");
   const seen = await tab.run(`
     const visible = (id) => { const e = document.getElementById(id);
@@ -139,12 +143,15 @@ async function withoutScript() {
   expect(/stands|falls|rest/.test(seen.verdict), "without scripts the verdict: " + seen.verdict);
   expect(!seen.controls, "without scripts the controls are hidden");
   expect(seen.loci && seen.picture > 0, "without scripts plots and picture are there");
-  await tab.end();
+  const light = seen.ground.match(/\d+/g).map(Number);
+  expect(Math.max(...light) < 60, "the dark page is dark: " + seen.ground);
 }
 
 try {
-  await withScript();
-  await withoutScript();
+  const tab = await open();
+  await withScript(tab);
+  await withoutScript(tab);
+  await tab.end();
 } catch (error) {
   expect(false, error.message);
 }

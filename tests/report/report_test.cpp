@@ -33,10 +33,16 @@ struct Made {
   }
 };
 
+/// The page of Made, made once for all tests that only read it.
+const Report& whole_page() {
+  static const Made made;
+  static const Report report = make_report(made.model, made.input);
+  return report;
+}
+
 TEST(Report, SaysTheVerdictFirst) {
   Made made;
-  const Report report = make_report(made.model, made.input);
-  const std::string& html = report.html;
+  const std::string& html = whole_page().html;
   const size_t verdict = html.find(
       "The closed loop (dtad) <span class=\"good\">stands</span>, "
       "pushed with 0.4 N s at 0.3 s.");
@@ -69,12 +75,11 @@ TEST(Report, ShowsFindingsRepairAndThresholds) {
 
 TEST(Report, KeepsItsSizeAndSaysWhatItLeftOut) {
   Made made;
-  const Report whole = make_report(made.model, made.input);
   ReportOptions small;
   small.max_bytes = 400'000;
   const Report less = make_report(made.model, made.input, small);
   EXPECT_LE(less.html.size(), small.max_bytes);
-  EXPECT_LT(less.html.size(), whole.html.size());
+  EXPECT_LT(less.html.size(), whole_page().html.size());
   ASSERT_FALSE(less.caps.empty());
   for (const std::string& cap : less.caps)
     EXPECT_NE(less.html.find(html::escaped(cap)), std::string::npos) << cap;
@@ -97,9 +102,8 @@ TEST(Report, LoadsAndReplaysInABrowser) {
   if (!has_replay()) GTEST_SKIP() << "built without npm: there is no replay to try";
   if (std::string(AYUMI_CHROMEDRIVER).empty())
     GTEST_SKIP() << "chromium-driver is not installed: the page is not tried in a browser";
-  Made made;
   const Folder folder;
-  write(folder / "report.html", make_report(made.model, made.input).html);
+  write(folder / "report.html", whole_page().html);
   const Output said = run_program(
       {AYUMI_SOURCE_DIR "/tests/report/browser.mjs", AYUMI_CHROMEDRIVER, folder / "report.html"},
       folder.path(), AYUMI_NODE);

@@ -201,6 +201,9 @@ void write_folder(const fs::path& path, const std::function<void(const fs::path&
     fs::remove_all(temporary, ignored);
     fail(ErrorCode::bad_file,
          path.string() + ": cannot be written (" + error.code().message() + ")");
+  } catch (const Error& error) {
+    fs::remove_all(temporary, ignored);
+    fail(error.code(), with_name(error.what(), temporary.string(), path.string()));
   } catch (...) {
     fs::remove_all(temporary, ignored);
     throw;

@@ -2,9 +2,9 @@
 // quantities, one time for the scene, the scrub bar and the cursors in the plots.
 
 import {
-  AmbientLight, AnimationMixer, ArrowHelper, BufferAttribute, BufferGeometry, CircleGeometry, Color,
-  CylinderGeometry, DirectionalLight, DoubleSide, GridHelper, Group, HemisphereLight, Line, LineBasicMaterial,
-  LineLoop, LoopOnce, Mesh, MeshBasicMaterial, MeshLambertMaterial, PCFShadowMap, PerspectiveCamera,
+  AmbientLight, AnimationMixer, BufferAttribute, BufferGeometry, CircleGeometry, Color,
+  CylinderGeometry, DirectionalLight, DoubleSide, Group, HemisphereLight, Line, LineBasicMaterial,
+  LineLoop, LineSegments, LoopOnce, Mesh, MeshBasicMaterial, MeshLambertMaterial, PCFShadowMap, PerspectiveCamera,
   PlaneGeometry, Quaternion, RingGeometry, Scene, ShadowMaterial, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -40,13 +40,26 @@ function disc(inner, outer, color) {
   return mark;
 }
 
+/// Along its own y axis, from 0 to 1 when its length is 1.
 function arrow(color) {
-  const mark = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, color);
-  for (const part of [mark.line, mark.cone]) {
-    part.material.depthTest = false;
-    part.renderOrder = 4;
-  }
-  return mark;
+  const material = new MeshBasicMaterial({ color, depthTest: false, transparent: true });
+  const shaft = new Mesh(new CylinderGeometry(1, 1, 1, 12).translate(0, 0.5, 0), material);
+  const head = new Mesh(new CylinderGeometry(0, 1, 1, 16).translate(0, -0.5, 0), material);
+  const mark = new Group().add(shaft, head);
+  for (const part of [shaft, head]) part.renderOrder = 4;
+  return Object.assign(mark, { shaft, head });
+}
+
+/// Lines of a grid over -reach..reach, cut at every crossing: some renderers lose a line that
+/// begins behind the eye, and then only its nearest piece goes.
+function grid(reach, spacing, color) {
+  const ends = [], count = Math.round(reach / spacing);
+  const cuts = Array.from({ length: 2 * count + 1 }, (_, i) => (i - count) * spacing);
+  for (const a of cuts)
+    for (let i = 0; i + 1 < cuts.length; ++i)
+      ends.push(a, cuts[i], 0, a, cuts[i + 1], 0, cuts[i], a, 0, cuts[i + 1], a, 0);
+  return new LineSegments(new BufferGeometry().setAttribute("position",
+    new BufferAttribute(new Float32Array(ends), 3)), new LineBasicMaterial({ color }));
 }
 
 function makeMarks(size) {
@@ -108,10 +121,12 @@ function point(mark, from, force, scale) {
   const length = force.length() * scale;
   mark.visible = length > 1e-3;
   if (!mark.visible) return;
+  const head = Math.min(0.4 * length, 0.055 * config.height), thin = 0.006 * config.height;
   mark.position.copy(from);
-  mark.setDirection(force.clone().normalize());
-  mark.setLength(length, Math.min(0.3 * length, 0.06 * config.height),
-    Math.min(0.15 * length, 0.03 * config.height));
+  mark.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), force.clone().normalize());
+  mark.shaft.scale.set(thin, length - head, thin);
+  mark.head.position.y = length;
+  mark.head.scale.set(0.4 * head, head, 0.4 * head);
 }
 
 /// Names may be changed on loading; the number of the body is not.
@@ -160,12 +175,11 @@ class Replay {
   /// Grid, what stands on it and what comes up from it, in the floor's frame.
   ground() {
     const ground = this.floor = new Group(), plane = new Group();
-    const fine = new GridHelper(6, 60, 0x9aa0a8, 0xb4bac2), bold = new GridHelper(20, 20, 0x6c737c,
-      0x7b828b);
-    for (const grid of [fine, bold]) grid.rotation.x = Math.PI / 2;
+    this.grid = new Group().add(grid(3, 0.1, 0xb4bac2), grid(10, 1, 0x747b84));
     const floor = new Mesh(new PlaneGeometry(40, 40), new ShadowMaterial({ opacity: 0.3 }));
     floor.receiveShadow = true;
-    plane.add(fine, bold, floor);
+    this.grid.add(floor);
+    plane.add(this.grid);
     plane.position.z = config.ground_height;
     ground.add(plane);
     const solid = (geometry, material) => {
@@ -199,6 +213,9 @@ class Replay {
     const { position, quaternion } = floorAt(row);
     this.floor.position.copy(position);
     this.floor.quaternion.copy(quaternion);
+    // The grid comes along in steps that do not show.
+    const under = vector("cog", row).sub(position).applyQuaternion(quaternion.clone().invert());
+    this.grid.position.set(Math.round(under.x), Math.round(under.y), 0);
     for (const { mesh, begin, end, rise } of this.bumps) {
       const share = Math.min(1, Math.max(0, (this.time - begin) / rise));
       mesh.visible = share > 0 && this.time < end;
