@@ -5,9 +5,11 @@
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot_file.hpp"
@@ -122,8 +124,8 @@ void memory(benchmark::State& run) {
   run.counters["peak_MB"] = double(used.ru_maxrss) / 1024;
 }
 BENCHMARK(memory)
-    ->Arg(1)
-    ->Arg(8)
+    ->Arg(2)
+    ->Arg(19)
     ->Iterations(1)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
@@ -247,7 +249,42 @@ BENCHMARK(mujoco_frame)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()-
 
 #endif
 
+/// Says at the end how the median frames compare.
+class WithRatio : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs)
+      if (run.run_type == Run::RT_Iteration)
+        times_[run.run_name.function_name + "/" + run.run_name.args].push_back(
+            run.GetAdjustedCPUTime());
+    ConsoleReporter::ReportRuns(runs);
+  }
+  void Finalize() override {
+    const double peer = median("mujoco_frame/"), plain = median("frame/plain/"),
+                 quality = median("frame/antialiased/");
+    if (plain <= 0) return;
+    std::printf("\n1280x720 with shadow, median processor time per frame: %.1f ms", plain);
+    if (quality > 0) std::printf(", antialiased %.1f ms", quality);
+    if (peer > 0) std::printf("; MuJoCo %.1f ms: %.2f times Ayumi's", peer, peer / plain);
+    std::printf("\n");
+  }
+
+ private:
+  double median(const std::string& name) {
+    std::vector<double>& all = times_[name];
+    std::sort(all.begin(), all.end());
+    return all.empty() ? 0 : all[all.size() / 2];
+  }
+  std::map<std::string, std::vector<double>> times_;
+};
+
 }  // namespace
 }  // namespace ayumi
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  ayumi::WithRatio reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return 0;
+}

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <functional>
 
 #include "ayumi/base/error.hpp"
@@ -163,6 +164,21 @@ TEST(BrokenRobot, WrongTrees) {
             std::string::npos);
   EXPECT_EQ(urdf_error(urdf(link("a") + "  <link/>\n")),
             "r.urdf:4: <link> has no attribute 'name'");
+}
+
+TEST(BrokenRobot, APackageAroundTheWorkingFolderIsFound) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "meshes");
+  folder.write("meshes/trunk.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string package = folder.path().filename().string();
+  folder.write(
+      "r.urdf",
+      urdf(link("trunk", std::string(kInertia) + "<visual><geometry><mesh filename=\"package://" +
+                             package + "/meshes/trunk.obj\"/></geometry></visual>")));
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  EXPECT_NO_THROW(load_robot("r.urdf", {}, {.meshes = true}));
+  std::filesystem::current_path(before);
 }
 
 TEST(BrokenRobot, WrongMeshes) {

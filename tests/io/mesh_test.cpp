@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <sstream>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/robot_file.hpp"
@@ -89,6 +90,31 @@ TEST(Mesh, ReadsBinaryStlAndRefusesACutOne) {
   EXPECT_THROW(load_mesh(folder.write("b.stl", bytes.substr(0, 100))), Error);
   bytes[83] = 127;  // claims two thousand million triangles
   EXPECT_THROW(load_mesh(folder.write("c.stl", bytes)), Error);
+}
+
+TEST(Mesh, AnStlWithoutNormalsKeepsItsEdges) {
+  // Two squares at a right angle; the file says 0 0 0 for every normal.
+  std::string words = "solid corner\n";
+  for (const char* facet : {"0 0 0  1 0 0  1 1 0", "0 0 0  1 1 0  0 1 0", "0 0 0  0 1 0  0 1 1",
+                            "0 0 0  0 1 1  0 0 1"}) {
+    std::istringstream places(facet);
+    words += "facet normal 0 0 0\nouter loop\n";
+    for (std::string x, y, z; places >> x >> y >> z;)
+      words += "vertex " + x + " " + y + " " + z + "\n";
+    words += "endloop\nendfacet\n";
+  }
+  const TemporaryFolder folder;
+  const TriangleMesh mesh = load_mesh(folder.write("a.stl", words + "endsolid corner\n"));
+  ASSERT_EQ(mesh.parts.size(), 1u);
+  const MeshPart& part = mesh.parts[0];
+  ASSERT_EQ(part.triangles.size(), 4u);
+  for (const auto& triangle : part.triangles) {
+    const Eigen::Vector3f face = (part.vertices[triangle[1]] - part.vertices[triangle[0]])
+                                     .cross(part.vertices[triangle[2]] - part.vertices[triangle[0]])
+                                     .normalized();
+    for (const std::uint32_t corner : triangle)
+      EXPECT_NEAR(part.normals[corner].dot(face), 1, 1e-5) << "not rounded over the edge";
+  }
 }
 
 TEST(Mesh, AppliesColladaUnitsAndIgnoresItsUpAxis) {

@@ -283,7 +283,10 @@ Image ClipRenderer::finished(const Scene& scene, const Overlay& overlay, double 
                              .anchor = TextAnchor::center,
                              .color = {0.45f, 0.08f, 0.33f, opacity},
                              .plate = {1, 1, 1, 0.75f * opacity}};
-    if (at.z() > 0) draw_text(image, at.x(), at.y(), label.text, style);
+    // Between the lines of text above and below.
+    const double y = std::clamp(at.y(), std::min(2.6 * size, 0.5 * image.height),
+                                std::max(image.height - 2.6 * size, 0.5 * image.height));
+    if (at.z() > 0) draw_text(image, at.x(), y, label.text, style);
   }
   if (options_.overlay.caption) write_caption(image, t);
   return image;

@@ -63,6 +63,19 @@ GlMesh Gl::make_mesh() const {
   return mesh;
 }
 
+GlMesh Gl::make_square() const {
+  GlMesh square;
+  GenVertexArrays(1, &square.array);
+  BindVertexArray(square.array);
+  GenBuffers(1, &square.vertices);
+  BindBuffer(GL_ARRAY_BUFFER, square.vertices);
+  const float corners[] = {-1, -1, 1, -1, -1, 1, 1, 1};
+  BufferData(GL_ARRAY_BUFFER, sizeof corners, corners, GL_STATIC_DRAW);
+  EnableVertexAttribArray(0);
+  VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+  return square;
+}
+
 GLuint Gl::make_texture(const std::vector<std::uint8_t>& rgba, int width, int height) const {
   GLuint texture = 0;
   GenTextures(1, &texture);

@@ -100,6 +100,8 @@ struct Gl {
   /// A picture to be put on surfaces, repeated beyond its edges.
   GLuint make_texture(const std::vector<std::uint8_t>& rgba, int width, int height) const;
   GlMesh make_mesh() const;
+  /// A strip of two triangles over -1..1, places alone.
+  GlMesh make_square() const;
   void fill(const GlMesh& mesh, const Triangles& triangles, GLenum usage) const;
   /// `samples` per pixel, 0 for one without resolving. Throws Error(internal) where refused.
   GlTarget make_target(int width, int height, int samples, GLenum format, bool depth) const;

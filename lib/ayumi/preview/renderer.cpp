@@ -8,6 +8,7 @@
 #include "ayumi/preview/gl.hpp"
 #include "ayumi/preview/ground_plane.hpp"
 #include "ayumi/preview/shaders.hpp"
+#include "ayumi/preview/simplify.hpp"
 #include "ayumi/preview/texture.hpp"
 
 // Order of a frame: the robot's shadow as coverage seen along the sun, read
@@ -23,9 +24,10 @@ using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
 constexpr int kShadowSize = 256;
-constexpr int kShadowBlur = 2;  // radius of the box
+constexpr int kShadowBlur = 2;             // radius of the box
+constexpr size_t kShadowTriangles = 4000;  // finer ones do not show in it
 constexpr int kSamples = 4;
-constexpr float kHorizon[3] = {0.74f, 0.77f, 0.80f};
+constexpr float kHorizon[3] = {0.877f, 0.893f, 0.907f};  // sRGB
 
 const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
 
@@ -47,8 +49,9 @@ struct Renderer::Parts {
   OffscreenContext context;
   Gl gl;
   GLuint solid, textured, standing, ground, sky, flat, shadow;
-  GlMesh robot, overlay, scenery, bumps, square;
+  GlMesh robot, caster, overlay, scenery, bumps, square;
   std::vector<BodyRanges> ranges;
+  std::vector<IndexRange> caster_ranges;   // by body: what throws the shadow
   std::vector<Eigen::AlignedBox3d> boxes;  // of each body, body frame
   std::vector<std::string> notes;
   GlTarget drawn, resolved, flattened;
@@ -87,6 +90,7 @@ Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOpti
   ground = gl.link(kGroundVertex, kGroundFragment, area);
   shadow = gl.link(kGroundVertex, kShadowFragment, area);
   robot = gl.make_mesh();
+  caster = gl.make_mesh();
   overlay = gl.make_mesh();
   scenery = gl.make_mesh();
   bumps = gl.make_mesh();
@@ -95,14 +99,7 @@ Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOpti
   all_scenery.count = static_cast<GLsizei>(on_floor.triangles.indices.size());
   if (!on_floor.hole.isEmpty())
     hole << on_floor.hole.min().cast<float>(), on_floor.hole.max().cast<float>();
-  gl.GenVertexArrays(1, &square.array);
-  gl.BindVertexArray(square.array);
-  gl.GenBuffers(1, &square.vertices);
-  gl.BindBuffer(GL_ARRAY_BUFFER, square.vertices);
-  const float corners[] = {-1, -1, 1, -1, -1, 1, 1, 1};
-  gl.BufferData(GL_ARRAY_BUFFER, sizeof corners, corners, GL_STATIC_DRAW);
-  gl.EnableVertexAttribArray(0);
-  gl.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+  square = gl.make_square();
   drawn = gl.make_target(options.width, options.height, options.antialias ? kSamples : 0, GL_RGBA8,
                          true);
   if (options.antialias)
@@ -142,6 +139,16 @@ void Renderer::Parts::upload(const std::vector<BodySurface>& surface) {
     boxes.push_back(box);
   }
   gl.fill(robot, welded(all), GL_STATIC_DRAW);
+  std::vector<BodySurface> coarse = surface;
+  simplify(coarse, kShadowTriangles);
+  all = {};
+  for (const BodySurface& body : coarse) {
+    const size_t first = all.indices.size();
+    for (const Triangles* part : parts_of(body)) append(all, *part);
+    caster_ranges.push_back({static_cast<GLsizei>(all.indices.size() - first), first});
+  }
+  for (RenderVertex& vertex : all.vertices) vertex = {vertex.position, {0, 0, 0}, {}, {0, 0}};
+  gl.fill(caster, welded(all), GL_STATIC_DRAW);
 }
 
 Eigen::AlignedBox3d Renderer::Parts::bounds_of(const std::vector<Eigen::Isometry3d>& poses) const {
@@ -160,12 +167,11 @@ void Renderer::Parts::draw_coverage(const Scene& scene, const Eigen::Matrix4d& f
   gl.ClearColor(0, 0, 0, 0);
   gl.Clear(GL_COLOR_BUFFER_BIT);
   gl.UseProgram(flat);
-  gl.BindVertexArray(robot.array);
-  for (size_t i = 0; i < ranges.size(); ++i) {
+  gl.BindVertexArray(caster.array);
+  for (size_t i = 0; i < caster_ranges.size(); ++i) {
+    if (!caster_ranges[i].count) continue;
     gl.set(flat, "flatten", Matrix4f((flatten * scene.poses[i].matrix()).cast<float>()));
-    gl.draw(ranges[i].closed);
-    gl.draw(ranges[i].open);
-    for (const auto& [range, texture] : ranges[i].textured) gl.draw(range);
+    gl.draw(caster_ranges[i]);
   }
   std::vector<std::uint8_t> cover(size_t(kShadowSize) * kShadowSize);
   gl.ReadPixels(0, 0, kShadowSize, kShadowSize, GL_RED, GL_UNSIGNED_BYTE, cover.data());

@@ -1,5 +1,6 @@
 #pragma once
-// The renderer's shader programs (GLSL 3.30). Colours are linear inside, sRGB at the end.
+// The renderer's shader programs (GLSL 3.30). Colours are linear inside, sRGB at the end; those of
+// ground and sky are sRGB throughout.
 
 namespace ayumi::shaders {
 
@@ -101,7 +102,9 @@ void main() {
   vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.62, 0.65, 0.70), 0.5 + 0.5 * dot(n, up));
   float shine = max(dot(n, normalize(v + sun)), 0.0);
   shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;
-  vec3 lit = own_color.rgb * (0.62 * ambient + 0.72 * direct) + 0.10 * shine * direct;
+  // What is black still mirrors a little of the sky.
+  vec3 lit = own_color.rgb * (0.62 * ambient + 0.72 * direct) + 0.015 * ambient +
+             0.10 * shine * direct;
   pixel = vec4(to_srgb(size < 1e-6 ? own_color.rgb : lit), own_color.a * opacity);
 }
 )";
@@ -136,22 +139,28 @@ uniform vec2 center;
 uniform float fade;
 uniform vec3 horizon;
 out vec4 pixel;
-float grid(vec2 p, vec2 footprint, float spacing, float width) {
-  vec2 away = abs(fract(p / spacing - 0.5) - 0.5) * spacing;
-  vec2 wide = max(vec2(width), footprint);
-  vec2 cover = clamp(0.5 + (0.5 * wide - away) / footprint, 0.0, 1.0) * (width / wide);
-  cover = mix(cover, vec2(width / spacing), smoothstep(0.3, 0.8, footprint / spacing));
+// Share of a pixel that lines of a spacing cover; far away, where they run together, their mean.
+float grid(vec2 p, vec2 footprint, vec2 sharpness, float spacing, float width) {
+  vec2 q = p * (1.0 / spacing);
+  vec2 away = abs(q - floor(q + 0.5)) * spacing;
+  vec2 cover = clamp(0.5 + (0.5 * max(vec2(width), footprint) - away) * sharpness, 0.0, 1.0) *
+               min(width * sharpness, 1.0);
+  cover = mix(cover, vec2(width / spacing), clamp(footprint * (2.0 / spacing) - 0.6, 0.0, 1.0));
   return max(cover.x, cover.y);
 }
+// Colours are sRGB here: a root per pixel of the whole picture would cost more than all the rest.
 void main() {
   vec2 footprint = max(fwidth(plane), vec2(1e-6));
+  vec2 sharpness = 1.0 / footprint;
   if (!outside(plane)) discard;
-  vec3 color = vec3(0.60, 0.605, 0.60);
-  color = mix(color, vec3(0.36, 0.37, 0.38), 0.55 * grid(plane, footprint, 0.1, 0.0022));
-  color = mix(color, vec3(0.20, 0.21, 0.23), 0.80 * grid(plane, footprint, 1.0, 0.006));
-  vec2 d = (plane - center) / fade;
-  float haze = 1.0 - 1.0 / (1.0 + dot(d, d) * dot(d, d));
-  pixel = vec4(to_srgb(mix(color, horizon, haze)), 1.0);
+  vec3 color = vec3(0.798, 0.801, 0.798);
+  color = mix(color, vec3(0.646, 0.653, 0.659),
+              0.55 * grid(plane, footprint, sharpness, 0.1, 0.0022));
+  color = mix(color, vec3(0.508, 0.518, 0.535),
+              0.80 * grid(plane, footprint, sharpness, 1.0, 0.006));
+  vec2 d = (plane - center) * (1.0 / fade);
+  float near = 1.0 / (1.0 + dot(d, d) * dot(d, d));
+  pixel = vec4(mix(horizon, color, near), 1.0);
 }
 )";
 
@@ -170,8 +179,8 @@ uniform vec3 horizon;
 uniform float horizon_height;
 out vec4 pixel;
 void main() {
-  vec3 zenith = vec3(0.50, 0.60, 0.72);
-  pixel = vec4(to_srgb(mix(horizon, zenith, clamp(height - horizon_height, 0.0, 1.0))), 1.0);
+  vec3 zenith = vec3(0.735, 0.798, 0.867);
+  pixel = vec4(mix(horizon, zenith, clamp(height - horizon_height, 0.0, 1.0)), 1.0);
 }
 )";
 
