@@ -24,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMostTriangles = 5'000'000;
-constexpr float kCreaseAngle = 40.0f;  // [deg] sharper edges keep separate normals
+constexpr size_t kLargeStl = 20'000'000;  // bytes, 400,000 facets
+constexpr float kCreaseAngle = 40.0f;     // [deg] sharper edges keep separate normals
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -206,7 +207,9 @@ TriangleMesh load_mesh(const fs::path& path, const Eigen::Vector3d& scale) {
     unsigned steps = aiProcess_Triangulate | aiProcess_GenSmoothNormals |
                      aiProcess_JoinIdenticalVertices | aiProcess_SortByPType;
     // STL has one normal per facet, often zero: round surfaces would look faceted, or edges round.
-    if (lower_extension(path) == ".stl") steps |= aiProcess_ForceGenNormals;
+    // Of very many facets neither shows, and assimp's search among them takes long.
+    if (lower_extension(path) == ".stl" && bytes.size() < kLargeStl)
+      steps |= aiProcess_ForceGenNormals;
     scene = importer.ReadFile(path.string(), steps);
     reason = importer.GetErrorString();
   } catch (const std::exception& error) {
