@@ -4,6 +4,7 @@
 // rest: a bounded motion anticipates by exp(-w t).
 #include "ayumi/pattern/generate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
@@ -28,7 +29,7 @@ constexpr double kStraightLeg = 0.97, kBentLeg = 0.94;
 constexpr double kStairClearance = 0.002;  // least of a sole from the next stair [m]
 constexpr double kStairSpare = 0.006;      // the default one
 constexpr double kStairHalfWidth = 1;      // of the leg's length
-constexpr double kStairLeg = 0.88;         // of the straight leg, between hip and sole of both feet
+constexpr double kStairLeg = 0.905;        // of the straight leg, between hip and sole of both feet
 
 // Of both ends, in units of 1/omega: the ZMP rests, then shifts onto the first foot.
 constexpr double kRest = 4.5, kShift = 2.6;
@@ -156,8 +157,8 @@ WalkParameters stair_defaults(const RobotModel& model, double rise) {
   p.rise = rise;
   p.steps = 3;
   p.stride = 1e-3 * std::ceil(1e3 * (sole.front + sole.back + 2 * kStairSpare));
-  p.period *= 1.6;
-  p.lift = to_tenth_millimetre(rise + 0.02 * size_beside_hoap1(model));
+  p.period = 0.05 * std::round(22 * p.period);
+  p.lift = to_tenth_millimetre(rise + 0.006 * size_beside_hoap1(model));
   RobotData data(model);
   update_positions(model, model.rest_state(), data);
   const Vector3d hip = data.pose(model.dofs()[model.leg(Side::left).front()].body).translation();
@@ -194,7 +195,11 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   Side swing = p.first_swing;
   const Side leading = p.side > 0 ? Side::left : Side::right;
   const int swings = p.rise != 0 ? 2 * p.steps : p.steps + 1;
-  if (p.rise != 0) pattern.world = stairs(model, p);
+  if (p.rise != 0) {
+    pattern.world = stairs(model, p);
+    // Between soles of two heights the height of the ZMP is a matter of convention.
+    pattern.tolerances["zmp_residual"] = to_tenth_millimetre(std::max(0.005, 0.6 * p.rise));
+  }
   for (int i = 0; i < swings; ++i) {
     const bool closing = i + 1 == swings;
     if (p.rise != 0) {
