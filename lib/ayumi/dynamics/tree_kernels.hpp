@@ -1,5 +1,5 @@
 #pragma once
-// Seam between TreeDynamics and its kernels, which are compiled once per instruction set. Nothing
+// Seam between the dynamics and their kernels, which are compiled once per instruction set. Nothing
 // here or behind it may use inline functions of other headers: the linker would be free to take
 // the copy made for the wider instruction set.
 

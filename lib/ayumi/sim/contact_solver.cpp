@@ -6,7 +6,8 @@
 // Sweeps find who is open, sticks or slides; one Newton step on all closed contacts together,
 //   stick: u = 0        slide: u_n = 0, l_t + mu l_n u_t/|u_t| = 0,
 // then lands on the answer, where sweeps alone would creep when many points share a stiff load. A
-// Newton step is kept only when the sweep after it moves less than the sweep before it did.
+// Newton step is kept only when the sweep after it moves less than the sweep before it did. One
+// from the last step's impulses comes first: mostly the sweep after it finds nothing to change.
 #include "ayumi/sim/contact_solver.hpp"
 
 #include <algorithm>
