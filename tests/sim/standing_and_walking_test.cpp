@@ -9,6 +9,7 @@
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/mirror.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi {
@@ -116,6 +117,32 @@ TEST_P(Walking, IsTheSameElsewhere) {
   for (SimulationSample& s : there.samples)
     s.cog = exp_rotation({0, 0, -yaw}) * Vector3d(s.cog - offset);
   EXPECT_LT(largest_difference(here, there), 1e-6);
+}
+
+// Robot, plan and world as a mirror shows them walk as the mirror shows the walk, pushed or not:
+// nothing in dynamics, contact or control knows left from right, nor the order of the contacts.
+TEST_P(Walking, IsTheSameInAMirror) {
+  const RobotModel image(test::mirrored(hoap1().description()));
+  for (const double push : {0.0, 0.5}) {
+    SimulateOptions options;
+    options.controller.type = GetParam();
+    if (push > 0) {
+      Disturbance d;
+      d.at = 1.9;
+      d.duration = 0.02;
+      d.magnitude = push;
+      d.direction = Vector3d(0.6, 0.8, 0);
+      options.scenario = {d};
+    }
+    const SimulationLog here = simulate(hoap1(), walk(), options);
+    for (Disturbance& d : options.scenario) d.direction = test::mirrored(d.direction);
+    const CommandSeries plan = test::mirrored(hoap1(), image, walk());
+    SimulationLog there = simulate(image, plan, options);
+    ASSERT_EQ(there.result.outcome, here.result.outcome);
+    ASSERT_EQ(here.samples.size(), there.samples.size());
+    for (SimulationSample& s : there.samples) s.cog = test::mirrored(s.cog);
+    EXPECT_LT(largest_difference(here, there), 1e-6) << push << " N s";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Controllers, Walking, testing::Values("none", "dtad"));

@@ -39,6 +39,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   Estimate& e = last_;
   for (int i = 0; i < 2; ++i) load_[i] += (first_ ? 1.0 : filter_) * (m.feet[i].fz - load_[i]);
   const double total = load_[0] + load_[1];
+  if (first_) e.stance = load_[0] >= load_[1] ? Side::left : Side::right;
   if (total > kContactShare * weight)
     for (Side side : {Side::left, Side::right})
       if (load_[static_cast<int>(side)] > kStanceShare * total) e.stance = side;
