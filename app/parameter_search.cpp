@@ -33,20 +33,23 @@ class Search {
     }
   }
 
-  // Steps of 5 % to both sides, then the gap before the first that passes in halves.
+  // Steps to both sides, wider and wider, then the gap before the first that passes in halves.
   bool nearest(const std::string& parameter, double given, double& passing) {
-    for (const double share : {0.05, 0.1, 0.2, 0.3, 0.4, 0.5})
+    double tried = 0;
+    for (const double share : {0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0}) {
       for (const double sign : {-1.0, 1.0}) {
-        double good = given * (1 + sign * share);
+        if (sign < 0 && share >= 1) continue;
+        double good = given * (1 + sign * share), bad = given * (1 + sign * tried);
         if (!passes(parameter, good)) continue;
-        double bad = given * (1 + sign * (share > 0.1 ? share - 0.1 : share - 0.05));
-        for (int i = 0; i < 3; ++i) {
+        for (int i = 0; i < 4; ++i) {
           const double middle = 0.5 * (good + bad);
           (passes(parameter, middle) ? good : bad) = middle;
         }
         passing = good;
         return true;
       }
+      tried = share;
+    }
     return false;
   }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iostream>
+#include <iterator>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -55,9 +57,16 @@ void check_scenario(const Pattern& pattern, const RobotModel& model) {
 
 }  // namespace
 
+Pattern read_given_pattern(const std::filesystem::path& file,
+                           const std::map<std::string, double>& set) {
+  if (file != "-") return read_pattern(file, set);
+  const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
+  return pattern_of_text(text, "standard input", set);
+}
+
 PatternInput load_pattern(const Context& context, const std::filesystem::path& file,
                           const PatternOptions& options, bool meshes) {
-  Pattern pattern = read_pattern(file, read_pairs(options.set, "--set"));
+  Pattern pattern = read_given_pattern(file, read_pairs(options.set, "--set"));
   RobotModel model = load_robot(robot_of(pattern), robot_search(context), {.meshes = meshes});
   check_scenario(pattern, model);
   const std::string wanted = options.profile.empty() ? pattern.profile : options.profile;

@@ -27,7 +27,13 @@ struct PatternInput {
   std::string profile;  ///< by name
 };
 
-/// Reads the pattern and its robot and samples it at the robot's servo period.
+/// The pattern of a file; `-` is standard input, what it names is then looked for in the working
+/// folder.
+Pattern read_given_pattern(const std::filesystem::path& file,
+                           const std::map<std::string, double>& set = {});
+
+/// Reads the pattern (as read_given_pattern) and its robot and samples it at the robot's servo
+/// period.
 PatternInput load_pattern(const Context& context, const std::filesystem::path& file,
                           const PatternOptions& options, bool meshes = false);
 

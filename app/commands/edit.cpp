@@ -1,4 +1,5 @@
-// Pattern surgery: bake, mirror, retime. The result is sampled and checked before it is written.
+// Pattern surgery: bake, mirror, retime, concat, blend, ramp. The result is sampled and checked
+// before it is written.
 
 #include "ayumi/pattern/edit.hpp"
 
@@ -24,6 +25,9 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string pattern, out;
+  std::vector<std::string> patterns;  // of concat and blend
+  double over = 0;                    // [s]
+  Ramps ramps;
   std::vector<std::string> tolerances;
   PatternOptions input;
   double scale = 0;
@@ -149,16 +153,61 @@ void retime(Context& context, const Options& options) {
                in_json(scale, before, force, result, found));
 }
 
+// Patterns one after the other; the table of what is joined so far is only in memory.
+void join(Context& context, const Options& options) {
+  if (options.patterns.size() < 2)
+    fail(ErrorCode::usage, "edit concat, edit blend: two patterns or more, in their order");
+  refuse_overwriting(context, options.out);
+  const std::string table = table_beside(options.out).string();
+  PatternInput input = load_pattern(context, options.patterns.front(), options.input);
+  Json joins = Json::array();
+  for (size_t i = 1; i < options.patterns.size(); ++i) {
+    const PatternInput next = load_pattern(context, options.patterns[i], options.input);
+    if (next.model.description().sha256 != input.model.description().sha256)
+      fail(ErrorCode::bad_pattern, options.patterns[i] + ": /robot: '" + next.pattern.robot +
+                                       "' is another robot than '" + input.pattern.robot + "' of " +
+                                       options.patterns.front());
+    joins.push_back(input.series.duration());
+    input.pattern = joined(input.model, {input.pattern, input.series}, {next.pattern, next.series},
+                           options.over, table);
+    input.series = sample(input.model, input.pattern, {.dt = input.series.dt}, context.progress());
+  }
+  write_edited(context, options, input.pattern,
+               check_edited(context, options, input, input.pattern), "", Json{{"joins_s", joins}});
+}
+
+void ramp(Context& context, const Options& options) {
+  if (options.ramps.in <= 0 && options.ramps.out <= 0)
+    fail(ErrorCode::usage, "edit ramp: one of --from and --back must be above 0");
+  const PatternInput input = load(context, options);
+  const Pattern edited = ramped(input.model, {input.pattern, input.series}, options.ramps,
+                                table_beside(options.out).string());
+  write_edited(context, options, edited, check_edited(context, options, input, edited), "",
+               Json{{"in_s", options.ramps.in}, {"out_s", options.ramps.out}});
+}
+
+void add_edit_options(CLI::App& command, Options& options) {
+  command.add_option("-o,--out", options.out, "pattern file to write")->required()->type_name("F");
+  command
+      .add_option("--tolerance", options.tolerances, "of one kind of finding, over the pattern's")
+      ->type_name("KIND=VALUE")
+      ->allow_extra_args(false);
+  add_pattern_options(command, options.input);
+}
+
+CLI::App& add_join_of(CLI::App& parent, const std::string& name, const std::string& what,
+                      Options& options) {
+  CLI::App* command = parent.add_subcommand(name, what);
+  command->add_option("PATTERN", options.patterns, "pattern files, in their order")->required();
+  add_edit_options(*command, options);
+  return *command;
+}
+
 CLI::App& add_edit_of(CLI::App& parent, const std::string& name, const std::string& what,
                       Options& options) {
   CLI::App* command = parent.add_subcommand(name, what);
   command->add_option("PATTERN", options.pattern, "pattern file")->required();
-  command->add_option("-o,--out", options.out, "pattern file to write")->required()->type_name("F");
-  command
-      ->add_option("--tolerance", options.tolerances, "of one kind of finding, over the pattern's")
-      ->type_name("KIND=VALUE")
-      ->allow_extra_args(false);
-  add_pattern_options(*command, options.input);
+  add_edit_options(*command, options);
   return *command;
 }
 
@@ -166,13 +215,18 @@ CLI::App& add_edit_of(CLI::App& parent, const std::string& name, const std::stri
 
 void add_edit(CLI::App& app, Context& context) {
   CLI::App* command =
-      app.add_subcommand("edit", "pattern surgery that re-checks the result: bake, mirror, retime");
+      app.add_subcommand("edit",
+                         "pattern surgery that re-checks the result: bake, mirror, retime, concat, "
+                         "blend, ramp");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  ayumi edit mirror walk.json -o mirrored.json\n"
       "  ayumi edit retime walk.json --scale 1.25 -o slower.json\n"
       "  ayumi edit retime walk.json --to-limits -o fastest.json\n"
-      "  ayumi edit bake walk.json -o baked.json");
+      "  ayumi edit bake walk.json -o baked.json\n"
+      "  ayumi edit concat step.json walk.json -o both.json\n"
+      "  ayumi edit blend squat.json sway.json --over 0.8 -o both.json\n"
+      "  ayumi edit ramp imported.json --from 1.5 --back 1.5 -o from_home.json");
   static Options options;
   add_edit_of(*command, "bake", "the motion as a dense table of theta, COG, ZMP, f_z and base",
               options)
@@ -180,6 +234,28 @@ void add_edit(CLI::App& app, Context& context) {
   add_edit_of(*command, "mirror", "left for right", options).callback([&context] {
     mirror(context, options);
   });
+  add_join_of(*command, "concat", "one after the other, without a pause", options)
+      .callback([&context] { join(context, options); });
+  CLI::App& blend_command =
+      add_join_of(*command, "blend", "one after the other, with a transition between", options);
+  blend_command.add_option("--over", options.over, "time of the transition [s]")
+      ->required()
+      ->check(CLI::Range(0.02, 60.0))
+      ->type_name("S");
+  blend_command.callback([&context] { join(context, options); });
+  CLI::App& ramp_command =
+      add_edit_of(*command, "ramp", "from a posture to the motion, and back at its end", options);
+  ramp_command.add_option("--from", options.ramps.in, "time of the way there [s]; 0: none")
+      ->check(CLI::Range(0.0, 60.0))
+      ->type_name("S")
+      ->capture_default_str();
+  ramp_command.add_option("--back", options.ramps.out, "time of the way back [s]; 0: none")
+      ->check(CLI::Range(0.0, 60.0))
+      ->type_name("S")
+      ->capture_default_str();
+  ramp_command.add_option("--posture", options.ramps.posture, "a posture of the pattern or robot")
+      ->type_name("NAME")
+      ->capture_default_str();
   CLI::App& retime_command =
       add_edit_of(*command, "retime", "the same motion in another time", options);
   retime_command.add_option("--scale", options.scale, "of the time: 0.8 is faster")

@@ -66,7 +66,7 @@ RobotModel robot_named(const ExportOptions& options, const std::string& recorded
 }
 
 Source source_of_pattern(const ExportOptions& options, const Context& context) {
-  const Pattern pattern = read_pattern(options.input, read_pairs(options.set, "--set"));
+  const Pattern pattern = read_given_pattern(options.input, read_pairs(options.set, "--set"));
   Source source{robot_named(options, robot_of(pattern), context), {}};
   const CommandSeries series = sample(source.model, pattern, {}, context.progress());
   source.reference = open_loop_reference(source.model, series);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern_file.hpp"
@@ -111,6 +112,9 @@ int exit_code_of(const RepairResult& result) {
 }
 
 void repair_pattern(Context& context, Options options) {
+  if (options.pattern == "-")
+    fail(ErrorCode::usage,
+         "repair writes the author's text with a correction over it: give the pattern as a file");
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
   const PatternInput input = load_pattern(context, options.pattern, options.input);
@@ -172,10 +176,12 @@ void add_repair(CLI::App& app, Context& context) {
   command->add_flag("--keep-partial", options.repair.keep_partial,
                     "after Ctrl-C or without success, write the motion that violates least");
   command->add_option("--plot", options.plot, "before and after, .svg or .png")->type_name("F");
-  command->add_option("--margin", options.repair.zmp_margin, "of the ZMP inside the support [m]")
+  command
+      ->add_option("--margin", options.repair.zmp_margin,
+                   "of the ZMP inside the support where the motion's own is too "
+                   "small [m]; left out: 0.6 of the sole's inner radius")
       ->check(CLI::Range(0.0, 0.1))
-      ->type_name("M")
-      ->capture_default_str();
+      ->type_name("M");
   command->add_option("--knots", options.repair.knot_spacing, "spacing of the correction [s]")
       ->check(CLI::Range(0.005, 1.0))
       ->type_name("S")

@@ -24,8 +24,7 @@ struct CheckPass {
     windows.add({kind, item, sample, severity, value, limit, excess, detail});
   }
 
-  /// Whether the differences that make the rates of sample k mix support and flight: acceleration
-  /// jumps there, and what it needs of the ground is not known.
+  /// That of contacts.hpp.
   bool at_flight_edge(int k) const;
 
   const RobotModel& model;

@@ -34,13 +34,7 @@ CheckPass::CheckPass(const RobotModel& model, const CommandSeries& series,
   summary.min_self_clearance = std::numeric_limits<double>::infinity();
 }
 
-bool CheckPass::at_flight_edge(int k) const {
-  constexpr int kReach = 2;  // of the differences of fill_rates()
-  const auto flies = [&](int i) { return series.samples[i].support == Support::none; };
-  for (int i = std::max(0, k - kReach); i <= std::min(count() - 1, k + kReach); ++i)
-    if (flies(i) != flies(k)) return true;
-  return false;
-}
+bool CheckPass::at_flight_edge(int k) const { return ayumi::at_flight_edge(series, k); }
 
 namespace {
 

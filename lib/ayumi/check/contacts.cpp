@@ -1,5 +1,7 @@
 #include "ayumi/check/contacts.hpp"
 
+#include <algorithm>
+
 namespace ayumi {
 
 std::vector<ContactInterval> contact_intervals(const CommandSeries& series, Side side) {
@@ -41,6 +43,15 @@ ContactPlan contact_plan(const CommandSeries& series) {
     plan.index[s] = interval_index(plan.intervals[s]);
   }
   return plan;
+}
+
+bool at_flight_edge(const CommandSeries& series, int k) {
+  constexpr int kReach = 2;  // of the differences of fill_rates()
+  const int last = static_cast<int>(series.samples.size()) - 1;
+  const auto flies = [&](int i) { return series.samples[i].support == Support::none; };
+  for (int i = std::max(0, k - kReach); i <= std::min(last, k + kReach); ++i)
+    if (flies(i) != flies(k)) return true;
+  return false;
 }
 
 }  // namespace ayumi

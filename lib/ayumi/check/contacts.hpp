@@ -38,4 +38,8 @@ struct ContactPlan {
 };
 ContactPlan contact_plan(const CommandSeries& series);
 
+/// Whether the differences that make the rates of sample k mix support and flight: acceleration
+/// jumps there, and what it needs of the ground is not known.
+bool at_flight_edge(const CommandSeries& series, int k);
+
 }  // namespace ayumi

@@ -19,6 +19,11 @@ namespace ayumi {
 Pattern read_pattern(const std::filesystem::path& path,
                      const std::map<std::string, double>& set_parameters = {});
 
+/// The same of the bytes of a pattern file; `path` names it in messages, and what it includes is
+/// looked for beside it.
+Pattern pattern_of_text(const std::string& text, const std::filesystem::path& path,
+                        const std::map<std::string, double>& set_parameters = {});
+
 /// The robot to load: the bundled name as written, or the path as it holds from here.
 std::string robot_of(const Pattern& pattern);
 

@@ -159,7 +159,12 @@ bool names_a_path(const std::string& robot) {
 }
 
 Pattern read_pattern(const fs::path& path, const std::map<std::string, double>& set_parameters) {
-  std::string bytes = read_file(path, kLargestFile);
+  return pattern_of_text(read_file(path, kLargestFile), path, set_parameters);
+}
+
+Pattern pattern_of_text(const std::string& text, const fs::path& path,
+                        const std::map<std::string, double>& set_parameters) {
+  std::string bytes = text;
   const Json document = parse_json(bytes, path.string(), ErrorCode::bad_pattern);
   const JsonNode root = root_of(document, path.string(), ErrorCode::bad_pattern);
   root.expect_object();

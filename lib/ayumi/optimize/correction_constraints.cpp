@@ -86,6 +86,14 @@ MatrixXd ground_gradient(const ConstraintBlock& block, const Vector6d& w) {
 
 }  // namespace
 
+Vector6d sole_deviation(const Isometry3d& actual, const Isometry3d& planned) {
+  const Matrix3d E = rotation_error(actual, planned);
+  Vector6d deviation;
+  deviation << actual.translation() - planned.translation(),
+      0.5 * Vector3d(E(2, 1) - E(1, 2), E(0, 2) - E(2, 0), E(1, 0) - E(0, 1));
+  return deviation;
+}
+
 InstantState instant_state(const RobotModel& model, const CommandSample& sample,
                            const Instant& instant, const MatrixXd& coefficients, bool derivatives,
                            RobotData& data) {
@@ -142,12 +150,7 @@ VectorXd foot_values(const RobotModel& model, const ConstraintBlock& block, cons
                      const InstantState& state) {
   const Isometry3d &sole = state.soles[block.item], &ground = reference(block, instant);
   VectorXd values(block.rows);
-  if (block.group != ConstraintGroup::swing) {
-    const Matrix3d E = rotation_error(sole, ground);
-    values << sole.translation() - ground.translation(),
-        0.5 * Vector3d(E(2, 1) - E(1, 2), E(0, 2) - E(2, 0), E(1, 0) - E(0, 1));
-    return values;
-  }
+  if (block.group != ConstraintGroup::swing) return sole_deviation(sole, ground);
   const Vector3d normal = ground.linear().col(2);
   const auto points = corners(model, static_cast<Side>(block.item), sole);
   for (int i = 0; i < block.rows; ++i) values[i] = normal.dot(points[i] - ground.translation());

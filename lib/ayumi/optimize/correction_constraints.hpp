@@ -45,6 +45,8 @@ const char* name_of(ConstraintGroup group);
 struct Instant {
   int sample = 0;
   SplineWeights weights;
+  bool at_knot = false;                     ///< of the spline; else between two
+  bool known = true;                        ///< no flight edge: what it asks of the ground is told
   SupportPlane plane;                       ///< of the planned contacts
   std::array<bool, 2> contact = {};         ///< by Side
   std::array<Eigen::Isometry3d, 2> ground;  ///< by Side: where the foot stands, or the ground below
@@ -81,6 +83,9 @@ struct InstantState {
 InstantState instant_state(const RobotModel& model, const CommandSample& sample,
                            const Instant& instant, const Eigen::MatrixXd& coefficients,
                            bool derivatives, RobotData& data);
+
+/// Position [m] and rotation [rad], world axes, of a sole from where it should be: a stance row.
+Vector6d sole_deviation(const Eigen::Isometry3d& actual, const Eigen::Isometry3d& planned);
 
 /// Columns of the correction that a block depends on.
 std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block,

@@ -20,7 +20,7 @@ namespace {
 // One radian of a joint moves the robot by about a leg's half length; turning the whole trunk is
 // worth more than a joint.
 constexpr double kPositionWeight =
-    25.0;  // of base position [1/m^2] against joint weight 1 [1/rad^2]
+    1000.0;  // of base position [1/m^2] against joint weight 1 [1/rad^2]
 constexpr double kRotationWeight = 4.0;  // of base rotation
 constexpr double kSmoothTime = 0.1;      // tau [s]
 constexpr double kObjectiveScale = 100.0;
@@ -36,7 +36,7 @@ MatrixXd coefficients(const Eigen::MatrixXi& index, const VectorXd& x) {
 
 CorrectionProblem::CorrectionProblem(const RobotModel& model, const CommandSeries& series,
                                      const CorrectionSpec& spec)
-    : model_(model), series_(series), spec_(spec) {
+    : model_(model), series_(series), spec_(spec), plan_(contact_plan(series)) {
   zero_.begin = 0;
   const int intervals =
       std::max(1, static_cast<int>(std::ceil(series.duration() / spec.spacing - 1e-9)));
@@ -44,7 +44,7 @@ CorrectionProblem::CorrectionProblem(const RobotModel& model, const CommandSerie
   zero_.joints = model.dof_names();
   zero_.coefficients = MatrixXd::Zero(intervals + 3, model.velocity_count());
   place_variables();
-  place_instants(contact_plan(series));
+  place_instants();
   place_constraints();
   place_jacobian();
   place_objective();
@@ -97,39 +97,49 @@ bool CorrectionProblem::free_at(const SplineWeights& weights) const {
 
 // At the knots and between them, for there the acceleration of a cubic spline has its kinks, and at
 // both ends of every contact interval, where what must hold changes.
-void CorrectionProblem::place_instants(const ContactPlan& plan) {
-  std::set<int> samples;
+void CorrectionProblem::place_instants() {
+  std::set<int> samples, knots;
   const int count = static_cast<int>(series_.samples.size());
   const int places = spec_.instants_per_knot * static_cast<int>(zero_.coefficients.rows() - 3);
   for (int i = 0; i <= places; ++i) {
     const double t = i * zero_.spacing / spec_.instants_per_knot;
-    samples.insert(std::min(count - 1, static_cast<int>(std::lround(t / series_.dt))));
+    const int sample = std::min(count - 1, static_cast<int>(std::lround(t / series_.dt)));
+    samples.insert(sample);
+    if (i % spec_.instants_per_knot == 0) knots.insert(sample);
   }
   for (const double t : spec_.extra)
     samples.insert(std::clamp(static_cast<int>(std::lround(t / series_.dt)), 0, count - 1));
-  for (const auto& intervals : plan.intervals)
+  for (const auto& intervals : plan_.intervals)
     for (const ContactInterval& interval : intervals) {
       samples.insert(interval.first);
       samples.insert(interval.last);
     }
+  // Beside the edges of a flight, where forces are told again.
+  for (int k = 1; k < count; ++k) {
+    if (at_flight_edge(series_, k) == at_flight_edge(series_, k - 1)) continue;
+    samples.insert(k - 1);
+    samples.insert(k);
+  }
   for (int k : samples) {
     Instant instant;
     instant.sample = k;
     instant.weights = correction_weights(zero_, k * series_.dt);
+    instant.at_knot = knots.contains(k);
+    instant.known = !at_flight_edge(series_, k);
     if (!free_at(instant.weights)) continue;
     for (Side side : {Side::left, Side::right}) {
       const int s = static_cast<int>(side);
-      const int i = plan.index[s][k];
-      instant.contact[s] = plan.intervals[s][i].contact;
-      const int last = static_cast<int>(plan.intervals[s].size()) - 1;
-      const ContactInterval& before = plan.intervals[s][std::max(0, i - 1)];
-      const ContactInterval& after = plan.intervals[s][std::min(last, i + 1)];
+      const int i = plan_.index[s][k];
+      instant.contact[s] = plan_.intervals[s][i].contact;
+      const int last = static_cast<int>(plan_.intervals[s].size()) - 1;
+      const ContactInterval& before = plan_.intervals[s][std::max(0, i - 1)];
+      const ContactInterval& after = plan_.intervals[s][std::min(last, i + 1)];
       const bool lower = before.sole.translation().z() < after.sole.translation().z();
-      instant.ground[s] = instant.contact[s] ? plan.intervals[s][i].sole
+      instant.ground[s] = instant.contact[s] ? plan_.intervals[s][i].sole
                           : lower            ? before.sole
                                              : after.sole;
     }
-    instant.plane = support_plane(model_, plan.support(k), instant.ground);
+    instant.plane = support_plane(model_, plan_.support(k), instant.ground);
     RobotData data(model_);
     const CommandSample& sample = series_.samples[k];
     update_positions(model_, sample.state, data);

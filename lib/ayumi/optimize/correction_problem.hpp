@@ -38,12 +38,14 @@ struct CorrectionSpec {
   std::string profile;
   std::array<double, kKindCount> tolerance = tolerances({});  ///< of the check, by Kind
   double friction = 0.8;
-  double zmp_margin = 0.002;    ///< inside the support [m]
+  double zmp_margin = 0.002;    ///< least distance of the ZMP inside the support [m]
+  double safe_margin = 0;       ///< the same where the motion's own is less than the least [m]
   double joint_margin = 1e-4;   ///< inside the position limits [rad]
   double share = 0.998;         ///< of speed limits and friction that may be used
   double force_share = 0.1;     ///< least normal force in contact over the weight
   double sole_position = 2e-4;  ///< band a supporting sole stays in [m]
   double sole_angle = 2e-3;     ///< [rad]
+  double sole_at_knots = 0.1;   ///< share of that band at the knots
   double clearance = 2.2e-3;    ///< between bodies that the motion does not bring nearer [m]
   /// A limit is constrained where the motion, or `current`, uses more than this share of it; the
   /// rest is looked at by the check of the result.
@@ -76,10 +78,12 @@ class CorrectionProblem {
  private:
   void place_variables();
   void place_end(int first, double time);
-  void place_instants(const ContactPlan& plan);
+  void place_instants();
   void place_constraints();
+  void place_margins();
   void place_ground_blocks(int instant);
   void place_foot_blocks(int instant);
+  void soften_landing(int instant, Side side);
   void place_joint_blocks(int instant);
   void place_torque_blocks(int instant);
   void place_clearance_blocks(int instant);
@@ -97,10 +101,12 @@ class CorrectionProblem {
   const RobotModel& model_;
   const CommandSeries& series_;
   CorrectionSpec spec_;
+  ContactPlan plan_;
   CorrectionTrack zero_;   ///< the track with zero coefficients
   Eigen::MatrixXi index_;  ///< variable of control point and column, or -1
   int variable_count_ = 0;
   std::vector<Instant> instants_;
+  std::vector<double> margin_;             ///< wanted of the ZMP, by instant [m]
   std::vector<ConstraintBlock> blocks_;    ///< in order of their instants
   std::vector<std::vector<int>> columns_;  ///< by block
   Eigen::VectorXd lower_, upper_;

@@ -41,11 +41,14 @@ void CorrectionProblem::add_block(ConstraintBlock block, double lower, double up
 }
 
 void CorrectionProblem::place_constraints() {
+  place_margins();
   for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
-    place_ground_blocks(i);
     place_foot_blocks(i);
     place_joint_blocks(i);
-    place_torque_blocks(i);
+    if (instants_[i].known) {
+      place_ground_blocks(i);
+      place_torque_blocks(i);
+    }
     place_clearance_blocks(i);
     place_command_blocks(i);
   }
@@ -56,6 +59,33 @@ std::array<const CommandSample*, 2> CorrectionProblem::watched(int instant) cons
   const int k = instants_[instant].sample;
   const CommandSeries& current = spec_.current ? *spec_.current : series_;
   return {&series_.samples[k], &current.samples[k]};
+}
+
+// Where the motion's ZMP is outside, or too near the edge, it is brought back to where it is safe;
+// around that, and where it is inside anyhow, it stays as far inside as it is, or safe is.
+void CorrectionProblem::place_margins() {
+  constexpr double kAround = 0.1;  // [s]
+  constexpr double kOwn = 0.8;     // share of its own margin that a sound motion keeps
+  RobotData data(model_);
+  std::vector<double> own;
+  for (const Instant& at : instants_) {
+    const CommandSample& sample = series_.samples[at.sample];
+    const Vector6d wrench =
+        inverse_dynamics(model_, sample.state, sample.acceleration, data).head<6>();
+    const GroundUse use =
+        ground_use(at.plane, plane_wrench(at.plane, sample.state.base.position, wrench),
+                   0.02 * model_.mass() * kGravity);
+    own.push_back(at.plane.empty() || !at.known ? kNoBound : use.has_zmp ? use.margin : 0);
+  }
+  const double safe = std::max(spec_.safe_margin, spec_.zmp_margin);
+  for (size_t i = 0; i < own.size(); ++i) {
+    double least = own[i];
+    for (size_t j = 0; j < own.size(); ++j)
+      if (std::abs(instants_[i].sample - instants_[j].sample) * series_.dt <= kAround)
+        least = std::min(least, own[j]);
+    margin_.push_back(least < spec_.zmp_margin ? safe
+                                               : std::clamp(kOwn * own[i], spec_.zmp_margin, safe));
+  }
 }
 
 void CorrectionProblem::place_ground_blocks(int instant) {
@@ -77,7 +107,7 @@ void CorrectionProblem::place_ground_blocks(int instant) {
     return;
   }
   MatrixXd rows = support_rows(plane);
-  rows.col(2).array() -= spec_.zmp_margin;
+  rows.col(2).array() -= margin_[instant];
   add(ConstraintGroup::support, rows, 0, kNoBound);
 
   RobotData data(model_);
@@ -117,18 +147,42 @@ void CorrectionProblem::place_ground_blocks(int instant) {
   }
 }
 
+// A foot that lands or lifts off softly is not quite in its place for a moment. The check allows
+// that; what the motion does so by itself stays, up to a share of what is allowed.
+void CorrectionProblem::soften_landing(int instant, Side side) {
+  constexpr double kMoment = 0.05;  // [s]
+  constexpr double kShare = 0.6;
+  const Instant& at = instants_[instant];
+  const ContactInterval& contact = plan_.at(side, at.sample);
+  const int last = static_cast<int>(series_.samples.size()) - 1;
+  const double landed = contact.first == 0 ? kMoment : (at.sample - contact.first) * series_.dt;
+  const double left = contact.last == last ? kMoment : (contact.last - at.sample) * series_.dt;
+  if (std::min(landed, left) >= kMoment) return;
+  const Eigen::Isometry3d& sole = at.path[static_cast<int>(side)];
+  const SoleError error = sole_error(model_.sole(side), sole, contact.sole);
+  const double used = std::max({error.gap / tolerance(Kind::foot_float),
+                                error.penetration / tolerance(Kind::foot_penetration),
+                                error.slip / tolerance(Kind::foot_slip)});
+  const Vector6d own =
+      std::min(1.0, kShare / std::max(used, 1e-9)) * sole_deviation(sole, contact.sole);
+  lower_.tail<6>() += own.cwiseMin(0);
+  upper_.tail<6>() += own.cwiseMax(0);
+}
+
 void CorrectionProblem::place_foot_blocks(int instant) {
   constexpr double kNearGround = 0.004;  // a swinging sole higher than this is not watched [m]
   RobotData data(model_);
   for (Side side : {Side::left, Side::right}) {
     const int s = static_cast<int>(side);
     if (instants_[instant].contact[s]) {
-      const double slack =
-          std::min({spec_.sole_position, 0.2 * tolerance(Kind::foot_slip),
-                    0.2 * tolerance(Kind::foot_penetration), 0.2 * tolerance(Kind::foot_float)});
+      const double share = instants_[instant].at_knot ? spec_.sole_at_knots : 1;
+      const double slack = share * std::min({spec_.sole_position, 0.2 * tolerance(Kind::foot_slip),
+                                             0.2 * tolerance(Kind::foot_penetration),
+                                             0.2 * tolerance(Kind::foot_float)});
       add_block(block_of(ConstraintGroup::stance, instant, s, 6), -slack, slack);
-      lower_.tail<3>().setConstant(-spec_.sole_angle);
-      upper_.tail<3>().setConstant(spec_.sole_angle);
+      lower_.tail<3>().setConstant(-share * spec_.sole_angle);
+      upper_.tail<3>().setConstant(share * spec_.sole_angle);
+      soften_landing(instant, side);
     }
     if (spec_.locked_feet[s]) {
       constexpr double kSameWay = 1e-5;  // [m], [rad]
@@ -226,7 +280,7 @@ void CorrectionProblem::place_command_blocks(int instant) {
   if (spec_.trust == Trust::cog)
     add_block(block_of(ConstraintGroup::cog, instant, 0, 3),
               -kShare * tolerance(Kind::cog_residual), kShare * tolerance(Kind::cog_residual));
-  if (spec_.trust != Trust::zmp || at.plane.empty()) return;
+  if (spec_.trust != Trust::zmp || at.plane.empty() || !at.known) return;
   const Eigen::Vector3d zmp = at.plane.frame.inverse() * series_.samples[at.sample].zmp;
   ConstraintBlock block = block_of(ConstraintGroup::zmp, instant, 0, 2);
   block.wrench_rows.setZero(2, 6);

@@ -41,6 +41,7 @@ constexpr double kMarginBetween = 5e-4;     // of the ZMP, for what happens betw
 constexpr double kRoundJointMargin = 5e-4;  // [rad]
 constexpr double kRoundShare = 0.004;       // of speed limits and friction
 constexpr double kWarmBarrier = 1e-5;
+constexpr double kKnotsOfFlight = 8;
 constexpr double kRoundMargin = 0.001;  // more ZMP margin each round [m]
 
 std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
@@ -102,6 +103,18 @@ CorrectionTrack trimmed(const CorrectionTrack& track) {
   return result;
 }
 
+// [s]; without a flight no bound.
+double shortest_flight(const CommandSeries& series) {
+  double shortest = kNoBound;
+  size_t first = 0;
+  for (size_t k = 0; k <= series.samples.size(); ++k) {
+    if (k < series.samples.size() && series.samples[k].support == Support::none) continue;
+    if (k > first) shortest = std::min(shortest, static_cast<double>(k - first) * series.dt);
+    first = k + 1;
+  }
+  return shortest;
+}
+
 VectorXd weight_factors(const RobotModel& model, const std::map<std::string, double>& weights) {
   VectorXd factors = VectorXd::Ones(model.dof_count());
   for (const auto& [joint, factor] : weights) {
@@ -127,7 +140,7 @@ class Repair {
          const Progress& progress)
       : model_(model), series_(series), options_(options), progress_(progress), collisions_(model) {
     require_windows(options.locked_windows);
-    spec_.spacing = options.knot_spacing;
+    spec_.spacing = std::min(options.knot_spacing, shortest_flight(series) / kKnotsOfFlight);
     spec_.locked = locked_dofs(model, options.locked_joints);
     spec_.locked_feet = options.locked_feet;
     spec_.locked_windows = options.locked_windows;
@@ -137,7 +150,10 @@ class Repair {
     spec_.tolerance = tolerances(options.check);
     spec_.profile = options.check.profile;
     spec_.friction = options.check.friction;
-    spec_.zmp_margin = options.zmp_margin + kMarginBetween;
+    const double least = tolerances(options.check)[static_cast<int>(Kind::support_margin)];
+    const double safe = options.trust == Trust::zmp ? least : safe_margin(model);
+    spec_.safe_margin = options.zmp_margin.value_or(safe) + kMarginBetween;
+    spec_.zmp_margin = std::min(spec_.safe_margin, least + kMarginBetween);
   }
 
   RepairResult run() {
@@ -169,11 +185,14 @@ class Repair {
         keep_partial();
         return;
       }
+      spec_.zmp_margin += kRoundMargin;
+      spec_.safe_margin += kRoundMargin;
       if (last_status_ != NlpStatus::solved) {
         ++unsolved;
         pad *= 2;
+        spec_.safe_margin = spec_.zmp_margin;  // safety gives way before the repair does
+        spec_.sole_at_knots = 1;
       }
-      spec_.zmp_margin += kRoundMargin;
       spec_.joint_margin += kRoundJointMargin;
       spec_.share -= kRoundShare;
       if (round + 2 == kRounds) spec_.spacing /= 2;
@@ -300,6 +319,8 @@ class Repair {
     const double violation = result_.constraint_violation;
     note_work(soft, solution);
     result_.constraint_violation = violation;
+    // The least violating motion there is nearby, and still one too many: nothing passes.
+    if (solution.status == NlpStatus::solved) last_status_ = NlpStatus::infeasible;
     take(problem_->track(solution.x.head(problem_->variable_count())));
   }
 
@@ -346,6 +367,15 @@ class Repair {
 };
 
 }  // namespace
+
+double safe_margin(const RobotModel& model) {
+  double least = kNoBound;
+  for (Side side : {Side::left, Side::right}) {
+    const ConvexPolygon polygon(model.sole(side).polygon);
+    least = std::min(least, polygon.margin(polygon.centroid()));
+  }
+  return 0.6 * least;
+}
 
 RepairResult repair(const RobotModel& model, const CommandSeries& series,
                     const RepairOptions& options, const Progress& progress) {

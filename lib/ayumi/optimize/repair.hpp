@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,8 +31,10 @@ struct RepairOptions {
   Trust trust = Trust::posture;
   bool keep_partial = false;   ///< stopped: conclude with the least violating point seen
   double knot_spacing = 0.05;  ///< of the B-splines [s]
-  double zmp_margin = 0.002;   ///< to keep inside the support polygon [m]
-  int max_iterations = 100;    ///< of Ipopt in each round
+  /// To keep the ZMP inside the support polygon where the motion's own is too near its edge [m];
+  /// none: safe_margin().
+  std::optional<double> zmp_margin;
+  int max_iterations = 100;  ///< of Ipopt in each round
 };
 
 enum class RepairStatus { already_consistent, repaired, infeasible, not_converged };
@@ -72,6 +75,10 @@ struct RepairResult {
   std::vector<std::string> reasons;  ///< the same in words, the first few
   RepairWork work;
 };
+
+/// A margin with which a walk played open loop stands, though its servos sag and its feet land a
+/// little early: 0.6 of the largest circle's radius that the smaller sole holds about its centre.
+double safe_margin(const RobotModel& model);
 
 /// Throws Error(usage) for a joint, window or weight that is not there or out of range.
 RepairResult repair(const RobotModel& model, const CommandSeries& series,

@@ -35,4 +35,29 @@ Pattern mirrored(const RobotModel& model, const Pattern& pattern);
 /// keeps its duration. Throws Error(usage) unless 0.01 <= scale <= 100, and as baked().
 Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 
+/// A pattern and its samples.
+struct MotionPart {
+  const Pattern& pattern;
+  const CommandSeries& series;
+};
+
+/// One motion after the other as a table (posture and base; COG, ZMP and f_z are then those of the
+/// full model). The second is moved over the ground, and turned, to begin where the feet of the
+/// first stand; its footholds, keys and scenario come along. `over` [s]: a transition from rest to
+/// rest with both feet still; 0: none, the postures must agree within 0.01 rad. World and controller
+/// are the first one's. Throws Error(bad_pattern) where one foot is in the air at the join, the feet
+/// stand otherwise (1 mm, 0.01 rad) or the legs do not reach; and as baked().
+Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPart& second,
+               double over, const std::string& table);
+
+struct Ramps {
+  double in = 1, out = 1;  ///< [s]; 0: none
+  std::string posture = "home";
+};
+/// The motion with a way to its first posture from a named one, and back to that at the end, as a
+/// table. The feet stay where the motion has them, the COG is above their middle. Throws as
+/// joined().
+Pattern ramped(const RobotModel& model, const MotionPart& motion, const Ramps& ramps,
+               const std::string& table);
+
 }  // namespace ayumi

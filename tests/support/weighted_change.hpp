@@ -1,0 +1,30 @@
+#pragma once
+// What a repair makes small, summed over the samples.
+
+#include <cmath>
+
+#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/pattern/correction.hpp"
+
+namespace ayumi::test {
+
+// The weighted integral of the correction and its curvature: what a repair makes small.
+inline double weighted_change(const RobotModel& model, const CommandSeries& series,
+                              const CorrectionTrack& track) {
+  Eigen::VectorXd weight(model.velocity_count());
+  weight << Eigen::VectorXd::Constant(3, 1000), Eigen::VectorXd::Constant(3, 4),
+      series.joint_weight;
+  double sum = 0;
+  for (double t = 0; t < series.duration(); t += 0.001) {
+    const SplineWeights w = correction_weights(track, t);
+    const auto rows = track.coefficients.middleRows<4>(w.first);
+    const Eigen::VectorXd d = rows.transpose() * w.value, dd = rows.transpose() * w.acceleration;
+    for (int j = 0; j < d.size(); ++j) {
+      const double wj = j < 6 ? weight[j] : weight[6 + model.find_dof(track.joints[j - 6])];
+      sum += 0.001 * wj * (d[j] * d[j] + 1e-4 * dd[j] * dd[j]);
+    }
+  }
+  return sum;
+}
+
+}  // namespace ayumi::test
