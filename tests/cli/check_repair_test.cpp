@@ -113,6 +113,44 @@ TEST_F(CheckRepair, WhatCannotBeRepairedWritesNothing) {
   EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.json"});
 }
 
+// Too fast between two keys that must stay: the reason, the time it needs, and the parameter's
+// value with which the pattern passes, near the least one.
+TEST_F(CheckRepair, TheParameterThatWouldDoIsNamed) {
+  write(folder / "lift.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
+    "units": { "angle": "deg" }, "parameters": { "time": 0.2 },
+    "phases": [{ "until": "0.8 + ${time}", "support": "both" }],
+    "keyframes": [
+      { "t": 0, "zmp": "center", "posture": "home" },
+      { "t": 0.4, "posture": "home" },
+      { "t": "0.4 + ${time}", "posture": { "l_shoulder_pitch": 10 } },
+      { "t": "0.8 + ${time}", "zmp": "center" }] })");
+  const Output failed = ayumi({"repair", "lift.json", "-o", "out.json", "--lock", "keyframe:1",
+                               "--lock", "keyframe:2", "--json"});
+  EXPECT_EQ(failed.exit_code, 4) << failed.out << failed.err;
+  const Json json = Json::parse(failed.out);
+  EXPECT_EQ(json["status"], "infeasible");
+  ASSERT_FALSE(json["reasons"].empty());
+  const std::string reason = json["reasons"][0];
+  EXPECT_NE(reason.find("l_shoulder_pitch speed reaches"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("times longer"), std::string::npos) << reason;
+  ASSERT_EQ(json["parameters"].size(), 1u);
+  EXPECT_EQ(json["parameters"][0]["name"], "time");
+  const double passes = json["parameters"][0]["passes"];
+  const std::string set = "time=" + std::to_string(passes),
+                    less = "time=" + std::to_string(0.9 * passes);
+  EXPECT_EQ(ayumi({"check", "lift.json", "--set", set}).exit_code, 0);
+  EXPECT_EQ(ayumi({"check", "lift.json", "--set", less}).exit_code, 1);
+}
+
+TEST_F(CheckRepair, StandardInputIsAPattern) {
+  const std::string words = std::string(AYUMI_PROGRAM) + " check - --json < " AYUMI_SOURCE_DIR
+                                                         "/patterns/hoap1_walk.json";
+  const Output out = run_program({"-c", words}, folder.path(), "/bin/sh");
+  EXPECT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_EQ(Json::parse(out.out)["verdict"], "consistent");
+  EXPECT_EQ(ayumi({"repair", "-", "-o", "out.json"}).exit_code, 2);
+}
+
 TEST_F(CheckRepair, DiffTellsWhatMoved) {
   plant_zmp_outside("outside.json");
   ASSERT_EQ(ayumi({"repair", "outside.json", "-o", "good.json", "--plot", "moved.svg"}).exit_code,

@@ -64,6 +64,46 @@ TEST_F(Edit, RetimeToLimitsIsTheFastestThatPasses) {
   EXPECT_NE(broken.exit_code, 0);
 }
 
+// Forward, and on from where that ended: half the way each, and the second half is turned along.
+TEST_F(Edit, MotionsJoin) {
+  const Output made = ayumi({"new", "walk", "--steps", "2", "--turn", "4", "-o", "walk.json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Output out =
+      ayumi({"edit", "concat", "walk.json", "walk.json", "-o", "two.json", "--json"});
+  ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
+  const Json json = Json::parse(out.out);
+  EXPECT_EQ(json["check"]["verdict"], "consistent");
+  const double once = json["joins_s"][0];
+  EXPECT_NEAR(double(json["duration_s"]), 2 * once, 1e-9);
+  ASSERT_EQ(ayumi({"new", "squat", "-o", "squat.json"}).exit_code, 0);
+  const Output blended = ayumi(
+      {"edit", "blend", "walk.json", "squat.json", "--over", "0.5", "-o", "b.json", "--json"});
+  ASSERT_EQ(blended.exit_code, 0) << blended.out << blended.err;
+  EXPECT_EQ(Json::parse(blended.out)["check"]["verdict"], "consistent");
+}
+
+TEST_F(Edit, RampsComeFromAPosture) {
+  ASSERT_EQ(ayumi({"new", "sway", "-o", "sway.json"}).exit_code, 0);
+  const Output out = ayumi({"edit", "ramp", "sway.json", "--from", "0.8", "--back", "0.5",
+                            "--posture", "home", "-o", "r.json", "--json"});
+  ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
+  const Json before =
+      Json::parse(ayumi({"edit", "bake", "sway.json", "-o", "s.json", "--json"}).out);
+  EXPECT_NEAR(double(Json::parse(out.out)["duration_s"]), double(before["duration_s"]) + 1.3, 1e-9);
+}
+
+TEST_F(Edit, WhatDoesNotJoinIsRefused) {
+  ASSERT_EQ(ayumi({"new", "squat", "-o", "squat.json"}).exit_code, 0);
+  ASSERT_EQ(ayumi({"new", "walk", "--robot", "humanoid30", "-o", "other.json"}).exit_code, 0);
+  EXPECT_EQ(ayumi({"edit", "concat", "squat.json", "-o", "a.json"}).exit_code, 2);
+  const Output robots = ayumi({"edit", "concat", "squat.json", "other.json", "-o", "a.json"});
+  EXPECT_EQ(robots.exit_code, 3);
+  EXPECT_NE(robots.err.find("another robot"), std::string::npos) << robots.err;
+  EXPECT_EQ(
+      ayumi({"edit", "ramp", "squat.json", "--from", "0", "--back", "0", "-o", "a.json"}).exit_code,
+      2);
+}
+
 TEST_F(Edit, MistakesOfTheCall) {
   EXPECT_EQ(ayumi({"edit", "retime", kWalk, "-o", "a.json"}).exit_code, 2);
   EXPECT_EQ(ayumi({"edit", "retime", kWalk, "--scale", "0", "-o", "a.json"}).exit_code, 2);

@@ -26,8 +26,6 @@ using Feet = std::array<Isometry3d, 2>;
 constexpr double kSamePlace = 1e-3;  // [m]
 constexpr double kSameAngle = 0.01;  // [rad]
 
-double yaw_of(const Matrix3d& rotation) { return std::atan2(rotation(1, 0), rotation(0, 0)); }
-
 Feet soles_of(const RobotModel& model, const RobotState& state) {
   RobotData data(model);
   update_positions(model, state, data);
@@ -85,6 +83,12 @@ void move_plan(const Isometry3d& way, double later, Pattern& pattern) {
 void add_row(DenseTable& table, const RobotState& state) {
   table.base.push_back(state.base);
   table.theta.row(static_cast<Eigen::Index>(table.base.size()) - 1) = state.theta.transpose();
+}
+
+Phase both_feet_until(double time) {
+  Phase phase;
+  phase.until = time;
+  return phase;
 }
 
 double rest_to_rest(double u) { return u * u * u * (10 - 15 * u + 6 * u * u); }
@@ -197,7 +201,7 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
     add_row(*result.table, moved(way, b.samples[k].state));
 
   const double later = a.duration() + ticks * a.dt;
-  if (ticks > 0) result.phases.push_back({.until = later});
+  if (ticks > 0) result.phases.push_back(both_feet_until(later));
   Pattern rest = plain(model, second.pattern, b, table, b.samples.size());
   move_plan(way, later, rest);
   result.phases.insert(result.phases.end(), rest.phases.begin(), rest.phases.end());
@@ -273,8 +277,8 @@ Pattern ramped(const RobotModel& model, const MotionPart& motion, const Ramps& r
   for (const RobotState& state : before) add_row(*result.table, state);
   for (const CommandSample& sample : series.samples) add_row(*result.table, sample.state);
   for (const RobotState& state : after) add_row(*result.table, state);
-  if (in > 0) result.phases.insert(result.phases.begin(), {.until = in * series.dt});
-  if (out > 0) result.phases.push_back({.until = static_cast<double>(rows - 1) * series.dt});
+  if (in > 0) result.phases.insert(result.phases.begin(), both_feet_until(in * series.dt));
+  if (out > 0) result.phases.push_back(both_feet_until(static_cast<double>(rows - 1) * series.dt));
   return result;
 }
 
