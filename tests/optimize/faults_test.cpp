@@ -11,7 +11,6 @@
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/optimize/repair.hpp"
 #include "ayumi/pattern/correction.hpp"
-#include "ayumi/pattern/generate.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/weighted_change.hpp"
 
@@ -144,25 +143,6 @@ TEST_F(Faults, ArmThroughTheTorso) {
   move_joint(hoap1(), table, "l_shoulder_roll", -35 * M_PI / 180, 3, 0.8);
   const RepairResult r = repaired("self_collision");
   EXPECT_GE(r.check.summary.min_self_clearance, 0.002);
-}
-
-// Jumps: the trunk is lifted in flight, as if something carried it; and an elbow before lift-off.
-TEST_F(Faults, FlightIsNotBallistic) {
-  Pattern jump = jump_pattern(hoap1(), jump_defaults(hoap1()));
-  jump.robot = "hoap1";
-  pattern = baked(hoap1(), jump);
-  options.check.profile = "hoap1-strong";
-  double begin = 0, end = 0;
-  for (size_t i = 1; i < pattern.phases.size(); ++i)
-    if (pattern.phases[i].support == Support::none)
-      begin = pattern.phases[i - 1].until, end = pattern.phases[i].until;
-  ASSERT_GT(end, begin);
-  for_rows(table, [&](double t, size_t k) {
-    table.base[k].position.z() += 0.004 * bump(t, 0.5 * (begin + end), 0.9 * (end - begin));
-  });
-  const RepairResult r = repaired("ballistic");
-  EXPECT_LT(r.check.summary.max_ballistic_residual, 0.5);
-  EXPECT_LT(r.check.summary.max_momentum_rate, 0.1);
 }
 
 TEST_F(Faults, SeveralAtOnce) {

@@ -163,17 +163,15 @@ Vector2d behind(const ConvexPolygon& b, const Vector2d& point, const Vector2d& z
   return point + 0.5 * (low + high) * ray;
 }
 
-// Along the line between the sole centres the share follows the ZMP, as 3 u^2 - 2 u^3 so that it
-// comes to its ends without a kink, and both centres of pressure shift alike by what is left: one
-// foot takes all when the ZMP reaches its centre. Where a centre of
+// Along the line between the sole centres the share follows the ZMP, and across it both centres of
+// pressure shift alike: one foot takes all when the ZMP reaches its centre. Where a centre of
 // pressure would leave its sole so, the ZMP lies near a corner of the hull: then one foot presses
 // in the middle of what it may, the other behind the ZMP.
 Shares share_zmp(const std::array<ConvexPolygon, 2>& soles, const Vector2d& zmp) {
   const Vector2d left = soles[0].centroid(), right = soles[1].centroid();
   const Vector2d line = left - right;
   Shares s;
-  const double u = std::clamp((zmp - right).dot(line) / line.squaredNorm(), 0.0, 1.0);
-  s.left = u * u * (3 - 2 * u);
+  s.left = std::clamp((zmp - right).dot(line) / line.squaredNorm(), 0.0, 1.0);
   const Vector2d shift = zmp - (s.left * left + (1 - s.left) * right);
   s.pressure = {left + shift, right + shift};
   const bool left_bears = s.left > 0, right_bears = s.left < 1;
