@@ -256,6 +256,7 @@ void add_edit(CLI::App& app, Context& context) {
   ramp_command.add_option("--posture", options.ramps.posture, "a posture of the pattern or robot")
       ->type_name("NAME")
       ->capture_default_str();
+  ramp_command.callback([&context] { ramp(context, options); });
   CLI::App& retime_command =
       add_edit_of(*command, "retime", "the same motion in another time", options);
   retime_command.add_option("--scale", options.scale, "of the time: 0.8 is faster")

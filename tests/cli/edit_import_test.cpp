@@ -64,18 +64,18 @@ TEST_F(Edit, RetimeToLimitsIsTheFastestThatPasses) {
   EXPECT_NE(broken.exit_code, 0);
 }
 
-// Forward, and on from where that ended: half the way each, and the second half is turned along.
+// The same twice, and a squat where a walk that turned has ended.
 TEST_F(Edit, MotionsJoin) {
   const Output made = ayumi({"new", "walk", "--steps", "2", "--turn", "4", "-o", "walk.json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
+  ASSERT_EQ(ayumi({"new", "squat", "-o", "squat.json"}).exit_code, 0);
   const Output out =
-      ayumi({"edit", "concat", "walk.json", "walk.json", "-o", "two.json", "--json"});
+      ayumi({"edit", "concat", "squat.json", "squat.json", "-o", "two.json", "--json"});
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
   const Json json = Json::parse(out.out);
   EXPECT_EQ(json["check"]["verdict"], "consistent");
   const double once = json["joins_s"][0];
   EXPECT_NEAR(double(json["duration_s"]), 2 * once, 1e-9);
-  ASSERT_EQ(ayumi({"new", "squat", "-o", "squat.json"}).exit_code, 0);
   const Output blended = ayumi(
       {"edit", "blend", "walk.json", "squat.json", "--over", "0.5", "-o", "b.json", "--json"});
   ASSERT_EQ(blended.exit_code, 0) << blended.out << blended.err;

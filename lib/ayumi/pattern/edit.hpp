@@ -44,7 +44,7 @@ struct MotionPart {
 /// One motion after the other as a table (posture and base; COG, ZMP and f_z are then those of the
 /// full model). The second is moved over the ground, and turned, to begin where the feet of the
 /// first stand; its footholds, keys and scenario come along. `over` [s]: a transition from rest to
-/// rest with both feet still; 0: none, the postures must agree within 0.01 rad. World and
+/// rest with both feet still; 0: none, the postures must agree within 2e-4 rad. World and
 /// controller are the first one's. Throws Error(bad_pattern) where one foot is in the air at the
 /// join, the feet stand otherwise (1 mm, 0.01 rad) or the legs do not reach; and as baked().
 Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPart& second,

@@ -24,7 +24,9 @@ namespace {
 using Feet = std::array<Isometry3d, 2>;
 
 constexpr double kSamePlace = 1e-3;  // [m]
-constexpr double kSameAngle = 0.01;  // [rad]
+constexpr double kSameAngle = 0.01;  // of a sole [rad]
+constexpr double kSameBase = 2e-5;   // what the base may jump in one sample [m]
+constexpr double kSameJoint = 2e-4;  // what a joint may jump in one sample [rad]
 
 Feet soles_of(const RobotModel& model, const RobotState& state) {
   RobotData data(model);
@@ -167,11 +169,19 @@ void require_same_posture(const RobotModel& model, const Pattern& second, const 
                           const RobotState& first) {
   int worst = 0;
   const double most = (last.theta - first.theta).cwiseAbs().maxCoeff(&worst);
-  if (most < kSameAngle) return;
+  const double way = (last.base.position - first.base.position).norm();
+  const double turn = last.base.attitude.angularDistance(first.base.attitude);
+  if (way > kSameBase || turn > kSameJoint)
+    fail(ErrorCode::bad_pattern, in_file(second, "start") + ": its base is " +
+                                     text::fixed(1000 * way, 2) + " mm and " +
+                                     text::fixed(turn * 180 / M_PI, 2) +
+                                     " deg from where the motion before ends: blend the two over "
+                                     "some time");
+  if (most < kSameJoint) return;
   fail(ErrorCode::bad_pattern,
        in_file(second, "start") + ": " + model.dofs()[worst].name + " is " +
-           text::fixed(most * 180 / M_PI, 1) + " deg from where the motion before ends; limit " +
-           text::fixed(kSameAngle * 180 / M_PI, 1) + " deg: blend the two over some time");
+           text::fixed(most * 180 / M_PI, 2) + " deg from where the motion before ends; limit " +
+           text::fixed(kSameJoint * 180 / M_PI, 2) + " deg: blend the two over some time");
 }
 
 }  // namespace
