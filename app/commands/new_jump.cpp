@@ -34,12 +34,24 @@ bool passes(const RobotModel& model, const JumpParameters& p, const std::string&
   }
 }
 
-// The first profile with which the check finds nothing; the last one when none is enough.
+// The first profile with which the check finds nothing; none when no profile is enough.
 std::string sufficient_profile(const RobotModel& model, const JumpParameters& p) {
-  const std::vector<std::string> names = model.profile_names();
-  for (const std::string& name : names)
+  for (const std::string& name : model.profile_names())
     if (passes(model, p, name)) return name;
-  return names.empty() ? std::string() : names.back();
+  return {};
+}
+
+// A stoop that is left open is the default or the one nearest to it that some profile carries out.
+std::string choose_profile(const RobotModel& model, JumpParameters& p, bool stoop_open) {
+  const double stoop = p.stoop;
+  for (const double share : {1.0, 0.9, 1.1, 0.8, 1.2, 0.7, 1.35, 1.5}) {
+    p.stoop = share * stoop;
+    const std::string profile = sufficient_profile(model, p);
+    if (!profile.empty()) return profile;
+    if (!stoop_open) break;
+  }
+  p.stoop = stoop;
+  return {};
 }
 
 constexpr double kStep = 2.5e-4;  // of the search for the highest jump [m]
@@ -111,8 +123,18 @@ void new_jump(Context& context, JumpOptions options) {
                   text::fixed(p.cog_height, 3) + " m, stoop " + text::fixed(1e3 * p.stoop, 1) +
                   " mm\n");
   }
+  if (options.profile.empty()) {
+    options.profile = choose_profile(model, p, !options.stoop);
+    if (options.profile.empty())
+      context.print("no actuator profile of " + model.name() +
+                    " passes the check with a height of " + text::brief(p.height) +
+                    " m, a stoop of " + text::brief(p.stoop) + " m and ref z_G " +
+                    text::brief(p.cog_height) +
+                    " m: choose a lower --height, another --stoop or --cog-height; `ayumi check` "
+                    "names what is passed\n");
+  }
   Pattern pattern = jump_pattern(model, p);
-  pattern.profile = options.profile.empty() ? sufficient_profile(model, p) : options.profile;
+  pattern.profile = options.profile;
   write_new_pattern(context, model, pattern, options.robot, options.out, comments_of(p));
 }
 

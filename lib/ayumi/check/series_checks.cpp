@@ -9,7 +9,8 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kRefineBelow = 0.010;  // clearance that is worth every sample [m]
+constexpr double kRefineBelow = 0.010;   // clearance that is worth every sample [m]
+constexpr double kMomentShare = 0.0065;  // of weight times COG height: a moment in flight
 
 void note_clearance(CheckPass& pass, int pair, int k, double clearance) {
   pass.summary.min_self_clearance = std::min(pass.summary.min_self_clearance, clearance);
@@ -23,6 +24,11 @@ void note_clearance(CheckPass& pass, int pair, int k, double clearance) {
 
 void check_angular_momentum(CheckPass& pass) {
   constexpr int kMean = 2;  // samples to either side
+  // What a moment turns goes with weight times height: a large robot is not judged by a small
+  // one's.
+  const double size_of_robot = pass.weight * pass.series.samples.front().cog.z();
+  const double limit =
+      std::max(pass.tolerance(Kind::angular_momentum), kMomentShare * size_of_robot);
   const auto flies = [&](int k) {
     return k >= 0 && k < pass.count() && pass.series.samples[k].support == Support::none &&
            !pass.at_flight_edge(k);
@@ -37,7 +43,7 @@ void check_angular_momentum(CheckPass& pass) {
       ++samples;
     }
     const Eigen::Vector3d mean = sum / samples;
-    const double size = mean.norm(), limit = pass.tolerance(Kind::angular_momentum);
+    const double size = mean.norm();
     raise_to(pass.summary.max_momentum_rate, size);
     int axis = 0;
     mean.cwiseAbs().maxCoeff(&axis);

@@ -273,12 +273,8 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
                        : stage_ == Stage::absorb ? 1 - smooth(progress())
                                                  : 0.0;
   const Resolution r = resolve_with_momentum(share);
-  if (r.scale < 1) {
-    out.notes.push_back("speed limit of " + model_->dofs()[r.limiting_dof].name +
-                        " slows the reference");
-    dcog_ *= r.scale;
-  }
-  for (const int j : r.held) out.notes.push_back("position limit holds " + model_->dofs()[j].name);
+  for (const std::string& note : limit_notes(*model_, r)) out.notes.push_back(note);
+  dcog_ *= r.scale;
   const VectorXd velocity = anchored_velocity_map(*model_, data_, anchor_) * r.dtheta;
   MatrixXd M;
   mass_matrix(*model_, data_, M);
