@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
-#include "ayumi/check/self_collision.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/io/robot_file.hpp"
 
 namespace ayumi {

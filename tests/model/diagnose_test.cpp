@@ -94,6 +94,8 @@ TEST(Diagnose, NamesMissingAndPlaceholderLimits) {
                        "limits", "every joint has the torque limit 100 N m"));
   EXPECT_TRUE(mentions(findings([](auto& r) { r.servos.erase("l_knee"); }), "joint l_knee",
                        "no servo constants"));
+  EXPECT_TRUE(
+      mentions(findings([](auto& r) { r.servos["l_knee"].kp = 0; }), "joint l_knee", "is passive"));
   EXPECT_TRUE(mentions(findings([](auto& r) { r.encoders.erase("l_knee"); }), "joint l_knee",
                        "no encoder entry"));
 }

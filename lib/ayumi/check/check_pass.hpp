@@ -3,7 +3,7 @@
 
 #include "ayumi/check/finding_windows.hpp"
 #include "ayumi/check/motion_dynamics.hpp"
-#include "ayumi/check/self_collision.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
 
 namespace ayumi {
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "ayumi/check/self_collision.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/pattern/command_series.hpp"
 
 namespace ayumi {

@@ -2,7 +2,7 @@
 // Findings in words: where, and what to do about it, with numbers.
 
 #include "ayumi/check/finding_windows.hpp"
-#include "ayumi/check/self_collision.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
 
 namespace ayumi {
 

@@ -53,9 +53,32 @@ struct Sets {
   }
 };
 
+/// At most four, without a heap.
+template <typename T>
+class Few {
+ public:
+  Few() = default;
+  Few(std::initializer_list<T> items) {
+    for (const T& item : items) push_back(item);
+  }
+  size_t size() const { return size_; }
+  const T& operator[](size_t i) const { return items_[i]; }
+  T& operator[](size_t i) { return items_[i]; }
+  void push_back(const T& item) { items_[size_++] = item; }
+  void assign(size_t n, const T& item) {
+    for (size_ = 0; size_ < n;) push_back(item);
+  }
+  const T* begin() const { return items_.data(); }
+  const T* end() const { return items_.data() + size_; }
+
+ private:
+  std::array<T, 4> items_;
+  size_t size_ = 0;
+};
+
 struct Simplex {
-  std::vector<Vertex> vertices;
-  std::vector<double> weights;
+  Few<Vertex> vertices;
+  Few<double> weights;
 
   Vector3d sum(Vector3d Vertex::*part) const {
     Vector3d s = Vector3d::Zero();
@@ -67,8 +90,7 @@ struct Simplex {
 // The point of the plane, line or point through `n` vertices nearest to the origin; false where it
 // is not between them.
 template <int n>
-bool nearest_inside(const std::vector<Vertex>& v, const std::array<int, 4>& pick,
-                    std::vector<double>& weights) {
+bool nearest_inside(const Few<Vertex>& v, const std::array<int, 4>& pick, Few<double>& weights) {
   weights.assign(n, 1);
   if constexpr (n > 1) {
     Eigen::Matrix<double, 3, n - 1> E;

@@ -4,20 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "ayumi/geometry/convex.hpp"
-
 namespace ayumi {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-// Everything within `rounding` of a convex core.
-struct Collider::Impl {
-  bool swept = false;  // a sphere or capsule: the core is a point or a segment along z
-  ConvexCore core;
-  double rounding = 0;
-  Isometry3d offset = Isometry3d::Identity();  // core in the shape frame
-};
 
 namespace {
 
@@ -68,46 +58,39 @@ ConvexPair swept_pair(const Vector3d& ca, const Vector3d& za, const Vector3d& cb
 
 }  // namespace
 
-Collider::Collider(const Shape& shape) : impl_(std::make_unique<Impl>()) {
-  Impl& impl = *impl_;
+Collider::Collider(const Shape& shape) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    impl.swept = true;
-    impl.rounding = radius_ = sphere->radius;
+    swept_ = true;
+    rounding_ = radius_ = sphere->radius;
   } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    impl.swept = true;
-    impl.rounding = capsule->radius;
-    impl.core.half.z() = 0.5 * capsule->length;
-    radius_ = impl.core.half.z() + capsule->radius;
+    swept_ = true;
+    rounding_ = capsule->radius;
+    core_.half.z() = 0.5 * capsule->length;
+    radius_ = core_.half.z() + capsule->radius;
   } else if (const auto* box = std::get_if<Box>(&shape)) {
-    impl.core.half = 0.5 * box->size;
-    radius_ = impl.core.half.norm();
+    core_.half = 0.5 * box->size;
+    radius_ = core_.half.norm();
   } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    impl.core.half.z() = 0.5 * cylinder->length;
-    impl.core.disc = cylinder->radius;
+    core_.half.z() = 0.5 * cylinder->length;
+    core_.disc = cylinder->radius;
     radius_ = std::hypot(cylinder->radius, 0.5 * cylinder->length);
   } else {
     const Bounds bounds = mesh_bounds(std::get<MeshShape>(shape));
-    impl.core.half = 0.5 * (bounds.high - bounds.low);
+    core_.half = 0.5 * (bounds.high - bounds.low);
     center_ = 0.5 * (bounds.low + bounds.high);
-    radius_ = impl.core.half.norm();
-    impl.offset.translation() = center_;
+    radius_ = core_.half.norm();
   }
 }
 
-Collider::Collider(Collider&&) noexcept = default;
-Collider& Collider::operator=(Collider&&) noexcept = default;
-Collider::~Collider() = default;
-
 Closest closest(const Collider& a, const Isometry3d& pose_a, const Collider& b,
                 const Isometry3d& pose_b) {
-  const Collider::Impl &ia = *a.impl_, &ib = *b.impl_;
-  const Isometry3d A = pose_a * ia.offset, B = pose_b * ib.offset;
-  const ConvexPair pair = ia.swept && ib.swept
-                              ? swept_pair(A.translation(), ia.core.half.z() * A.linear().col(2),
-                                           B.translation(), ib.core.half.z() * B.linear().col(2))
-                              : convex_pair(ia.core, A, ib.core, B);
-  return {pair.distance - ia.rounding - ib.rounding, pair.on_a + ia.rounding * pair.normal,
-          pair.on_b - ib.rounding * pair.normal, pair.normal};
+  const Isometry3d A = a.core_pose(pose_a), B = b.core_pose(pose_b);
+  const ConvexPair pair = a.swept() && b.swept()
+                              ? swept_pair(A.translation(), a.core().half.z() * A.linear().col(2),
+                                           B.translation(), b.core().half.z() * B.linear().col(2))
+                              : convex_pair(a.core(), A, b.core(), B);
+  return {pair.distance - a.rounding() - b.rounding(), pair.on_a + a.rounding() * pair.normal,
+          pair.on_b - b.rounding() * pair.normal, pair.normal};
 }
 
 double clearance(const Collider& a, const Isometry3d& pose_a, const Collider& b,

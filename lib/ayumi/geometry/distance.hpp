@@ -5,8 +5,8 @@
 // so a clearance is never promised that is not there.
 
 #include <Eigen/Geometry>
-#include <memory>
 
+#include "ayumi/geometry/convex.hpp"
 #include "ayumi/geometry/shape.hpp"
 
 namespace ayumi {
@@ -19,25 +19,28 @@ struct Closest {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< along which b leaves a
 };
 
-/// A shape made ready for distance queries.
+/// A shape made ready for distance queries: everything within `rounding` of a convex core.
 class Collider {
  public:
   explicit Collider(const Shape& shape);
-  Collider(Collider&&) noexcept;
-  Collider& operator=(Collider&&) noexcept;
-  ~Collider();
 
-  /// Bounding sphere, shape frame [m].
+  /// Bounding sphere, shape frame [m]; its centre is the core's, whose axes are the shape's.
   const Eigen::Vector3d& center() const { return center_; }
   double radius() const { return radius_; }
 
+  const ConvexCore& core() const { return core_; }
+  double rounding() const { return rounding_; }  ///< [m]
+  bool swept() const { return swept_; }          ///< sphere or capsule: a point or segment along z
+  /// The core's frame for a shape at `pose`.
+  Eigen::Isometry3d core_pose(const Eigen::Isometry3d& pose) const {
+    return pose * Eigen::Translation3d(center_);
+  }
+
  private:
-  friend Closest closest(const Collider& a, const Eigen::Isometry3d& pose_a, const Collider& b,
-                         const Eigen::Isometry3d& pose_b);
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  ConvexCore core_;
+  double rounding_ = 0, radius_ = 0;
+  bool swept_ = false;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
-  double radius_ = 0;
 };
 
 /// Free distance between two placed shapes; minus the depth of their overlap when they meet [m].

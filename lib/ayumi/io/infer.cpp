@@ -124,18 +124,22 @@ void infer_servos(const RobotModel& model, RobotDescription& robot) {
   servo.kp = 40 * mass * kGravity * z;
   servo.kd = 0.13 * std::sqrt(z / kGravity) * servo.kp;
   servo.rotor_inertia = 0.009 * mass * z * z;
+  bool sliders = false;
   for (const Dof& dof : model.dofs()) {
+    sliders |= dof.prismatic;
     const auto joint =
         std::find_if(robot.joints.begin(), robot.joints.end(),
                      [&](const JointDescription& each) { return each.name == dof.name; });
-    servo.viscous = joint->damping;
-    servo.coulomb = joint->friction;
-    robot.servos[dof.name] = servo;
+    // A slider with the force of a turning joint at the lever of the COG's height.
+    const double scale = dof.prismatic ? 1 / (z * z) : 1;
+    robot.servos[dof.name] = {scale * servo.kp, scale * servo.kd, scale * servo.rotor_inertia,
+                              joint->damping, joint->friction};
   }
   robot.assumptions.push_back("servos: kp " + text::brief(servo.kp) + " N m/rad, kd " +
                               text::brief(servo.kd) + " N m s/rad, rotor inertia " +
                               text::brief(servo.rotor_inertia) +
-                              " kg m^2, scaled from mass and COG height");
+                              " kg m^2, scaled from mass and COG height" +
+                              std::string(sliders ? "; those of sliders over its square" : ""));
 }
 
 }  // namespace

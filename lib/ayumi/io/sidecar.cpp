@@ -100,14 +100,17 @@ void read_postures(const JsonNode& node, double unit, RobotDescription& robot) {
   }
 }
 
+// A joint whose gain no group states has no servo; one whose gain is stated as 0 has no motor.
 void read_servos(const JsonNode& node, RobotDescription& robot) {
+  std::map<std::string, ServoDescription> all;
   for (const JointDescription& joint : robot.joints)
     if (contains(moving_joints(robot), joint.name))
-      robot.servos[joint.name] = {0, 0, 0, joint.damping, joint.friction};
+      all[joint.name] = {0, 0, 0, joint.damping, joint.friction};
   for (const JsonNode& group : node.items()) {
     group.only_keys({"joints", "kp", "kd", "rotor_inertia", "viscous", "coulomb"});
     for (const std::string& joint : group_joints(group, robot)) {
-      ServoDescription& servo = robot.servos[joint];
+      ServoDescription& servo = all[joint];
+      if (group.has("kp")) robot.servos[joint];
       read_not_negative(group, "kp", servo.kp);
       read_not_negative(group, "kd", servo.kd);
       read_not_negative(group, "rotor_inertia", servo.rotor_inertia);
@@ -115,6 +118,7 @@ void read_servos(const JsonNode& node, RobotDescription& robot) {
       read_not_negative(group, "coulomb", servo.coulomb);
     }
   }
+  for (auto& [joint, servo] : robot.servos) servo = all[joint];
 }
 
 void read_profiles(const JsonNode& node, RobotDescription& robot) {

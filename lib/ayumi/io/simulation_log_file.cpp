@@ -63,6 +63,10 @@ void for_each_field(Sample& s, const Visit& visit) {
   visit("contact.residual", "m/s", s.contact_residual);
   visit("contact.iterations", "1", s.contact_iterations);
   visit("energy", "J", s.energy);
+  visit("work.servos", "J", s.work.servos);
+  visit("work.contacts", "J", s.work.contacts);
+  visit("work.outside", "J", s.work.outside);
+  visit("work.joints", "J", s.work.joints);
 }
 
 // Overloads by the type of a field; `joints` names the entries of joint vectors.

@@ -179,7 +179,10 @@ class Doctor {
       warn(where, "speed limit " + text::brief(limits.speed[index]) +
                       " rad/s is faster than servos are; a placeholder?");
     if (std::isinf(limits.peak_torque[index])) warn(where, "no torque limit is stated");
-    if (dof.servo.kp <= 0) warn(where, "has no servo constants; give it a kp and kd");
+    if (!model_.description().servos.contains(dof.name))
+      warn(where, "has no servo constants; give it a kp and kd");
+    else if (dof.servo.kp <= 0)
+      warn(where, "is passive: its servo's kp is 0");
     if (dof.encoder.device == 0 && !model_.description().encoders.empty())
       warn(where, "has no encoder entry although other joints have one");
   }

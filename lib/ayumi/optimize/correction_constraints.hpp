@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ayumi/check/residuals.hpp"
-#include "ayumi/check/self_collision.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/optimize/corrected_motion.hpp"
 #include "ayumi/pattern/correction.hpp"
 

@@ -12,8 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kStaticSink = 1e-7;    // of a body on four of its points [m]
-constexpr double kDampingTime = 0.004;  // contact damping / stiffness of bodies [s]
+constexpr double kStaticSink = 1e-7;  // of a body on four of its points [m]
 
 /// Points of a body that may touch the ground besides the soles.
 std::vector<std::pair<Vector3d, double>> touch_points(const PlacedShape& placed) {
@@ -49,9 +48,12 @@ std::vector<std::pair<Vector3d, double>> touch_points(const PlacedShape& placed)
 
 }  // namespace
 
+double body_stiffness(const RobotModel& model) {
+  return 0.25 * model.mass() * kGravity / kStaticSink;
+}
+
 std::vector<ContactPoint> contact_points(const RobotModel& model) {
   std::vector<ContactPoint> points;
-  const double body_stiffness = model.mass() * kGravity / kStaticSink;
   for (Side side : {Side::left, Side::right}) {
     if (!model.has_soles()) break;
     const Sole& sole = model.sole(side);
@@ -78,8 +80,8 @@ std::vector<ContactPoint> contact_points(const RobotModel& model) {
         point.body = link.body;
         point.position = link.pose * position;
         point.radius = radius;
-        point.stiffness = 0.25 * body_stiffness;
-        point.damping_time = kDampingTime;
+        point.stiffness = body_stiffness(model);
+        point.damping_time = kBodyDamping;
         points.push_back(point);
       }
     }
@@ -102,6 +104,24 @@ std::vector<PointGroup> group_points(const std::vector<ContactPoint>& points) {
           std::max(group.radius, (first[i].position - group.center).norm() + first[i].radius);
   }
   return groups;
+}
+
+void corner_weights(const std::vector<Vector2d>& polygon, const Vector2d& p,
+                    std::vector<double>& weights) {
+  const size_t n = polygon.size();
+  const auto area = [](const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+  };
+  weights.resize(n);
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) {
+    double w = area(polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n]);
+    for (size_t j = 0; j < n; ++j)  // the sides that do not end in corner i
+      if (j != i && (j + 1) % n != i) w *= std::max(0.0, area(polygon[j], polygon[(j + 1) % n], p));
+    weights[i] = w;
+    sum += w;
+  }
+  for (double& w : weights) w = sum > 0 ? w / sum : 1.0 / static_cast<double>(n);
 }
 
 }  // namespace ayumi

@@ -30,6 +30,15 @@ struct PointGroup {
 /// links that are not part of a foot.
 std::vector<ContactPoint> contact_points(const RobotModel& model);
 
+/// Spring of a point of a body that is no sole: almost rigid.
+double body_stiffness(const RobotModel& model);  ///< [N/m]
+constexpr double kBodyDamping = 0.004;           ///< damping / stiffness [s]
+
 std::vector<PointGroup> group_points(const std::vector<ContactPoint>& points);
+
+/// Weights of a convex polygon's corners that make up the point p within it (Wachspress): all
+/// non-negative, their sum is 1 and the weighted corners give p.
+void corner_weights(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p,
+                    std::vector<double>& weights);
 
 }  // namespace ayumi

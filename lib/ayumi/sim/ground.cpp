@@ -15,7 +15,8 @@ namespace {
 // it has run into the side.
 constexpr double kLip = 0.001;  // [m]
 constexpr double kDeep =
-    0.005;  // an edge this far inside a sole has met its side, not its face [m]
+    0.005;                      // an edge this far inside a sole has met its side, not its face [m]
+constexpr double kBelow = 0.5;  // of a solid block, below the plane [m]
 constexpr long kBlockIds = 1 << 10, kFieldIds = 1 << 24;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -49,12 +50,26 @@ Ground::Block Ground::prepared(const GroundBlock& block, double rise) {
   return result;
 }
 
+SolidBlock Ground::solid(const GroundBlock& block, double rise) const {
+  const double bottom = std::min(world_.height, block.height) - kBelow;
+  const double depth = block.height - bottom;
+  const bool disc = block.kind == GroundBlock::Kind::disc;
+  const Vector2d size = block.high - block.low;
+  const Vector2d center = disc ? block.center : Vector2d(0.5 * (block.low + block.high));
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() << center, bottom + 0.5 * depth;
+  const Shape shape =
+      disc ? Shape(Cylinder{block.radius, depth}) : Shape(Box{{size.x(), size.y(), depth}});
+  return {Collider(shape), pose, rise};
+}
+
 Ground::Ground(const World& world) : world_(world), still_{.pose = floor_pose(world, {}, 0)} {
   if (!world.fields.empty()) field_ = world.fields.front();
   fixed_top_ = world.height;
   if (field_.heights.size() > 0) fixed_top_ = std::max(fixed_top_, field_.heights.maxCoeff());
   for (const GroundBlock& block : world.blocks) {
     blocks_.push_back(prepared(block, 0));
+    solids_.push_back(solid(block, 0));
     fixed_top_ = std::max(fixed_top_, block.height);
   }
   fixed_ = blocks_.size();
@@ -65,9 +80,11 @@ void Ground::set(const StepInput& input) {
   floor_ = input.floor ? *input.floor : still_;
   friction_ = input.friction;
   blocks_.resize(fixed_);
+  solids_.erase(solids_.begin() + static_cast<std::ptrdiff_t>(fixed_), solids_.end());
   top_ = fixed_top_;
   for (const Bump& bump : input.bumps) {
     blocks_.push_back(prepared(bump.block, bump.rate));
+    solids_.push_back(solid(bump.block, bump.rate));
     top_ = std::max(top_, bump.block.height);
   }
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "ayumi/geometry/distance.hpp"
 #include "ayumi/sim/step.hpp"
 
 namespace ayumi {
@@ -24,6 +25,13 @@ struct InnerPoint {
   double gap = 0, rise = 0;
 };
 
+/// A block as a solid, for shapes that lie over its edges.
+struct SolidBlock {
+  Collider collider;
+  Eigen::Isometry3d pose;  ///< in the ground's frame
+  double rise = 0;         ///< [m/s]
+};
+
 class Ground {
  public:
   explicit Ground(const World& world);
@@ -33,9 +41,11 @@ class Ground {
 
   /// Only a plane: soles touch with their corners alone.
   bool plain() const { return blocks_.empty() && field_.heights.size() == 0; }
-  double top() const { return top_; }  ///< of everything [m]
+  const std::vector<SolidBlock>& solids() const { return solids_; }  ///< of all blocks
+  double top() const { return top_; }                                ///< of everything [m]
   const Eigen::Isometry3d& pose() const { return floor_.pose; }
   Eigen::Vector3d normal() const { return floor_.pose.linear().col(2); }  ///< of the plane, world
+  const Eigen::Vector3d& angular_velocity() const { return floor_.angular_velocity; }  ///< [rad/s]
   /// Velocity of the floor at a point, both in the world [m/s].
   Eigen::Vector3d velocity(const Eigen::Vector3d& p) const {
     return floor_.velocity + floor_.angular_velocity.cross(p - floor_.pose.translation());
@@ -56,6 +66,7 @@ class Ground {
     Eigen::Vector2d center;
     double radius = 0, height = 0, rise = 0;
   };
+  SolidBlock solid(const GroundBlock& block, double rise) const;
   static Block prepared(const GroundBlock& block, double rise);
   double field_height(const Eigen::Vector2d& p, Eigen::Vector2d& gradient) const;
   bool on_field(const Eigen::Vector2d& p) const;
@@ -63,7 +74,8 @@ class Ground {
   World world_;
   HeightField field_;
   FloorPose still_, floor_;
-  std::vector<Block> blocks_;  // of the world, then the bumps
+  std::vector<Block> blocks_;       // of the world, then the bumps
+  std::vector<SolidBlock> solids_;  // likewise
   size_t fixed_ = 0;
   std::optional<double> friction_;
   double top_ = 0, fixed_top_ = 0;

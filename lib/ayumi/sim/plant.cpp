@@ -16,6 +16,7 @@
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/sim/payload.hpp"
 #include "ayumi/sim/servo.hpp"
 
 namespace ayumi {
@@ -30,19 +31,8 @@ namespace {
 constexpr double kStickRate = 1e-3;       // joint rate below which dry friction holds [rad/s]
 constexpr double kLargest = 1e6;          // number that is taken for one [SI]
 constexpr double kLimitStiffness = 20.0;  // of a joint's end stop, in servo stiffnesses
-
-void add_point_mass(double mass, const Vector3d& point, LinkDescription& link) {
-  Inertia& inertia = link.inertia;
-  const Vector3d apart = point - inertia.com;
-  const double total = inertia.mass + mass;
-  if (!(total > 0)) return;
-  const double reduced = inertia.mass * mass / total;
-  inertia.about_com +=
-      reduced * (apart.squaredNorm() * Matrix3d::Identity() - apart * apart.transpose());
-  inertia.com += mass / total * apart;
-  inertia.mass = total;
-  link.has_inertial = true;
-}
+constexpr double kStopSink = 0.001;       // of a passive slide's under the weight, times that [m]
+constexpr double kStopDamping = 0.02;     // of a passive joint's end stop, damping / stiffness [s]
 
 /// Largest magnitude; NaN when any entry is.
 template <typename Vector>
@@ -56,16 +46,18 @@ double largest(const Vector& v) {
 }  // namespace
 
 Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World& world)
-    : model_(&model), limits_(limits), ground_(world), data_(model), factor_(model) {
+    : model_(&model), limits_(limits), ground_(world), data_(model), links_(model), factor_(model) {
   const int n = model.dof_count();
   kp_.resize(n);
   kd_.resize(n);
   rotor_.resize(n);
   viscous_.resize(n);
   coulomb_.resize(n);
+  stop_.resize(n);
+  stop_damping_.resize(n);
   for (int j = 0; j < n; ++j) {
     const ServoDescription& servo = model.dofs()[j].servo;
-    if (servo.kp <= 0)
+    if (servo.kp <= 0 && !model.description().servos.contains(model.dofs()[j].name))
       fail(ErrorCode::bad_model, model.name() + ": joint " + model.dofs()[j].name +
                                      " has no servo (kp); give it one in the sidecar");
     kp_[j] = servo.kp;
@@ -73,19 +65,29 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
     rotor_[j] = servo.rotor_inertia;
     viscous_[j] = servo.viscous;
     coulomb_[j] = servo.coulomb;
+    // A joint without a motor has an end stop all the same.
+    const double weight = model.mass() * kGravity;
+    const double loose = model.dofs()[j].prismatic ? weight / kStopSink : weight;
+    stop_[j] = kLimitStiffness * (kp_[j] > 0 ? kp_[j] : loose);
+    stop_damping_[j] = kp_[j] > 0 ? kLimitStiffness * kd_[j] : kStopDamping * stop_[j];
   }
   points_ = contact_points(model);
   groups_ = group_points(points_);
+  link_friction_ = world.friction;
+  link_stiffness_ = body_stiffness(model);
+  is_foot_.assign(model.bodies().size(), 0);
+  for (const Side side : {Side::left, Side::right})
+    if (model.has_soles()) is_foot_[static_cast<size_t>(model.sole(side).body)] = 1;
   const int columns = model.velocity_count();
   chain_bodies_.resize(model.bodies().size());
   chain_lines_.resize(model.bodies().size());
-  for (const PointGroup& group : groups_)
-    for (int b = group.body; b > 0; b = model.bodies()[b].parent) {
-      const int place = factor_.place_of(6 + model.bodies()[b].dof);
-      chain_bodies_[static_cast<size_t>(group.body)].push_back(b);
-      chain_lines_[static_cast<size_t>(group.body)].push_back(factor_.depth(place));
+  for (size_t body = 0; body < chain_bodies_.size(); ++body)
+    for (int b = static_cast<int>(body); b > 0; b = model.bodies()[b].parent) {
+      chain_bodies_[body].push_back(b);
+      chain_lines_[body].push_back(factor_.depth(factor_.place_of(6 + model.bodies()[b].dof)));
     }
   still_ = velocity_ = lower_ = placed_ = momentum_ = VectorXd::Zero(columns);
+  before_ = outside_ = still_;
   mass_.resize(factor_.row_doubles());
   for (int j = 0; j < n; ++j) {
     const int place = factor_.place_of(6 + j);
@@ -133,6 +135,7 @@ void Plant::set_state(const RobotState& state) {
   update_velocities(moving(), state_, data_);
   fill_mass();
   active_.clear();
+  links_.reset();
 }
 
 void Plant::check_input(const VectorXd& targets, const StepInput& input, double dt) const {
@@ -165,15 +168,7 @@ void Plant::load(const std::vector<CarriedMass>& payloads) {
   if (payloads == carried_) return;
   carried_ = payloads;
   loaded_.reset();
-  if (!payloads.empty()) {
-    RobotDescription d = model_->description();
-    for (const CarriedMass& carried : payloads) {
-      const std::string& name = model_->links()[static_cast<size_t>(carried.link)].name;
-      for (LinkDescription& link : d.links)
-        if (link.name == name) add_point_mass(carried.mass, carried.point, link);
-    }
-    loaded_.emplace(d);
-  }
+  if (!payloads.empty()) loaded_.emplace(with_payloads(*model_, payloads));
   data_ = RobotData(moving());
   update_velocities(moving(), state_, data_);
   fill_mass();
@@ -201,11 +196,11 @@ void Plant::push(const ExternalWrench& w, double dt) {
   const Vector3d point = w.body < 0 ? data_.cog : w.point;
   const Vector3d p = point - data_.base_position;
   const Vector3d force = dt * w.force, torque = dt * w.torque;
-  momentum_.head<3>() += force;
-  momentum_.segment<3>(3) += p.cross(force) + torque;
+  outside_.head<3>() += force;
+  outside_.segment<3>(3) += p.cross(force) + torque;
   for (int i = body; i > 0; i = model_->bodies()[i].parent) {
     const Body& b = model_->bodies()[i];
-    momentum_[6 + b.dof] +=
+    outside_[6 + b.dof] +=
         b.ratio * data_.axis[i].dot(b.prismatic
                                         ? force
                                         : Vector3d((p - data_.position[i]).cross(force) + torque));
@@ -225,8 +220,8 @@ void Plant::fill_mass() {
 // Fills the momentum and bias terms and what the contact solve needs; returns the momentum so far.
 Momentum Plant::assemble(const StepInput& input, double dt) {
   newton_euler(moving(), state_, still_, data_, bias_);
-  velocity_ << state_.base_velocity, state_.base_angular_velocity, state_.dtheta;
-  for (int k = 0; k < velocity_.size(); ++k) placed_[k] = velocity_[factor_.column_at(k)];
+  before_ << state_.base_velocity, state_.base_angular_velocity, state_.dtheta;
+  for (int k = 0; k < velocity_.size(); ++k) placed_[k] = before_[factor_.column_at(k)];
   factor_.multiply(mass_, placed_, lower_);
   for (int k = 0; k < velocity_.size(); ++k) momentum_[factor_.column_at(k)] = lower_[k];
   Momentum momentum{momentum_.head<3>(), momentum_.segment<3>(3)};
@@ -234,7 +229,9 @@ Momentum Plant::assemble(const StepInput& input, double dt) {
   momentum_ -= dt * bias_;
   external_.linear = {0, 0, -dt * moving().mass() * kGravity};
   external_.angular.setZero();
+  outside_.setZero();
   for (const ExternalWrench& w : input.wrenches) push(w, dt);
+  if (!input.wrenches.empty()) momentum_ += outside_;
   collect_contacts(dt);
   fill_contact_rows(dt);
   return momentum;
@@ -265,9 +262,8 @@ void Plant::solve_velocity(double dt) {
     }
     const Dof& dof = model_->dofs()[j];
     if (dof.limited && (theta < dof.lower || theta > dof.upper)) {
-      const double stop = kLimitStiffness * kp_[j];
-      diagonal += dt * dt * stop + dt * kLimitStiffness * kd_[j];
-      force += dt * stop * (std::clamp(theta, dof.lower, dof.upper) - theta);
+      diagonal += dt * dt * stop_[j] + dt * stop_damping_[j];
+      force += dt * stop_[j] * (std::clamp(theta, dof.lower, dof.upper) - theta);
     }
   }
   const int columns = model_->velocity_count();
@@ -285,7 +281,7 @@ void Plant::solve_velocity(double dt) {
       const double* l = solver_.impulse().data() + 3 * run.first;
       for (int k = run.last, t = factor_.depth(k); k >= 0; k = factor_.parent(k), --t) {
         const double* Y = &Y_[run.begin + static_cast<size_t>(t * run.width)];
-        for (size_t r = 0; r < 3 * run.count; ++r) lower_[k] += Y[r] * l[r];
+        for (size_t r = 0; r < 3 * run.count; ++r) lower_[k] += run.sign * Y[r] * l[r];
       }
     }
   }
@@ -337,11 +333,32 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
   for (int j = 0; j < n; ++j)
     if (saturated_[j]) report_.saturated.push_back(j);
   report_contacts(dt);
+  account(dt);
   momentum.linear += external_.linear;
   momentum.angular += external_.angular;
   advance(momentum, dt);
   time_ += dt;
   return report_;
+}
+
+// Work of what acts on the joints and from outside, at the mean of the rates before and after:
+// impulse times mean rate is exactly the change of kinetic energy that it makes.
+void Plant::account(double dt) {
+  Work& work = report_.work;
+  work.servos = work.joints = work.outside = 0;
+  for (int j = 0; j < model_->dof_count(); ++j) {
+    const double rate = velocity_[6 + j], mean = 0.5 * (before_[6 + j] + rate);
+    work.servos += dt * report_.torque[j] * mean;
+    double force = -viscous_now_[j] * rate;
+    if (coulomb_now_[j] > 0) force += sliding_[j] ? dry_[j] : -coulomb_now_[j] / kStickRate * rate;
+    const Dof& dof = model_->dofs()[j];
+    const double theta = state_.theta[j];
+    if (dof.limited && (theta < dof.lower || theta > dof.upper))
+      force += stop_[j] * (std::clamp(theta, dof.lower, dof.upper) - theta - dt * rate) -
+               stop_damping_[j] * rate;
+    work.joints += dt * force * mean;
+  }
+  work.outside = 0.5 * outside_.dot(before_ + velocity_);
 }
 
 // Joints move with their solved rates. The base then takes the velocity that gives the robot, in

@@ -11,6 +11,7 @@
 #include "ayumi/sim/contact_points.hpp"
 #include "ayumi/sim/contact_solver.hpp"
 #include "ayumi/sim/ground.hpp"
+#include "ayumi/sim/link_contacts.hpp"
 #include "ayumi/sim/step.hpp"
 
 namespace ayumi {
@@ -33,9 +34,12 @@ class Plant {
  private:
   /// A point that touches, or may within the step.
   struct Active {
-    long key = 0;   ///< index of the ContactPoint, or beyond them of an inner point of a sole
-    int point = 0;  ///< the ContactPoint, of an inner point its sole's first
-    bool inner = false;
+    long key = 0;    ///< index of the ContactPoint; beyond them where edges or links meet
+    int body = 0;    ///< that is pushed along the normal
+    int other = -1;  ///< the body it touches; -1: the ground
+    int side = -1, vertex = -1;  ///< of a sole, else -1; vertex -1: between its corners
+    double stiffness = 0, damping_time = 0;
+    size_t run = 0;  ///< its body's; where links touch, the other body's is the next
     double gap = 0;
     Eigen::Vector3d position;         ///< world [m]
     Eigen::Matrix3d to_contact;       ///< rows: normal, tangents
@@ -45,10 +49,12 @@ class Plant {
     Eigen::Vector2d deflection = Eigen::Vector2d::Zero();  ///< of the tangential spring [m]
   };
 
-  /// Consecutive contacts of one body. Rows of their Jacobian stand side by side, three per contact
-  /// and filled up to a multiple of four, one line for each place on the path to the body.
+  /// Consecutive contacts of one body, or of one pair: then there are two, of either body. Rows of
+  /// their Jacobian stand side by side, three per contact and filled up to a multiple of four, one
+  /// line for each place on the path to the body.
   struct Run {
     int body = 0, last = 0;  ///< and the last place that moves it
+    double sign = 1;         ///< -1 of the body that is pushed back
     size_t first = 0, count = 0;
     int width = 0;
     size_t begin = 0;  ///< in J_ and Y_
@@ -62,6 +68,10 @@ class Plant {
 
   void collect_contacts(double dt);
   void collect_inner(size_t group, double dt);
+  void collect_edges(double dt);
+  void collect_edges(int body, const CollisionModel::PlacedCollider& shape, const SolidBlock& block,
+                     long key, double dt);
+  void collect_links(double dt);
   bool far(double gap, int body, const Active& active, double dt) const;
   void place_frame(const Eigen::Vector3d& normal, Active& active) const;
   void remember_impulses();
@@ -69,13 +79,19 @@ class Plant {
   void push(const ExternalWrench& wrench, double dt);
   void fill_mass();
   void find_runs();
+  void add_run(size_t first, size_t count, int body, double sign);
   void fill_contact_rows(double dt);
   void fill_jacobian(const Run& run);
   void fill_delassus();
+  void couple(const Run& run, const Run& other);
   void solve_velocity(double dt);
   bool limit_torques(double dt);
   void report_contacts(double dt);
+  void report_sole(const Active& active, const Eigen::Vector3d& force);
+  /// J of a contact times these velocities.
+  Eigen::Vector3d contact_rate(size_t i, const Eigen::VectorXd& velocity) const;
   void share_among_cells(const Active& active, const Eigen::Vector3d& force);
+  void account(double dt);
   void advance(const Momentum& momentum, double dt);
 
   const RobotModel* model_;
@@ -88,7 +104,11 @@ class Plant {
   RobotData data_;
   std::vector<ContactPoint> points_;
   std::vector<PointGroup> groups_;
+  LinkContacts links_;
+  double link_friction_ = 0, link_stiffness_ = 0;
+  std::vector<char> is_foot_;  ///< by body
   Eigen::VectorXd kp_, kd_, rotor_, viscous_, coulomb_;
+  Eigen::VectorXd stop_, stop_damping_;  ///< of joints beyond their range
 
   // Workspace of step().
   Eigen::VectorXd kp_now_, kd_now_, viscous_now_, coulomb_now_, target_now_;
@@ -99,10 +119,11 @@ class Plant {
   TreeCholesky factor_;
   std::vector<double> mass_;            // rows of the mass matrix with rotors, of state_
   std::vector<size_t> joint_diagonal_;  // in such rows, by dof
-  std::vector<std::vector<int>> chain_bodies_, chain_lines_;  // by body that may touch
+  std::vector<std::vector<int>> chain_bodies_, chain_lines_;  // by body
   std::vector<Run> runs_;
-  std::vector<double> J_, Y_;  // contact Jacobians, L^-T times their transposes
-  Eigen::VectorXd momentum_, bias_, still_, velocity_, lower_, placed_;
+  bool paired_ = false;                // some of them are of links that touch
+  std::vector<double> J_, Y_, block_;  // contact Jacobians, L^-T times their transposes, Y'Y of two
+  Eigen::VectorXd momentum_, bias_, still_, velocity_, lower_, placed_, before_, outside_;
   std::vector<double> compliance_;
   std::vector<Eigen::Vector3d> shift_;
   std::vector<char> saturated_, sliding_;

@@ -10,6 +10,7 @@
 #include "ayumi/model/robot_state.hpp"
 #include "ayumi/pattern/reference_trajectory.hpp"
 #include "ayumi/pattern/scenario.hpp"
+#include "ayumi/sim/work.hpp"
 
 namespace ayumi {
 
@@ -42,6 +43,7 @@ struct SimulationSample {
   double contact_residual = 0;                           ///< of the contact solve [m/s]
   int contact_iterations = 0;
   double energy = 0;  ///< kinetic (rotors included) and potential over z = 0 [J]
+  Work work;          ///< done since t = 0
 };
 
 struct SimulationEvent {

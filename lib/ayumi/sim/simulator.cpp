@@ -144,6 +144,7 @@ void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
   s.contact_residual = report_.contact_residual;
   s.contact_iterations = report_.contact_iterations;
   s.energy = energy();
+  s.work = work_;
 }
 
 void Simulator::take_forces(const CommandSample& cmd) {
@@ -211,6 +212,13 @@ void Simulator::step_once() {
   for (int i = 0; i < options_.substeps; ++i) {
     if (i > 0) schedule_.fill(step + i, plant_.data(), input_);
     report_ = plant_.step(out.target, input_, h_);
+    work_ += report_.work;
+  }
+  if (report_.self_contact[0] >= 0 && !touched_) {
+    touched_ = true;
+    events_.push_back({t, "contact",
+                       model_->bodies()[report_.self_contact[0]].name + " touches " +
+                           model_->bodies()[report_.self_contact[1]].name});
   }
   if (keep_samples_) samples_.push_back(last_);
   ++tick_;

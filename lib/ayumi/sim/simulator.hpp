@@ -80,6 +80,8 @@ class Simulator {
   Estimate estimate_;
   std::vector<SimulationSample> samples_;
   bool keep_samples_ = true, fell_ = false;
+  bool touched_ = false;  // itself, told already
+  Work work_;
   long tick_ = 0, planned_ = 0, end_ = 0;  // ticks done, of the whole run, where it stops
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ayumi/pattern/world.hpp"
+#include "ayumi/sim/work.hpp"
 
 namespace ayumi {
 
@@ -77,6 +78,9 @@ struct StepReport {
   int contact_iterations = 0;
   double contact_residual = 0;  ///< [m/s]
   double max_penetration = 0;   ///< of a sole vertex [m]
+  Work work;                    ///< done in the step
+  /// Bodies of the robot that touch each other, the first such pair; -1: none.
+  std::array<int, 2> self_contact = {-1, -1};
 };
 
 }  // namespace ayumi

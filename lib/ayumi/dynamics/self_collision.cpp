@@ -1,4 +1,4 @@
-#include "ayumi/check/self_collision.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kHousingGap = 0.005;  // [m]
 constexpr int kHousingJoints = 3;
+constexpr double kRounding = 1e-6;  // of what touches [m]
 
 int joints_between(const RobotModel& model, int a, int b) {
   int steps = 0;
@@ -52,7 +53,7 @@ CollisionModel::CollisionModel(const RobotModel& model) : shapes_(model.bodies()
       const int joints = joints_between(model, a, b);
       if (joints < 2) continue;
       const double home = clearance({a, b}, data, kHousingGap);
-      if (home > (joints <= kHousingJoints ? kHousingGap : 0)) pairs_.push_back({a, b});
+      if (home > (joints <= kHousingJoints ? kHousingGap : -kRounding)) pairs_.push_back({a, b});
     }
   }
 }

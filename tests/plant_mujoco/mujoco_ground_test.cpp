@@ -1,0 +1,223 @@
+// Ground and disturbances in MuJoCo: closed forms with a block, and what Ayumi's own plant says.
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/sim/simulate.hpp"
+#include "tests/support/block.hpp"
+#include "tests/support/walk.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kStep = 1e-3;
+
+struct Block {
+  Block(const World& world, const Vector3d& place, double slope = 0)
+      : model(test::block_description({0.2, 0.1, 0.04}, 2.0)), plant(model, model.limits(), world) {
+    RobotState s = model.rest_state();
+    s.base.attitude = exp_rotation({0, slope, 0});
+    s.base.position = s.base.attitude * place;
+    plant.set_state(s);
+  }
+  void run(double time, const StepInput& input = {}) {
+    for (long i = 0; i < std::lround(time / kStep); ++i) plant.step(VectorXd(0), input, kStep);
+  }
+  const Vector3d& position() const { return plant.state().base.position; }
+  RobotModel model;
+  MujocoPlant plant;
+};
+
+GroundBlock rectangle(const Vector2d& low, const Vector2d& high, double height) {
+  GroundBlock block;
+  block.low = low;
+  block.high = high;
+  block.height = height;
+  return block;
+}
+
+TEST(MujocoGround, BlocksDiscsAndThePlaneBelowCarry) {
+  World world;
+  world.height = -0.01;
+  world.blocks.push_back(rectangle({-0.5, -0.5}, {0.5, 0.5}, 0.05));
+  GroundBlock disc;
+  disc.kind = GroundBlock::Kind::disc;
+  disc.center = {0, 2};
+  disc.radius = 0.3;
+  disc.height = 0.02;
+  world.blocks.push_back(disc);
+  // The corners' balls reach half a millimetre below the block.
+  for (const auto& [y, height] : {std::pair{0.0, 0.05}, {1.0, -0.01}, {2.0, 0.02}}) {
+    Block block(world, {0, y, height + 0.022});
+    block.run(0.5);
+    EXPECT_NEAR(block.position().z(), height + 0.0205, 3e-4) << y;
+  }
+}
+
+TEST(MujocoGround, PatchesHaveTheirOwnFriction) {
+  const double angle = 0.3, mu = 0.1;
+  World world{.friction = 0.8, .slope = {0, angle}};
+  world.patches.push_back({{-0.3, -1}, {5, 1}, mu});
+  for (const double y : {0.0, 2.0}) {
+    Block block(world, {0, y, 0.0205}, angle);
+    block.run(0.1);
+    const Vector3d start = block.position();
+    const double v0 = block.plant.state().base_velocity.norm();
+    block.run(0.5);
+    const double a = kGravity * (std::sin(angle) - mu * std::cos(angle));
+    const double distance = y > 1 ? 0 : v0 * 0.5 + 0.5 * a * 0.25;
+    EXPECT_NEAR((block.position() - start).norm(), distance, 0.01 * distance + 2e-3);
+  }
+}
+
+// A height field that is an inclined plane, above and below the plane around it.
+TEST(MujocoGround, AnInclinedFieldIsASlope) {
+  const double angle = 0.3, mu = 0.15;
+  World world{.friction = mu};
+  HeightField field{.origin = {-1, -1}, .spacing = 0.07, .heights = Eigen::MatrixXd(60, 30)};
+  for (Eigen::Index i = 0; i < 60; ++i)
+    field.heights.row(i).setConstant(-std::tan(angle) * (-1 + 0.07 * static_cast<double>(i)));
+  world.fields.push_back(field);
+  Block block(world, {0, 0, 0.0205}, angle);
+  block.run(0.1);
+  const Vector3d start = block.position();
+  const double v0 = block.plant.state().base_velocity.norm(), T = 0.6;
+  block.run(T);
+  const double a = kGravity * (std::sin(angle) - mu * std::cos(angle));
+  const double distance = v0 * T + 0.5 * a * T * T;
+  EXPECT_NEAR((block.position() - start).norm(), distance, 0.02 * distance);
+}
+
+StepInput floor_input(const std::vector<FloorMotion>& motions, long k) {
+  const double t = static_cast<double>(k) * kStep;
+  StepInput input;
+  FloorPose floor{.pose = floor_pose({}, motions, t)};
+  const Eigen::Isometry3d next = floor_pose({}, motions, t + kStep);
+  floor.velocity = (next.translation() - floor.pose.translation()) / kStep;
+  floor.angular_velocity =
+      log_rotation(Eigen::Quaterniond(next.linear() * floor.pose.linear().transpose())) / kStep;
+  input.floor = floor;
+  return input;
+}
+
+// Shaken more gently than friction holds, a block goes with the floor; more strongly, it slips.
+TEST(MujocoGround, AMovingFloorCarriesABlockAsFarAsFrictionHolds) {
+  const double mu = 0.4, w = 2 * M_PI * 2;
+  for (const double share : {0.8, 1.5}) {
+    const double amplitude = share * mu * kGravity / (w * w);
+    const std::vector<FloorMotion> motions = {
+        {MotionShape::sine, 0.2, 10, 2, {0, 0}, {amplitude, 0, 0}}};
+    Block block(World{.friction = mu}, {0, 0, 0.0205});
+    double apart = 0, offset = 0;
+    for (long k = 0; k < 1700; ++k) {
+      block.plant.step(VectorXd(0), floor_input(motions, k), kStep);
+      const double floor =
+          floor_pose({}, motions, static_cast<double>(k + 1) * kStep).translation().x();
+      if (k == 700) offset = block.position().x() - floor;
+      if (k >= 700) apart = std::max(apart, std::abs(block.position().x() - floor - offset));
+    }
+    if (share < 1) {
+      EXPECT_LT(apart, 0.05 * amplitude);
+    } else {
+      EXPECT_GT(apart, 0.2 * amplitude);
+    }
+  }
+}
+
+const RobotModel& hoap1() {
+  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  return model;
+}
+
+Disturbance lasting(DisturbanceType type, double magnitude) {
+  Disturbance d;
+  d.type = type;
+  d.at = 0.3;
+  d.duration = 0.7;
+  d.magnitude = magnitude;
+  return d;
+}
+
+std::vector<Disturbance> disturbances() {
+  std::vector<Disturbance> all;
+  const auto add = [&](DisturbanceType type, double magnitude) -> Disturbance& {
+    all.push_back(lasting(type, magnitude));
+    return all.back();
+  };
+  add(DisturbanceType::impulse, 0.4).duration = 0.02;
+  Disturbance& force = add(DisturbanceType::force, 4);
+  force.on = "r_forearm";
+  force.direction = Vector3d::UnitY();
+  add(DisturbanceType::torque, 0.6);
+  Disturbance& payload = add(DisturbanceType::payload, 0.3);
+  payload.on = "r_forearm";
+  payload.point = Vector3d(0, 0, -0.05);
+  Disturbance& floor = add(DisturbanceType::floor, 0);
+  floor.floor = {MotionShape::half_sine, 0.3, 0.7, 0, {0.03, 0.02}, {0.01, 0.02, 0.005}};
+  add(DisturbanceType::friction, 0.3);
+  Disturbance& bump = add(DisturbanceType::bump, 0.003);
+  bump.foot = Side::left;
+  bump.radius = 0.015;
+  bump.place = hoap1().sole(Side::left).center;
+  add(DisturbanceType::latency, 0.004);
+  add(DisturbanceType::sensor_bias, 0).tilt_bias = {0.01, 0.01};
+  add(DisturbanceType::encoder_offset, 0.02).joint = "l_ankle_pitch";
+  add(DisturbanceType::joint_friction, 0.3).viscous = 0.1;
+  add(DisturbanceType::gain_loss, 0.4).joint = "l_knee";
+  return all;
+}
+
+class MujocoDisturbance : public testing::TestWithParam<Disturbance> {};
+
+// Both plants under each of the twelve: COG and force on the ground.
+TEST_P(MujocoDisturbance, DoesTheSameInBothPlants) {
+  static const CommandSeries stand = test::standing(hoap1(), 1.3);
+  SimulateOptions options;
+  options.settle = 0;
+  options.scenario = {GetParam()};
+  const SimulationLog ours = simulate(hoap1(), stand, options);
+  options.plant = mujoco_plant_kind();
+  const SimulationLog theirs = simulate(hoap1(), stand, options);
+  ASSERT_EQ(ours.samples.size(), theirs.samples.size());
+  double largest = 0, moved = 0, force = 0;
+  for (size_t k = 0; k < ours.samples.size(); ++k) {
+    // The balls at the corners are flush with the sole only while it is flat.
+    largest = std::max(largest, (ours.samples[k].cog - theirs.samples[k].cog).norm());
+    moved = std::max(moved, (ours.samples[k].cog - ours.samples[250].cog).norm());
+    if (k > 1000) force += (ours.samples[k].fz - theirs.samples[k].fz) / 300;
+  }
+  std::cout << name_of(GetParam().type) << ": COG moves " << 1e3 * moved << " mm, differs by "
+            << 1e3 * largest << " mm, f_z by " << force << " N\n";
+  EXPECT_NE(ours.result.outcome, Outcome::fell);
+  EXPECT_NE(theirs.result.outcome, Outcome::fell);
+  EXPECT_LT(largest, 0.001 + 0.15 * moved);
+  EXPECT_LT(std::abs(force), 0.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MujocoDisturbance, testing::ValuesIn(disturbances()),
+                         [](const auto& info) { return std::string(name_of(info.param.type)); });
+
+TEST(MujocoGround, TooManyBumpsAreRefused) {
+  Block block(World{}, {0, 0, 0.0205});
+  StepInput input;
+  input.bumps.resize(5);
+  try {
+    block.plant.step(VectorXd(0), input, kStep);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("room for 4 bumps"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace ayumi

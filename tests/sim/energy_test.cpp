@@ -1,0 +1,99 @@
+// What servos, ground, pushes and joint friction do to the robot is what its energy changes by: the
+// difference falls with the step.
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/sim/plant.hpp"
+#include "tests/support/block.hpp"
+#include "tests/support/walk.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+/// Kinetic, rotors included, and potential over z = 0 [J].
+double energy(const RobotModel& model, const RobotState& state) {
+  RobotData data(model);
+  update_velocities(model, state, data);
+  Eigen::MatrixXd M;
+  mass_matrix(model, data, M);
+  for (int j = 0; j < model.dof_count(); ++j)
+    M(6 + j, 6 + j) += model.dofs()[j].servo.rotor_inertia;
+  return 0.5 * state.velocity().dot(M * state.velocity()) + model.mass() * kGravity * data.cog.z();
+}
+
+double sum(const Work& w) { return w.servos + w.contacts + w.outside + w.joints; }
+
+// A block that falls 20 mm and comes to rest: the ground takes m g h, at the impact all of it.
+TEST(Energy, TheGroundTakesWhatAFallingBlockHad) {
+  const RobotModel model(test::block_description({0.2, 0.1, 0.04}, 2.0));
+  Plant plant(model, model.limits(), World{});
+  RobotState s = model.rest_state();
+  s.base.position.z() = 0.04;
+  plant.set_state(s);
+  double taken = 0;
+  for (int i = 0; i < 500; ++i) taken += plant.step(VectorXd(0), {}, 1e-3).work.contacts;
+  EXPECT_NEAR(taken, -2.0 * kGravity * 0.02, 0.01 * 2.0 * kGravity * 0.02);
+}
+
+// Sliding: friction times way.
+TEST(Energy, FrictionTakesForceTimesWay) {
+  const RobotModel model(test::block_description({0.2, 0.1, 0.04}, 2.0));
+  Plant plant(model, model.limits(), World{.friction = 0.3});
+  RobotState s = model.rest_state();
+  s.base.position.z() = 0.02;
+  s.base_velocity.x() = 1;
+  plant.set_state(s);
+  double taken = 0;
+  for (int i = 0; i < 600; ++i) taken += plant.step(VectorXd(0), {}, 1e-3).work.contacts;
+  EXPECT_NEAR(taken, -0.5 * 2.0, 1e-3);
+}
+
+/// HOAP-1 squats, is pushed, and its joints rub: largest difference of energy and work.
+double imbalance(const RobotModel& model, double h) {
+  const CommandSample start = test::standing(model, 0).samples[0];
+  Plant plant(model, model.limits(), World{});
+  plant.set_state(start.state);
+  const double before = energy(model, start.state);
+  StepInput input;
+  input.joints.resize(static_cast<size_t>(model.dof_count()), {.coulomb = 0.05, .viscous = 0.02});
+  double worst = 0, done = 0;
+  for (int i = 0; i < std::lround(0.6 / h); ++i) {
+    const double t = i * h;
+    VectorXd target = start.state.theta;
+    const double bend = 0.15 * test::minimum_jerk(t / 0.4);
+    for (int j = 0; j < model.dof_count(); ++j) {
+      const std::string& name = model.dofs()[j].name;
+      if (name.ends_with("knee")) target[j] += 2 * bend;
+      if (name.ends_with("hip_pitch") || name.ends_with("ankle_pitch")) target[j] -= bend;
+    }
+    input.wrenches.clear();
+    if (t > 0.2 && t < 0.25) {
+      ExternalWrench push;
+      push.force = Vector3d(5, 3, 0);
+      input.wrenches.push_back(push);
+    }
+    done += sum(plant.step(target, input, h).work);
+    worst = std::max(worst, std::abs(energy(model, plant.state()) - before - done));
+  }
+  return worst;
+}
+
+TEST(Energy, BalanceClosesWithTheStep) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const double whole = imbalance(model, 1e-3), half = imbalance(model, 5e-4),
+               quarter = imbalance(model, 2.5e-4);
+  RecordProperty("joules", std::to_string(whole));
+  EXPECT_LT(whole, 0.02);
+  EXPECT_LT(half, 0.65 * whole);
+  EXPECT_LT(quarter, 0.65 * half);
+}
+
+}  // namespace
+}  // namespace ayumi
