@@ -294,7 +294,9 @@ TEST_P(BrokenInput, IsRefusedWithOneClearLine) {
   const std::vector<std::string> before = folder.files();
   const Output output = run_program(command, folder.path());
   EXPECT_EQ(output.exit_code, 3) << output.err;
-  if (command.front() != "run") EXPECT_EQ(output.out, "");  // run names each pattern as it begins
+  if (command.front() != "run") {  // run names each pattern as it begins
+    EXPECT_EQ(output.out, "");
+  }
   EXPECT_NE(output.err.find(GetParam().complaint), std::string::npos) << output.err;
   EXPECT_EQ(line_count(output.err), 1) << output.err;
   EXPECT_EQ(folder.files(), before) << "nothing is written";

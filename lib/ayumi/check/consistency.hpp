@@ -22,7 +22,7 @@ struct Finding {
   std::string unit;                   ///< "m", "N", "rad", "rad/s", "N m", "1", ...
   std::string where;                  ///< joint, foot or axis
   std::string hint;                   ///< what to do about it
-  std::string follows_from;           ///< the error that causes this one; "" when it stands alone
+  std::string follows_from = {};      ///< the error that causes this one; "" when it stands alone
 };
 
 struct CheckSummary {

@@ -11,7 +11,7 @@
 namespace ayumi {
 
 struct ImportOptions {
-  std::string format;     ///< "hoap", "csv", "json"; "" by the content
+  std::string format{};   ///< "hoap", "csv", "json"; "" by the content
   bool degrees = false;   ///< unit of bare joint columns
   double rate = 0;        ///< of rows without a time column [1/s]
   bool commands = false;  ///< angles are what servos receive, as in Ayumi's reference tables

@@ -44,7 +44,7 @@ struct Phase {
   double until = 0;  ///< [s]
   Support support = Support::both;
   std::optional<Swing> swing;
-  std::optional<ViipGoal> viip;  ///< VIIP carries the robot: a goal in place of keys
+  std::optional<ViipGoal> viip = {};  ///< VIIP carries the robot: a goal in place of keys
 };
 
 /// A ZMP key: a place of the supporting feet, or a point on the ground.
