@@ -34,7 +34,8 @@ SimulationSample random_sample(test::Random& random, int joints) {
         &s.reference_cog, &s.reference_zmp, &s.foot_force[0], &s.foot_force[1], &s.foot_cop[0],
         &s.foot_cop[1], &s.push_force, &s.push_point})
     *v = random.vector(1);
-  for (double* x : {&s.fz, &s.measured_fz, &s.command_fz, &s.reference_fz, &s.contact_residual})
+  for (double* x : {&s.fz, &s.measured_fz, &s.command_fz, &s.reference_fz, &s.contact_residual,
+                    &s.work.servos, &s.work.contacts, &s.work.outside, &s.work.joints})
     *x = random.uniform();
   s.planned_contact = {random.uniform() > 0, random.uniform() > 0};
   s.contact_iterations = static_cast<int>(random.uniform(0, 50));
@@ -112,14 +113,16 @@ TEST(SimulationLogFile, NoFieldOfASampleIsForgotten) {
   const std::string bytes = log_bytes(log);
   std::uint32_t header = 0;
   std::memcpy(&header, bytes.data() + 12, 4);
-  // Poses 3 x 7, joint vectors 6 x 3, 3-vectors 2 + 15, scalars 6, flags 2, count 1.
-  const size_t columns = 21 + 18 + 3 * 17 + 6 + 2 + 1;
+  // Poses 3 x 7, joint vectors 6 x 3, 3-vectors 2 + 15, scalars 6, works 4, flags 2,
+  // count 1.
+  const size_t columns = 21 + 18 + 3 * 17 + 6 + 4 + 2 + 1;
   EXPECT_EQ(bytes.size(), 16 + header + 20 * columns * 8);
   const auto json = nlohmann::json::parse(bytes.substr(16, header));
   EXPECT_EQ(json.at("columns").size(), columns);
   EXPECT_EQ(json.at("columns").at(0), "base.x[m]");
-  const size_t fields_of_plain_sample =
-      3 * sizeof(BasePose) + 2 * 24 + 6 * sizeof(Eigen::VectorXd) + 15 * 24 + 6 * 8 + 8;
+  const size_t fields_of_plain_sample = 3 * sizeof(BasePose) + 2 * 24 +
+                                        6 * sizeof(Eigen::VectorXd) + 15 * 24 + 6 * 8 +
+                                        sizeof(Work) + 8;
   EXPECT_LE(sizeof(SimulationSample) - fields_of_plain_sample, 64u) << "a field was added?";
 }
 

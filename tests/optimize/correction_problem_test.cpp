@@ -55,8 +55,9 @@ void expect_jacobian(const CorrectionProblem& problem, const VectorXd& x, double
   }
   for (const ConstraintBlock& b : problem.blocks()) rows[name_of(b.group)] += b.rows;
   for (const auto& [group, difference] : worst)
-    if (torques || group != "torque")
+    if (torques || group != "torque") {
       EXPECT_LT(difference, tolerance) << group << ", " << rows[group] << " rows";
+    }
 }
 
 }  // namespace

@@ -38,8 +38,12 @@ TEST(PlanarYuv, GreyHasNoColourAndTheRangeIsKept) {
     to_yuv420(plain(2, 2, {g, g, g}), planes);
     EXPECT_EQ(planes[4], 128);
     EXPECT_EQ(planes[5], 128);
-    if (grey == 0) EXPECT_EQ(planes[0], 16);
-    if (grey == 255) EXPECT_EQ(planes[0], 235);
+    if (grey == 0) {
+      EXPECT_EQ(planes[0], 16);
+    }
+    if (grey == 255) {
+      EXPECT_EQ(planes[0], 235);
+    }
   }
 }
 

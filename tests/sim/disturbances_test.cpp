@@ -41,10 +41,11 @@ Disturbance lasting(DisturbanceType type, double magnitude) {
   return d;
 }
 
-SimulationLog run(const std::vector<Disturbance>& scenario, double friction = 0.8) {
+SimulationLog run(const std::vector<Disturbance>& scenario, double friction = 0.8,
+                  double settle = 0) {
   SimulateOptions options;
   options.controller.type = "none";
-  options.settle = 0;
+  options.settle = settle;
   options.scenario = scenario;
   options.world.friction = friction;
   return simulate(hoap1(), stand(), options);
@@ -213,6 +214,7 @@ TEST(Floor, CarriesAndTiltsTheRobot) {
   EXPECT_LT((after.translation() - expected).norm(), 3e-4);
   EXPECT_NEAR(matrix_to_rpy(after.linear()).y(), 0.03, 5e-4);
   EXPECT_EQ(log.result.outcome, Outcome::stands);
+  EXPECT_LT(log.result.max_slip, 5e-4) << "the feet go with the floor";
 }
 
 TEST(Bump, LiftsTheFootItRisesUnder) {
@@ -230,6 +232,23 @@ TEST(Bump, LiftsTheFootItRisesUnder) {
   EXPECT_NEAR(height(1.4), 0.003, 4e-4);
   EXPECT_NEAR(height(1.99), 0, 2e-4);
   EXPECT_NEAR(at(log, 1.4).fz, hoap1().mass() * kGravity, 0.3);
+}
+
+TEST(Bump, FromTheStartHasBeenThereBefore) {
+  Disturbance d = lasting(DisturbanceType::bump, 0.003);
+  d.at = 0;
+  d.foot = Side::left;
+  d.place = hoap1().sole(Side::left).center;
+  d.radius = 0.015;
+  const SimulationLog log = run({d}, 0.8, 1.5);
+  RobotData data(hoap1());
+  const auto height = [&](double t) {
+    update_positions(hoap1(), at(log, t).state, data);
+    return (sole_pose(hoap1(), data, Side::left) * Vector3d(d.place.x(), d.place.y(), 0)).z();
+  };
+  EXPECT_NEAR(height(0), 0.003, 4e-4);
+  EXPECT_NEAR(height(0.05), height(0), 5e-5) << "it does not come up again";
+  EXPECT_NEAR(height(1.99), 0, 2e-4);
 }
 
 TEST(Scenario, UnknownJointsAreNamed) {

@@ -42,10 +42,10 @@ struct Disturbance {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< normalised on loading
   double magnitude = 0;  ///< by type, see there; of a bump its height [m]
   DisturbanceShape shape = DisturbanceShape::rectangle;
-  FloorMotion floor;                                    ///< of a floor; its times are at, duration
-  std::string joint;                                    ///< of the last three types; "" is all
+  FloorMotion floor{};                                  ///< of a floor; its times are at, duration
+  std::string joint{};                                  ///< of the last three types; "" is all
   double viscous = 0;                                   ///< of joint_friction [N m s/rad, N s/m]
-  std::optional<Side> foot;                             ///< a bump under this foot's sole ...
+  std::optional<Side> foot{};                           ///< a bump under this foot's sole ...
   Eigen::Vector2d place = Eigen::Vector2d::Zero();      ///< ... there, else on the ground [m]
   double radius = 0.01;                                 ///< of a bump [m]
   Eigen::Vector2d tilt_bias = Eigen::Vector2d::Zero();  ///< of the attitude about x and y [rad]

@@ -30,7 +30,7 @@ struct FrictionPatch {
 struct HeightField {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< of node (0, 0) [m]
   double spacing = 0.01;                             ///< [m]
-  Eigen::MatrixXd heights;                           ///< (along x, along y), as of a block [m]
+  Eigen::MatrixXd heights{};                         ///< (along x, along y), as of a block [m]
 };
 
 enum class MotionShape { ramp, half_sine, sine };

@@ -156,7 +156,8 @@ Bump Schedule::bump(Entry& entry, long k, const RobotData& data) const {
     const double s = std::clamp(static_cast<double>(i) * step_ / kRise, 0.0, 1.0);
     return d.magnitude * s * s * s * (10 - 15 * s + 6 * s * s);
   };
-  const long since = k < 0 ? 1l << 30 : k - entry.first;
+  // One that is there from the start has been there before: it does not come up again.
+  const long since = entry.first == 0 ? 1l << 30 : k - entry.first;
   Bump result;
   result.block.kind = GroundBlock::Kind::disc;
   result.block.center = entry.place;

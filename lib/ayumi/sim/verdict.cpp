@@ -64,9 +64,8 @@ const char* name_of(Outcome outcome) {
 }
 
 Judge::Judge(const RobotModel& model, const ActuatorLimits& limits, const World& world)
-    : model_(&model),
-      limits_(limits),
-      normal_(exp_rotation({world.slope.x(), world.slope.y(), 0}).toRotationMatrix().col(2)) {
+    : model_(&model), limits_(limits) {
+  ground_.linear() = exp_rotation({world.slope.x(), world.slope.y(), 0}).toRotationMatrix();
   result_.apex = -1e9;
   events_.reserve(64);  // of a usual run: a tick is not to allocate
 }
@@ -75,7 +74,7 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
                     const RobotData& truth, const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
   const Vector3d up = truth.rotation[model_->trunk_body()].col(2);
-  const double tilt = std::acos(std::clamp(up.dot(normal_), -1.0, 1.0));
+  const double tilt = std::acos(std::clamp(up.dot(normal()), -1.0, 1.0));
   SimulationResult& r = result_;
   const bool fallen_before = r.fell_at >= 0;
   if (!fallen_before) {
@@ -109,8 +108,9 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
   std::string reason;
   if (tilt > kFallTilt)
     reason = "trunk tilt " + text::fixed(tilt, 2) + " rad";
-  else if (normal_.dot(sample.cog) < kFallHeightShare * (command.cog.z() - command.zmp.z()))
-    reason = "COG at " + text::fixed(normal_.dot(sample.cog), 3) + " m";
+  else if ((ground_.inverse() * sample.cog).z() <
+           kFallHeightShare * (command.cog.z() - command.zmp.z()))
+    reason = "COG at " + text::fixed((ground_.inverse() * sample.cog).z(), 3) + " m";
   else if (report.body_contact)
     reason = "touched the ground with something but a foot";
   if (reason.empty()) return false;
@@ -125,7 +125,7 @@ void Judge::observe_feet(double t, const CommandSample& command, const RobotData
   for (Side side : {Side::left, Side::right}) {
     const int i = static_cast<int>(side);
     double fz = 0;
-    for (const SoleForce& cell : report.soles[i]) fz += normal_.dot(cell.force);
+    for (const SoleForce& cell : report.soles[i]) fz += normal().dot(cell.force);
     const bool loaded = fz > kTouchShare * weight;
     if (loaded && unloaded_[i] > kMinFlightOfFoot) {
       ++result_.steps;
@@ -134,11 +134,10 @@ void Judge::observe_feet(double t, const CommandSample& command, const RobotData
     unloaded_[i] = loaded ? 0.0 : unloaded_[i] + dt;
     // Slip is told from where the foot stood when it first carried load in its stance.
     const bool stance = supports(command.support, side) && loaded;
-    const Vector3d place = sole_pose(*model_, truth, side).translation();
+    const Vector3d place = ground_.inverse() * sole_pose(*model_, truth, side).translation();
     if (stance && !in_stance_[i]) stance_start_[i] = place;
     if (stance) {
-      const Vector3d moved = place - stance_start_[i];
-      const double slip = (moved - normal_.dot(moved) * normal_).norm();
+      const double slip = (place - stance_start_[i]).head<2>().norm();
       result_.max_slip = std::max(result_.max_slip, slip);
     }
     in_stance_[i] = supports(command.support, side) && (in_stance_[i] || loaded);
@@ -151,7 +150,7 @@ SimulationResult Judge::conclude(const CommandSample& command, const RobotState&
   update_velocities(*model_, state, data);
   r.zmp_tracking_rms =
       zmp_count_ > 0 ? std::sqrt(zmp_square_sum_ / static_cast<double>(zmp_count_)) : 0.0;
-  const Vector3d cog = plan_to_world(*model_, data, command, normal_).inverse() * data.cog;
+  const Vector3d cog = plan_to_world(*model_, data, command, normal()).inverse() * data.cog;
   r.final_cog_error = (cog - command.cog).head<2>().norm();
   r.final_speed = data.dcog.norm();
   if (r.fell_at >= 0) {
@@ -161,7 +160,7 @@ SimulationResult Judge::conclude(const CommandSample& command, const RobotState&
   const double z = command.cog.z() - command.zmp.z();
   const double omega = std::sqrt(kGravity / z);
   const Vector3d up = data.rotation[model_->trunk_body()].col(2);
-  const double tilt = std::acos(std::clamp(up.dot(normal_), -1.0, 1.0));
+  const double tilt = std::acos(std::clamp(up.dot(normal()), -1.0, 1.0));
   const bool rest = r.final_cog_error < kRestError * z && r.final_speed < kRestSpeed * omega * z &&
                     tilt < kRestTilt;
   r.outcome = rest ? Outcome::stands : Outcome::unsettled;

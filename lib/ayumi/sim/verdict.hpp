@@ -15,7 +15,7 @@ class Judge {
   Judge(const RobotModel& model, const ActuatorLimits& limits, const World& world);
 
   /// Where the floor is now; at first as the world has it.
-  void set_ground(const Eigen::Isometry3d& pose) { normal_ = pose.linear().col(2); }
+  void set_ground(const Eigen::Isometry3d& pose) { ground_ = pose; }
 
   /// One control tick: plan, true state and the last step's report. `sample` is the log entry of
   /// this tick, `truth` holds the positions of its state. Returns true once, at the tick of the
@@ -34,7 +34,9 @@ class Judge {
 
   const RobotModel* model_;
   ActuatorLimits limits_;
-  Eigen::Vector3d normal_;
+  Eigen::Vector3d normal() const { return ground_.linear().col(2); }
+
+  Eigen::Isometry3d ground_ = Eigen::Isometry3d::Identity();
   SimulationResult result_;
   std::vector<SimulationEvent> events_;
   double zmp_square_sum_ = 0;
@@ -45,7 +47,7 @@ class Judge {
   double airborne_ = 0;                      // of the present flight [s]
   std::array<double, 2> unloaded_ = {0, 0};  // time each foot has been off the ground [s]
   std::array<bool, 2> in_stance_ = {false, false};
-  std::array<Eigen::Vector3d, 2> stance_start_;
+  std::array<Eigen::Vector3d, 2> stance_start_;  // in the floor's frame [m]
 };
 
 }  // namespace ayumi
