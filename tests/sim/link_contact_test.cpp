@@ -197,6 +197,41 @@ TEST(Edges, APlankLiesOnTwoRails) {
   EXPECT_LT((plant.state().base.position - before).norm(), 1e-6);
 }
 
+// The same over two ridges of a height field: no node is a corner of the plank.
+TEST(Edges, APlankLiesOnTwoRidgesOfAField) {
+  World world{.friction = 0.6};
+  HeightField field;
+  field.origin = {-0.3, -0.1};
+  field.spacing = 0.01;
+  field.heights = Eigen::MatrixXd::Zero(61, 21);
+  field.heights.row(20).setConstant(0.05);  // x = -0.1
+  field.heights.row(35).setConstant(0.05);  // x = 0.05
+  world.fields = {field};
+  const RobotModel model(test::block_description({0.5, 0.06, 0.02}, 1.0));
+  Plant plant(model, model.limits(), world);
+  RobotState s = model.rest_state();
+  s.base.position.z() = 0.061;
+  plant.set_state(s);
+  for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, kStep);
+  const Vector3d before = plant.state().base.position;
+  EXPECT_NEAR(before.z(), 0.06, 1e-6);
+  for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, kStep);
+  EXPECT_LT((plant.state().base.position - before).norm(), 1e-6);
+  // Beyond the ridges' middle it would tip: a push down on its end turns it about the ridge.
+  StepInput input;
+  ExternalWrench push;
+  push.force = {0, 0, -30};
+  for (int i = 0; i < 100; ++i) {
+    push.point = plant.state().base.position + Vector3d(0.25, 0, 0);
+    input.wrenches = {push};
+    plant.step(VectorXd(0), input, kStep);
+  }
+  const Eigen::Matrix3d R = plant.state().base.attitude.toRotationMatrix();
+  EXPECT_LT(R(2, 0), -0.05) << "the end pushed is down";
+  const Vector3d on_ridge = R.transpose() * (Vector3d(0.05, 0, 0.05) - plant.state().base.position);
+  EXPECT_NEAR(on_ridge.z(), -0.01, 1e-4) << "it turns about the ridge";
+}
+
 // One end on the ground, the middle over an edge: the height over the edge is geometry's.
 TEST(Edges, APlankLeansOverAStep) {
   World world{.friction = 0.9};

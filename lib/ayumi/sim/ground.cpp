@@ -187,6 +187,14 @@ void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
       }
     }
   }
+  visit_nodes(center, radius, [&](Eigen::Index i, Eigen::Index j, const Vector2d& p) {
+    if (inside(sole, p)) add(kFieldIds + i * field_.heights.cols() + j, p, field_.heights(i, j), 0);
+  });
+}
+
+/// visit(i, j, place) for each node of the height field in the square around `center`.
+template <typename Visit>
+void Ground::visit_nodes(const Vector2d& center, double radius, const Visit& visit) const {
   if (field_.heights.size() == 0) return;
   const Vector2d low = (center.array() - radius).matrix() - field_.origin;
   const auto first = [&](double x, Eigen::Index n) {
@@ -196,11 +204,32 @@ void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
   const Eigen::Index i1 = first(low.x() + 2 * radius, rows),
                      j1 = first(low.y() + 2 * radius, columns);
   for (Eigen::Index i = first(low.x(), rows); i < i1; ++i)
-    for (Eigen::Index j = first(low.y(), columns); j < j1; ++j) {
-      const Vector2d p =
-          field_.origin + field_.spacing * Vector2d(static_cast<double>(i), static_cast<double>(j));
-      if (inside(sole, p)) add(kFieldIds + i * columns + j, p, field_.heights(i, j), 0);
-    }
+    for (Eigen::Index j = first(low.y(), columns); j < j1; ++j)
+      visit(i, j,
+            Vector2d(field_.origin +
+                     field_.spacing * Vector2d(static_cast<double>(i), static_cast<double>(j))));
+}
+
+// Higher than the mean of its neighbours along x or along y; the plane lies around the field.
+bool Ground::stands_out(Eigen::Index i, Eigen::Index j) const {
+  const Eigen::MatrixXd& z = field_.heights;
+  const auto at = [&](Eigen::Index a, Eigen::Index b) {
+    return a < 0 || b < 0 || a >= z.rows() || b >= z.cols() ? world_.height : z(a, b);
+  };
+  const double twice = 2 * z(i, j) - 1e-9;
+  return twice > at(i - 1, j) + at(i + 1, j) || twice > at(i, j - 1) + at(i, j + 1);
+}
+
+void Ground::tips(const Vector3d& center, double radius, std::vector<FieldTip>& tips) const {
+  constexpr double kBlunt = 1e-4;  // radius of a tip [m]
+  tips.clear();
+  visit_nodes(center.head<2>(), radius, [&](Eigen::Index i, Eigen::Index j, const Vector2d& p) {
+    const double height = field_.heights(i, j);
+    if (height < center.z() - radius || !stands_out(i, j)) return;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() << p, height - kBlunt;
+    tips.push_back({i * field_.heights.cols() + j, {Collider(Shape(Sphere{kBlunt})), pose, 0}});
+  });
 }
 
 }  // namespace ayumi

@@ -32,6 +32,12 @@ struct SolidBlock {
   double rise = 0;         ///< [m/s]
 };
 
+/// A node of the height field that stands out.
+struct FieldTip {
+  long id = 0;  ///< the same in the next step
+  SolidBlock solid;
+};
+
 class Ground {
  public:
   explicit Ground(const World& world);
@@ -59,6 +65,11 @@ class Ground {
   void inner_points(const std::vector<Eigen::Vector3d>& sole, double reach,
                     std::vector<InnerPoint>& points) const;
 
+  /// Fills `tips` with the nodes of the height field within `radius` of `center` (ground's frame)
+  /// that stand out, as solids with a blunt tip: what a shape can lie on without a corner of its
+  /// own. The rest of the field is flat or hollow.
+  void tips(const Eigen::Vector3d& center, double radius, std::vector<FieldTip>& tips) const;
+
  private:
   struct Block {
     std::array<Eigen::Vector2d, 8> corner;
@@ -70,6 +81,9 @@ class Ground {
   static Block prepared(const GroundBlock& block, double rise);
   double field_height(const Eigen::Vector2d& p, Eigen::Vector2d& gradient) const;
   bool on_field(const Eigen::Vector2d& p) const;
+  bool stands_out(Eigen::Index i, Eigen::Index j) const;
+  template <typename Visit>
+  void visit_nodes(const Eigen::Vector2d& center, double radius, const Visit& visit) const;
 
   World world_;
   HeightField field_;

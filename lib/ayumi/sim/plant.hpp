@@ -115,6 +115,7 @@ class Plant {
   std::vector<Active> active_, last_active_;
   std::vector<Eigen::Vector3d> outline_;
   std::vector<InnerPoint> inner_;
+  std::vector<FieldTip> tips_;
   std::vector<double> weights_;
   TreeCholesky factor_;
   std::vector<double> mass_;            // rows of the mass matrix with rotors, of state_

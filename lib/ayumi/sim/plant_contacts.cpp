@@ -18,7 +18,9 @@ namespace {
 constexpr double kNear = 1e-3;         // a gap that may close within a step [m]
 constexpr long kInnerKeys = 1l << 40;  // keys of one sole's inner points
 constexpr long kEdgeKeys = 1l << 32;   // where edges of the ground meet shapes; times 4096
-constexpr long kLinkKeys = 1l << 60;   // where links meet
+constexpr long kTipKeys = 1l << 31;    // of those, tips of the height field;
+constexpr long kTipsOfShape = 1l << 26;
+constexpr long kLinkKeys = 1l << 60;  // where links meet
 
 }  // namespace
 
@@ -125,8 +127,8 @@ void Plant::collect_inner(size_t g, double dt) {
   }
 }
 
-// Edges and corners of blocks against faces and edges of the shapes that are not feet. Corners of
-// shapes have met the ground already.
+// Edges and corners of blocks and tips of the height field against faces and edges of the shapes
+// that are not feet. Corners of shapes have met the ground already.
 void Plant::collect_edges(double dt) {
   for (size_t i = 0; i < is_foot_.size(); ++i) {
     const int body = static_cast<int>(i);
@@ -137,6 +139,13 @@ void Plant::collect_edges(double dt) {
     long key = kEdgeKeys * (body + 1l);
     for (const CollisionModel::PlacedCollider& shape : links_.shapes(body))
       for (const SolidBlock& block : ground_.solids()) collect_edges(body, shape, block, ++key, dt);
+    ground_.tips(ground_.pose().inverse() * (center + ground_.pose().translation()),
+                 radius + 3 * kNear, tips_);
+    key = kEdgeKeys * (body + 1l) + kTipKeys;
+    for (const CollisionModel::PlacedCollider& shape : links_.shapes(body)) {
+      for (const FieldTip& tip : tips_) collect_edges(body, shape, tip.solid, key + tip.id, dt);
+      key += kTipsOfShape;
+    }
   }
 }
 
