@@ -217,17 +217,18 @@ TEST(Edges, APlankLiesOnTwoRidgesOfAField) {
   EXPECT_NEAR(before.z(), 0.06, 1e-6);
   for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, kStep);
   EXPECT_LT((plant.state().base.position - before).norm(), 1e-6);
-  // Beyond the ridges' middle it would tip: a push down on its end turns it about the ridge.
+  // A push down on its end turns it about the nearer ridge.
   StepInput input;
   ExternalWrench push;
+  push.body = 0;
   push.force = {0, 0, -30};
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 25; ++i) {
     push.point = plant.state().base.position + Vector3d(0.25, 0, 0);
     input.wrenches = {push};
     plant.step(VectorXd(0), input, kStep);
   }
   const Eigen::Matrix3d R = plant.state().base.attitude.toRotationMatrix();
-  EXPECT_LT(R(2, 0), -0.05) << "the end pushed is down";
+  EXPECT_LT(R(2, 0), -0.02) << "the end pushed is down";
   const Vector3d on_ridge = R.transpose() * (Vector3d(0.05, 0, 0.05) - plant.state().base.position);
   EXPECT_NEAR(on_ridge.z(), -0.01, 1e-4) << "it turns about the ridge";
 }
