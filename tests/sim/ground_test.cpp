@@ -7,6 +7,7 @@
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/schedule.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/walk.hpp"
 
@@ -110,14 +111,8 @@ TEST(Ground, AnInclinedFieldIsASlope) {
 
 /// The floor at step k of a motion, as the simulator gives it.
 StepInput floor_input(const std::vector<FloorMotion>& motions, long k) {
-  const double t = static_cast<double>(k) * kStep;
   StepInput input;
-  FloorPose floor{.pose = floor_pose({}, motions, t)};
-  const Eigen::Isometry3d next = floor_pose({}, motions, t + kStep);
-  floor.velocity = (next.translation() - floor.pose.translation()) / kStep;
-  floor.angular_velocity =
-      log_rotation(Eigen::Quaterniond(next.linear() * floor.pose.linear().transpose())) / kStep;
-  input.floor = floor;
+  input.floor = moving_floor({}, motions, static_cast<double>(k) * kStep, kStep);
   return input;
 }
 

@@ -181,20 +181,32 @@ GroundBlock rectangle(double x0, double x1, double height) {
   return block;
 }
 
+/// A plank let down over two supports of 0.05 m at x = -0.1 and 0.05: it lies still on them.
+struct Plank {
+  explicit Plank(const World& world)
+      : model(test::block_description({0.5, 0.06, 0.02}, 1.0)),
+        plant(model, model.limits(), world) {
+    RobotState s = model.rest_state();
+    s.base.position.z() = 0.061;
+    plant.set_state(s);
+    run();
+    const Vector3d before = plant.state().base.position;
+    EXPECT_NEAR(before.z(), 0.06, 1e-6);
+    run();
+    EXPECT_LT((plant.state().base.position - before).norm(), 1e-6);
+  }
+  void run() {
+    for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, kStep);
+  }
+  RobotModel model;
+  Plant plant;
+};
+
 // A plank over two rails that are narrower apart than it is long: no corner of it meets anything.
 TEST(Edges, APlankLiesOnTwoRails) {
   World world{.friction = 0.6};
   world.blocks = {rectangle(-0.12, -0.10, 0.05), rectangle(0.05, 0.07, 0.05)};
-  const RobotModel model(test::block_description({0.5, 0.06, 0.02}, 1.0));
-  Plant plant(model, model.limits(), world);
-  RobotState s = model.rest_state();
-  s.base.position.z() = 0.061;
-  plant.set_state(s);
-  for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, kStep);
-  const Vector3d before = plant.state().base.position;
-  EXPECT_NEAR(before.z(), 0.06, 1e-6);
-  for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, kStep);
-  EXPECT_LT((plant.state().base.position - before).norm(), 1e-6);
+  const Plank plank(world);
 }
 
 // The same over two ridges of a height field: no node is a corner of the plank.
@@ -207,16 +219,8 @@ TEST(Edges, APlankLiesOnTwoRidgesOfAField) {
   field.heights.row(20).setConstant(0.05);  // x = -0.1
   field.heights.row(35).setConstant(0.05);  // x = 0.05
   world.fields = {field};
-  const RobotModel model(test::block_description({0.5, 0.06, 0.02}, 1.0));
-  Plant plant(model, model.limits(), world);
-  RobotState s = model.rest_state();
-  s.base.position.z() = 0.061;
-  plant.set_state(s);
-  for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, kStep);
-  const Vector3d before = plant.state().base.position;
-  EXPECT_NEAR(before.z(), 0.06, 1e-6);
-  for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, kStep);
-  EXPECT_LT((plant.state().base.position - before).norm(), 1e-6);
+  Plank plank(world);
+  Plant& plant = plank.plant;
   // A push down on its end turns it about the nearer ridge.
   StepInput input;
   ExternalWrench push;

@@ -97,6 +97,16 @@ std::string words(const Disturbance& d) {
 
 }  // namespace
 
+FloorPose moving_floor(const World& world, const std::vector<FloorMotion>& motions, double t,
+                       double step) {
+  FloorPose floor{.pose = floor_pose(world, motions, t)};
+  const Isometry3d next = floor_pose(world, motions, t + step);
+  floor.velocity = (next.translation() - floor.pose.translation()) / step;
+  floor.angular_velocity =
+      log_rotation(Eigen::Quaterniond(next.linear() * floor.pose.linear().transpose())) / step;
+  return floor;
+}
+
 Schedule::Schedule(const RobotModel& model, const World& world, double step)
     : model_(&model), world_(world), step_(step) {}
 
@@ -189,13 +199,7 @@ void Schedule::fill(long k, const RobotData& data, StepInput& input) {
   input.friction.reset();
   input.floor.reset();
   if (!motions_.empty() || !world_.motions.empty()) {
-    const double t = static_cast<double>(k) * step_;
-    FloorPose floor{.pose = floor_pose(world_, motions_, t)};
-    const Isometry3d next = floor_pose(world_, motions_, t + step_);
-    floor.velocity = (next.translation() - floor.pose.translation()) / step_;
-    floor.angular_velocity =
-        log_rotation(Eigen::Quaterniond(next.linear() * floor.pose.linear().transpose())) / step_;
-    input.floor = floor;
+    input.floor = moving_floor(world_, motions_, static_cast<double>(k) * step_, step_);
   }
   for (Entry& entry : entries_) {
     if (!acts(entry, k)) continue;

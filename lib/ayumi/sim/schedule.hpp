@@ -19,6 +19,11 @@ struct SensorFault {
   double force = 0;                                ///< of every load cell [N]
 };
 
+/// Where the world's floor is at `t` [s] with its own motions and these, and its mean velocity over
+/// the step [s] from there.
+FloorPose moving_floor(const World& world, const std::vector<FloorMotion>& motions, double t,
+                       double step);
+
 class Schedule {
  public:
   /// The model outlives the schedule; `step` [s] is the integrator's.
