@@ -4,6 +4,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/json_reader.hpp"
+#include "ayumi/io/provenance_fields.hpp"
 #include "ayumi/io/sha256.hpp"
 #include "ayumi/io/simulation_log_file.hpp"
 #include "ayumi/io/table.hpp"
@@ -19,17 +20,6 @@ constexpr const char* kRunFormat = "ayumi.run/1";
 constexpr const char* kRunFile = "run.json";
 constexpr const char* kReferenceFile = "reference.csv";
 constexpr size_t kLargestFile = size_t{4} << 30;  // [bytes]
-
-template <typename Value, typename Visit>
-void for_each_provenance(Value& p, const Visit& visit) {
-  visit("robot", p.robot);
-  visit("robot_sha256", p.robot_sha256);
-  visit("pattern", p.pattern);
-  visit("pattern_sha256", p.pattern_sha256);
-  visit("profile", p.profile);
-  visit("controller", p.controller);
-  visit("command_line", p.command_line);
-}
 
 void make_folder(const fs::path& folder) {
   std::error_code error;

@@ -8,6 +8,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/json_reader.hpp"
+#include "ayumi/io/provenance_fields.hpp"
 #include "ayumi/io/scenario_text.hpp"
 #include "ayumi/io/sha256.hpp"
 
@@ -213,17 +214,6 @@ SimulationResult result_of(const JsonNode& node) {
     }
   });
   return result;
-}
-
-template <typename Value, typename Visit>
-void for_each_provenance(Value& p, const Visit& visit) {
-  visit("robot", p.robot);
-  visit("robot_sha256", p.robot_sha256);
-  visit("pattern", p.pattern);
-  visit("pattern_sha256", p.pattern_sha256);
-  visit("profile", p.profile);
-  visit("controller", p.controller);
-  visit("command_line", p.command_line);
 }
 
 std::string header_of(const SimulationLog& log, const std::string& command_line) {
