@@ -105,9 +105,11 @@ int parse_and_run(CLI::App& app, const Context& context, int argc, char** argv) 
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    const auto chosen = app.get_subcommands();
-    complain(usage_message(app, error) + "\nSee ayumi " +
-             (chosen.empty() ? "" : chosen.front()->get_name() + " ") + "--help");
+    std::string command;
+    for (auto chosen = app.get_subcommands(); !chosen.empty();
+         chosen = chosen.front()->get_subcommands())
+      command += chosen.front()->get_name() + " ";
+    complain(usage_message(app, error) + "\nSee ayumi " + command + "--help");
     return 2;
   } catch (const Interrupted&) {
     complain("stopped");

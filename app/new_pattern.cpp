@@ -12,10 +12,11 @@ void write_new_pattern(const Context& context, const RobotModel& model, Pattern 
                        const std::string& robot, const std::string& out,
                        const std::vector<std::string>& comments) {
   refuse_overwriting(context, out);
-  pattern.robot = robot;
+  pattern.robot = robot_as_written(robot);
   pattern.name = std::filesystem::path(out).stem().string();
   pattern.file = out;
   const CommandSeries series = sample(model, pattern, {}, context.progress());
+  pattern.file = "new";  // relative names hold from the working folder
   write_pattern(out, pattern, comments);
   context.print(out + ": " + text::fixed(series.duration(), 2) + " s, " +
                 std::to_string(pattern.phases.size()) + " phases, " +

@@ -76,6 +76,11 @@ PatternInput load_pattern(const Context& context, const std::filesystem::path& f
   return {std::move(pattern), std::move(model), std::move(series), profile};
 }
 
+std::string robot_as_written(const std::string& robot) {
+  const bool here = robot.find('/') == std::string::npos && std::filesystem::exists(robot);
+  return here ? "./" + robot : robot;
+}
+
 CheckOptions check_options(const PatternInput& input, const std::vector<std::string>& overrides) {
   CheckOptions options;
   options.profile = input.profile;
@@ -88,7 +93,7 @@ CheckOptions check_options(const PatternInput& input, const std::vector<std::str
 
 Provenance provenance(const Context& context, const PatternInput& input,
                       const std::string& controller) {
-  return {.robot = input.pattern.robot,
+  return {.robot = robot_of(input.pattern),  // holds from the working folder
           .robot_sha256 = input.model.description().sha256,
           .pattern = input.pattern.name,
           .pattern_sha256 = input.pattern.sha256,

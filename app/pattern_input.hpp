@@ -37,6 +37,10 @@ Pattern read_given_pattern(const std::filesystem::path& file,
 PatternInput load_pattern(const Context& context, const std::filesystem::path& file,
                           const PatternOptions& options, bool meshes = false);
 
+/// What a user calls a robot, for a pattern: a path in the working folder is told from a bundled
+/// name by its slash.
+std::string robot_as_written(const std::string& robot);
+
 /// The pattern's own tolerances over the defaults, `overrides` ("kind=value") over both.
 CheckOptions check_options(const PatternInput& input,
                            const std::vector<std::string>& overrides = {});

@@ -29,12 +29,6 @@ std::string bytes_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(std::cin), {}};
 }
 
-// A path in the working folder is told from a bundled name by its slash.
-std::string robot_as_written(const std::string& robot) {
-  const bool here = robot.find('/') == std::string::npos && fs::exists(robot);
-  return here ? "./" + robot : robot;
-}
-
 Json json_of(const FootContact& contact) {
   const Foothold& place = contact.place;
   return {{"foot", name_of(contact.foot)},

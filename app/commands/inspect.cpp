@@ -1,13 +1,16 @@
 // The model doctor: everything a robot's files say, what was inferred, and what is suspicious.
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/model/diagnose.hpp"
 #include "ayumi/model/outline.hpp"
+#include "ayumi/preview/clip.hpp"
 #include "commands.hpp"
 
 namespace ayumi::app {
@@ -17,6 +20,10 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
+
+struct InspectOptions {
+  std::string robot, picture, view = "iso";
+};
 
 struct Stance {
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();  // from the middle between the soles [m]
@@ -241,11 +248,55 @@ std::string inspection_text(const RobotModel& model, const Stance& stance,
          list_lines("Assumptions", model.description().assumptions) + list_lines("Warnings", notes);
 }
 
-void inspect(const Context& context, const std::string& robot) {
-  const RobotModel model = load_robot(robot, robot_search(context), {.meshes = true});
+/// The home posture on the ground with its COG, drawn as the instant of a run is.
+SimulationLog stand_of(const RobotModel& model) {
+  SimulationLog log;
+  log.joints = model.dof_names();
+  log.dt = 1e-3;
+  SimulationSample sample;
+  sample.state = model.rest_state();
+  RobotData data(model);
+  update_positions(model, sample.state, data);
+  if (model.has_soles())
+    anchor_base(model, Side::left, Eigen::Isometry3d::Identity(), sample.state, data);
+  else
+    sample.state.base.position.z() -=
+        robot_bounds(robot_surface(model), body_poses(model, sample.state)).min().z();
+  update_positions(model, sample.state, data);
+  sample.cog = data.cog;
+  sample.torque = sample.command_theta = sample.state.theta;
+  log.samples.push_back(std::move(sample));
+  return log;
+}
+
+/// What is drawn otherwise than the robot's files say.
+std::vector<std::string> write_picture(const Context& context, const RobotModel& model,
+                                       const std::string& file, const std::string& view) {
+  if (std::filesystem::path(file).extension() != ".png")
+    fail(ErrorCode::usage, "--picture " + file + ": a picture is a .png");
+  if (!context.force && std::filesystem::exists(file))
+    fail(ErrorCode::bad_file, file + ": exists already; choose another name or --force");
+  ClipOptions options;
+  options.camera.view = view;
+  OverlayOptions& marks = options.overlay;  // of those, a robot without motion has a COG
+  marks.zmp = marks.reference_zmp = marks.support = marks.forces = marks.push = false;
+  marks.trails = marks.caption = false;
+  const SimulationLog log = stand_of(model);
+  ClipRenderer renderer(model, log, options);
+  write_png(file, renderer.frame(0));
+  return renderer.notes();
+}
+
+void inspect(const Context& context, const InspectOptions& options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context), {.meshes = true});
+  std::vector<std::string> notes;
+  if (!options.picture.empty())
+    notes = write_picture(context, model, options.picture, options.view);
   const Stance stance = stance_of(model);
   const std::vector<ModelWarning> warnings = diagnose(model);
   context.print(inspection_text(model, stance, warnings));
+  if (!options.picture.empty()) context.print("Picture " + options.picture + "\n");
+  for (const std::string& note : notes) context.print("  - " + note + "\n");
   if (context.json) context.print_json(inspection_json(model, stance, warnings).dump(2));
 }
 
@@ -256,12 +307,17 @@ void add_inspect(CLI::App& app, Context& context) {
       "inspect", "everything known of a robot, and what is suspicious in its files");
   command->footer(
       "Examples:\n  ayumi inspect hoap1\n  ayumi inspect my_robot/robot.json --json\n"
-      "  ayumi inspect somebody.urdf        soles, servos and limits are inferred, and said so");
-  auto robot = std::make_shared<std::string>();
-  command->add_option("robot", *robot, "bundled name, folder, robot.json or .urdf")
+      "  ayumi inspect somebody.urdf        soles, servos and limits are inferred, and said so\n"
+      "  ayumi inspect somebody.urdf --picture somebody.png");
+  auto options = std::make_shared<InspectOptions>();
+  command->add_option("robot", options->robot, "bundled name, folder, robot.json or .urdf")
       ->required()
       ->type_name("ROBOT");
-  command->callback([&context, robot] { inspect(context, *robot); });
+  command->add_option("--picture", options->picture, "the home posture on the ground, .png")
+      ->type_name("FILE");
+  command->add_option("--view", options->view, text::join(view_names(), ", "))
+      ->capture_default_str();
+  command->callback([&context, options] { inspect(context, *options); });
 }
 
 }  // namespace ayumi::app

@@ -130,8 +130,12 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
   std::optional<SimulationLog> ghost;
   if (options.ghost == "command")
     own.clip.ghost.command = true;
-  else if (!options.ghost.empty())
-    ghost = read_run_log(options.ghost, options.log);
+  else if (!options.ghost.empty()) {
+    const bool elsewhere =
+        fs::exists(options.ghost) || options.ghost.find('/') != std::string::npos;
+    ghost =
+        elsewhere ? read_run_log(options.ghost, options.log) : read_run_log(input, options.ghost);
+  }
   if (ghost) own.clip.ghost.log = &*ghost;
   if (path.extension() == ".glb")
     return write_glb(model, log, path, own, ghost ? &*ghost : nullptr);
@@ -234,7 +238,9 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
       ->check(CLI::IsMember({"follow", "fixed", "orbit"}).description(""))
       ->capture_default_str();
   command.add_option("--zoom", clip.camera.zoom, "2: twice as large")->capture_default_str();
-  command.add_option("--ghost", options.ghost, "'command', or another RUN of the same robot")
+  command
+      .add_option("--ghost", options.ghost,
+                  "'command', a log of the RUN, e.g. open_loop, or another RUN of the same robot")
       ->type_name("RUN");
   for (const auto& [name, list, what] :
        {std::tuple{"--hide", &options.hide,
@@ -274,6 +280,7 @@ void add_preview(CLI::App& app, Context& context) {
       "  ayumi preview out/ --log open_loop --view side -o fall.mp4\n"
       "  ayumi preview out/ --at 2.35 --hide trails,forces -o push.png\n"
       "  ayumi preview out/ --from 2 --to 3 --speed 0.2 --ghost command -o slow.webm\n"
+      "  ayumi preview out/ --ghost open_loop -o both.mp4\n"
       "  ayumi preview out/ --exposures 6 --view side -o walk.png\n"
       "  ayumi preview out/ -o walk.glb\n"
       "  ayumi preview runs/* -o clips/ --sheet clips/all.png");

@@ -50,6 +50,12 @@ TEST_F(Usage, MistypedWordsAreAnsweredWithTheNearest) {
   EXPECT_NE(option.err.find("did you mean '--json'?"), std::string::npos) << option.err;
 }
 
+TEST_F(Usage, MistakesNameTheHelpOfTheirSubcommand) {
+  const Output output = ayumi({"new", "squat", "--dept", "0.1", "-o", "a.json"});
+  EXPECT_EQ(output.exit_code, 2);
+  EXPECT_NE(output.err.find("See ayumi new squat --help"), std::string::npos) << output.err;
+}
+
 TEST_F(Usage, MissingWordsAreUsageErrors) {
   EXPECT_EQ(ayumi({"inspect"}).exit_code, 2);
   EXPECT_EQ(ayumi({"--threads", "many", "robots"}).exit_code, 2);

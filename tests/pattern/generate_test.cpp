@@ -91,6 +91,19 @@ TEST(WalkPattern, BendsTheLegsOfARobotThatStandsStraight) {
   EXPECT_EQ(walk_pattern(test::biped(), {}).cog_height, 0);  // home's, already bent
 }
 
+TEST(StandingPatterns, BendTheLegsOfARobotThatStandsStraight) {
+  RobotDescription straight = test::biped_description();
+  straight.postures["home"] = {};
+  const RobotModel model(straight);
+  for (const Pattern& pattern :
+       {stand_pattern(model, 0.5), sway_pattern(model, sway_defaults(model)),
+        squat_pattern(model, squat_defaults(model))}) {
+    EXPECT_EQ(pattern.cog_height, walk_pattern(model, {}).cog_height) << pattern.name;
+    EXPECT_GT(sample(model, pattern, {.dt = 0.01}).samples.size(), 20u) << pattern.name;
+  }
+  EXPECT_EQ(stand_pattern(test::biped(), 1).cog_height, 0);
+}
+
 // Every foothold is on a stair, its whole sole, and both feet end on the last one.
 TEST(WalkPattern, StairsCarryTheWholeSole) {
   const RobotModel& model = test::biped();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <future>
 #include <numbers>
@@ -198,6 +199,26 @@ TEST(Renderer, AnImpossibleSizeIsNamed) {
       EXPECT_NE(std::string(error.what()).find(size), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find("1 to 4096"), std::string::npos);
     }
+  }
+}
+
+TEST(RobotSurface, ARobotWithoutVisualsIsSticksWhereItHasNoShapes) {
+  RobotDescription bare = test::box_robot().description();
+  for (LinkDescription& link : bare.links) link.visuals.clear();
+  const RobotModel model(bare);
+  EXPECT_FALSE(has_visuals(model));
+  EXPECT_TRUE(has_visuals(test::box_robot()));
+  const std::vector<BodySurface> surface = robot_surface(model);
+  const std::vector<Eigen::Isometry3d> poses = body_poses(model, model.rest_state());
+  for (size_t i = 1; i < model.bodies().size(); ++i) {
+    const Body& body = model.bodies()[i];
+    const Triangles& stick = surface[size_t(body.parent)].open;
+    double nearest = 1;
+    for (const RenderVertex& vertex : stick.vertices)
+      nearest =
+          std::min(nearest, (vertex.position.cast<double>() - body.placement.translation()).norm());
+    EXPECT_LT(nearest, 0.02) << "no stick from " << model.bodies()[size_t(body.parent)].name
+                             << " to " << body.name;
   }
 }
 

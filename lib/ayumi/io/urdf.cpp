@@ -117,6 +117,9 @@ std::string resolve_mesh(const RobotDescription& robot, const fs::path& urdf,
   }
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) {
+    if (fs::is_directory(file, ignored))
+      complain_urdf(robot, "link " + link + ": mesh " + name + ": " +
+                               file.lexically_normal().string() + " is a folder; name its file");
     const fs::path other = with_other_capitals(file.lexically_normal());
     complain_urdf(robot, "link " + link + ": mesh " + name + ": there is no file " +
                              file.lexically_normal().string() +

@@ -23,9 +23,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Legs longer than this share of their straight length are bent to the second one.
-constexpr double kStraightLeg = 0.97, kBentLeg = 0.94;
-
 constexpr double kStairClearance = 0.002;  // least of a sole from the next stair [m]
 constexpr double kStairSpare = 0.006;      // the default one
 constexpr double kStairHalfWidth = 1;      // of the leg's length
@@ -35,16 +32,6 @@ constexpr double kStairLeg = 0.905;        // of the straight leg, between hip a
 constexpr double kRest = 4.5, kShift = 2.6;
 
 double to_tenth_milliradian(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
-
-// Home's COG height, lowered where home's legs are too straight to step [m]; 0 keeps home's.
-double walking_height(const RobotModel& model, const Pattern& pattern, double leg) {
-  RobotData data(model);
-  update_positions(model, model.rest_state(), data);
-  const Vector3d hip = data.pose(model.dofs()[model.leg(Side::left).front()].body).translation();
-  const double reach = (sole_pose(model, data, Side::left).translation() - hip).norm();
-  if (reach < kStraightLeg * leg) return 0;
-  return to_tenth_millimetre(default_cog_height(model, pattern) - (reach - kBentLeg * leg));
-}
 
 /// How far a sole reaches ahead of its frame and behind it [m].
 struct SoleLength {
@@ -177,7 +164,7 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   pattern.robot = model.name();
   pattern.cog_height = to_tenth_millimetre(p.cog_height);
 
-  if (p.cog_height == 0) pattern.cog_height = walking_height(model, pattern, leg_length(model));
+  if (p.cog_height == 0) pattern.cog_height = bent_height(model);
 
   const auto start = start_feet(model, pattern);
   const double beside = 0.5 * (start[0].translation() - start[1].translation()).norm();
@@ -226,6 +213,7 @@ Pattern stand_pattern(const RobotModel& model, double duration) {
   Pattern pattern;
   pattern.name = "stand for " + text::brief(duration) + " s";
   pattern.robot = model.name();
+  pattern.cog_height = bent_height(model);
   PatternWriter writer{pattern};
   writer.key(0, ZmpKey::Place::center);
   writer.phase(duration, Support::both);

@@ -28,6 +28,7 @@ Pattern both_feet(const RobotModel& model, const std::string& name) {
   Pattern pattern;
   pattern.name = name;
   pattern.robot = model.name();
+  pattern.cog_height = bent_height(model);
   return pattern;
 }
 

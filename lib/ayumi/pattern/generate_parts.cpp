@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kHoap1Height = 0.245;  // of its home COG [m]
 
+// Legs longer than this share of their straight length are bent to the second one.
+constexpr double kStraightLeg = 0.97, kBentLeg = 0.94;
+
 }  // namespace
 
 double to_millisecond(double t) { return std::round(1e3 * t) / 1e3; }
@@ -40,6 +43,16 @@ double leg_length(const RobotModel& model) {
     from = to;
   }
   return length + (sole_pose(model, data, Side::left).translation() - from).norm();
+}
+
+double bent_height(const RobotModel& model) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const Vector3d hip = data.pose(model.dofs()[model.leg(Side::left).front()].body).translation();
+  const double reach = (sole_pose(model, data, Side::left).translation() - hip).norm();
+  const double leg = leg_length(model);
+  if (reach < kStraightLeg * leg) return 0;
+  return to_tenth_millimetre(default_cog_height(model, {}) - (reach - kBentLeg * leg));
 }
 
 double size_beside_hoap1(const RobotModel& model) {

@@ -15,6 +15,10 @@ void require_range(const char* pattern, const char* name, double value, double l
 /// Sum of the link lengths from hip to sole [m].
 double leg_length(const RobotModel& model);
 
+/// Home's COG height, lowered where home's legs are too straight to move a foot or the COG [m]; 0
+/// keeps home's.
+double bent_height(const RobotModel& model);
+
 /// Home COG height over that of HOAP-1: scales lengths, its root times.
 double size_beside_hoap1(const RobotModel& model);
 

@@ -53,9 +53,12 @@ void check(const RobotModel& model, const SimulationLog& log, const ClipOptions&
 
 double robot_height(const std::vector<BodySurface>& surface, const RobotModel& model,
                     const SimulationLog& log) {
-  const Eigen::AlignedBox3d box =
-      robot_bounds(surface, body_poses(model, log.samples.front().state));
-  return box.isEmpty() ? 1.0 : std::max(1e-3, box.sizes().maxCoeff());
+  const SimulationSample& first = log.samples.front();
+  const Eigen::AlignedBox3d box = robot_bounds(surface, body_poses(model, first.state));
+  if (box.isEmpty()) return 1.0;
+  // Where nothing is drawn above the COG, that around which the camera looks.
+  const double around_cog = 1.8 * (first.cog.z() - box.min().z());
+  return std::max({1e-3, box.sizes().maxCoeff(), around_cog});
 }
 
 /// The robot's surface, simplified where it is too fine; `notes` says so.
@@ -64,6 +67,10 @@ std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOption
   std::vector<BodySurface> surface = robot_surface(model);
   const size_t before = triangle_count(surface);
   const double cell = simplify(surface, options.max_triangles);
+  if (!has_visuals(model))
+    notes.push_back(
+        "the robot has no visuals: drawn by its collision shapes, and sticks between joints where "
+        "it has none");
   if (cell > 0)
     notes.push_back("the robot has " + std::to_string(before) + " triangles; drawn with " +
                     std::to_string(triangle_count(surface)) + ", points moved by at most " +

@@ -55,6 +55,7 @@ namespace ayumi {
   X(POLYGONOFFSET, PolygonOffset) \
   X(READPIXELS, ReadPixels) \
   X(RENDERBUFFERSTORAGEMULTISAMPLE, RenderbufferStorageMultisample) \
+  X(SCISSOR, Scissor) \
   X(SHADERSOURCE, ShaderSource) \
   X(TEXIMAGE2D, TexImage2D) \
   X(TEXPARAMETERI, TexParameteri) \

@@ -78,6 +78,28 @@ void blur(std::vector<std::uint8_t>& image, int size, int radius) {
   }
 }
 
+Eigen::Vector4f covered(const std::vector<std::uint8_t>& image, int size) {
+  int low_x = size, high_x = -1, low_y = size, high_y = -1;
+  for (int y = 0; y < size; ++y) {
+    const std::uint8_t* row = &image[size_t(y) * size_t(size)];
+    const auto dark = [](std::uint8_t value) { return value != 0; };
+    const std::uint8_t* first = std::find_if(row, row + size, dark);
+    if (first == row + size) continue;
+    low_x = std::min(low_x, static_cast<int>(first - row));
+    int last = size - 1;
+    while (!row[last]) --last;
+    high_x = std::max(high_x, last);
+    low_y = std::min(low_y, y);
+    high_y = y;
+  }
+  if (high_x < 0) return Eigen::Vector4f::Zero();
+  const auto place = [&](int pixel) { return std::clamp(2.0f * pixel / size - 1, -1.0f, 1.0f); };
+  const float left = place(low_x - 1), right = place(high_x + 2);
+  const float bottom = place(low_y - 1), top = place(high_y + 2);
+  return {0.5f * (left + right), 0.5f * (bottom + top), 0.5f * (right - left),
+          0.5f * (top - bottom)};
+}
+
 Vector3d sun_behind(const Camera& camera, const Vector3d& up) {
   const Vector3d toward = (camera.eye - camera.target).normalized();
   Vector3d flat_toward = toward - up * up.dot(toward);

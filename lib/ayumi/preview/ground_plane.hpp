@@ -33,6 +33,10 @@ Eigen::Vector3d sun_behind(const Camera& camera, const Eigen::Vector3d& up);
 double horizon_height(const Camera& camera, const Eigen::Vector3d& normal,
                       const Eigen::Matrix4f& to_clip);
 
+/// Middle and half edges of what is not zero in a square picture, its edges being -1 and 1, with a
+/// pixel more on every side; half edges 0 where everything is zero.
+Eigen::Vector4f covered(const std::vector<std::uint8_t>& image, int size);
+
 /// Two passes of a box of 2 radius + 1 along rows and columns of a square
 /// picture, in place.
 void blur(std::vector<std::uint8_t>& image, int size, int radius);

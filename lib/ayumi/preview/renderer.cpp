@@ -1,21 +1,22 @@
-#include "ayumi/preview/renderer.hpp"
-
 #include <algorithm>
 #include <map>
 #include <string>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/preview/gl.hpp"
-#include "ayumi/preview/ground_plane.hpp"
+#include "ayumi/preview/renderer_parts.hpp"
 #include "ayumi/preview/shaders.hpp"
 #include "ayumi/preview/simplify.hpp"
 #include "ayumi/preview/texture.hpp"
 
-// Order of a frame: the robot's shadow as coverage seen along the sun, read
-// back, blurred and given back as a small texture; then robot, scenery, ground,
-// sky, shadow, exposures, overlay. An exposure is drawn twice, first into the
-// depth alone, so that only its nearest surface shines through. What an overlay
-// hides behind the robot is drawn first and faintly, then its visible part.
+// Order of a frame: the robot's shadow as coverage seen along the sun, read back, blurred and given
+// back as a small texture; then robot, scenery, ground, sky, shadow, exposures, overlay. An
+// exposure is drawn twice, first into the depth alone, so that only its nearest surface shines
+// through. What an overlay hides behind the robot is drawn first and faintly, then its visible
+// part.
+//
+// Ground, sky and shadow have no edges that samples would smooth (the grid smooths its own lines).
+// An antialiased frame is drawn with samples only where something else is, then resolved into the
+// rest, which has one sample and no depth.
 
 namespace ayumi {
 namespace {
@@ -23,11 +24,8 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
-constexpr int kShadowSize = 256;
-constexpr int kShadowBlur = 2;             // radius of the box
 constexpr size_t kShadowTriangles = 4000;  // finer ones do not show in it
 constexpr int kSamples = 4;
-constexpr float kHorizon[3] = {0.877f, 0.893f, 0.907f};  // sRGB
 
 const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
 
@@ -37,45 +35,7 @@ Eigen::Vector4f heat_tint(float heat) {
   return {1.0f, 0.62f * (1 - h), 0.02f, h > 0 ? 0.35f + 0.65f * h : 0.0f};
 }
 
-struct BodyRanges {
-  IndexRange closed, open;
-  std::vector<std::pair<IndexRange, GLuint>> textured;  // with their pictures
-};
-
 }  // namespace
-
-struct Renderer::Parts {
-  RenderOptions options;
-  OffscreenContext context;
-  Gl gl;
-  GLuint solid, textured, standing, ground, sky, flat, shadow;
-  GlMesh robot, caster, overlay, scenery, bumps, square;
-  std::vector<BodyRanges> ranges;
-  std::vector<IndexRange> caster_ranges;   // by body: what throws the shadow
-  std::vector<Eigen::AlignedBox3d> boxes;  // of each body, body frame
-  std::vector<std::string> notes;
-  GlTarget drawn, resolved, flattened;
-  GLuint coverage = 0;
-  std::vector<std::uint8_t> pixels;  // of the picture, as OpenGL gives it
-  IndexRange all_scenery;
-  Eigen::Vector4f hole = {0, 0, 0, 0};  // low x, y, high x, y; of the plane's coordinates
-
-  Parts(const std::vector<BodySurface>& surface, const RenderOptions& render_options,
-        const Scenery& on_floor);
-
-  void upload(const std::vector<BodySurface>& surface);
-  Eigen::AlignedBox3d bounds_of(const std::vector<Eigen::Isometry3d>& poses) const;
-  void draw_coverage(const Scene& scene, const Eigen::Matrix4d& flatten);
-  void light(const Scene& scene, const Matrix4f& view_projection, const Vector3d& sun);
-  template <typename Tint>
-  void draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity, const Tint& tint);
-  void draw_scenery(const Scene& scene, const Matrix4f& flatten, bool with_shadow);
-  void draw_exposures(const Scene& scene);
-  void draw_ground(const Scene& scene, const Matrix4f& view_projection, const Ground& plane,
-                   bool with_shadow);
-  void draw_overlay(const Scene& scene);
-  Image read();
-};
 
 Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOptions& chosen,
                        const Scenery& on_floor)
@@ -102,8 +62,9 @@ Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOpti
   square = gl.make_square();
   drawn = gl.make_target(options.width, options.height, options.antialias ? kSamples : 0, GL_RGBA8,
                          true);
+  scenery_box = bounds(on_floor.triangles);
   if (options.antialias)
-    resolved = gl.make_target(options.width, options.height, 0, GL_RGBA8, false);
+    finished = gl.make_target(options.width, options.height, 0, GL_RGBA8, false);
   flattened = gl.make_target(kShadowSize, kShadowSize, 0, GL_R8, false);
   gl.GenTextures(1, &coverage);
   gl.BindTexture(GL_TEXTURE_2D, coverage);
@@ -158,29 +119,6 @@ Eigen::AlignedBox3d Renderer::Parts::bounds_of(const std::vector<Eigen::Isometry
   return all;
 }
 
-void Renderer::Parts::draw_coverage(const Scene& scene, const Eigen::Matrix4d& flatten) {
-  gl.BindFramebuffer(GL_FRAMEBUFFER, flattened.framebuffer);
-  gl.Viewport(0, 0, kShadowSize, kShadowSize);
-  gl.Disable(GL_DEPTH_TEST);
-  gl.Disable(GL_CULL_FACE);
-  gl.Disable(GL_BLEND);
-  gl.ClearColor(0, 0, 0, 0);
-  gl.Clear(GL_COLOR_BUFFER_BIT);
-  gl.UseProgram(flat);
-  gl.BindVertexArray(caster.array);
-  for (size_t i = 0; i < caster_ranges.size(); ++i) {
-    if (!caster_ranges[i].count) continue;
-    gl.set(flat, "flatten", Matrix4f((flatten * scene.poses[i].matrix()).cast<float>()));
-    gl.draw(caster_ranges[i]);
-  }
-  std::vector<std::uint8_t> cover(size_t(kShadowSize) * kShadowSize);
-  gl.ReadPixels(0, 0, kShadowSize, kShadowSize, GL_RED, GL_UNSIGNED_BYTE, cover.data());
-  blur(cover, kShadowSize, kShadowBlur);
-  gl.BindTexture(GL_TEXTURE_2D, coverage);
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, kShadowSize, kShadowSize, 0, GL_RED, GL_UNSIGNED_BYTE,
-                cover.data());
-}
-
 void Renderer::Parts::light(const Scene& scene, const Matrix4f& view_projection,
                             const Vector3d& sun) {
   for (const GLuint program : {standing, textured, solid}) {
@@ -195,6 +133,18 @@ void Renderer::Parts::light(const Scene& scene, const Matrix4f& view_projection,
   }
 }
 
+/// Bodies from the eye outwards: what is behind is then not shaded.
+std::vector<size_t> Renderer::Parts::nearest_first(const Scene& scene) const {
+  std::vector<std::pair<double, size_t>> away;
+  for (size_t i = 0; i < boxes.size(); ++i)
+    if (!boxes[i].isEmpty())
+      away.emplace_back((scene.poses[i] * boxes[i].center() - scene.camera.eye).norm(), i);
+  std::sort(away.begin(), away.end());
+  std::vector<size_t> order;
+  for (const auto& [distance, body] : away) order.push_back(body);
+  return order;
+}
+
 /// Leaves `solid` in use, with the identity, no tint and full opacity.
 template <typename Tint>
 void Renderer::Parts::draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity,
@@ -203,7 +153,7 @@ void Renderer::Parts::draw_bodies(const std::vector<Eigen::Isometry3d>& poses, d
   gl.Enable(GL_CULL_FACE);
   gl.UseProgram(solid);
   gl.set(solid, "opacity", opacity);
-  for (size_t i = 0; i < ranges.size(); ++i) {
+  for (const size_t i : order) {
     const BodyRanges& range = ranges[i];
     if (!range.closed.count && !range.open.count) continue;
     gl.set(solid, "tint", tint(i));
@@ -260,47 +210,6 @@ void Renderer::Parts::draw_exposures(const Scene& scene) {
   }
 }
 
-void Renderer::Parts::draw_ground(const Scene& scene, const Matrix4f& view_projection,
-                                  const Ground& plane, bool with_shadow) {
-  const Vector3d target = scene.camera.target - plane.origin;
-  const Eigen::Vector2d center(plane.u.dot(target), plane.v.dot(target));
-  const double distance = (scene.camera.eye - scene.camera.target).norm();
-  const auto place = [&](GLuint program, const Eigen::Vector2d& at, double reach) {
-    gl.UseProgram(program);
-    gl.set(program, "view_projection", view_projection);
-    gl.set(program, "origin", plane.origin);
-    gl.set(program, "axis_u", plane.u);
-    gl.set(program, "axis_v", plane.v);
-    gl.set(program, "center", at.x(), at.y());
-    gl.set(program, "reach", reach);
-    gl.set(program, "hole", hole);
-  };
-  gl.BindVertexArray(square.array);
-  gl.Enable(GL_CULL_FACE);
-  if (options.ground) {
-    place(ground, center, 30 * distance);
-    gl.set(ground, "fade", 4.5 * distance);
-    gl.set(ground, "horizon", Vector3d(kHorizon[0], kHorizon[1], kHorizon[2]));
-    gl.Enable(GL_POLYGON_OFFSET_FILL);
-    gl.PolygonOffset(1, 1);  // soles lie in the ground plane
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    gl.Disable(GL_POLYGON_OFFSET_FILL);
-  }
-  gl.UseProgram(sky);
-  gl.set(sky, "horizon", Vector3d(kHorizon[0], kHorizon[1], kHorizon[2]));
-  gl.set(sky, "horizon_height", horizon_height(scene.camera, plane.normal, view_projection));
-  gl.DepthMask(GL_FALSE);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  if (with_shadow) {
-    place(shadow, plane.center, plane.reach);
-    gl.set(shadow, "strength", 0.42);
-    gl.BindTexture(GL_TEXTURE_2D, coverage);
-    gl.Enable(GL_BLEND);
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  }
-  gl.DepthMask(GL_TRUE);
-}
-
 void Renderer::Parts::draw_overlay(const Scene& scene) {
   if (scene.overlay.indices.empty()) return;
   gl.fill(overlay, scene.overlay, GL_STREAM_DRAW);
@@ -317,27 +226,6 @@ void Renderer::Parts::draw_overlay(const Scene& scene) {
   gl.DepthFunc(GL_LEQUAL);
   gl.draw(all);
   gl.Disable(GL_BLEND);
-}
-
-Image Renderer::Parts::read() {
-  const int width = options.width, height = options.height;
-  if (options.antialias) {
-    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, drawn.framebuffer);
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved.framebuffer);
-    gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved.framebuffer);
-  }
-  pixels.resize(size_t(4) * width * height);
-  gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-  Image image{width, height, std::vector<std::uint8_t>(size_t(3) * width * height)};
-  for (int y = 0; y < height; ++y) {
-    const std::uint8_t* source = &pixels[size_t(4) * width * (height - 1 - y)];
-    std::uint8_t* target = image.pixel(0, y);
-    for (int x = 0; x < width; ++x)
-      for (int channel = 0; channel < 3; ++channel)
-        target[3 * x + channel] = source[4 * x + channel];
-  }
-  return image;
 }
 
 Renderer::Renderer(const std::vector<BodySurface>& robot, const RenderOptions& options,
@@ -373,23 +261,30 @@ Image Renderer::render(const Scene& scene) {
       (projection_matrix(scene.camera, double(p.options.width) / p.options.height) *
        view_matrix(scene.camera))
           .cast<float>();
+  const Setting setting = {plane, view_projection, with_shadow};
   p.gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   if (with_shadow) p.draw_coverage(scene, flatten);
-  p.gl.BindFramebuffer(GL_FRAMEBUFFER, p.drawn.framebuffer);
   p.gl.Viewport(0, 0, p.options.width, p.options.height);
-  p.gl.Enable(GL_DEPTH_TEST);
   p.gl.DepthFunc(GL_LEQUAL);
   p.gl.Disable(GL_BLEND);
-  p.gl.ClearColor(kHorizon[0], kHorizon[1], kHorizon[2], 1);
-  p.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  p.gl.BindFramebuffer(GL_FRAMEBUFFER, p.drawn.framebuffer);
+  PixelBox edges;
+  if (p.options.antialias)
+    p.draw_around(edges = p.with_edges(scene, view_projection), scene, setting);
+  p.gl.Enable(GL_DEPTH_TEST);
+  p.gl.Clear(GL_DEPTH_BUFFER_BIT);
+  p.order = p.nearest_first(scene);
   p.light(scene, view_projection, sun);
   p.draw_bodies(scene.poses, 1.0, [&](size_t i) {
     return i < scene.heat.size() ? heat_tint(scene.heat[i]) : kNoTint;
   });
   p.draw_scenery(scene, flatten.cast<float>(), with_shadow);
-  p.draw_ground(scene, view_projection, plane, with_shadow);
+  p.draw_plane(scene, setting);
+  p.draw_sky(scene, setting);
+  p.draw_shadow(setting);
   p.draw_exposures(scene);
   p.draw_overlay(scene);
+  if (p.options.antialias) p.resolve(edges);
   return p.read();
 }
 

@@ -7,6 +7,8 @@
 namespace ayumi {
 namespace {
 
+constexpr double kStick = 0.06;  // radius of a stick, of the longest one's length
+
 void add_surface(BodySurface& body, Triangles surface, const Eigen::Isometry3d& pose) {
   Triangles& target = orient(surface) == SurfaceKind::closed ? body.closed : body.open;
   append(target, surface, pose);
@@ -36,15 +38,36 @@ void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isomet
   }
 }
 
+/// From the frame of each body without a shape to those of the bodies that hang on it.
+void add_sticks(const RobotModel& model, std::vector<BodySurface>& surface) {
+  const auto way = [](const Body& body) { return body.placement.translation().norm(); };
+  double longest = 0;
+  std::vector<bool> bare;
+  for (const BodySurface& body : surface)
+    bare.push_back(body.closed.indices.empty() && body.open.indices.empty() &&
+                   body.textured.empty());
+  for (const Body& body : model.bodies())
+    if (body.parent >= 0) longest = std::max(longest, way(body));
+  for (const Body& body : model.bodies())
+    if (body.parent >= 0 && bare[size_t(body.parent)] && way(body) > 1e-6)
+      add_rod(surface[size_t(body.parent)].open, Eigen::Vector3d::Zero(),
+              body.placement.translation(), kStick * longest, PlacedShape().color);
+}
+
 }  // namespace
 
+bool has_visuals(const RobotModel& model) {
+  return std::any_of(model.links().begin(), model.links().end(),
+                     [](const Link& link) { return !link.visuals.empty(); });
+}
+
 std::vector<BodySurface> robot_surface(const RobotModel& model) {
-  const bool any_visual = std::any_of(model.links().begin(), model.links().end(),
-                                      [](const Link& link) { return !link.visuals.empty(); });
+  const bool visuals = has_visuals(model);
   std::vector<BodySurface> surface(model.bodies().size());
   for (const Link& link : model.links())
-    for (const PlacedShape& placed : any_visual ? link.visuals : link.collisions)
+    for (const PlacedShape& placed : visuals ? link.visuals : link.collisions)
       add_shape(surface[size_t(link.body)], placed, link.pose);
+  if (!visuals) add_sticks(model, surface);
   return surface;
 }
 

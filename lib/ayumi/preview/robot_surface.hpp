@@ -23,10 +23,13 @@ struct BodySurface {
   std::vector<TexturedSurface> textured;
 };
 
-/// One per body: the visuals of its links, or the collision shapes of a robot
-/// without any visual. A colour set on a visual goes before the mesh's own and
-/// its texture; grey where neither is stated.
+/// One per body: the visuals of its links, or the collision shapes of a robot without any visual,
+/// and sticks to the next joints where such a body has no shape either. A colour set on a visual
+/// goes before the mesh's own and its texture; grey where neither is stated.
 std::vector<BodySurface> robot_surface(const RobotModel& model);
+
+/// Whether any link has a visual.
+bool has_visuals(const RobotModel& model);
 
 /// All its triangles, whatever they look like.
 std::vector<const Triangles*> parts_of(const BodySurface& body);

@@ -109,7 +109,8 @@ void main() {
 }
 )";
 
-// The ground plane as one large square; plane coordinates in metres.
+// A part of the ground plane; plane coordinates in metres. `part` is its middle and half edges, in
+// units of `reach` around `center`.
 inline constexpr const char* kGroundVertex = R"(
 layout(location = 0) in vec2 corner;
 uniform mat4 view_projection;
@@ -118,9 +119,10 @@ uniform vec3 axis_u;
 uniform vec3 axis_v;
 uniform vec2 center;
 uniform float reach;
+uniform vec4 part;
 out vec2 plane;
 void main() {
-  plane = center + reach * corner;
+  plane = center + reach * (part.xy + part.zw * corner);
   gl_Position = view_projection * vec4(origin + plane.x * axis_u + plane.y * axis_v, 1.0);
 }
 )";
@@ -166,10 +168,11 @@ void main() {
 
 inline constexpr const char* kSkyVertex = R"(
 layout(location = 0) in vec2 corner;
+uniform float bottom;
 out float height;
 void main() {
-  height = corner.y;
-  gl_Position = vec4(corner, 1.0, 1.0);
+  height = mix(bottom, 1.0, 0.5 + 0.5 * corner.y);
+  gl_Position = vec4(corner.x, height, 1.0, 1.0);
 }
 )";
 

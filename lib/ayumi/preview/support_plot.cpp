@@ -99,10 +99,17 @@ void draw_foothold(Drawing& drawing, const Axes& axes, const Foothold& foot) {
     middle += outline.points.back() / static_cast<double>(foot.corners.size());
   }
   drawing.items.push_back(outline);
-  drawing.items.push_back(DrawnText{.position = middle + Vector2d(0, 4),
+  // In the outer corner of the toes, away from the loci.
+  const double outwards = foot.side == Side::left ? -1 : 1;
+  const Vector2d corner = *std::max_element(
+      outline.points.begin(), outline.points.end(), [&](const Vector2d& a, const Vector2d& b) {
+        return a.x() + outwards * a.y() < b.x() + outwards * b.y();
+      });
+  drawing.items.push_back(DrawnText{.position = corner + 0.13 * (middle - corner) + Vector2d(0, 4),
                                     .text = foot.side == Side::left ? "L" : "R",
-                                    .size = 11,
+                                    .size = 12,
                                     .anchor = TextAnchor::center,
+                                    .bold = true,
                                     .color = color});
 }
 

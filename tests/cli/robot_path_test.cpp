@@ -1,0 +1,28 @@
+// A robot of one's own, named by a path: what the commands write still finds it.
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+TEST(RobotPath, HoldsFromTheWorkingFolderWhereverThePatternIsWritten) {
+  Folder folder;
+  fs::create_directories(folder / "patterns");
+  fs::create_directories(folder / "mine");
+  fs::copy(AYUMI_SOURCE_DIR "/robots/hoap1", folder / "mine", fs::copy_options::recursive);
+  const auto ayumi = [&](const std::vector<std::string>& arguments) {
+    const Output output = run_program(arguments, folder.path());
+    EXPECT_EQ(output.exit_code, 0) << output.err;
+    return output;
+  };
+  ayumi({"new", "stand", "--robot", "mine", "--duration", "0.5", "-o", "patterns/stand.json"});
+  const std::string pattern = contents(folder / "patterns/stand.json");
+  EXPECT_NE(pattern.find("\"robot\": \"../mine\""), std::string::npos) << pattern;
+  ayumi({"check", "patterns/stand.json"});
+  ayumi({"simulate", "patterns/stand.json", "-o", "run"});
+  ayumi({"plot", "run", "-o", "loci.svg"});
+  ayumi({"preview", "run", "--size", "64x48", "-o", "a.png"});
+}
+
+}  // namespace
+}  // namespace ayumi::test
