@@ -44,6 +44,9 @@ TreeCholesky::TreeCholesky(const RobotModel& model, const kernels::Kernels& kern
     entry_of_[static_cast<size_t>(column_at(k))] = depth_.back();
     size += static_cast<size_t>(depth_.back() / 4 * 4 + 4);
   }
+  path_.assign(size, 0);
+  for (int k = 0; k < n; ++k)
+    for (int i = k; i >= 0; i = parent(i)) path_[static_cast<size_t>(row_begin(k) + depth(i))] = i;
   rows_.assign(size, 0.0);
   inverse_.assign(static_cast<size_t>(n), 0.0);
   scratch_.setZero(n);
@@ -62,14 +65,19 @@ bool TreeCholesky::factor_rows() {
   return kernels_->factor(paths(), rows_.data(), inverse_.data());
 }
 
+// What came last is at the end of the path, so that sums over it begin with what is known long
+// since.
 void TreeCholesky::multiply(const std::vector<double>& rows, const VectorXd& x, VectorXd& y) const {
   y.setZero(x.size());
   for (int k = 0; k < static_cast<int>(column_.size()); ++k) {
     const double* entry = rows.data() + row_begin(k);
-    double sum = entry[depth(k)] * x[k];
-    for (int i = parent(k), t = depth(k) - 1; i >= 0; i = parent(i), --t) {
-      sum += entry[t] * x[i];
-      y[i] += entry[t] * x[k];
+    const int* on = path(k);
+    const int above = depth(k);
+    const double own = x[k];
+    double sum = entry[above] * own;
+    for (int t = 0; t < above; ++t) {
+      sum += entry[t] * x[on[t]];
+      y[on[t]] += entry[t] * own;
     }
     y[k] += sum;
   }
@@ -78,17 +86,25 @@ void TreeCholesky::multiply(const std::vector<double>& rows, const VectorXd& x, 
 void TreeCholesky::solve_lower(VectorXd& y) const {
   for (int k = 0; k < static_cast<int>(column_.size()); ++k) {
     const double* entry = row(k);
-    double sum = y[k];
-    for (int i = parent(k), t = depth(k) - 1; i >= 0; i = parent(i), --t) sum -= entry[t] * y[i];
-    y[k] = sum * inverse_[static_cast<size_t>(k)];
+    const int* on = path(k);
+    const int above = depth(k);
+    double even = y[k], odd = 0;
+    int t = 0;
+    for (; t + 1 < above; t += 2) {
+      even -= entry[t] * y[on[t]];
+      odd -= entry[t + 1] * y[on[t + 1]];
+    }
+    if (t < above) even -= entry[t] * y[on[t]];
+    y[k] = (odd + even) * inverse_[static_cast<size_t>(k)];
   }
 }
 
 void TreeCholesky::solve_upper(VectorXd& y) const {
   for (int k = static_cast<int>(column_.size()) - 1; k >= 0; --k) {
     const double* entry = row(k);
-    y[k] *= inverse_[static_cast<size_t>(k)];
-    for (int i = parent(k), t = depth(k) - 1; i >= 0; i = parent(i), --t) y[i] -= entry[t] * y[k];
+    const int* on = path(k);
+    const double own = y[k] *= inverse_[static_cast<size_t>(k)];
+    for (int t = depth(k) - 1; t >= 0; --t) y[on[t]] -= entry[t] * own;
   }
 }
 

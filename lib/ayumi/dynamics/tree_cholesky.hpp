@@ -28,6 +28,8 @@ class TreeCholesky {
   int column_at(int place) const { return column_[static_cast<size_t>(place)]; }
   int parent(int place) const { return parent_[static_cast<size_t>(place)]; }  ///< -1 at the end
   int depth(int place) const { return depth_[static_cast<size_t>(place)]; }    ///< places above it
+  /// The depth(place) + 1 places from the root to this one.
+  const int* path(int place) const { return path_.data() + row_begin(place); }
   double diagonal(int place) const { return row(place)[depth(place)]; }
   double below(int place, int ancestor) const { return row(place)[depth(ancestor)]; }
   /// The last place on the chain that moves a body.
@@ -65,6 +67,7 @@ class TreeCholesky {
 
   const kernels::Kernels* kernels_;
   std::vector<int> place_, column_, parent_, depth_, offset_, body_place_;
+  std::vector<int> path_;               // as rows_
   std::vector<int> row_of_, entry_of_;  // by velocity column: row_begin and depth of its place
   std::vector<double> rows_, inverse_;  // of L; of its diagonal
   mutable Eigen::VectorXd scratch_;

@@ -100,7 +100,7 @@ inline void subtract_columns(double* A, int size, int stride, int j) {
     for (int k = 0; k < 4; ++k) sum[k] = load_four(A + (j + k) * stride + i);
     for (int t = 0; t < j; ++t) {
       const double* column = A + t * stride;
-      const Four x = load_four(column + i);
+      const Four x = column[t] * load_four(column + i);
       for (int k = 0; k < 4; ++k) sum[k] -= x * column[j + k];
     }
     for (int k = 0; k < 4; ++k) store_four(A + (j + k) * stride + i, sum[k]);
@@ -109,7 +109,9 @@ inline void subtract_columns(double* A, int size, int stride, int j) {
 
 // x <- A^-1 x of a symmetric positive definite matrix of `size` rows by its lower triangle; columns
 // `stride` apart, which is `size` filled up to fours, as many of them, and x has as many entries.
-// A becomes its factor. False where it is not safely positive; x is as before then.
+// A becomes C of A = C D^-1 C', D the diagonal of C, with 1/D in its place: a root or a quotient
+// for each step of the solution would be what it waits for. False where A is not safely positive;
+// x is as before then.
 bool solve_positive(double* A, int size, int stride, double* x) {
   double largest = 0;
   for (int k = 0; k < size; ++k)
@@ -120,17 +122,17 @@ bool solve_positive(double* A, int size, int stride, double* x) {
     const int block = j & ~3;
     for (int t = block; t < j; ++t) {
       const double* before = A + t * stride;
+      const double share = before[t] * before[j];
       for (int i = block; i < size; i += 4)
-        store_four(column + i, load_four(column + i) - before[j] * load_four(before + i));
+        store_four(column + i, load_four(column + i) - share * load_four(before + i));
     }
     if (!(column[j] > 1e-14 * largest)) return false;
-    const double inverse = 1.0 / __builtin_sqrt(column[j]);
-    for (int i = block; i < size; i += 4) store_four(column + i, inverse * load_four(column + i));
+    column[j] = 1.0 / column[j];
   }
   // What stands above the diagonal in its block of four has no meaning.
   for (int k = 0; k < size; ++k) {
     const double* column = A + k * stride;
-    const double share = x[k] / column[k];
+    const double share = x[k] * column[k];
     int i = k + 1;
     for (; i < size && (i & 3); ++i) x[i] -= column[i] * share;
     for (; i < size; i += 4) store_four(x + i, load_four(x + i) - share * load_four(column + i));
@@ -139,15 +141,15 @@ bool solve_positive(double* A, int size, int stride, double* x) {
   for (int k = size; k < stride; ++k) x[k] = 0;
   for (int k = size - 1; k >= 0; --k) {
     const double* column = A + k * stride;
-    double sum = x[k];
+    double sum = 0;
     int i = k + 1;
-    for (; i < size && (i & 3); ++i) sum -= column[i] * x[i];
+    for (; i < size && (i & 3); ++i) sum += column[i] * x[i];
     if (i < size) {
       Four rest{};
       for (; i < size; i += 4) rest += load_four(column + i) * load_four(x + i);
-      sum -= sum_of(rest);
+      sum += sum_of(rest);
     }
-    x[k] = sum / column[k];
+    x[k] -= column[k] * sum;
   }
   return true;
 }

@@ -56,6 +56,13 @@ ConvexPair swept_pair(const Vector3d& ca, const Vector3d& za, const Vector3d& cb
   return pair;
 }
 
+/// How far a core reaches from its centre.
+double reach(const ConvexCore& core, const Isometry3d& pose, const Vector3d& direction) {
+  const Vector3d d = pose.linear().transpose() * direction;
+  const double round = core.disc > 0 ? core.disc * d.head<2>().norm() : 0;
+  return core.half.dot(d.cwiseAbs()) + round;
+}
+
 }  // namespace
 
 Collider::Collider(const Shape& shape) {
@@ -101,6 +108,13 @@ double clearance(const Collider& a, const Isometry3d& pose_a, const Collider& b,
 double clearance_bound(const Collider& a, const Isometry3d& pose_a, const Collider& b,
                        const Isometry3d& pose_b) {
   return (pose_a * a.center() - pose_b * b.center()).norm() - a.radius() - b.radius();
+}
+
+double clearance_along(const Vector3d& direction, const Collider& a, const Isometry3d& pose_a,
+                       const Collider& b, const Isometry3d& pose_b) {
+  return direction.dot(pose_b * b.center() - pose_a * a.center()) -
+         reach(a.core(), pose_a, direction) - reach(b.core(), pose_b, direction) - a.rounding() -
+         b.rounding();
 }
 
 double segment_distance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,

@@ -55,6 +55,12 @@ Closest closest(const Collider& a, const Eigen::Isometry3d& pose_a, const Collid
 double clearance_bound(const Collider& a, const Eigen::Isometry3d& pose_a, const Collider& b,
                        const Eigen::Isometry3d& pose_b);
 
+/// How far apart they are along a unit vector (world) that leads from a to b: a lower bound of
+/// clearance(), and clearance() itself along the normal of closest() [m].
+double clearance_along(const Eigen::Vector3d& direction, const Collider& a,
+                       const Eigen::Isometry3d& pose_a, const Collider& b,
+                       const Eigen::Isometry3d& pose_b);
+
 /// Distance between the segments a0-a1 and b0-b1 [m].
 double segment_distance(const Eigen::Vector3d& a0, const Eigen::Vector3d& a1,
                         const Eigen::Vector3d& b0, const Eigen::Vector3d& b1);

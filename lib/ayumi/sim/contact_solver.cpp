@@ -2,16 +2,18 @@
 //   open:   r_n >= 0                       -> l = 0
 //   stick:  l = -D^-1 r, inside the cone   -> l
 //   slide:  u_n = 0, (D_tt + s 1) l_t + D_tn l_n + r_t = 0 with the s >= 0 that puts l on the cone.
-// The slide is one equation in s: |l_t(s)| - mu l_n(s) falls with s; bracketed.
+// The slide is one equation in s: |l_t(s)| - mu l_n(s) falls with s.
 // Sweeps find who is open, sticks or slides; one Newton step on all closed contacts together,
 //   stick: u = 0        slide: u_n = 0, l_t + mu l_n u_t/|u_t| = 0,
 // then lands on the answer, where sweeps alone would creep when many points share a stiff load. A
-// Newton step is kept only when the sweep after it moves less than the sweep before it did. One
-// from the last step's impulses comes first: mostly the sweep after it finds nothing to change.
+// Newton step is kept only when the sweep after it moves less than the sweep before it did. Some
+// from the last step's impulses come first, as long as they come nearer: mostly the first is the
+// answer, which a test of each contact against the others tells at the cost of one product with A.
 #include "ayumi/sim/contact_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ayumi {
 
@@ -23,42 +25,33 @@ using Eigen::Vector3d;
 namespace {
 
 // l_n from u_n = 0 given l_t; then the tangential rows hold the reduced matrix K = D_tt - D_tn
-// D_nt / D_nn and right side c.
+// D_nt / D_nn and right side c. Newton's method on 1/|l_t| - 1/(mu l_n), which is almost straight
+// in s, within a bracket.
 Vector3d slide(const Matrix3d& D, const Vector3d& r, double mu) {
   const double dnn = D(0, 0);
   const Vector2d dtn = D.block<2, 1>(1, 0);
   const Matrix2d K = D.block<2, 2>(1, 1) - dtn * dtn.transpose() / dnn;
   const Vector2d c = r.tail<2>() - dtn * (r[0] / dnn);
-  auto at = [&](double s) {
+  double s = 0, low = 0, high = std::numeric_limits<double>::infinity();
+  Vector3d l;
+  for (int i = 0; i < 100; ++i) {
     Matrix2d m = K;
     m.diagonal().array() += s;
-    const Vector2d t = -m.inverse() * c;
-    return Vector3d(-(r[0] + dtn.dot(t)) / dnn, t.x(), t.y());
-  };
-  auto excess = [&](const Vector3d& l) { return l.tail<2>().norm() - mu * l[0]; };
-  double low = 0, high = K.trace();
-  for (int i = 0; i < 60 && excess(at(high)) > 0; ++i) {
-    low = high;
-    high *= 4;
-  }
-  // Illinois false position: bracketing, superlinear, no derivatives.
-  double f_low = excess(at(low)), f_high = excess(at(high));
-  Vector3d l = at(high);
-  for (int i = 0; i < 60; ++i) {
-    const double s = (low * f_high - high * f_low) / (f_high - f_low);
-    if (!(s > low && s < high)) break;
-    l = at(s);
-    const double f = excess(l);
-    if (std::abs(f) <= 1e-14 * (mu * std::abs(l[0]) + 1e-12)) break;
-    if (f > 0) {
-      low = s;
-      f_low = f;
-      f_high *= 0.5;
-    } else {
-      high = s;
-      f_high = f;
-      f_low *= 0.5;
-    }
+    const Matrix2d inverse = m.inverse();
+    const Vector2d t = -inverse * c, dt = -inverse * t;
+    const double n = -(r[0] + dtn.dot(t)) / dnn, dn = -dtn.dot(dt) / dnn, size = t.norm();
+    l << n, t;
+    const double excess = size - mu * n;
+    if (std::abs(excess) <= 1e-14 * (mu * std::abs(n) + 1e-12)) break;
+    (excess > 0 ? low : high) = s;
+    double next = low;
+    if (n > 0 && size > 0)
+      next = s - (1 / size - 1 / (mu * n)) / (dn / (mu * n * n) - t.dot(dt) / (size * size * size));
+    if (!(next > low && next < high))
+      next = high < std::numeric_limits<double>::infinity() ? 0.5 * (low + high)
+                                                            : 4 * std::max(low, K.trace());
+    if (next == low || next == high) break;
+    s = next;
   }
   const double t = l.tail<2>().norm();
   if (l[0] <= 0) return Vector3d::Zero();
@@ -76,12 +69,29 @@ Vector3d solve_three(const Matrix3d& D, const Vector3d& r) {
   return {a * r[0] - l10 * x1 - l20 * x2, x1, x2};
 }
 
+/// Of a contact that presses; by more than rounding.
+bool inside_cone(const Vector3d& l, double mu) {
+  const double most = mu * l[0] * (1 - 1e-9);
+  return l.tail<2>().squaredNorm() < most * most;
+}
+
 Vector3d solve_one(const Matrix3d& D, const Vector3d& r, double mu) {
   if (r[0] >= 0) return Vector3d::Zero();
   if (mu <= 0) return {-r[0] / D(0, 0), 0, 0};
   const Vector3d stick = -solve_three(D, r);
   if (stick[0] >= 0 && stick.tail<2>().norm() <= mu * stick[0]) return stick;
   return slide(D, r, mu);
+}
+
+/// How far a contact with impulse l and shifted velocity u is from its law [m/s].
+double off_by(const Matrix3d& D, const Vector3d& l, const Vector3d& u, double mu) {
+  if (l[0] > 0 && inside_cone(l, mu)) return u.cwiseAbs().maxCoeff();
+  if (l.isZero(0)) return std::max(-u[0], 0.0);
+  const double normal = l[0], along = l.tail<2>().norm(), speed = u.tail<2>().norm();
+  if (!(normal > 0 && along > 0)) return (D * (solve_one(D, u - D * l, mu) - l)).norm();
+  // u_t must be against l_t, l on the cone.
+  return std::max({std::abs(u[0]), (u.tail<2>() + speed / along * l.tail<2>()).norm(),
+                   D.diagonal().maxCoeff() * std::abs(along - mu * normal)});
 }
 
 /// x <- G^-1 x by elimination with row exchanges, in place; `m` rows, column-major. False when G is
@@ -146,10 +156,28 @@ double ContactSolver::sweep(Vector l, double share) {
   return change;
 }
 
+// Largest change of a shifted velocity when each contact is solved with the others as they are;
+// contacts that are off by more than `tolerance` take that solution.
+double ContactSolver::wrong_by(Vector l, double tolerance) {
+  const Matrix matrix = A();
+  Vector u(store_[6].data(), 3 * n_);
+  u = b();
+  kernels_->multiply_add(matrix.data(), 3 * n_, 3 * n_, 3 * n_, l.data(), u.data());
+  double change = 0;
+  for (int i = 0; i < n_; ++i) {
+    const Vector3d own = l.segment<3>(3 * i), rate = u.segment<3>(3 * i);
+    const Matrix3d D = matrix.block<3, 3>(3 * i, 3 * i);
+    const double mu = friction_[static_cast<size_t>(i)];
+    const double off = off_by(D, own, rate, mu);
+    change = std::max(change, off);
+    if (off > tolerance) l.segment<3>(3 * i) = solve_one(D, rate - D * own, mu);
+  }
+  return change;
+}
+
 /// Whether a closed contact's row of the Newton step is that of one that sticks.
 bool ContactSolver::sticks(int i, const Vector3d& l, const Vector3d& u) const {
-  return l.tail<2>().norm() < friction_[static_cast<size_t>(i)] * l[0] * (1 - 1e-9) ||
-         u.tail<2>().norm() < 1e-12;
+  return inside_cone(l, friction_[static_cast<size_t>(i)]) || u.tail<2>().squaredNorm() < 1e-24;
 }
 
 // Newton step on the contacts that are closed in impulse(), into the candidate. False where it has
@@ -223,22 +251,34 @@ bool ContactSolver::stick_and_slide(int rows) {
   return eliminate(store_[4].data(), store_[5].data(), rows);
 }
 
+// Newton steps from the last step's impulses while each comes nearer; those impulses again where
+// they do not arrive. Returns what is left.
+double ContactSolver::newton_alone(int& sweeps, double tolerance) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  Vector candidate(store_[3].data(), 3 * n_), start(store_[7].data(), 3 * n_);
+  bool closed = false;
+  for (int i = 0; i < n_; ++i) closed = closed || impulse()[3 * i] > 0;
+  if (!closed) return kNone;
+  start = impulse();
+  for (double last = kNone; newton_step();) {
+    ++sweeps;
+    const double change = wrong_by(candidate, tolerance);
+    if (!(change < last)) break;
+    impulse() = candidate;
+    if (change <= tolerance) return change;
+    last = change;
+  }
+  impulse() = start;
+  return kNone;
+}
+
 ContactSolution ContactSolver::solve(double tolerance, int max_iterations) {
   ContactSolution result;
   if (n_ == 0) return result;
   Vector candidate(store_[3].data(), 3 * n_);
   int sweeps = 0;
-  // Mostly the contacts are as they were: one Newton step from there is the answer.
-  bool closed = false;
-  for (int i = 0; i < n_; ++i) closed = closed || impulse()[3 * i] > 0;
-  if (closed && newton_step()) {
-    ++sweeps;
-    const double candidate_change = sweep(candidate);
-    if (candidate_change <= tolerance) {
-      impulse() = candidate;
-      return {sweeps, candidate_change};
-    }
-  }
+  if (const double change = newton_alone(sweeps, tolerance); change <= tolerance)
+    return {sweeps, change};
   double change = sweep(impulse());
   ++sweeps;
   while (change > tolerance && sweeps < max_iterations) {

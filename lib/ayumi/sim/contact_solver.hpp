@@ -24,7 +24,7 @@ struct ContactProblem {
 
 struct ContactSolution {
   int iterations = 0;   ///< sweeps
-  double residual = 0;  ///< largest change of a shifted velocity in the last sweep [m/s]
+  double residual = 0;  ///< largest change of a shifted velocity in the last sweep or test [m/s]
 };
 
 /// Block Gauss-Seidel with the exact solution of each 3x3 contact, sped up by Newton steps on all
@@ -47,6 +47,8 @@ class ContactSolver {
 
  private:
   double sweep(Vector impulse, double share = 1.0);
+  double wrong_by(Vector impulse, double tolerance);
+  double newton_alone(int& sweeps, double tolerance);
   bool newton_step();
   bool stick_together(int rows);
   bool stick_and_slide(int rows);
@@ -54,8 +56,8 @@ class ContactSolver {
 
   const kernels::Kernels* kernels_ = &kernels::best_kernels();
   int n_ = 0;
-  // A, b, impulse, candidate, Newton matrix, Newton right side, velocities.
-  std::array<std::vector<double>, 7> store_;
+  // A, b, impulse, candidate, Newton matrix, Newton right side, velocities, first impulse.
+  std::array<std::vector<double>, 8> store_;
   std::vector<double> friction_;
   std::vector<int> closed_;
 };

@@ -52,6 +52,7 @@ class Ground {
   const Eigen::Isometry3d& pose() const { return floor_.pose; }
   Eigen::Vector3d normal() const { return floor_.pose.linear().col(2); }  ///< of the plane, world
   const Eigen::Vector3d& angular_velocity() const { return floor_.angular_velocity; }  ///< [rad/s]
+  bool at_rest() const { return floor_.velocity.isZero(0) && floor_.angular_velocity.isZero(0); }
   /// Velocity of the floor at a point, both in the world [m/s].
   Eigen::Vector3d velocity(const Eigen::Vector3d& p) const {
     return floor_.velocity + floor_.angular_velocity.cross(p - floor_.pose.translation());

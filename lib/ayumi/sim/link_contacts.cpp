@@ -21,7 +21,8 @@ LinkContacts::LinkContacts(const RobotModel& model)
       center_(model.bodies().size(), Vector3d::Zero()),
       radius_(model.bodies().size(), 0.0) {
   for (const CollisionModel::Pair& pair : shapes_.pairs()) {
-    pairs_.push_back({pair.a, pair.b, 0, 0});
+    pairs_.push_back({pair.a, pair.b, 0, 0, lines_.size()});
+    lines_.resize(lines_.size() + shapes_.shapes(pair.a).size() * shapes_.shapes(pair.b).size());
     bodies_.push_back(pair.a);
     bodies_.push_back(pair.b);
   }
@@ -44,6 +45,7 @@ void LinkContacts::reset() {
   moved_ = last_dt_ = 0;
   least_ = -std::numeric_limits<double>::infinity();
   for (Pair& pair : pairs_) pair.clearance = least_, pair.mark = 0;
+  std::fill(lines_.begin(), lines_.end(), Vector3d::Zero());
 }
 
 const std::vector<LinkTouch>& LinkContacts::find(const RobotData& data, double near, double dt) {
@@ -65,13 +67,38 @@ const std::vector<LinkTouch>& LinkContacts::find(const RobotData& data, double n
   for (size_t i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     if (!(pair.clearance - (moved_ - pair.mark) > reach)) {
-      pair.clearance = shapes_.clearance({pair.a, pair.b}, data, reach + near);
+      pair.clearance = apart(pair, data, reach);
       pair.mark = moved_;
       if (pair.clearance <= reach) touch(pair, static_cast<long>(i), data, reach);
     }
     least_ = std::min(least_, pair.clearance + pair.mark);
   }
   return touches_;
+}
+
+// The clearance of a pair, or where that is more than `reach` a bound that is so too.
+double LinkContacts::apart(const Pair& pair, const RobotData& data, double reach) {
+  const Isometry3d A = data.pose(pair.a), B = data.pose(pair.b);
+  double nearest = std::numeric_limits<double>::infinity();
+  size_t line = pair.first;
+  for (const auto& a : shapes_.shapes(pair.a)) {
+    const Isometry3d pose_a = A * a.pose;
+    for (const auto& b : shapes_.shapes(pair.b)) {
+      const Isometry3d pose_b = B * b.pose;
+      Vector3d& along = lines_[line++];
+      double bound = clearance_bound(a.collider, pose_a, b.collider, pose_b);
+      if (!along.isZero(0))
+        bound = std::max(
+            bound, clearance_along(A.linear() * along, a.collider, pose_a, b.collider, pose_b));
+      if (bound <= reach) {
+        const Closest here = closest(a.collider, pose_a, b.collider, pose_b);
+        along = A.linear().transpose() * here.normal;
+        bound = here.clearance;
+      }
+      nearest = std::min(nearest, bound);
+    }
+  }
+  return nearest;
 }
 
 void LinkContacts::touch(const Pair& pair, long index, const RobotData& data, double reach) {

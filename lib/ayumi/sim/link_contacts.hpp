@@ -20,7 +20,8 @@ struct LinkTouch {
 
 /// Distances are computed only where two bodies may have come near since they were last: what they
 /// have moved since is bounded by their speeds, so that a robot whose limbs are apart pays for a
-/// sum per body.
+/// sum per body. Where they may have, the line along which their shapes were apart the last time
+/// mostly tells that they still are.
 class LinkContacts {
  public:
   explicit LinkContacts(const RobotModel& model);
@@ -44,13 +45,18 @@ class LinkContacts {
  private:
   struct Pair {
     int a = 0, b = 0;
-    double clearance = 0;  ///< when last computed [m]; negative infinity: never
+    double clearance = 0;  ///< at least, when last computed [m]; negative infinity: never
     double mark = 0;       ///< `moved_` then
+    size_t first = 0;      ///< of its lines_
   };
+  double apart(const Pair& pair, const RobotData& data, double reach);
   void touch(const Pair& pair, long index, const RobotData& data, double reach);
 
   CollisionModel shapes_;
   std::vector<Pair> pairs_;
+  /// Along which b was apart from a, in a's frame, for every shape of the one and of the other;
+  /// zero: not known.
+  std::vector<Eigen::Vector3d> lines_;
   std::vector<Eigen::Vector3d> center_;  ///< of a body's shapes, body frame
   std::vector<double> radius_;           ///< 0: no shape
   std::vector<int> bodies_;              ///< that are in a pair

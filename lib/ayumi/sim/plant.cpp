@@ -73,6 +73,8 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
   }
   points_ = contact_points(model);
   groups_ = group_points(points_);
+  for (const PointGroup& group : groups_)
+    widest_ = std::max(widest_, group.center.norm() + group.radius);
   link_friction_ = world.friction;
   link_stiffness_ = body_stiffness(model);
   is_foot_.assign(model.bodies().size(), 0);
@@ -105,6 +107,9 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
   J_.resize(usual * 4 * static_cast<size_t>(columns));
   Y_.resize(J_.size());
   runs_.reserve(64);
+  product_.reserve(3 * usual + 4 + static_cast<size_t>(columns));
+  rates_.reserve(3 * points_.size());
+  rates_before_.reserve(rates_.capacity());
   compliance_.resize(usual);
   shift_.resize(usual);
   active_.reserve(points_.size() + 64);
@@ -277,13 +282,7 @@ void Plant::solve_velocity(double dt) {
     const ContactSolution solution = solver_.solve();
     report_.contact_iterations = solution.iterations;
     report_.contact_residual = solution.residual;
-    for (const Run& run : runs_) {
-      const double* l = solver_.impulse().data() + 3 * run.first;
-      for (int k = run.last, t = factor_.depth(k); k >= 0; k = factor_.parent(k), --t) {
-        const double* Y = &Y_[run.begin + static_cast<size_t>(t * run.width)];
-        for (size_t r = 0; r < 3 * run.count; ++r) lower_[k] += run.sign * Y[r] * l[r];
-      }
-    }
+    add_impulses(lower_);
   }
   factor_.solve_lower(lower_);
   for (int k = 0; k < columns; ++k) velocity_[factor_.column_at(k)] = lower_[k];

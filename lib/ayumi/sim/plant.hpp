@@ -72,6 +72,8 @@ class Plant {
   void collect_edges(int body, const CollisionModel::PlacedCollider& shape, const SolidBlock& block,
                      long key, double dt);
   void collect_links(double dt);
+  double above_ground(const PointGroup& group) const;
+  double fastest_approach() const;
   bool far(double gap, int body, const Active& active, double dt) const;
   void place_frame(const Eigen::Vector3d& normal, Active& active) const;
   void remember_impulses();
@@ -88,8 +90,10 @@ class Plant {
   bool limit_torques(double dt);
   void report_contacts(double dt);
   void report_sole(const Active& active, const Eigen::Vector3d& force);
-  /// J of a contact times these velocities.
-  Eigen::Vector3d contact_rate(size_t i, const Eigen::VectorXd& velocity) const;
+  Eigen::Map<const Eigen::VectorXd> times_path(const Run& run, const double* rows,
+                                               const Eigen::VectorXd& x);
+  void add_impulses(Eigen::VectorXd& x);
+  void contact_rates(const Eigen::VectorXd& velocity, std::vector<double>& rates);
   void share_among_cells(const Active& active, const Eigen::Vector3d& force);
   void account(double dt);
   void advance(const Momentum& momentum, double dt);
@@ -104,6 +108,7 @@ class Plant {
   RobotData data_;
   std::vector<ContactPoint> points_;
   std::vector<PointGroup> groups_;
+  double widest_ = 0;  ///< distance of a point's far side from its body's origin [m]
   LinkContacts links_;
   double link_friction_ = 0, link_stiffness_ = 0;
   std::vector<char> is_foot_;  ///< by body
@@ -124,6 +129,7 @@ class Plant {
   std::vector<Run> runs_;
   bool paired_ = false;                // some of them are of links that touch
   std::vector<double> J_, Y_, block_;  // contact Jacobians, L^-T times their transposes, Y'Y of two
+  std::vector<double> product_, rates_before_, rates_;
   Eigen::VectorXd momentum_, bias_, still_, velocity_, lower_, placed_, before_, outside_;
   std::vector<double> compliance_;
   std::vector<Eigen::Vector3d> shift_;
