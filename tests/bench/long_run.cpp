@@ -1,8 +1,10 @@
 // Hours of walking and standing in one plant that is never set back: no drift, no leak, no NaN.
 //   ayumi_long_run [simulated hours, half walking, half standing; 0.5] [controller; dtad]
-// HOAP-1 walks the pattern over and over, each round from where the last one ended, then stands in
-// one run. Every tenth of the time a line; the last line says what was found, and the program
-// fails when the robot fell or something grew.
+// HOAP-1 walks the pattern and its mirror image in turn, each round from where the last one ended,
+// then stands in one run. Every tenth of the time a line; the last line says what was found, and
+// the program fails when the robot fell, turned away or something grew. No sensor knows the
+// heading, and a pattern that begins with the same foot turns the robot a little each time: in
+// turn with its image that cancels, and what is left would be the integrator's.
 
 #include <unistd.h>
 
@@ -17,6 +19,7 @@
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/plant.hpp"
 #include "ayumi/sim/simulator.hpp"
@@ -70,8 +73,8 @@ struct Spread {
 };
 
 bool walk(const RobotModel& model, const std::string& controller, double hours) {
-  const CommandSeries series =
-      sample(model, read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json"));
+  const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
+  const CommandSeries series[2] = {sample(model, pattern), sample(model, mirrored(model, pattern))};
   SimulateOptions options;
   options.controller.type = controller;
   Plant plant(model, model.limits(), options.world);
@@ -79,11 +82,12 @@ bool walk(const RobotModel& model, const std::string& controller, double hours) 
   options.plant.make = [&](const RobotModel&, const ActuatorLimits&, const World&) {
     return AnyPlant(Lasting{&plant, &placed});
   };
-  Spread ends;
-  double time = 0, path = 0, start = 0, error = 0;
+  Spread ends[2];
+  double time = 0, path = 0, start = 0, error = 0, heading = 0;
+  const auto widest = [&] { return std::max(ends[0].widest(), ends[1].widest()); };
   for (int round = 0, shown = 0; time < 3600 * hours; ++round) {
     const Vector3d before = plant.data().cog;
-    Simulator run(model, series, options);
+    Simulator run(model, series[round % 2], options);
     run.keep_samples(false);
     while (run.advance(1000)) {
     }
@@ -93,22 +97,23 @@ bool walk(const RobotModel& model, const std::string& controller, double hours) 
       return false;
     }
     if (round > 0) path += (plant.data().cog - before).norm();
-    ends.add(stance(model, plant.data()));
+    ends[round % 2].add(stance(model, plant.data()));
     error = std::max(error, run.result().final_cog_error);
+    if (round % 2 == 1) heading = matrix_to_rpy(plant.state().base.attitude.toRotationMatrix()).z();
     if (round == 1) start = resident();
     if (time >= 360 * hours * shown) {
-      const Vector3d turn = matrix_to_rpy(plant.state().base.attitude.toRotationMatrix());
       std::printf(
-          "walked %8.1f s, %6d rounds, %8.1f m, heading %+.3f rad, memory %.2f MiB, "
+          "walked %8.1f s, %6d rounds, %8.1f m, heading %+.5f rad, memory %.2f MiB, "
           "ends differ by %.3g m, COG error %.3g m\n",
-          time, round + 1, path, turn.z(), resident(), ends.widest(), error);
+          time, round + 1, path, heading, resident(), widest(), error);
       std::fflush(stdout);
       ++shown;
     }
   }
   const double grown = resident() - start;
-  std::printf("walking: memory grew by %.2f MiB, ends differ by %.3g m\n", grown, ends.widest());
-  return grown < 4 && ends.widest() < 1e-3;
+  std::printf("walking: memory grew by %.2f MiB, ends differ by %.3g m, heading %+.5f rad\n", grown,
+              widest(), heading);
+  return grown < 4 && widest() < 1e-3 && std::abs(heading) < 0.01;
 }
 
 bool stand(const RobotModel& model, const std::string& controller, double hours) {

@@ -10,6 +10,7 @@
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
+#include <pinocchio/config.hpp>
 #include <pinocchio/multibody/model.hpp>
 
 #include "ayumi/base/version.hpp"

@@ -24,16 +24,18 @@ struct Rbdl {
     model.gravity = Vector3d(0, 0, -kGravity);
     std::vector<unsigned> ids;
     for (const Body& body : robot.bodies()) {
-      const rb::Body solid(body.inertia.mass, body.inertia.com, body.inertia.about_com);
+      // Its vectors and matrices take any of Eigen's: say which is meant.
+      const rb::Body solid(body.inertia.mass, rb::Math::Vector3d(body.inertia.com),
+                           rb::Math::Matrix3d(body.inertia.about_com));
       if (body.parent < 0) {
         ids.push_back(model.AddBody(0, rb::Math::SpatialTransform(),
                                     rb::Joint(rb::JointTypeFloatingBase), solid));
         continue;
       }
-      const rb::Math::SpatialTransform at(body.placement.linear().transpose(),
-                                          body.placement.translation());
+      const rb::Math::SpatialTransform at(rb::Math::Matrix3d(body.placement.linear().transpose()),
+                                          rb::Math::Vector3d(body.placement.translation()));
       const rb::Joint joint(body.prismatic ? rb::JointTypePrismatic : rb::JointTypeRevolute,
-                            body.axis);
+                            rb::Math::Vector3d(body.axis));
       ids.push_back(model.AddBody(ids[static_cast<size_t>(body.parent)], at, joint, solid));
       columns.push_back({static_cast<int>(model.mJoints[ids.back()].q_index), body.dof});
     }
@@ -48,7 +50,9 @@ struct Rbdl {
     VectorXd qi = VectorXd::Zero(model.q_size), vi = VectorXd::Zero(model.qdot_size), ai = vi,
              fi = vi;
     qi.head<3>() = s.base.position;
-    model.SetQuaternion(base, rb::Math::Quaternion::fromMatrix(turn), qi);
+    const Eigen::Quaterniond& at_base = s.base.attitude;
+    model.SetQuaternion(
+        base, rb::Math::Quaternion(at_base.x(), at_base.y(), at_base.z(), at_base.w()), qi);
     vi.head<3>() = s.base_velocity;
     vi.segment<3>(3) = turn * s.base_angular_velocity;
     ai.head<3>() = acceleration.head<3>();

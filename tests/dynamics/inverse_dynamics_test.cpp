@@ -4,6 +4,7 @@
 
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/tree_dynamics.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {
@@ -107,7 +108,7 @@ TEST_P(RandomTrees, JacobiansMatchDifferences) {
 
 TEST_P(RandomTrees, DerivativesMatchCentralDifferences) {
   InverseDynamicsDerivatives d;
-  inverse_dynamics_derivatives(model, state, acceleration, data, d);
+  TreeDynamics(model).inverse_derivatives(state, acceleration, d);
   const int n = model.velocity_count();
   const double h = 1e-5;
   RobotData scratch(model);

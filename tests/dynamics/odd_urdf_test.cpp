@@ -232,6 +232,24 @@ TEST_P(OddUrdf, DerivativesMatchDifferencesAndRoutesMeet) {
   }
 }
 
+// The same robot on a floating joint below a link that is only a frame.
+TEST_P(OddUrdf, IsTheSameWhereTheFileSaysThatItFloats) {
+  std::string text = test::urdf_text(robot, GetParam());
+  text.insert(
+      text.find('\n') + 1,
+      "  <link name=\"world\"/><joint name=\"afloat\" type=\"floating\"><parent "
+      "link=\"world\"/><child link=\"part0\"/><origin xyz=\"1 2 3\" rpy=\"0 0 1\"/></joint>\n");
+  const RobotModel floating(parse_urdf(text, "odd.urdf"));
+  ASSERT_EQ(floating.dof_names(), model.dof_names());
+  EXPECT_EQ(floating.mass(), model.mass());
+  const RobotState state = test::random_state(model, random);
+  RobotData data(model), other(floating);
+  EXPECT_EQ(bias_force(model, state, data), bias_force(floating, state, other));
+  const Link& world = floating.links()[static_cast<size_t>(floating.find_link("world"))];
+  EXPECT_EQ(world.body, 0);
+  EXPECT_LT((world.pose * Vector3d(1, 2, 3)).norm(), 1e-14);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, OddUrdf, testing::Range(1u, 41u));
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "ayumi/dynamics/tree_dynamics.hpp"
 #include "tests/support/random_robot.hpp"
+#include "tests/support/spatial_derivatives.hpp"
 
 namespace ayumi {
 namespace {
@@ -81,7 +82,7 @@ TEST_P(ForwardDynamics, InverseDerivativesAgreeWithTheSecondRoute) {
   const VectorXd acceleration = random.vector(model.velocity_count(), 5.0);
   InverseDynamicsDerivatives found, expected;
   fast.inverse_derivatives(state, acceleration, found);
-  inverse_dynamics_derivatives(model, state, acceleration, data, expected);
+  test::spatial_derivatives(model, state, acceleration, data, expected);
   EXPECT_LT((found.configuration - expected.configuration).norm(),
             1e-12 * expected.configuration.norm());
   EXPECT_LT((found.velocity - expected.velocity).norm(), 1e-12 * expected.velocity.norm());

@@ -131,7 +131,7 @@ TEST(MujocoPlant, RefusesWhatIsNotANumber) {
     plant.step(target, {}, 1e-3);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("servo targets"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("servo target of"), std::string::npos);
   }
 }
 

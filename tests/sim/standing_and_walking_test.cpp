@@ -7,6 +7,7 @@
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/mirror.hpp"
@@ -34,6 +35,19 @@ RobotModel with_gain(double kp) {
 const CommandSeries& walk() {
   static const CommandSeries series =
       sample(hoap1(), read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json"));
+  return series;
+}
+
+/// Turning left, stepping aside to the right: like nothing its own mirror image has.
+const CommandSeries& curve() {
+  static const CommandSeries series = [] {
+    WalkParameters parameters = walk_defaults(hoap1());
+    parameters.steps = 4;
+    parameters.turn = 0.12;
+    parameters.side = -0.015;
+    parameters.first_swing = Side::left;
+    return sample(hoap1(), walk_pattern(hoap1(), parameters));
+  }();
   return series;
 }
 
@@ -80,11 +94,13 @@ double largest_difference(const SimulationLog& a, const SimulationLog& b) {
 class Walking : public testing::TestWithParam<std::string> {};
 
 TEST_P(Walking, HardlyChangesWithHalfTheStep) {
-  const SimulationLog whole = run(hoap1(), walk(), GetParam());
-  const SimulationLog half = run(hoap1(), walk(), GetParam(), 2);
-  ASSERT_EQ(whole.result.outcome, Outcome::stands);
-  ASSERT_EQ(whole.samples.size(), half.samples.size());
-  EXPECT_LT(largest_difference(whole, half), 2e-3);
+  for (const CommandSeries* plan : {&walk(), &curve()}) {
+    const SimulationLog whole = run(hoap1(), *plan, GetParam());
+    const SimulationLog half = run(hoap1(), *plan, GetParam(), 2);
+    ASSERT_EQ(whole.result.outcome, Outcome::stands);
+    ASSERT_EQ(whole.samples.size(), half.samples.size());
+    EXPECT_LT(largest_difference(whole, half), 2e-3);
+  }
 }
 
 /// The plan as seen by someone who stands elsewhere: turned by `yaw`, then moved.
@@ -111,19 +127,23 @@ CommandSeries moved(CommandSeries series, double yaw, const Vector3d& offset) {
 TEST_P(Walking, IsTheSameElsewhere) {
   const double yaw = 2.1;
   const Vector3d offset(1000, -300, 0);
-  const SimulationLog here = run(hoap1(), walk(), GetParam());
-  SimulationLog there = run(hoap1(), moved(walk(), yaw, offset), GetParam());
-  ASSERT_EQ(here.samples.size(), there.samples.size());
-  for (SimulationSample& s : there.samples)
-    s.cog = exp_rotation({0, 0, -yaw}) * Vector3d(s.cog - offset);
-  EXPECT_LT(largest_difference(here, there), 1e-6);
+  for (const CommandSeries* plan : {&walk(), &curve()}) {
+    const SimulationLog here = run(hoap1(), *plan, GetParam());
+    SimulationLog there = run(hoap1(), moved(*plan, yaw, offset), GetParam());
+    ASSERT_EQ(here.samples.size(), there.samples.size());
+    for (SimulationSample& s : there.samples)
+      s.cog = exp_rotation({0, 0, -yaw}) * Vector3d(s.cog - offset);
+    EXPECT_LT(largest_difference(here, there), 1e-6);
+  }
 }
 
 // Robot, plan and world as a mirror shows them walk as the mirror shows the walk, pushed or not:
 // nothing in dynamics, contact or control knows left from right, nor the order of the contacts.
 TEST_P(Walking, IsTheSameInAMirror) {
   const RobotModel image(test::mirrored(hoap1().description()));
-  for (const double push : {0.0, 0.5}) {
+  const std::pair<const CommandSeries*, double> cases[] = {
+      {&walk(), 0.0}, {&walk(), 0.5}, {&curve(), 0.0}};
+  for (const auto& [walk, push] : cases) {
     SimulateOptions options;
     options.controller.type = GetParam();
     if (push > 0) {
@@ -134,9 +154,9 @@ TEST_P(Walking, IsTheSameInAMirror) {
       d.direction = Vector3d(0.6, 0.8, 0);
       options.scenario = {d};
     }
-    const SimulationLog here = simulate(hoap1(), walk(), options);
+    const SimulationLog here = simulate(hoap1(), *walk, options);
     for (Disturbance& d : options.scenario) d.direction = test::mirrored(d.direction);
-    const CommandSeries plan = test::mirrored(hoap1(), image, walk());
+    const CommandSeries plan = test::mirrored(hoap1(), image, *walk);
     SimulationLog there = simulate(image, plan, options);
     ASSERT_EQ(there.result.outcome, here.result.outcome);
     ASSERT_EQ(here.samples.size(), there.samples.size());

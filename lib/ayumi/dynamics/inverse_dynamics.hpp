@@ -40,14 +40,4 @@ Momentum centroidal_momentum(const RobotModel& model, const RobotData& data);
 /// update_positions().
 Eigen::Matrix3d locked_inertia(const RobotModel& model, const RobotData& data);
 
-/// Partial derivatives of inverse_dynamics, each (6+dof) square. Columns of `configuration` are
-/// base translation (world), base rotation vector (world axes, left-multiplied) and theta; the
-/// velocity and acceleration components stay fixed in world axes.
-struct InverseDynamicsDerivatives {
-  Eigen::MatrixXd configuration, velocity, acceleration;
-};
-void inverse_dynamics_derivatives(const RobotModel& model, const RobotState& state,
-                                  const Eigen::VectorXd& acceleration, RobotData& data,
-                                  InverseDynamicsDerivatives& derivatives);
-
 }  // namespace ayumi

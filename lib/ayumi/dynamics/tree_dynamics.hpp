@@ -16,6 +16,13 @@ namespace ayumi {
 
 enum class InstructionSet { best, plain, avx2 };
 
+/// Partial derivatives of inverse dynamics, each (6+dof) square. Columns of `configuration` are
+/// base translation (world), base rotation vector (world axes, left-multiplied) and theta; the
+/// velocity and acceleration components stay fixed in world axes.
+struct InverseDynamicsDerivatives {
+  Eigen::MatrixXd configuration, velocity, acceleration;
+};
+
 /// Each (6+dof) square: derivative of the acceleration by configuration (base translation, base
 /// rotation vector in world axes, left-multiplied, theta), velocity and generalised force. The
 /// last is the inverse of the mass matrix, rotors included.
@@ -46,8 +53,7 @@ class TreeDynamics {
   /// (6+dof) square, of the positions of `state`.
   void mass_matrix(const RobotState& state, Eigen::MatrixXd& M);
 
-  /// What inverse_dynamics_derivatives() gives, by twelve numbers per subtree instead of matrices
-  /// of six; allocates nothing after the first call.
+  /// Analytic, by twelve numbers per subtree; allocates nothing after the first call.
   void inverse_derivatives(const RobotState& state, const Eigen::VectorXd& acceleration,
                            InverseDynamicsDerivatives& derivatives);
 

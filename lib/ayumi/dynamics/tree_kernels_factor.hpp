@@ -54,12 +54,26 @@ inline void store_part(const Tile& tile, int rows, int columns, double* out, int
     for (int l = 0; l < 4 && l < rows; ++l) out[k * stride + l] = c[k][l];
 }
 
+// The other half of a symmetric product: column k of a tile becomes a row.
+inline void store_across(const Tile& tile, double* out, int stride) {
+  const Four a = __builtin_shuffle(tile.c0, tile.c1, FourIndex{0, 4, 2, 6}),
+             b = __builtin_shuffle(tile.c0, tile.c1, FourIndex{1, 5, 3, 7}),
+             c = __builtin_shuffle(tile.c2, tile.c3, FourIndex{0, 4, 2, 6}),
+             d = __builtin_shuffle(tile.c2, tile.c3, FourIndex{1, 5, 3, 7});
+  store_four(out, __builtin_shuffle(a, c, FourIndex{0, 1, 4, 5}));
+  store_four(out + stride, __builtin_shuffle(b, d, FourIndex{0, 1, 4, 5}));
+  store_four(out + 2 * stride, __builtin_shuffle(a, c, FourIndex{2, 3, 6, 7}));
+  store_four(out + 3 * stride, __builtin_shuffle(b, d, FourIndex{2, 3, 6, 7}));
+}
+
 // out(i, j) = sum over t of A(t, i) B(t, j) for i < rows, j < columns; A and B have `depth` lines
 // of a and b numbers (multiples of four), the columns of `out` are `stride` apart.
 void gram(const double* A, int a, const double* B, int b, int depth, int rows, int columns,
           double* out, int stride) {
+  // With itself and filled up to fours, half of the product is enough.
+  const bool half = A == B && rows == columns && (rows & 3) == 0;
   for (int j = 0; j < columns; j += 4)
-    for (int i = 0; i < rows; i += 4) {
+    for (int i = half ? j : 0; i < rows; i += 4) {
       Tile sum = {};
       const double *x = A + i, *y = B + j;
       for (int t = 0; t < depth; ++t, x += a, y += b) {
@@ -78,6 +92,7 @@ void gram(const double* A, int a, const double* B, int b, int depth, int rows, i
       store_four(to + stride, sum.c1);
       store_four(to + 2 * stride, sum.c2);
       store_four(to + 3 * stride, sum.c3);
+      if (half && i > j) store_across(sum, out + i * stride + j, stride);
     }
 }
 

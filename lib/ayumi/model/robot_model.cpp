@@ -66,6 +66,12 @@ class TreeBuilder {
   void build(int root_link, std::vector<Body>& bodies, std::vector<Link>& links) {
     bodies_ = &bodies;
     links_ = &links;
+    if (const JointDescription* joint = floating_root(root_link)) {
+      // The frame that the robot floats in stays where the robot was drawn in it.
+      const LinkDescription& frame = robot_.links[root_link];
+      links.push_back({frame.name, 0, joint->origin.inverse(), {}, {}, {}});
+      root_link = link_index(joint->child);
+    }
     Body root;
     root.name = robot_.links[root_link].name;
     bodies.push_back(root);
@@ -84,6 +90,20 @@ class TreeBuilder {
                          [&](const JointDescription& other) { return other.name == name; });
   }
 
+  /// The joint that says that the robot floats: the only one of a root link that is nothing but a
+  /// frame.
+  const JointDescription* floating_root(int root_link) const {
+    const LinkDescription& link = robot_.links[root_link];
+    const JointDescription* only = nullptr;
+    for (const JointDescription& each : robot_.joints) {
+      if (each.parent != link.name) continue;
+      if (only || each.type != JointType::floating) return nullptr;
+      only = &each;
+    }
+    return link.inertia.mass > 0 || !link.visuals.empty() || !link.collisions.empty() ? nullptr
+                                                                                      : only;
+  }
+
   void add_link(int index, int body, const Eigen::Isometry3d& pose) {
     const LinkDescription& link = robot_.links[index];
     links_->push_back({link.name, body, pose, link.inertia, link.visuals, link.collisions});
@@ -94,8 +114,8 @@ class TreeBuilder {
       const int child = link_index(each.child);
       if (each.type == JointType::floating)
         complain_urdf(robot_, "joint " + each.name +
-                                  ": a floating joint inside the robot; the root " +
-                                  "floats by itself, remove this joint and the link above it");
+                                  ": a floating joint inside the robot; only the root floats, " +
+                                  "on a link with neither mass nor shape nor another joint");
       if (each.type == JointType::fixed)
         add_link(child, body, pose * each.origin);
       else

@@ -1,5 +1,5 @@
 // With q' = (dp, J(r) dr, dtheta) the tangent of the configuration and D_q, D_v, D_a the base rows
-// of inverse_dynamics_derivatives, the ground wrench W changes by
+// of TreeDynamics::inverse_derivatives, the ground wrench W changes by
 //   value        D_q T + D_v [dw/dr] + D_a [d(dw)/dr],    T = diag(1, J(r), 1)
 //   rate         D_v diag(1, dw/dr', 1) + D_a [d(dw)/dr']
 //   acceleration D_a diag(1, d(dw)/dr'', 1)
@@ -35,10 +35,9 @@ const char* name_of(ConstraintGroup group) {
 namespace {
 
 // Rows of inverse_dynamics by the correction's value, rate and acceleration.
-std::array<MatrixXd, 3> force_derivatives(const RobotModel& model, const CorrectedMotion& m,
-                                          RobotData& data) {
+std::array<MatrixXd, 3> force_derivatives(TreeDynamics& dynamics, const CorrectedMotion& m) {
   InverseDynamicsDerivatives d;
-  inverse_dynamics_derivatives(model, m.state, m.acceleration, data, d);
+  dynamics.inverse_derivatives(m.state, m.acceleration, d);
   const MatrixXd q = d.configuration.middleCols<3>(3), v = d.velocity.middleCols<3>(3),
                  a = d.acceleration.middleCols<3>(3);
   d.configuration.middleCols<3>(3) = q * m.tangent + v * m.w_value + a * m.dw_value;
@@ -95,8 +94,8 @@ Vector6d sole_deviation(const Isometry3d& actual, const Isometry3d& planned) {
 }
 
 InstantState instant_state(const RobotModel& model, const CommandSample& sample,
-                           const Instant& instant, const MatrixXd& coefficients, bool derivatives,
-                           RobotData& data) {
+                           const Instant& instant, const MatrixXd& coefficients,
+                           TreeDynamics* derivatives, RobotData& data) {
   InstantState state;
   const auto rows = coefficients.middleRows<4>(instant.weights.first);
   state.motion = corrected_motion(sample, rows.transpose() * instant.weights.value,
@@ -108,7 +107,7 @@ InstantState instant_state(const RobotModel& model, const CommandSample& sample,
   state.wrench = force.head<6>();
   std::array<MatrixXd, 3> force_by;
   if (derivatives) {
-    force_by = force_derivatives(model, m, data);
+    force_by = force_derivatives(*derivatives, m);
     for (int k = 0; k < 3; ++k) state.wrench_by[k] = force_by[k].topRows<6>();
     state.cog_by = cog_jacobian_floating(model, data);
     state.cog_by.middleCols<3>(3) = (state.cog_by.middleCols<3>(3) * m.tangent).eval();

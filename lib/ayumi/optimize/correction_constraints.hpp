@@ -8,6 +8,7 @@
 
 #include "ayumi/check/residuals.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
+#include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/optimize/corrected_motion.hpp"
 #include "ayumi/pattern/correction.hpp"
 
@@ -80,9 +81,10 @@ struct InstantState {
   /// The workspace it was computed in; holds until the next instant_state().
   RobotData* data = nullptr;
 };
+/// `derivatives`: what computes them; null: values alone.
 InstantState instant_state(const RobotModel& model, const CommandSample& sample,
                            const Instant& instant, const Eigen::MatrixXd& coefficients,
-                           bool derivatives, RobotData& data);
+                           TreeDynamics* derivatives, RobotData& data);
 
 /// Position [m] and rotation [rad], world axes, of a sole from where it should be: a stance row.
 Vector6d sole_deviation(const Eigen::Isometry3d& actual, const Eigen::Isometry3d& planned);

@@ -198,7 +198,7 @@ VectorXd CorrectionProblem::constraints(const VectorXd& x) const {
   for (const ConstraintBlock& block : blocks_) {
     const Instant& instant = instants_[block.instant];
     if (block.instant != at)
-      state = instant_state(model_, series_.samples[instant.sample], instant, c, false, data);
+      state = instant_state(model_, series_.samples[instant.sample], instant, c, nullptr, data);
     at = block.instant;
     g.segment(block.row, block.rows) = block_values(model_, block, instant, state);
   }
@@ -208,6 +208,7 @@ VectorXd CorrectionProblem::constraints(const VectorXd& x) const {
 void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) const {
   const MatrixXd c = coefficients(index_, x);
   RobotData data(model_);
+  TreeDynamics dynamics(model_);
   InstantState state;
   int at = -1;
   Eigen::Index next = 0;
@@ -215,7 +216,7 @@ void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) con
     const ConstraintBlock& block = blocks_[b];
     const Instant& instant = instants_[block.instant];
     if (block.instant != at)
-      state = instant_state(model_, series_.samples[instant.sample], instant, c, true, data);
+      state = instant_state(model_, series_.samples[instant.sample], instant, c, &dynamics, data);
     at = block.instant;
     const auto by = block_derivatives(model_, block, instant, state);
     const SplineWeights& w = instant.weights;

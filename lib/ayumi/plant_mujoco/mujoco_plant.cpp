@@ -11,6 +11,7 @@
 #include "ayumi/sim/any_plant.hpp"
 #include "ayumi/sim/payload.hpp"
 #include "ayumi/sim/servo.hpp"
+#include "ayumi/sim/step_check.hpp"
 
 namespace ayumi {
 
@@ -18,11 +19,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-namespace {
-
-constexpr double kLargest = 1e6;  // number that is taken for one [SI]
-
-}  // namespace
+namespace {}  // namespace
 
 void MujocoPlant::Impl::build(bool with_bumps) {
   bumps = with_bumps;
@@ -136,24 +133,7 @@ void MujocoPlant::Impl::report_servos() {
 
 void MujocoPlant::Impl::check_input(const VectorXd& targets, const StepInput& input,
                                     double dt) const {
-  const auto complain = [&](const std::string& what) {
-    fail(ErrorCode::usage, model->name() + ": " + what + ", " + text::fixed(d->time, 3) +
-                               " s after the plant's start");
-  };
-  const auto sound = [](const auto& v) { return v.allFinite() && v.norm() < kLargest; };
-  if (!(dt > 0 && dt < 1)) complain("step length " + text::brief(dt) + " s is not within 0..1 s");
-  if (targets.size() != model->dof_count() || !sound(targets))
-    complain("the servo targets are not " + std::to_string(model->dof_count()) + " finite numbers");
-  for (const ExternalWrench& w : input.wrenches)
-    if (!(sound(w.force) && sound(w.torque) && sound(w.point)))
-      complain("an external force is not a finite number below 1e6");
-  if (!input.joints.empty() && static_cast<int>(input.joints.size()) != model->dof_count())
-    complain("conditions of " + std::to_string(input.joints.size()) + " joints for " +
-             std::to_string(model->dof_count()));
-  for (const CarriedMass& carried : input.payloads)
-    if (!(carried.mass >= 0 && carried.mass < kLargest && sound(carried.point) &&
-          carried.link >= 0 && carried.link < static_cast<int>(model->links().size())))
-      complain("a payload is not a mass on a link");
+  check_step(*model, targets, input, dt, d->time);
   if (input.bumps.size() > kMujocoBumps)
     fail(ErrorCode::bad_pattern, "the MuJoCo plant has room for " + std::to_string(kMujocoBumps) +
                                      " bumps at once, not " + std::to_string(input.bumps.size()) +
@@ -214,6 +194,7 @@ MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits,
     if (dof.servo.kp <= 0 && !model.description().servos.contains(dof.name))
       fail(ErrorCode::bad_model,
            model.name() + ": joint " + dof.name + " has no servo (kp); give it one in the sidecar");
+  check_world(model, world);
   impl_ = std::make_unique<Impl>(model, limits, world);
   impl_->report.torque = VectorXd::Zero(model.dof_count());
   set_state(model.rest_state());
@@ -232,12 +213,7 @@ const RobotState& MujocoPlant::state() const { return impl_->state; }
 const RobotData& MujocoPlant::data() const { return impl_->data; }
 
 void MujocoPlant::set_state(const RobotState& s) {
-  const VectorXd all = (VectorXd(12 + 2 * s.theta.size()) << s.base.position, s.base_velocity,
-                        s.base_angular_velocity, s.base.attitude.vec(), s.theta, s.dtheta)
-                           .finished();
-  if (!(all.allFinite() && all.cwiseAbs().maxCoeff() < kLargest))
-    fail(ErrorCode::usage,
-         impl_->model->name() + ": the plant's state is not made of finite numbers below 1e6");
+  check_state(*impl_->model, s);
   mjData* d = impl_->d.get();
   mj_resetData(impl_->m.get(), d);
   impl_->place_floor();

@@ -18,6 +18,7 @@
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/sim/payload.hpp"
 #include "ayumi/sim/servo.hpp"
+#include "ayumi/sim/step_check.hpp"
 
 namespace ayumi {
 
@@ -29,24 +30,15 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kStickRate = 1e-3;       // joint rate below which dry friction holds [rad/s]
-constexpr double kLargest = 1e6;          // number that is taken for one [SI]
 constexpr double kLimitStiffness = 20.0;  // of a joint's end stop, in servo stiffnesses
 constexpr double kStopSink = 0.001;       // of a passive slide's under the weight, times that [m]
 constexpr double kStopDamping = 0.02;     // of a passive joint's end stop, damping / stiffness [s]
-
-/// Largest magnitude; NaN when any entry is.
-template <typename Vector>
-double largest(const Vector& v) {
-  double result = 0;
-  for (Eigen::Index i = 0; i < v.size() && !std::isnan(result); ++i)
-    if (!(std::abs(v[i]) <= result)) result = std::abs(v[i]);
-  return result;
-}
 
 }  // namespace
 
 Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World& world)
     : model_(&model), limits_(limits), ground_(world), data_(model), links_(model), factor_(model) {
+  check_world(model, world);
   const int n = model.dof_count();
   kp_.resize(n);
   kd_.resize(n);
@@ -120,52 +112,13 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
 }
 
 void Plant::set_state(const RobotState& state) {
-  const std::string& name = model_->name();
-  auto check = [&](const char* what, double largest) {
-    if (!(largest < kLargest))
-      fail(ErrorCode::usage, name + ": " + what + " of the plant's state is " +
-                                 text::brief(largest) + "; numbers below 1e6 are expected");
-  };
-  if (state.theta.size() != model_->dof_count() || state.dtheta.size() != model_->dof_count())
-    fail(ErrorCode::usage,
-         name + ": the plant's state needs " + std::to_string(model_->dof_count()) + " joints");
-  check("base position", largest(state.base.position));
-  check("base attitude", largest(state.base.attitude.coeffs()));
-  check("base velocity", largest(state.base_velocity));
-  check("base angular velocity", largest(state.base_angular_velocity));
-  check("a joint position", largest(state.theta));
-  check("a joint rate", largest(state.dtheta));
+  check_state(*model_, state);
   time_ = 0;
   state_ = state;
   update_velocities(moving(), state_, data_);
   fill_mass();
   active_.clear();
   links_.reset();
-}
-
-void Plant::check_input(const VectorXd& targets, const StepInput& input, double dt) const {
-  auto complain = [&](const std::string& what) {
-    fail(ErrorCode::usage, model_->name() + ": " + what + ", " + text::fixed(time_, 3) +
-                               " s after the plant's start");
-  };
-  if (!(dt > 0 && dt < 1)) complain("step length " + text::brief(dt) + " s is not within 0..1 s");
-  if (targets.size() != model_->dof_count())
-    complain(std::to_string(targets.size()) + " servo targets for " +
-             std::to_string(model_->dof_count()) + " joints");
-  for (int j = 0; j < model_->dof_count(); ++j)
-    if (!(std::abs(targets[j]) < kLargest))
-      complain("servo target of " + model_->dofs()[j].name + " is " + text::brief(targets[j]));
-  for (const ExternalWrench& w : input.wrenches)
-    if (!(largest(w.force) < kLargest && largest(w.torque) < kLargest &&
-          largest(w.point) < kLargest))
-      complain("an external force is not a finite number below 1e6");
-  if (!input.joints.empty() && static_cast<int>(input.joints.size()) != model_->dof_count())
-    complain("conditions of " + std::to_string(input.joints.size()) + " joints for " +
-             std::to_string(model_->dof_count()));
-  for (const CarriedMass& carried : input.payloads)
-    if (!(carried.mass >= 0 && carried.mass < kLargest && largest(carried.point) < kLargest &&
-          carried.link >= 0 && carried.link < static_cast<int>(model_->links().size())))
-      complain("a payload is not a mass on a link");
 }
 
 // What is carried becomes part of the links: the dynamics below know one robot only.
@@ -310,7 +263,7 @@ bool Plant::limit_torques(double dt) {
 }
 
 const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, double dt) {
-  check_input(targets, input, dt);
+  check_step(*model_, targets, input, dt, time_);
   load(input.payloads);
   take_joints(targets, input);
   ground_.set(input);

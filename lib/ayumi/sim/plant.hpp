@@ -18,7 +18,8 @@ namespace ayumi {
 
 class Plant {
  public:
-  /// The model must outlive the plant. Throws Error(bad_model) when a joint has no servo.
+  /// The model must outlive the plant. Throws Error(bad_model) when a joint has no servo,
+  /// Error(bad_pattern) for a world that is not made of numbers.
   Plant(const RobotModel& model, const ActuatorLimits& limits, const World& world);
 
   const RobotState& state() const { return state_; }
@@ -60,7 +61,6 @@ class Plant {
     size_t begin = 0;  ///< in J_ and Y_
   };
 
-  void check_input(const Eigen::VectorXd& targets, const StepInput& input, double dt) const;
   void load(const std::vector<CarriedMass>& payloads);
   void take_joints(const Eigen::VectorXd& targets, const StepInput& input);
   /// The robot with what it carries.

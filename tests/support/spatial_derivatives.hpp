@@ -1,3 +1,5 @@
+#pragma once
+// Derivatives of inverse dynamics by matrices of six.
 // Spatial vectors (linear part first) about the base origin, world axes. Galilean invariance lets
 // the base velocity be taken as zero. With S_j the joint screw, V, A the twist and spatial
 // acceleration (gravity included) of its parent, and composite sums over subtrees of I, f and
@@ -11,37 +13,35 @@
 // system back: -[F x] + dw [w x] + dalpha [alpha x] + da [(a + g) x].
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/math/rotation.hpp"
 
-namespace ayumi {
+namespace ayumi::test {
 
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-namespace {
-
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-Vector6d spatial(const Vector3d& linear, const Vector3d& angular) {
+inline Vector6d spatial(const Vector3d& linear, const Vector3d& angular) {
   Vector6d v;
   v << linear, angular;
   return v;
 }
 
-Vector6d cross_motion(const Vector6d& a, const Vector6d& b) {
+inline Vector6d cross_motion(const Vector6d& a, const Vector6d& b) {
   const Vector3d w = a.tail<3>();
   return spatial(w.cross(b.head<3>()) + a.head<3>().cross(b.tail<3>()), w.cross(b.tail<3>()));
 }
 
-Vector6d cross_force(const Vector6d& a, const Vector6d& f) {
+inline Vector6d cross_force(const Vector6d& a, const Vector6d& f) {
   const Vector3d w = a.tail<3>();
   return spatial(w.cross(f.head<3>()), w.cross(f.tail<3>()) + a.head<3>().cross(f.head<3>()));
 }
 
-Matrix6d cross_motion_matrix(const Vector6d& a) {
+inline Matrix6d cross_motion_matrix(const Vector6d& a) {
   Matrix6d m = Matrix6d::Zero();
   m.topLeftCorner<3, 3>() = m.bottomRightCorner<3, 3>() = skew(a.tail<3>());
   m.topRightCorner<3, 3>() = skew(a.head<3>());
@@ -49,7 +49,7 @@ Matrix6d cross_motion_matrix(const Vector6d& a) {
 }
 
 // (h xbar*) S = S x* h.
-Matrix6d cross_bar_matrix(const Vector6d& h) {
+inline Matrix6d cross_bar_matrix(const Vector6d& h) {
   Matrix6d m = Matrix6d::Zero();
   m.topRightCorner<3, 3>() = m.bottomLeftCorner<3, 3>() = -skew(h.head<3>());
   m.bottomRightCorner<3, 3>() = -skew(h.tail<3>());
@@ -61,7 +61,7 @@ struct Subtree {
   Vector6d force, twist, acceleration;  // twist and acceleration of the body itself
 };
 
-Matrix6d inertia_matrix(const Body& body, const Matrix3d& R, const Vector3d& com) {
+inline Matrix6d inertia_matrix(const Body& body, const Matrix3d& R, const Vector3d& com) {
   Matrix6d I;
   const double m = body.inertia.mass;
   const Matrix3d c = skew(com);
@@ -72,16 +72,15 @@ Matrix6d inertia_matrix(const Body& body, const Matrix3d& R, const Vector3d& com
   return I;
 }
 
-Vector6d screw(const Body& body, const RobotData& data, size_t i) {
+inline Vector6d screw(const Body& body, const RobotData& data, size_t i) {
   const Vector3d s = body.ratio * data.axis[i];
   return body.prismatic ? spatial(s, Vector3d::Zero()) : spatial(data.position[i].cross(s), s);
 }
 
-}  // namespace
-
-void inverse_dynamics_derivatives(const RobotModel& model, const RobotState& state,
-                                  const VectorXd& acceleration, RobotData& data,
-                                  InverseDynamicsDerivatives& derivatives) {
+/// The second route to TreeDynamics::inverse_derivatives().
+inline void spatial_derivatives(const RobotModel& model, const RobotState& state,
+                                const VectorXd& acceleration, RobotData& data,
+                                InverseDynamicsDerivatives& derivatives) {
   const std::vector<Body>& bodies = model.bodies();
   const int n = model.velocity_count();
   const VectorXd force = inverse_dynamics(model, state, acceleration, data);
@@ -160,4 +159,4 @@ void inverse_dynamics_derivatives(const RobotModel& model, const RobotState& sta
   dq.block<3, 3>(3, 3) -= skew(force.segment<3>(3));
 }
 
-}  // namespace ayumi
+}  // namespace ayumi::test

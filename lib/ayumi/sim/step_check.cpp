@@ -1,0 +1,123 @@
+#include "ayumi/sim/step_check.hpp"
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+using Eigen::VectorXd;
+
+namespace {
+
+bool sound(double x) { return std::abs(x) < kLargestNumber; }
+
+/// Of the largest number's size, and no NaN among them.
+template <typename Derived>
+bool sound(const Eigen::MatrixBase<Derived>& v) {
+  for (Eigen::Index i = 0; i < v.size(); ++i)
+    if (!sound(v(i))) return false;
+  return true;
+}
+
+template <typename Derived>
+double unsound(const Eigen::MatrixBase<Derived>& v) {
+  for (Eigen::Index i = 0; i < v.size(); ++i)
+    if (!sound(v(i))) return v(i);
+  return 0;
+}
+
+bool sound(const GroundBlock& block) {
+  return sound(block.low) && sound(block.high) && sound(block.center) && block.radius >= 0 &&
+         sound(block.radius) && sound(block.height);
+}
+
+bool sound(const FloorPose& floor) {
+  return sound(floor.pose.matrix()) && sound(floor.velocity) && sound(floor.angular_velocity);
+}
+
+bool sound(const JointFault& fault) {
+  return fault.gain >= 0 && fault.coulomb >= 0 && fault.viscous >= 0 && sound(fault.gain) &&
+         sound(fault.coulomb) && sound(fault.viscous) && sound(fault.encoder);
+}
+
+bool friction(double mu) { return mu >= 0 && sound(mu); }
+
+}  // namespace
+
+void check_world(const RobotModel& model, const World& world) {
+  const auto complain = [&](const std::string& what) {
+    fail(ErrorCode::bad_pattern, model.name() + ": the world's " + what);
+  };
+  if (!friction(world.friction))
+    complain("friction is " + text::brief(world.friction) + "; it cannot be");
+  if (!sound(world.slope) || !sound(world.height)) complain("slope or height is not a number");
+  for (size_t i = 0; i < world.blocks.size(); ++i)
+    if (!sound(world.blocks[i])) complain("block " + std::to_string(i) + " is not made of numbers");
+  for (size_t i = 0; i < world.patches.size(); ++i) {
+    const FrictionPatch& patch = world.patches[i];
+    if (!sound(patch.low) || !sound(patch.high) || !friction(patch.friction))
+      complain("patch " + std::to_string(i) + " is not made of numbers");
+  }
+  for (const HeightField& field : world.fields)
+    if (!sound(field.origin) || !(field.spacing > 0) || !sound(field.heights))
+      complain("field is not made of numbers");
+}
+
+void check_state(const RobotModel& model, const RobotState& state) {
+  const auto check = [&](const char* what, const auto& value) {
+    if (!sound(value))
+      fail(ErrorCode::usage, model.name() + ": " + what + " of the plant's state is " +
+                                 text::brief(unsound(value)) + "; numbers below 1e6 are expected");
+  };
+  if (state.theta.size() != model.dof_count() || state.dtheta.size() != model.dof_count())
+    fail(ErrorCode::usage, model.name() + ": the plant's state needs " +
+                               std::to_string(model.dof_count()) + " joints");
+  check("base position", state.base.position);
+  check("base attitude", state.base.attitude.coeffs());
+  check("base velocity", state.base_velocity);
+  check("base angular velocity", state.base_angular_velocity);
+  check("a joint position", state.theta);
+  check("a joint rate", state.dtheta);
+  const double length = state.base.attitude.norm();
+  if (std::abs(length - 1) > 1e-6)
+    fail(ErrorCode::usage, model.name() + ": base attitude of the plant's state has length " +
+                               text::brief(length) + "; a unit quaternion is expected");
+}
+
+void check_step(const RobotModel& model, const VectorXd& targets, const StepInput& input, double dt,
+                double time) {
+  const auto complain = [&](const std::string& what) {
+    fail(ErrorCode::usage,
+         model.name() + ": " + what + ", " + text::fixed(time, 3) + " s after the plant's start");
+  };
+  const std::string count = std::to_string(model.dof_count());
+  if (!(dt > 0 && dt < 1)) complain("step length " + text::brief(dt) + " s is not within 0..1 s");
+  if (targets.size() != model.dof_count())
+    complain(std::to_string(targets.size()) + " servo targets for " + count + " joints");
+  for (int j = 0; j < model.dof_count(); ++j)
+    if (!sound(targets[j]))
+      complain("servo target of " + model.dofs()[j].name + " is " + text::brief(targets[j]));
+  for (const ExternalWrench& w : input.wrenches)
+    if (!(sound(w.force) && sound(w.torque) && sound(w.point) && w.body >= -1 &&
+          w.body < static_cast<int>(model.bodies().size())))
+      complain("an external force is not a finite number below 1e6 on a body");
+  if (!input.joints.empty() && static_cast<int>(input.joints.size()) != model.dof_count())
+    complain("conditions of " + std::to_string(input.joints.size()) + " joints for " + count);
+  for (size_t j = 0; j < input.joints.size(); ++j)
+    if (!sound(input.joints[j]))
+      complain("the condition of joint " + model.dofs()[j].name +
+               " is negative or not a finite number below 1e6");
+  for (const CarriedMass& carried : input.payloads)
+    if (!(carried.mass >= 0 && sound(carried.mass) && sound(carried.point) && carried.link >= 0 &&
+          carried.link < static_cast<int>(model.links().size())))
+      complain("a payload is not a mass on a link");
+  if (input.floor && !sound(*input.floor)) complain("the floor's motion is not made of numbers");
+  if (input.friction && !friction(*input.friction))
+    complain("the floor's friction is " + text::brief(*input.friction));
+  for (const Bump& bump : input.bumps)
+    if (!sound(bump.block) || !sound(bump.rate)) complain("a bump is not made of numbers");
+}
+
+}  // namespace ayumi

@@ -1,0 +1,136 @@
+// Robots nobody has seen (tests/support/odd_urdf.hpp) in the plant: links without mass, mimic
+// chains, slides, meshes.
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/urdf.hpp"
+#include "ayumi/sim/plant.hpp"
+#include "tests/support/odd_urdf.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+class OddFlight : public testing::TestWithParam<unsigned> {
+ protected:
+  OddFlight() : random(GetParam() + 30) {
+    const test::OddRobot robot = test::odd_robot(GetParam(), 8 + static_cast<int>(GetParam() % 10));
+    d = parse_urdf(test::urdf_text(robot, GetParam()), "odd.urdf");
+  }
+  RobotModel with_servos(const ServoDescription& servo) {
+    for (const JointDescription& joint : d.joints)
+      if (joint.type != JointType::fixed && joint.mimic.empty()) d.servos[joint.name] = servo;
+    return RobotModel(d);
+  }
+  RobotDescription d;
+  test::Random random;
+};
+
+TEST_P(OddFlight, KeepsMomentumWhileServosSwingTheLimbs) {
+  const RobotModel model = with_servos({60.0, 1.0, 0.003, 0.01, 0.02});
+  Plant plant(model, model.limits(), World{});
+  RobotState s = test::random_state(model, random);
+  s.base.position = Vector3d(500, -200, 100);
+  plant.set_state(s);
+  RobotData data(model);
+  update_velocities(model, s, data);
+  const Momentum before = centroidal_momentum(model, data);
+  const VectorXd phase = random.vector(model.dof_count(), 3.0);
+  for (int i = 0; i < 1000; ++i)
+    plant.step(s.theta + 0.5 * (phase.array() + 0.02 * i).sin().matrix(), {}, 1e-3);
+  ASSERT_LT((plant.state().theta - s.theta).cwiseAbs().maxCoeff(), 100);
+  update_velocities(model, plant.state(), data);
+  const Momentum after = centroidal_momentum(model, data);
+  const Vector3d expected = before.linear - Vector3d(0, 0, model.mass() * kGravity);
+  EXPECT_LT((after.linear - expected).norm(), 1e-12 * expected.norm());
+  EXPECT_LT((after.angular - before.angular).norm(), 1e-9 * before.angular.norm());
+}
+
+double energy(const RobotModel& model, const RobotState& state) {
+  RobotData data(model);
+  Eigen::MatrixXd M;
+  update_velocities(model, state, data);
+  mass_matrix(model, data, M);
+  return 0.5 * state.velocity().dot(M * state.velocity()) + model.mass() * kGravity * data.cog.z();
+}
+
+TEST_P(OddFlight, LosesEnergyOfTheFirstOrderWithoutMotors) {
+  for (JointDescription& joint : d.joints) joint.has_limits = false;
+  const RobotModel model = with_servos({});
+  RobotState start = test::random_state(model, random);
+  start.base.position.z() = 100;
+  const double before = energy(model, start);
+  std::vector<double> error;
+  for (const double h : {4e-5, 2e-5, 1e-5}) {
+    Plant plant(model, model.limits(), World{});
+    plant.set_state(start);
+    for (int i = 0; i < std::lround(0.04 / h); ++i)
+      plant.step(VectorXd::Zero(model.dof_count()), {}, h);
+    error.push_back(std::abs(energy(model, plant.state()) - before));
+  }
+  for (size_t i = 1; i < error.size(); ++i) {
+    EXPECT_LT(error[i], 0.62 * error[i - 1]);
+    EXPECT_GT(error[i], 0.38 * error[i - 1]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, OddFlight, testing::Range(1u, 13u));
+
+/// A box from -size/2 to size/2, as ASCII STL or as OBJ.
+std::string box_mesh(const Vector3d& size, bool stl) {
+  const auto corner = [&](int k) {
+    return Vector3d((k & 1 ? 0.5 : -0.5) * size.x(), (k & 2 ? 0.5 : -0.5) * size.y(),
+                    (k & 4 ? 0.5 : -0.5) * size.z());
+  };
+  const int faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  std::string text = stl ? "solid box\n" : "";
+  for (int k = 0; k < 8 && !stl; ++k) text += "v " + test::numbers(corner(k)) + "\n";
+  for (const auto& face : faces) {
+    text += stl ? "facet normal 0 0 0\nouter loop\n" : "f";
+    for (const int k : face)
+      text += stl ? "vertex " + test::numbers(corner(k)) + "\n" : " " + std::to_string(k + 1);
+    text += stl ? "endloop\nendfacet\n" : "\n";
+  }
+  return text + (stl ? "endsolid box\n" : "");
+}
+
+// A mesh in millimetres, told smaller by its scale and turned against its link, lands on a slope
+// and stays; its weight is on the ground and it lies as the box it is.
+TEST(MeshOnTheGround, LiesWhereItsShapeIs) {
+  for (const std::string name : {"box.stl", "box.obj"}) {
+    const test::TemporaryFolder folder;
+    folder.write(name, box_mesh({200, 100, 40}, name == "box.stl"));
+    const auto urdf = folder.write(
+        "robot.urdf",
+        "<robot name='meshed'><link name='stone'><inertial><mass value='2'/><origin xyz='0 0 "
+        "0.01'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' ixz='0' iyz='0'/></inertial>"
+        "<collision><origin xyz='0 0 0.01' rpy='1.5707963267948966 0 0'/><geometry><mesh "
+        "filename='" +
+            name + "' scale='0.001 0.001 0.001'/></geometry></collision></link></robot>");
+    const RobotModel model = load_robot(urdf, {}, {.meshes = true});
+    // Turned by a right angle about x, it stands on its long narrow side, 100 mm high.
+    Plant plant(model, model.limits(), World{.friction = 0.6, .slope = {0.1, 0}});
+    RobotState s = model.rest_state();
+    s.base.attitude = exp_rotation({0.1, 0, 0});
+    s.base.position = s.base.attitude * Vector3d(0.3, 0, 0.045);
+    plant.set_state(s);
+    Work work;
+    for (int i = 0; i < 1000; ++i) work += plant.step(VectorXd(0), {}, 1e-3).work;
+    const Vector3d place = s.base.attitude.conjugate() * plant.state().base.position;
+    EXPECT_NEAR(place.z(), 0.04, 1e-5) << name;
+    EXPECT_LT(place.head<2>().cwiseAbs().maxCoeff(), 0.301) << name;
+    EXPECT_LT(plant.state().base_velocity.norm(), 1e-9) << name;
+    EXPECT_LT(plant.state().base_angular_velocity.norm(), 1e-9) << name;
+  }
+}
+
+}  // namespace
+}  // namespace ayumi
