@@ -7,6 +7,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/sim/step_check.hpp"
 
 namespace ayumi {
 
@@ -120,6 +121,10 @@ void Schedule::set(const std::vector<Disturbance>& scenario) {
     entry.per_step = d.type == DisturbanceType::impulse
                          ? d.magnitude / (static_cast<double>(entry.count) * step_)
                          : d.magnitude;
+    if (is_push(d.type) && !(std::abs(entry.per_step) < kLargestNumber))
+      fail(ErrorCode::bad_pattern, "scenario: the push at " + text::brief(d.at) + " s is one of " +
+                                       text::brief(entry.per_step) +
+                                       " N (N m); give one below 1e6 or let it last longer");
     entry.link = find_pushed_link(*model_, d.on);
     entry.joint = find_joint(*model_, d.joint);
     if (d.type == DisturbanceType::payload && entry.link < 0)
