@@ -83,8 +83,11 @@ inline std::vector<JumpMeasured> jumps_of(const RobotModel& model, const Simulat
 /// [s].
 inline double settled_at(const SimulationLog& log, double ref, double near) {
   const auto& s = log.samples;
-  const Eigen::Vector2d rest =
-      s.back().command_cog.head<2>() + (s.back().cog - s.back().measured_cog).head<2>();
+  // The plan's frame against the world's, as a mean: what is measured is noisy.
+  const size_t last = std::min<size_t>(200, s.size());
+  Eigen::Vector2d rest = s.back().command_cog.head<2>();
+  for (size_t i = s.size() - last; i < s.size(); ++i)
+    rest += (s[i].cog - s[i].measured_cog).head<2>() / static_cast<double>(last);
   size_t k = s.size();
   while (k > 0 && std::abs(s[k - 1].cog.z() - ref) < near &&
          (s[k - 1].cog.head<2>() - rest).norm() < near)

@@ -303,7 +303,7 @@ void Viip::go_on(const Estimate& e) {
   } else if (stage_ == Stage::single) {
     const Side foot = other(anchor_);
     swing(xi);
-    const bool touched = params_.feedback && elapsed_ > kTouchAfter * single &&
+    const bool touched = elapsed_ > kTouchAfter * single &&
                          e.foot_fz[index(foot)] > kTouchShare * model_->mass() * kGravity;
     if (touched || elapsed_ >= single) {
       next_.feet[index(foot)].translation().z() = plan_.feet[index(anchor_)].translation().z();

@@ -1,6 +1,7 @@
 // Heights above the ground, r = ref z_G, per unit mass; the reference body obeys z'' = f_z/m - g.
 //   stoop   f_z/m = (kz w)^2 (r - zd - z) - 2 dz kz w z' + g            (24)(25)
 //   push    f_z/m = k (r - z) + g,  k = 2 g zH / zd^2, until z = r      (26)
+//           in its last tick z' = sqrt(2 g (r + zH - z)): the planned apex whatever the tick
 //   flight  ballistic; base velocity V_b = M_bb^-1 ([m v; L] - M_bq dtheta), L its own at release
 //   absorb  f_z/m = k (z1 - z) + g, k = z1'^2 / zd^2, until z' = 0      (27)
 //   settle  as the stoop, towards r
@@ -37,6 +38,7 @@ namespace {
 constexpr double kMinForceShare = 0.1;  // of the weight, where feet are to stay on the ground
 constexpr double kStoopTime = 5;        // least length of the stoop, times 1/omega
 constexpr double kStoopNear = 0.01;     // of ref z_G: the stoop is reached
+constexpr double kLean = 1.2;           // of the trunk when stooped, times z_d / ref z_G [rad]
 constexpr double kSettleRate = 2.2;     // sqrt(K_Pz / m) after the landing, times omega
 constexpr double kLift = 0.5;           // ground force that counts as none [N]
 constexpr double kLiftTime = 0.015;     // for which it must last [s]
@@ -192,6 +194,24 @@ CogReference ViipJump::cog_reference(const Estimate& e) {
   return ref;
 }
 
+// The end of the push falls into this tick: the speed becomes the one whose parabola has the
+// planned apex, from where the tick ends.
+bool ViipJump::leaves_now() {
+  const double spring = goal_.release == JumpGoal::Release::spring ? kGravity / stiffness_ : 0.0;
+  const double z = data_.cog.z() - ground_of(plan_.feet) - height_;
+  if (z + dt_ * dcog_.z() < spring) return false;
+  const double way = std::max(0.0, goal_.height + 0.5 * spring - z);
+  dcog_.z() = std::sqrt(kGravity * (kGravity * dt_ * dt_ + 2 * way)) - kGravity * dt_;
+  return true;
+}
+
+// Forwards, as far as the legs' push and landing turn the trunk back [rad].
+double ViipJump::lean() const {
+  const double most = kLean * goal_.stoop / height_;
+  if (stage_ == Stage::stoop) return most * smooth(elapsed_ * omega_ / kStoopTime);
+  return stage_ == Stage::push ? most : 0.0;
+}
+
 // `level`: share of the correction that keeps the trunk as the pattern holds it.
 Resolution ViipJump::resolve_standing(const Vector3d& trunk_rate, double level) const {
   CommandSample wanted = plan_;
@@ -199,7 +219,9 @@ Resolution ViipJump::resolve_standing(const Vector3d& trunk_rate, double level) 
   wanted.state.base_angular_velocity = trunk_rate;
   ResolverOptions options;
   options.trunk_rate *= level;
-  options.in_order = false;  // the height is what a jump is about
+  options.in_order = false;  // docs/theory.md says why
+  const double yaw = heading_of(plan_.feet);
+  options.lean = lean() * Vector3d(-std::sin(yaw), std::cos(yaw), 0);
   return resolve(*model_, limits_, reference_, data_, anchor_, dcog_, wanted, wanted, dt_, weight_,
                  options);
 }
@@ -268,6 +290,7 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
   out.cog = data_.cog;
   out.cog_reference = cog_reference(e);
   dcog_ += dt_ * out.cog_reference.ddcog;
+  const bool last = stage_ == Stage::push && leaves_now();
   out.cog_reference.dcog = dcog_;
   const double share = stage_ == Stage::push     ? smooth(2 * progress())
                        : stage_ == Stage::absorb ? 1 - smooth(progress())
@@ -294,9 +317,9 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
       break;
     case Stage::push: {
       unloaded_ = e.fz < kLift ? unloaded_ + dt_ : 0;
-      const double end =
-          goal_.release == JumpGoal::Release::ref_z ? height_ : height_ + kGravity / stiffness_;
-      if (z >= end || unloaded_ > kLiftTime) {
+      // Legs that cannot follow the spring any more leave the ground there.
+      const bool behind = r.scale < 1 && z > height_;
+      if (last || behind || unloaded_ > kLiftTime) {
         release();
       } else if (elapsed_ > 3 * figures.push) {
         out.notes.push_back("no lift-off: the push does not reach its height");

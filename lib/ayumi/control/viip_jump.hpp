@@ -47,6 +47,8 @@ class ViipJump {
   CogReference cog_reference(const Estimate& estimate);
   double vertical_force() const;
   double progress() const;
+  bool leaves_now();
+  double lean() const;
   void stand(const Estimate& estimate, ControlOutput& out);
   Resolution resolve_standing(const Eigen::Vector3d& trunk_rate, double level) const;
   Resolution resolve_with_momentum(double share);

@@ -71,10 +71,6 @@ void MujocoPlant::Impl::move_ground(double dt) {
 }
 
 void MujocoPlant::Impl::report_contacts() {
-  for (std::vector<SoleForce>& sole : report.soles)
-    for (SoleForce& cell : sole) cell = SoleForce{};
-  report.max_penetration = 0;
-  report.body_contact = false;
   for (int i = 0; i < d->ncon; ++i) {
     const mjContact& contact = d->contact[i];
     const bool second = point_of[static_cast<size_t>(contact.geom2)] != -1;

@@ -62,6 +62,9 @@ struct MujocoPlant::Impl {
   void check_input(const Eigen::VectorXd& targets, const StepInput& input, double dt) const;
   void limit_torques();
   void account(double dt);
+  void step(const Eigen::VectorXd& targets, const StepInput& input, double h);
+  void begin_report();
+  void finish_report();
   void report_servos();
   void report_contacts();
   void report_contact(int index, const mjContact& contact, int geom, double sign);

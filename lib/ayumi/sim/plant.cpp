@@ -343,7 +343,11 @@ void Plant::advance(const Momentum& momentum, double dt) {
   const Vector3d w = locked.llt().solve(momentum.angular - joints.angular);
   state_.base_angular_velocity = w;
   state_.base_velocity = cog_velocity - joints.linear / mass - w.cross(c);
-  state_.base.position = cog + dt * cog_velocity - c;
+  // Nothing but gravity and pushes: the force is constant and the way that of the mean velocity, so
+  // that the COG of a flight is on its parabola. Contacts are solved for the velocity they end in.
+  Vector3d way = dt * cog_velocity;
+  if (active_.empty()) way -= 0.5 * dt / mass * external_.linear;
+  state_.base.position = cog + way - c;
   data_.base_position = state_.base.position;
   data_.cog = data_.base_position + c;
   carry_velocities(moving(), state_, data_);
