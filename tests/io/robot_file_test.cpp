@@ -105,6 +105,24 @@ TEST(Urdf, TurnsInertiaIntoLinkAxesAndKeepsOrder) {
   EXPECT_FALSE(robot.links[1].has_inertial);
 }
 
+TEST(Urdf, AColourMayBeNamedBeforeTheVisualThatDefinesIt) {
+  const auto visual = [](const std::string& material) {
+    return "<visual><geometry><sphere radius=\"1\"/></geometry>" + material + "</visual>";
+  };
+  const RobotDescription robot =
+      parse_urdf("<robot name=\"r\"><link name=\"a\">" + visual("<material name=\"red\"/>") +
+                     visual("<material name=\"red\"><color rgba=\"1 0 0 1\"/></material>") +
+                     visual("<material name=\"red\"><color rgba=\"0 1 0 1\"/></material>") +
+                     visual("<material name=\"none\"/>") + "</link></robot>",
+                 "r.urdf");
+  const auto& visuals = robot.links[0].visuals;
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_TRUE(visuals[i].has_color) << i;
+    EXPECT_EQ(visuals[i].color, Eigen::Vector4f(1, 0, 0, 1)) << i << ": the first definition holds";
+  }
+  EXPECT_FALSE(visuals[3].has_color);
+}
+
 TEST(Urdf, UnstatedLimitsAreUnlimited) {
   const std::string inertial =
       "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <vector>
 
 #include "ayumi/base/error.hpp"
@@ -213,6 +214,30 @@ void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::str
 
 }  // namespace
 
+namespace {
+
+/// Materials that visuals define, as materials of the robot: a visual may name one that a later
+/// visual defines, which urdfdom would leave without colour. The first definition holds.
+void share_materials(TiXmlElement* root) {
+  std::set<std::string> known;
+  const auto name_of = [](const TiXmlElement* material) {
+    const char* name = material->Attribute("name");
+    return std::string(name ? name : "");
+  };
+  for (auto* each = root->FirstChildElement("material"); each;
+       each = each->NextSiblingElement("material"))
+    known.insert(name_of(each));
+  for (auto* link = root->FirstChildElement("link"); link; link = link->NextSiblingElement("link"))
+    for (auto* visual = link->FirstChildElement("visual"); visual;
+         visual = visual->NextSiblingElement("visual")) {
+      const TiXmlElement* material = visual->FirstChildElement("material");
+      if (!material || !material->FirstChildElement() || name_of(material).empty()) continue;
+      if (known.insert(name_of(material)).second) root->InsertEndChild(*material);
+    }
+}
+
+}  // namespace
+
 UrdfText check_urdf(const std::string& bytes, const std::string& file) {
   TiXmlDocument document;
   parse_xml(document, bytes, file);
@@ -235,6 +260,7 @@ UrdfText check_urdf(const std::string& bytes, const std::string& file) {
   validate_links(tree);
   validate_joints(tree);
   find_root_link(tree);
+  share_materials(root);
   TiXmlPrinter printer;
   document.Accept(&printer);
   text.xml = printer.Str();
