@@ -4,6 +4,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/control/gain_design.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #ifdef AYUMI_HAS_MUJOCO
 #include "ayumi/plant_mujoco/mujoco_plant.hpp"
@@ -29,7 +30,30 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   command.add_option("--substeps", choice.substeps, "integrator steps per servo period")
       ->check(CLI::Range(1, 100).description(""))
       ->type_name("N");
+  add_unstable_flag(command, choice.unstable);
   add_plant_option(command, choice.plant);
+}
+
+void add_unstable_flag(CLI::App& command, bool& allowed) {
+  command.add_flag("--allow-unstable", allowed,
+                   "run gains whose loop is unstable all the same, for demonstration");
+}
+
+void refuse_unstable_gains(const PatternInput& input, const ControllerSpec& spec, bool allowed) {
+  if (allowed) return;
+  const CommandSample& first = input.series.samples.front();
+  const std::string reason =
+      instability(input.model, spec, first.cog.z() - first.zmp.z(), input.series.dt);
+  if (!reason.empty())
+    fail(ErrorCode::bad_pattern, reason + "; --allow-unstable runs it all the same");
+}
+
+ControllerSpec chosen_controller(const PatternInput& input, const SimulationChoice& choice) {
+  ControllerSpec spec = input.pattern.controller;
+  if (!choice.controller.empty() && choice.controller != spec.type) spec = {choice.controller, {}};
+  for (const auto& [name, value] : read_pairs(choice.gains, "--gain"))
+    spec.gains.emplace_back(name, value);
+  return spec;
 }
 
 void add_plant_option(CLI::App& command, std::string& plant) {
@@ -55,11 +79,8 @@ PlantKind plant_of(const std::string& name) {
 SimulationLog simulate_once(const Context& context, const PatternInput& input,
                             const SimulationChoice& choice) {
   SimulateOptions options;
-  options.controller = input.pattern.controller;
-  if (!choice.controller.empty() && choice.controller != options.controller.type)
-    options.controller = {choice.controller, {}};
-  for (const auto& [name, value] : read_pairs(choice.gains, "--gain"))
-    options.controller.gains.emplace_back(name, value);
+  options.controller = chosen_controller(input, choice);
+  refuse_unstable_gains(input, options.controller, choice.unstable);
   options.profile = input.profile;
   options.world = input.pattern.world;
   options.scenario = input.pattern.scenario;

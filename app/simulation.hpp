@@ -13,6 +13,7 @@ struct SimulationChoice {
   std::vector<std::string> gains;  ///< "name=value"
   bool noise = false;              ///< sensor noise, bias and latency of the sidecar
   bool true_state = false;         ///< instead of sensors and estimator
+  bool unstable = false;           ///< run gains whose loop is unstable all the same
   int substeps = 1;                ///< of the integrator per servo period
   std::string plant = "ayumi";     ///< "ayumi" or "mujoco"
 };
@@ -23,7 +24,15 @@ void add_plant_option(CLI::App& command, std::string& plant);
 /// Throws Error(usage) for a plant this program was built without.
 PlantKind plant_of(const std::string& name);
 
-/// Runs the pattern; the log carries its provenance.
+/// --allow-unstable.
+void add_unstable_flag(CLI::App& command, bool& allowed);
+/// Throws Error(bad_pattern) with the reason for DTAD gains that `ayumi gains` refuses.
+void refuse_unstable_gains(const PatternInput& input, const ControllerSpec& spec, bool allowed);
+
+/// The pattern's controller under the choice.
+ControllerSpec chosen_controller(const PatternInput& input, const SimulationChoice& choice);
+
+/// Runs the pattern; the log carries its provenance. Throws as refuse_unstable_gains().
 SimulationLog simulate_once(const Context& context, const PatternInput& input,
                             const SimulationChoice& choice);
 

@@ -27,6 +27,7 @@ struct Options {
   std::vector<std::string> controllers, gains;
   std::vector<double> times;
   std::string plant = "ayumi";
+  bool unstable = false;
   PushOptions push;
 };
 
@@ -44,6 +45,7 @@ std::vector<ControllerSpec> chosen_controllers(const PatternInput& input, const 
     for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
       spec.gains.emplace_back(name, value);
     check_controller(input.model, spec);  // says what is wrong
+    refuse_unstable_gains(input, spec, options.unstable);
   }
   return specs;
 }
@@ -287,6 +289,7 @@ void add_push(CLI::App& app, Context& context) {
   command->add_option("--substeps", push.simulate.substeps, "integrator steps per servo period")
       ->check(CLI::Range(1, 100).description(""))
       ->type_name("N");
+  add_unstable_flag(*command, options->unstable);
   add_plant_option(*command, options->plant);
   command->callback([options, &context] { find_limits(context, *options); });
 }

@@ -249,6 +249,7 @@ void MainJob::write_report(const RobotModel& model, const std::string& title) {
 bool MainJob::run(const std::string& file) {
   context_.print(file + "\n");
   PatternInput input = load_pattern(context_, file, options_.input, options_.pictures);
+  refuse_unstable_gains(input, chosen_controller(input, options_.choice), options_.choice.unstable);
   workshop_.emplace(target_);
   const bool consistent = check(input);
   const bool stands = simulate(input);

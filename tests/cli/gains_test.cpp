@@ -57,6 +57,24 @@ TEST(GainsCommand, RefusesWithTheReason) {
   refused({"gains", "hoap1", "--poles", "-1,-2", "--time-constants", "1,2"}, "give the poles once");
 }
 
+TEST(GainsCommand, WhatItRefusesIsNotRunUnlessAsked) {
+  const std::string walk = AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json";
+  for (const char* command : {"simulate", "run", "push"}) {
+    const Output made = run({command, walk, "-o", "out", "--gain", "ka=40"});
+    EXPECT_EQ(made.exit_code, 3) << command << made.out;
+    EXPECT_NE(made.err.find("the loop grows at"), std::string::npos) << made.err;
+    EXPECT_NE(made.err.find("--allow-unstable"), std::string::npos) << made.err;
+  }
+  const std::vector<std::string> simulate = {"simulate", walk, "--scenario", "none", "--json"};
+  const auto outcome = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = simulate;
+    words.insert(words.end(), more.begin(), more.end());
+    return Json::parse(run(words).out)["outcome"].get<std::string>();
+  };
+  EXPECT_FALSE(outcome({"--gain", "ka=40", "--allow-unstable"}).empty());
+  EXPECT_EQ(outcome({"--controller", "dtad-literal"}), "fell");  // a demonstration needs no leave
+}
+
 TEST(TuneCommand, BettersItsObjectiveTheSameWayForAnyNumberOfThreads) {
   const Folder folder;
   const auto run_here = [&](std::vector<std::string> words) {

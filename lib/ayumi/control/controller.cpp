@@ -154,9 +154,12 @@ void Controller::start_law(const ViipSpan* span) {
     ControllerSpec spec = spec_;
     if (spec.type == "viip") spec = {"dtad", {}};
     const Handover from = handover();
-    Dtad dtad(*model_, limits_, dtad_params(*model_, spec), series_->dt, plan_);
+    const DtadParams params = dtad_params(*model_, spec);
+    Dtad dtad(*model_, limits_, params, series_->dt, plan_);
     if (tick_ > 0) dtad.take_over(from, plan_);
     law_ = dtad;
+    if (params.step > 0 && !params.literal && series_->viip.empty())
+      footholds_.emplace(*model_, *series_, FootholdParams{params.step, params.hurry});
   } else {
     law_ = OpenLoop{servo_lead(*model_)};
   }
@@ -215,7 +218,10 @@ const ControlOutput& Controller::update(const Estimate& estimate) {
           share = std::max(0.0, share - series_->dt / kFootBlend);
         }
     if (placement_.moved) following_ = placed(next);
-    const CommandSample& following = placement_.moved ? following_ : command(next);
+    if (footholds_ && footholds_->advance(estimate)) plan_.feet = footholds_->plan().feet;
+    const CommandSample& following = footholds_         ? footholds_->plan()
+                                     : placement_.moved ? following_
+                                                        : command(next);
     if (auto* dtad = std::get_if<Dtad>(&law_)) {
       dtad->update(plan_, following, estimate, out);
     } else {

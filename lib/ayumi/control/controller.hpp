@@ -2,9 +2,11 @@
 // The laws behind one face: open loop, DTAD, VIIP. A pattern may pass the robot from one to another
 // by phases; each goes on from the posture, velocity and footholds the last one left.
 
+#include <optional>
 #include <variant>
 
 #include "ayumi/control/dtad.hpp"
+#include "ayumi/control/foothold_shift.hpp"
 #include "ayumi/control/viip.hpp"
 #include "ayumi/control/viip_jump.hpp"
 
@@ -61,6 +63,7 @@ class Controller {
   const CommandSeries* series_;
   ControllerSpec spec_;
   std::variant<OpenLoop, Dtad, Viip, ViipJump> law_;
+  std::optional<FootholdShift> footholds_;  // of DTAD on a pattern without VIIP phases
   Placement placement_;
   CommandSample plan_, following_;  // of the coming tick, and after it where feet have moved
   ControlOutput out_;

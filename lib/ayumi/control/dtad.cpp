@@ -50,6 +50,8 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
                                                  {"ankle", &p.ankle},
                                                  {"conform", &p.conform},
                                                  {"trunk", &p.trunk},
+                                                 {"step", &p.step},
+                                                 {"hurry", &p.hurry},
                                                  {"long", &p.long_term},
                                                  {"as_printed", &p.as_printed}};
   std::vector<std::string> names = {"k", "d"};
@@ -89,6 +91,14 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   if (p.tau_z <= 0) fail(ErrorCode::usage, "controller gains: tau_z must be positive");
   if (p.as_printed != 0 && p.as_printed != 1)
     fail(ErrorCode::usage, "controller gains: as_printed is 0 or 1");
+  if (p.step > 1)
+    fail(ErrorCode::usage,
+         "controller gains: step is a share, 0 to 1, of what footholds take; it is " +
+             text::brief(p.step));
+  if (p.hurry < 1)
+    fail(ErrorCode::usage,
+         "controller gains: hurry is the fastest clock of the pattern, at least 1; it is " +
+             text::brief(p.hurry));
   p.literal = spec.type == "dtad-literal";
   return p;
 }

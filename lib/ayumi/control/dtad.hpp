@@ -32,6 +32,8 @@ struct DtadParams {
   double ankle = 0.5;       ///< share of the stance foot's measured tilt taken back at the ankle
   double conform = 0.5;     ///< share of one foot's slope against the ground's that its ankle takes
   double trunk = 0;      ///< turn of the trunk where the ZMP wanted is outside the support; 0: off
+  double step = 0;       ///< share of what the supports leave over that footholds take; 0: off
+  double hurry = 2.5;    ///< fastest clock of a pattern whose footholds move
   bool literal = false;  ///< (14) integrated as printed, D sign corrected: a demonstration
 };
 

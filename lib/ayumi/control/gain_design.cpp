@@ -155,18 +155,38 @@ double largest_stable_ka(const LoopModel& loop, DtadParams params, double most) 
   return low;
 }
 
-void refuse_unstable(const LoopModel& loop, const DtadParams& params) {
+namespace {
+
+/// Empty when stable.
+std::string growth(const LoopModel& loop, const DtadParams& params) {
   const LoopAnalysis analysis = analyze_loop(loop, params);
-  if (analysis.stable) return;
+  if (analysis.stable) return {};
   const double low = largest_stable_ka(loop, params, params.ka);
-  fail(ErrorCode::usage,
-       "controller gains: with ka = " + text::brief(params.ka) +
-           ", tau_z = " + text::brief(params.tau_z) + " and sensors " + text::brief(loop.delay) +
-           " s late the loop grows at " + text::fixed(-analysis.decay, 1) + " /s, " +
-           text::fixed(analysis.frequency, 1) + " Hz; " +
-           (low > 1e-6 ? "ka below " + text::fixed(low, 2) + " would be stable"
-                       : std::string("no ka is stable: the servos are too soft for this robot, or "
-                                     "ks and kd too small")));
+  return "controller gains: with ka = " + text::brief(params.ka) +
+         ", tau_z = " + text::brief(params.tau_z) + " and sensors " + text::brief(loop.delay) +
+         " s late the loop grows at " + text::fixed(-analysis.decay, 1) + " /s, " +
+         text::fixed(analysis.frequency, 1) + " Hz; " +
+         (low > 1e-6 ? "ka below " + text::fixed(low, 2) + " would be stable"
+                     : std::string("no ka is stable: the servos are too soft for this robot, or "
+                                   "ks and kd too small"));
+}
+
+}  // namespace
+
+void refuse_unstable(const LoopModel& loop, const DtadParams& params) {
+  const std::string reason = growth(loop, params);
+  if (!reason.empty()) fail(ErrorCode::usage, reason);
+}
+
+std::string instability(const RobotModel& model, const ControllerSpec& spec, double height,
+                        double tick) {
+  if (spec.type != "dtad") return {};
+  const DtadParams params = dtad_params(model, spec);
+  if (params.as_printed != 0) return {};
+  for (Side side : {Side::left, Side::right})
+    for (const int joint : model.leg(side))
+      if (model.dofs()[joint].servo.kp <= 0) return {};
+  return growth(single_support_loop(model, height, tick), params);
 }
 
 }  // namespace ayumi

@@ -6,6 +6,7 @@
 #include <array>
 #include <complex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "ayumi/control/dtad.hpp"
@@ -61,5 +62,11 @@ double largest_stable_ka(const LoopModel& loop, DtadParams params, double most =
 /// Throws Error(usage) with the mode that grows and the largest short-term gain that would be
 /// stable.
 void refuse_unstable(const LoopModel& loop, const DtadParams& params);
+
+/// Why a robot should not be run with a controller at this COG height, in the words of
+/// refuse_unstable(); empty when nothing speaks against it, for demonstrations (dtad-literal,
+/// as_printed), other controllers and legs without servos.
+std::string instability(const RobotModel& model, const ControllerSpec& spec, double height,
+                        double tick);
 
 }  // namespace ayumi

@@ -48,8 +48,13 @@ struct Trunk {
 class Search {
  public:
   Search(const Trunk& trunk, const PushOptions& options, const PushCase& push, double dt,
-         bool goals, std::uint64_t seed, const std::atomic<bool>& stop)
-      : trunk_(trunk), options_(options), case_(push), dt_(dt), goals_(goals), stop_(stop) {
+         bool plan_moves, std::uint64_t seed, const std::atomic<bool>& stop)
+      : trunk_(trunk),
+        options_(options),
+        case_(push),
+        dt_(dt),
+        plan_moves_(plan_moves),
+        stop_(stop) {
     Random random(seed);
     const auto spread = [&](double width) { return width * (2 * random.uniform() - 1); };
     variations_.push_back({0, 0});
@@ -75,7 +80,7 @@ class Search {
   const PushOptions& options_;
   const PushCase& case_;
   double dt_;
-  bool goals_;  // VIIP's plan follows the robot: nearness to it says nothing
+  bool plan_moves_;  // the plan follows the robot: nearness to it says nothing
   const std::atomic<bool>& stop_;
   std::vector<Variation> variations_;
   std::map<int, bool> tried_;
@@ -100,7 +105,7 @@ bool Search::survives(double impulse, const Variation& variation, bool to_the_en
   double near_since = -1;
   while (run.advance(kChunk) && !run.fell()) {
     if (stop_) throw Interrupted();
-    if (to_the_end || goals_ || run.time() < case_.phase.at + kSurelyAfter) continue;
+    if (to_the_end || plan_moves_ || run.time() < case_.phase.at + kSurelyAfter) continue;
     if (divergence(run) > near_distance(run))
       near_since = -1;
     else if (near_since < 0)
@@ -211,6 +216,7 @@ struct Study {
   void grow(size_t i);
   PushCase plan(size_t i) const;
   double standing_edge_bound() const;
+  bool plan_moves(const ControllerSpec& controller) const;
   void search(size_t i, PushCase& found);
 };
 
@@ -254,11 +260,16 @@ PushCase Study::plan(size_t i) const {
   return result;
 }
 
+bool Study::plan_moves(const ControllerSpec& controller) const {
+  return !series.viip.empty() ||
+         (controller.type == "dtad" && dtad_params(model, controller).step > 0);
+}
+
 void Study::search(size_t i, PushCase& found) {
   const size_t phase = i / static_cast<size_t>(options.directions);
   for (size_t c = 0; c < controllers.size(); ++c) {
     const Trunk& trunk = trunks[phase * controllers.size() + c];
-    Search search(trunk, options, found, series.dt, !series.viip.empty(),
+    Search search(trunk, options, found, series.dt, plan_moves(controllers[c]),
                   options.simulate.seed + 1000 * i, stop);
     const PushLimit limit =
         search.find(static_cast<int>(std::lround((c == 0 ? 0.8 : 1.2) / options.step)));
@@ -270,74 +281,6 @@ void Study::search(size_t i, PushCase& found) {
 }
 
 }  // namespace
-
-namespace {
-
-/// A single support on the left foot.
-struct Interval {
-  size_t before, begin, end;  // start of the double support before it, its own start and end
-};
-
-std::vector<Interval> left_steps(const CommandSeries& series) {
-  const std::vector<CommandSample>& s = series.samples;
-  std::vector<Interval> steps;
-  for (size_t k = 1; k < s.size(); ++k) {
-    if (s[k].support != Support::left || s[k - 1].support != Support::both) continue;
-    Interval step{k - 1, k, k};
-    while (step.before > 0 && s[step.before - 1].support == Support::both) --step.before;
-    while (step.end < s.size() && s[step.end].support == Support::left) ++step.end;
-    steps.push_back(step);
-  }
-  return steps;
-}
-
-/// The series with the supports that VIIP makes of it.
-CommandSeries carried(const RobotModel& model, const CommandSeries& series,
-                      const SimulateOptions& options) {
-  SimulateOptions simulate = options;
-  if (simulate.controller.type != "viip") simulate.controller = {"viip", {}};
-  simulate.scenario.clear();
-  Simulator run(model, series, simulate);
-  run.keep_samples(false);
-  CommandSeries result = series;
-  for (CommandSample& s : result.samples) {
-    run.advance(1);
-    s.support = run.plan().support;
-  }
-  return result;
-}
-
-}  // namespace
-
-std::vector<PushPhase> default_push_phases(const RobotModel& model, const CommandSeries& given,
-                                           const SimulateOptions& options) {
-  const bool goals = !given.viip.empty();
-  const CommandSeries series = goals ? carried(model, given, options) : given;
-  const std::vector<CommandSample>& s = series.samples;
-  const std::vector<Interval> steps = left_steps(series);
-  std::vector<PushPhase> phases = {{"standing", kStandingPush, true}};
-  if (steps.empty()) {
-    const double middle = series.dt * std::floor(static_cast<double>(s.size() - 1) / 2);
-    phases.push_back({"middle", middle, false});
-    return phases;
-  }
-  const Interval& step = steps[steps.size() / 2];
-  const auto time = [&](size_t from, size_t to, double share) {
-    return series.dt *
-           std::round(static_cast<double>(from) + share * static_cast<double>(to - from));
-  };
-  phases.push_back({"mid double support", time(step.before, step.begin, 0.5), false});
-  if (goals) {
-    phases.erase(phases.begin());
-    phases.push_back({"single support 25 %", time(step.begin, step.end, 0.25), false});
-    phases.push_back({"single support 75 %", time(step.begin, step.end, 0.75), false});
-    return phases;
-  }
-  phases.push_back({"single support 11 %", time(step.begin, step.end, 0.11), false});
-  phases.push_back({"single support 44 %", time(step.begin, step.end, 0.44), false});
-  phases.push_back({"single support 78 %", time(step.begin, step.end, 0.78), false});
-  return phases;
-}
 
 std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& series,
                                   const PushOptions& options, const KnownCases& known,
