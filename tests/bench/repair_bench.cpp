@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <string>
 
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/optimize/repair.hpp"
@@ -34,7 +35,8 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 void measure(const char* name, const RobotModel& model, const CommandSeries& series,
-             const RepairOptions& options) {
+             RepairOptions options, bool mumps = false) {
+  options.mumps = mumps;
   const auto begin = std::chrono::steady_clock::now();
   const RepairResult r = repair(model, series, options);
   const double wall = seconds_since(begin);
@@ -60,15 +62,16 @@ CommandSeries walk_of(const RobotModel& model, int steps) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
   const RobotDescription robot = load_robot_description(AYUMI_SOURCE_DIR "/robots/hoap1");
   const RobotModel model(robot);
+  const bool mumps = count > 1 && std::string(arguments[1]) == "mumps";
   for (const int steps : {3, 8, 13}) {
     const CommandSeries series = walk_of(model, steps);
-    measure("knees bend less", tight_knees(robot, series), series, {});
+    measure("knees bend less", tight_knees(robot, series), series, {}, mumps);
   }
   RepairOptions slippery;
   slippery.check.friction = 0.1;
   for (const int steps : {3, 8, 13})
-    measure("friction 0.10", model, walk_of(model, steps), slippery);
+    measure("friction 0.10", model, walk_of(model, steps), slippery, mumps);
 }

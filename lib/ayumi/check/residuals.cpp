@@ -163,15 +163,24 @@ Vector2d behind(const ConvexPolygon& b, const Vector2d& point, const Vector2d& z
   return point + 0.5 * (low + high) * ray;
 }
 
+// 0 below 0, 1 above 1, `u` between; rounded at both so that its slope has no jump, for the ZMP of
+// a walk rests just there and the repair differentiates this.
+double rounded_clamp(double u) {
+  constexpr double kRound = 0.1;
+  if (u > 0.5) return 1 - rounded_clamp(1 - u);
+  if (u >= kRound) return u;
+  return u <= -kRound ? 0 : (u + kRound) * (u + kRound) / (4 * kRound);
+}
+
 // Along the line between the sole centres the share follows the ZMP, and across it both centres of
-// pressure shift alike: one foot takes all when the ZMP reaches its centre. Where a centre of
+// pressure shift alike: one foot takes all when the ZMP is past its centre. Where a centre of
 // pressure would leave its sole so, the ZMP lies near a corner of the hull: then one foot presses
 // in the middle of what it may, the other behind the ZMP.
 Shares share_zmp(const std::array<ConvexPolygon, 2>& soles, const Vector2d& zmp) {
   const Vector2d left = soles[0].centroid(), right = soles[1].centroid();
   const Vector2d line = left - right;
   Shares s;
-  s.left = std::clamp((zmp - right).dot(line) / line.squaredNorm(), 0.0, 1.0);
+  s.left = rounded_clamp((zmp - right).dot(line) / line.squaredNorm());
   const Vector2d shift = zmp - (s.left * left + (1 - s.left) * right);
   s.pressure = {left + shift, right + shift};
   const bool left_bears = s.left > 0, right_bears = s.left < 1;

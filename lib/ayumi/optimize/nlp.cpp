@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/optimize/condensed_solver.hpp"
 
 namespace ayumi {
 
@@ -164,11 +165,23 @@ class Adapter : public Ipopt::TNLP {
   double least_ = kNoBound;  // violation of *options_.least_violating
 };
 
+bool has_equalities(const Nlp& nlp) {
+  return (nlp.constraint_lower.array() == nlp.constraint_upper.array()).any();
+}
+
+void set_linear_solver(Ipopt::OptionsList& list, bool condensed) {
+  list.SetStringValue("linear_solver", condensed ? "ma27" : "mumps");
+  if (!condensed) return;
+  register_condensed_solver();
+  list.SetStringValue("linear_system_scaling", "none");
+  list.SetNumericValue("ma27_la_init_factor", 1);  // it says exactly what it needs
+  list.SetNumericValue("ma27_liw_init_factor", 1);
+}
+
 void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
   list.SetStringValue("sb", "yes");  // no banner: the library never prints
   list.SetIntegerValue("print_level", 0);
   list.SetStringValue("option_file_name", "");  // nothing is read from the working directory
-  list.SetStringValue("linear_solver", "mumps");
   list.SetStringValue("hessian_approximation", "exact");
   list.SetStringValue("nlp_scaling_method", "none");  // the problems come scaled
   list.SetStringValue("mu_strategy", "monotone");
@@ -201,6 +214,7 @@ NlpSolution solve(const Nlp& nlp, const NlpOptions& options, const Progress& pro
   Ipopt::SmartPtr<Adapter> adapter = new Adapter(nlp, options, progress, stage);
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
   set_options(*application->Options(), options);
+  set_linear_solver(*application->Options(), !options.mumps && !has_equalities(nlp));
   if (application->Initialize("") != Ipopt::Solve_Succeeded)
     fail(ErrorCode::solver, "Ipopt does not start: is its MUMPS linear solver installed?");
   const auto begin = Clock::now();

@@ -1,6 +1,7 @@
 #pragma once
 // A nonlinear program as plain data and functions, and its solution by Ipopt (interior point,
-// filter line search, MUMPS for the linear systems; all options are set in code).
+// filter line search; all options are set in code). Linear systems by condensed_solver.hpp, with
+// equality constraints by MUMPS.
 //   min f(x)   lower <= x <= upper,   constraint_lower <= g(x) <= constraint_upper
 
 #include <Eigen/Core>
@@ -47,6 +48,7 @@ struct NlpOptions {
   double tolerance = 1e-6;             ///< of the optimality conditions
   double start_barrier = 1e-3;         ///< smaller from a start that is nearly right
   double constraint_tolerance = 1e-7;  ///< of g, unscaled
+  bool mumps = false;                  ///< for the linear systems of any program
   /// Kept up to date with the point of least violation seen, for work that is stopped.
   Eigen::VectorXd* least_violating = nullptr;
 };

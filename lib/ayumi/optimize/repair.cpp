@@ -40,7 +40,8 @@ constexpr double kPad = 0.5;    // free time around a finding, doubled when it i
 constexpr double kMarginBetween = 5e-4;     // of the ZMP, for what happens between constraints [m]
 constexpr double kRoundJointMargin = 5e-4;  // [rad]
 constexpr double kRoundShare = 0.004;       // of speed limits and friction
-constexpr double kWarmBarrier = 1e-5;
+constexpr double kWarmBarrier = 1e-5;       // of a start that violates little, where the first
+constexpr double kFarOff = 1e-3;            // barrier would only lead away from it
 constexpr double kKnotsOfFlight = 8;
 constexpr double kRoundMargin = 0.001;  // more ZMP margin each round [m]
 
@@ -270,9 +271,16 @@ class Repair {
     result_.check = check_consistency(model_, judged, options_.check);
   }
 
+  // How much the start of a program violates it.
+  double violation_at_start(const Nlp& nlp) const {
+    const VectorXd g = problem_->constraints(nlp.start);
+    return std::max((nlp.constraint_lower - g).maxCoeff(), (g - nlp.constraint_upper).maxCoeff());
+  }
+
   NlpOptions nlp_options(bool warm) {
     NlpOptions options;
     options.max_iterations = options_.max_iterations;
+    options.mumps = options_.mumps;
     options.least_violating = &least_violating_;
     if (warm) options.start_barrier = kWarmBarrier;
     return options;
@@ -299,8 +307,9 @@ class Repair {
     spec_.current = &current;
     problem_.emplace(model_, series_, spec_);
     const Nlp nlp = problem_->nlp();
-    const NlpSolution solution = solve(nlp, nlp_options(spec_.start.size() > 0), progress_,
-                                       "repair round " + std::to_string(round + 1));
+    const bool warm = spec_.start.size() > 0 && violation_at_start(nlp) < kFarOff;
+    const NlpSolution solution =
+        solve(nlp, nlp_options(warm), progress_, "repair round " + std::to_string(round + 1));
     note_work(nlp, solution);
     last_status_ = solution.status;
     const CorrectionTrack track = problem_->track(solution.x);
@@ -320,7 +329,7 @@ class Repair {
     note_work(soft, solution);
     result_.constraint_violation = violation;
     // The least violating motion there is nearby, and still one too many: nothing passes.
-    if (solution.status == NlpStatus::solved) last_status_ = NlpStatus::infeasible;
+    if (solution.status != NlpStatus::failed) last_status_ = NlpStatus::infeasible;
     take(problem_->track(solution.x.head(problem_->variable_count())));
   }
 

@@ -35,6 +35,7 @@ struct RepairOptions {
   /// none: safe_margin().
   std::optional<double> zmp_margin;
   int max_iterations = 100;  ///< of Ipopt in each round
+  bool mumps = false;        ///< its linear systems by MUMPS, to compare
 };
 
 enum class RepairStatus { already_consistent, repaired, infeasible, not_converged };
