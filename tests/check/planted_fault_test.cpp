@@ -8,7 +8,7 @@
 #include <set>
 
 #include "ayumi/base/version.hpp"
-#include "ayumi/check/consistency.hpp"
+#include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/pattern_table.hpp"
 #include "ayumi/io/robot_file.hpp"
@@ -337,6 +337,40 @@ TEST(PlantedFault, ForceInFlight) {
   const ConsistencyReport r = report_of(p);
   EXPECT_EQ(error_kinds(r), Kinds{"fz_residual"}) << print(r);
   EXPECT_NEAR(first(r, "fz_residual").at, 0.5 * (begin + end), 0.002);
+}
+
+// The limit of moments in flight grows with the robot, unless it was set; then it may be smaller.
+TEST(PlantedFault, MomentsInFlightAreJudgedByTheRobotOrByWhatWasSet) {
+  const CommandSeries series = sample(hoap1(), jump());
+  const int kind = static_cast<int>(Kind::angular_momentum);
+  const double height = series.samples[0].cog.z(), weight = hoap1().mass() * kGravity;
+  CheckOptions options;
+  options.profile = jump().profile;
+  EXPECT_NEAR(tolerances(options, hoap1(), series)[kind], 0.0065 * weight * height, 1e-12);
+  const double used = check_consistency(hoap1(), series, options).summary.max_momentum_rate;
+  ASSERT_GT(used, 0.02);
+  ASSERT_LT(used, 0.0065 * weight * height);
+  options.tolerances["angular_momentum"] = 0.9 * used;
+  const ConsistencyReport r = check_consistency(hoap1(), series, options);
+  EXPECT_EQ(error_kinds(r), Kinds{"angular_momentum"}) << print(r);
+  EXPECT_NEAR(first(r, "angular_momentum").limit, 0.9 * used, 1e-12);
+}
+
+// A ZMP error counts by its moment: where less than a quarter of the weight is to press, the limit
+// is 5 mm times quarter over share.
+TEST(PlantedFault, ZmpErrorsBelowAQuarterOfTheWeight) {
+  const CommandSeries sound = sample(hoap1(), walk());
+  const size_t at = sound.samples.size() / 2;
+  for (const auto& [share, limit] : {std::pair{0.125, 0.010}, {0.25, 0.005}, {0.9, 0.005}}) {
+    for (const double size : {0.9, 1.1}) {
+      CommandSeries series = sound;
+      series.samples[at].fz = share * hoap1().mass() * kGravity;
+      series.samples[at].zmp.x() += size * limit;
+      Kinds expected = {"fz_residual"};
+      if (size > 1) expected.insert("zmp_residual");
+      EXPECT_EQ(error_kinds(check_consistency(hoap1(), series)), expected) << share << " " << size;
+    }
+  }
 }
 
 // Two faults at once, far apart, are two errors.

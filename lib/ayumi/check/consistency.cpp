@@ -18,7 +18,7 @@ CheckPass::CheckPass(const RobotModel& model, const CommandSeries& series,
                      const CheckOptions& options)
     : model(model),
       series(series),
-      tolerance_of(tolerances(options)),
+      tolerance_of(tolerances(options, model, series)),
       friction(options.friction),
       limits(model.limits(options.profile)),
       plan(contact_plan(series)),

@@ -5,6 +5,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
 
 namespace ayumi {
 
@@ -86,6 +87,17 @@ std::array<double, kKindCount> tolerances(const CheckOptions& options) {
            "tolerance '" + name + "': " + text::exact(value) + " is not a finite number");
     result[found - names.begin()] = value;
   }
+  return result;
+}
+
+std::array<double, kKindCount> tolerances(const CheckOptions& options, const RobotModel& model,
+                                          const CommandSeries& series) {
+  constexpr double kMomentShare = 0.0065;
+  std::array<double, kKindCount> result = tolerances(options);
+  double& moment = result[static_cast<int>(Kind::angular_momentum)];
+  if (!options.tolerances.contains("angular_momentum") && !series.samples.empty())
+    moment =
+        std::max(moment, kMomentShare * model.mass() * kGravity * series.samples.front().cog.z());
   return result;
 }
 

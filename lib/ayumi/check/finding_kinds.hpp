@@ -37,4 +37,9 @@ inline constexpr int kKindCount = 21;
 /// a tolerance that is not a finite number.
 std::array<double, kKindCount> tolerances(const CheckOptions& options);
 
+/// The same for a motion of one robot: what a moment in flight turns goes with weight times height,
+/// so that its default limit is at least 0.65 % of that. A limit that was set stays as it is.
+std::array<double, kKindCount> tolerances(const CheckOptions& options, const RobotModel& model,
+                                          const CommandSeries& series);
+
 }  // namespace ayumi

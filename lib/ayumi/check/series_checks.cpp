@@ -9,8 +9,7 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kRefineBelow = 0.010;   // clearance that is worth every sample [m]
-constexpr double kMomentShare = 0.0065;  // of weight times COG height: a moment in flight
+constexpr double kRefineBelow = 0.010;  // clearance that is worth every sample [m]
 
 void note_clearance(CheckPass& pass, int pair, int k, double clearance) {
   pass.summary.min_self_clearance = std::min(pass.summary.min_self_clearance, clearance);
@@ -24,11 +23,7 @@ void note_clearance(CheckPass& pass, int pair, int k, double clearance) {
 
 void check_angular_momentum(CheckPass& pass) {
   constexpr int kMean = 2;  // samples to either side
-  // What a moment turns goes with weight times height: a large robot is not judged by a small
-  // one's.
-  const double size_of_robot = pass.weight * pass.series.samples.front().cog.z();
-  const double limit =
-      std::max(pass.tolerance(Kind::angular_momentum), kMomentShare * size_of_robot);
+  const double limit = pass.tolerance(Kind::angular_momentum);
   const auto flies = [&](int k) {
     return k >= 0 && k < pass.count() && pass.series.samples[k].support == Support::none &&
            !pass.at_flight_edge(k);

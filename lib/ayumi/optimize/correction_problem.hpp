@@ -82,6 +82,8 @@ class CorrectionProblem {
   void place_constraints();
   void place_margins();
   void place_ground_blocks(int instant);
+  void place_flight_block(int instant);
+  Vector6d own_wrench(int sample) const;
   void place_foot_blocks(int instant);
   void soften_landing(int instant, Side side);
   void place_joint_blocks(int instant);

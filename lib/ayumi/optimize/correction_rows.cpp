@@ -88,6 +88,50 @@ void CorrectionProblem::place_margins() {
   }
 }
 
+// What the motion as given asks of the air, about its planned COG, over the weight.
+Vector6d CorrectionProblem::own_wrench(int sample) const {
+  const CommandSample& s = series_.samples[sample];
+  SupportPlane plane;
+  plane.frame.translation() = s.cog;
+  RobotData data(model_);
+  const Vector6d wrench = inverse_dynamics(model_, s.state, s.acceleration, data).head<6>();
+  return plane_wrench(plane, s.state.base.position, wrench) / (model_.mass() * kGravity);
+}
+
+// Nothing pushes in flight: half of what the check allows in each of three axes, or what the motion
+// does by itself where that passes. The check takes a mean of moments, for those of single samples
+// hold the rounding of differences; what a sample is off its mean is not to be mended.
+void CorrectionProblem::place_flight_block(int instant) {
+  constexpr int kMean = 2;  // samples to either side
+  constexpr double kShare = 0.85;
+  const int k = instants_[instant].sample, last = static_cast<int>(series_.samples.size()) - 1;
+  const Vector6d own = own_wrench(k);
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (int i = std::max(0, k - kMean); i <= std::min(last, k + kMean); ++i) {
+    if (series_.samples[i].support != Support::none || at_flight_edge(series_, i)) continue;
+    mean += own_wrench(i).tail<3>();
+    ++count;
+  }
+  if (count > 0) mean /= count;
+  Vector6d kept, offset = Vector6d::Zero(), slack;
+  kept << own.head<3>(), mean;
+  offset.tail<3>() = own.tail<3>() - mean;
+  const double weight = model_.mass() * kGravity;
+  const double most[] = {tolerance(Kind::ballistic) / kGravity,
+                         tolerance(Kind::angular_momentum) / weight};
+  for (int part : {0, 1}) {
+    const double used = kept.segment<3>(3 * part).norm() / most[part];
+    kept.segment<3>(3 * part) *= used > kShare ? 0.0 : 1.0;
+    slack.segment<3>(3 * part).setConstant(0.5 / std::sqrt(3.0) * most[part]);
+  }
+  ConstraintBlock block = block_of(ConstraintGroup::flight, instant, 0, 6);
+  block.wrench_rows = Eigen::Matrix<double, 6, 6>::Identity() / weight;
+  add_block(std::move(block), 0, 0);
+  lower_.tail<6>() = offset + (-slack).cwiseMin(kept);
+  upper_.tail<6>() = offset + slack.cwiseMax(kept);
+}
+
 void CorrectionProblem::place_ground_blocks(int instant) {
   const SupportPlane& plane = instants_[instant].plane;
   const double weight = model_.mass() * kGravity;
@@ -97,13 +141,7 @@ void CorrectionProblem::place_ground_blocks(int instant) {
     add_block(std::move(block), lower, upper);
   };
   if (plane.empty()) {
-    // Half of what the check allows, in each of three axes.
-    const double share = 0.5 / std::sqrt(3.0);
-    add(ConstraintGroup::flight, MatrixXd::Identity(6, 6), 0, 0);
-    const double force = share * tolerance(Kind::ballistic) / kGravity;
-    const double moment = share * tolerance(Kind::angular_momentum) / weight;
-    upper_.tail<6>() << force, force, force, moment, moment, moment;
-    lower_.tail<6>() = -upper_.tail<6>();
+    place_flight_block(instant);
     return;
   }
   MatrixXd rows = support_rows(plane);
@@ -257,7 +295,7 @@ void CorrectionProblem::place_torque_blocks(int instant) {
 
 // Not nearer than the margin, or than the motion comes by itself without meeting.
 void CorrectionProblem::place_clearance_blocks(int instant) {
-  constexpr double kNear = 0.010;    // [m]
+  constexpr double kNear = 0.005;    // [m]
   constexpr double kTouch = 0.0005;  // [m]
   RobotData data(model_);
   for (const int pair : spec_.near_pairs) {

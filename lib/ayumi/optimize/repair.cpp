@@ -41,9 +41,11 @@ constexpr double kMarginBetween = 5e-4;     // of the ZMP, for what happens betw
 constexpr double kRoundJointMargin = 5e-4;  // [rad]
 constexpr double kRoundShare = 0.004;       // of speed limits and friction
 constexpr double kWarmBarrier = 1e-5;       // of a start that violates little, where the first
+constexpr double kNearlyMet = 1e-3;         // an unsolved program's violation, to go on from there
 constexpr double kFarOff = 1e-3;            // barrier would only lead away from it
 constexpr double kKnotsOfFlight = 8;
-constexpr double kRoundMargin = 0.001;  // more ZMP margin each round [m]
+constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
+constexpr double kRoundMargin = 0.001;       // more ZMP margin each round [m]
 
 std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
                                                       double pad) {
@@ -148,7 +150,7 @@ class Repair {
     spec_.weights = weight_factors(model, options.joint_weights);
     spec_.trust = options.trust;
     spec_.collisions = &collisions_;
-    spec_.tolerance = tolerances(options.check);
+    spec_.tolerance = tolerances(options.check, model, series);
     spec_.profile = options.check.profile;
     spec_.friction = options.check.friction;
     const double least = tolerances(options.check)[static_cast<int>(Kind::support_margin)];
@@ -166,6 +168,8 @@ class Repair {
     }
     // COG, ZMP and f_z of the full model: what is left is wrong with the motion itself.
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
+    if (flight_is_at_fault())
+      spec_.spacing = std::min(spec_.spacing, shortest_flight(series_) / kKnotsOfFaultyFlight);
     if (!locked_out()) solve_rounds();
     conclude();
     return result_;
@@ -177,7 +181,8 @@ class Repair {
     double pad = kPad;
     int unsolved = 0;
     // Wider windows help once against a program without a solution; twice was never seen to.
-    for (int round = 0; round < kRounds && !result_.check.consistent && unsolved < 2; ++round) {
+    for (int round = 0; round < kRounds && !done() && unsolved < 2; ++round) {
+      if (result_.check.consistent) passing_ = result_;
       choose_windows(round, pad);
       try {
         solve_round(round);
@@ -198,7 +203,17 @@ class Repair {
       spec_.share -= kRoundShare;
       if (round + 2 == kRounds) spec_.spacing /= 2;
     }
+    if (!result_.check.consistent && passing_) {
+      result_ = *passing_;
+      return;
+    }
     if (!result_.check.consistent && last_status_ != NlpStatus::solved) solve_elastic();
+  }
+
+  // A motion that passes though its program was not solved to the end is looked at once more.
+  bool done() const {
+    constexpr double kMet = 1e-6;
+    return result_.check.consistent && result_.constraint_violation <= kMet;
   }
 
   void choose_windows(int round, double pad) {
@@ -213,13 +228,21 @@ class Repair {
 
   // Pairs of bodies that come near in the motion or in what it has become.
   void watch_clearances() {
-    constexpr double kNear = 0.010;  // [m]
+    constexpr double kNear = 0.005;  // [m]
     std::set<int> near(spec_.near_pairs.begin(), spec_.near_pairs.end());
     scan_clearance(model_, result_.series, collisions_, kNear,
                    [&](int pair, int, double clearance) {
                      if (clearance < kNear) near.insert(pair);
                    });
     spec_.near_pairs.assign(near.begin(), near.end());
+  }
+
+  bool flight_is_at_fault() const {
+    return std::any_of(result_.check.findings.begin(), result_.check.findings.end(),
+                       [](const Finding& f) {
+                         return f.severity == Severity::error &&
+                                (f.kind == "ballistic" || f.kind == "angular_momentum");
+                       });
   }
 
   // A joint that may not move and is beyond its limits, or something wrong at a time that may not
@@ -314,7 +337,11 @@ class Repair {
     last_status_ = solution.status;
     const CorrectionTrack track = problem_->track(solution.x);
     take(track);
-    spec_.start = last_status_ == NlpStatus::solved ? track.coefficients : Eigen::MatrixXd();
+    const bool on_its_way = last_status_ == NlpStatus::iteration_limit;
+    spec_.start =
+        last_status_ == NlpStatus::solved || (on_its_way && solution.violation < kNearlyMet)
+            ? track.coefficients
+            : Eigen::MatrixXd();
     spec_.current = nullptr;
   }
 
@@ -371,6 +398,7 @@ class Repair {
   std::optional<CorrectionProblem> problem_;  // of the last round
   Eigen::VectorXd least_violating_;
   RepairResult result_;
+  std::optional<RepairResult> passing_;  // an earlier one, where the last does not pass
   std::vector<Finding> findings_;
   NlpStatus last_status_ = NlpStatus::failed;
 };
