@@ -286,7 +286,10 @@ void FootholdShift::land() {
   place_ = swing.land;
   rate_ = 1;
   before_ = after_;
-  after_ = target_ = foot_[index(swing.foot)];
+  // After the last step the ZMP ends between the feet.
+  const bool last = coming_ == steps_.size();
+  after_ = last ? Vector2d(0.5 * (foot_[0] + foot_[1])) : foot_[index(swing.foot)];
+  target_ = after_;
   swing_rate_.setZero();
   swing_acceleration_.setZero();
 }
