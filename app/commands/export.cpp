@@ -69,6 +69,10 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
   const Pattern pattern = read_given_pattern(options.input, read_pairs(options.set, "--set"));
   Source source{robot_named(options, robot_of(pattern), context), {}};
   const CommandSeries series = sample(source.model, pattern, {}, context.progress());
+  if (!series.viip.empty())
+    fail(ErrorCode::bad_pattern, options.input +
+                                     ": phases: the pattern has VIIP goals, which it holds still "
+                                     "for: run it (ayumi run), then export the RUN");
   source.reference = open_loop_reference(source.model, series);
   source.reference.provenance = {
       source.model.name(), source.model.description().sha256,         pattern.name,

@@ -103,6 +103,17 @@ TEST_F(Export, UnsafeTablesAreRefused) {
   EXPECT_TRUE(fs::exists(folder.path() / "h.csv"));
 }
 
+TEST_F(Export, GoalsOfViipHaveNoTableUntilTheyAreRun) {
+  write(folder.path() / "v.json", R"({ "format": "ayumi.pattern/1", "name": "v", "robot": "hoap1",
+    "phases": [{ "until": 1, "viip": { "cog": [0.01, 0, 0] } }],
+    "controller": { "type": "viip" } })");
+  const Output output = ayumi({"v.json", "--format", "hoap", "-o", "v.csv"});
+  EXPECT_EQ(output.exit_code, 3);
+  EXPECT_NE(output.err.find("v.json: phases: the pattern has VIIP goals"), std::string::npos)
+      << output.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "v.csv"));
+}
+
 TEST_F(Export, ParametersAndExistingFiles) {
   ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--set", "lifted=70"}).exit_code, 0);
   const Output again = ayumi({"p.json", "--format", "csv", "-o", "a.csv"});

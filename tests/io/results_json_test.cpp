@@ -64,6 +64,10 @@ TEST(ResultsJson, SimulationHasTheKeysOfTheCommandLine) {
   json = Json::parse(simulation_json(log));
   EXPECT_EQ(json.at("outcome"), "stands");
   EXPECT_TRUE(json.at("fell_at_s").is_null());
+  EXPECT_TRUE(json.at("apex_m").is_null());
+  log.result.flight = 0.2;
+  log.result.apex = 0.03;
+  EXPECT_EQ(Json::parse(simulation_json(log)).at("apex_m"), 0.03);
 }
 
 TEST(ResultsJson, SafetyNamesEveryViolation) {

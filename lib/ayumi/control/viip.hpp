@@ -25,7 +25,7 @@ struct ViipParams {
   double both = 0.4;      ///< of a double support, times 1/omega
   double lift = 0.09;     ///< of the swing sole, times z
   double reach = 0.5;     ///< largest departure from a nominal foothold, times z
-  double inside = 0.045;  ///< nominal ZMP, from the sole's centre to the other foot, times z
+  double inside = 0.05;   ///< nominal ZMP, from the sole's centre to the other foot, times z
   double hold = 0.5;      ///< share of a foot's error of place taken back by the next step
   bool feedback = true;   ///< false: the reference pendulum alone, a demonstration
 };

@@ -88,7 +88,7 @@ std::string simulation_json(const SimulationLog& log) {
                   {"final_speed_m_s", figure(r.final_speed)},
                   {"zmp_tracking_rms_m", figure(r.zmp_tracking_rms)},
                   {"flight_s", figure(r.flight)},
-                  {"apex_m", figure(r.apex)},
+                  {"apex_m", figure(r.apex, r.flight > 0)},
                   {"steps", r.steps},
                   {"max_joint_speed_ratio", figure(r.max_speed_ratio)},
                   {"max_torque_ratio", figure(r.max_torque_ratio)},

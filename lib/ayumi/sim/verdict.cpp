@@ -21,6 +21,7 @@ constexpr double kRestTilt = 0.2;          // [rad]
 constexpr double kRestError = 0.09;        // times z
 constexpr double kRestSpeed = 0.054;       // times omega z
 constexpr double kTouchShare = 0.05;       // of the weight: a foot is on the ground
+constexpr double kFlight = 0.04;           // of the robot: what is shorter is a rebound [s]
 constexpr double kMinFlightOfFoot = 0.03;  // off the ground before a touchdown counts [s]
 
 /// Rigid motion that takes the planned soles onto the real ones and the level ground of the plan
@@ -66,7 +67,6 @@ const char* name_of(Outcome outcome) {
 Judge::Judge(const RobotModel& model, const ActuatorLimits& limits, const World& world)
     : model_(&model), limits_(limits) {
   ground_.linear() = exp_rotation({world.slope.x(), world.slope.y(), 0}).toRotationMatrix();
-  result_.apex = -1e9;
   events_.reserve(64);  // of a usual run: a tick is not to allocate
 }
 
@@ -81,7 +81,6 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
     r.max_tilt = std::max(r.max_tilt, tilt);
     // In flight the command rises too: what counts is the height it left the ground with.
     if (command.support != Support::none) level_ = command.cog.z();
-    r.apex = std::max(r.apex, sample.cog.z() - level_);
     r.max_penetration = std::max(r.max_penetration, report.max_penetration);
     r.max_contact_residual = std::max(r.max_contact_residual, report.contact_residual);
     r.max_contact_iterations = std::max(r.max_contact_iterations, report.contact_iterations);
@@ -96,10 +95,15 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
     if (sample.fz > kTouchShare * weight) {
       zmp_square_sum_ += (sample.measured_zmp - sample.reference_zmp).head<2>().squaredNorm();
       ++zmp_count_;
-      airborne_ = 0;
+      airborne_ = flight_apex_ = 0;
     } else {
+      const bool counted = airborne_ > kFlight;
       airborne_ += dt;
-      r.flight += dt;
+      flight_apex_ = std::max(flight_apex_, sample.cog.z() - level_);
+      if (airborne_ > kFlight) {
+        r.flight += counted ? dt : airborne_;
+        r.apex = std::max(r.apex, flight_apex_);
+      }
     }
     observe_feet(t, command, truth, report, dt);
   }

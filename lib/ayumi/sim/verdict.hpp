@@ -45,6 +45,7 @@ class Judge {
   long ticks_ = 0;
   double level_ = 0;                         // commanded COG height, in flight that of lift-off [m]
   double airborne_ = 0;                      // of the present flight [s]
+  double flight_apex_ = 0;                   // of the present flight, above level_ [m]
   std::array<double, 2> unloaded_ = {0, 0};  // time each foot has been off the ground [s]
   std::array<bool, 2> in_stance_ = {false, false};
   std::array<Eigen::Vector3d, 2> stance_start_;  // in the floor's frame [m]
