@@ -12,7 +12,7 @@ fi
 out=${1:-out/hoap1_jump}
 "$ayumi" simulate patterns/hoap1_jump.json -o "$out" --force
 "$ayumi" plot "$out" -o "$out/fig10_loci.svg" --force
-"$ayumi" preview "$out" -o "$out/fig9_snapshots.png" --strip 12 --from 0.5 --to 2.2 --columns 6 --view side \
+"$ayumi" preview "$out" -o "$out/fig9_snapshots.png" --strip 12 --from 1.0 --to 1.77 --columns 6 --view side \
   --size 320x360 --force
 "$ayumi" preview "$out" -o "$out/jump.mp4" --speed 0.2 --force
 echo "Figures in $out"
