@@ -11,23 +11,23 @@ namespace ayumi {
 
 /// Dimensionless: rates in units of omega = sqrt(g / z), lengths in units of the COG height z.
 struct ViipParams {
-  double q = 0.75;        ///< second pole of the standing regulator
-  double goal = 0.3;      ///< time constant of each of two lags of a displacement, times 1/omega
-  double ka = 2;          ///< short-term loop on the measured ZMP
-  double av = 3;          ///< leak of the reference velocity to the measured one
-  double ax = 1;          ///< leak of the reference COG to the measured one
-  double tau_z = 0.066;   ///< low-pass of the measured ZMP, times 1/omega
-  double margin = 0.01;   ///< kept inside the support polygon, times z
-  double kz = 1.5;        ///< sqrt(K_Pz / m) of (24), times omega
-  double dz = 1;          ///< K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
-  double ankle = 0.5;     ///< share of the stance foot's tilt taken back at the ankle
-  double single = 1.7;    ///< length of a single support, times 1/omega
-  double both = 0.4;      ///< of a double support, times 1/omega
-  double lift = 0.09;     ///< of the swing sole, times z
-  double reach = 0.5;     ///< largest departure from a nominal foothold, times z
-  double inside = 0.05;   ///< nominal ZMP, from the sole's centre to the other foot, times z
-  double hold = 0.5;      ///< share of a foot's error of place taken back by the next step
-  bool feedback = true;   ///< false: the reference pendulum alone, a demonstration
+  double q = 0.75;       ///< second pole of the standing regulator
+  double goal = 0.3;     ///< time constant of each of two lags of a displacement, times 1/omega
+  double ka = 2;         ///< short-term loop on the measured ZMP
+  double av = 3;         ///< leak of the reference velocity to the measured one
+  double ax = 1;         ///< leak of the reference COG to the measured one
+  double tau_z = 0.066;  ///< low-pass of the measured ZMP, times 1/omega
+  double margin = 0.01;  ///< kept inside the support polygon, times z
+  double kz = 1.5;       ///< sqrt(K_Pz / m) of (24), times omega
+  double dz = 1;         ///< K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
+  double ankle = 0.5;    ///< share of the stance foot's tilt taken back at the ankle
+  double single = 1.7;   ///< length of a single support, times 1/omega
+  double both = 0.4;     ///< of a double support, times 1/omega
+  double lift = 0.09;    ///< of the swing sole, times z
+  double reach = 0.5;    ///< largest departure from a nominal foothold, times z
+  double inside = 0.05;  ///< nominal ZMP, from the sole's centre to the other foot, times z
+  double hold = 0.5;     ///< share of a foot's error of place taken back by the next step
+  bool feedback = true;  ///< false: the reference pendulum alone, a demonstration
 };
 
 /// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
