@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "equations.hpp"
 #include "pattern_input.hpp"
+#include "run_robot.hpp"
 
 namespace ayumi::app {
 
@@ -85,10 +86,10 @@ Numbers numbers_of(const Context& context, const Equation& e, const Options& opt
   if (place.t < 0 || place.t > end + 0.5 * log.dt)
     fail(ErrorCode::usage, "explain: t = " + text::brief(place.t) + " s is outside the run (0 to " +
                                text::fixed(end, 3) + " s)");
-  const std::string robot = options.robot.empty() ? log.provenance.robot : options.robot;
-  const RobotModel model = load_robot(robot, robot_search(context));
+  const RobotModel model = robot_of_run(context, options.robot, log.provenance.robot);
   if (model.dof_names() != log.joints)
-    fail(ErrorCode::usage, place.run + ": was made with other joints than those of " + robot);
+    fail(ErrorCode::usage,
+         place.run + ": was made with other joints than those of " + model.name());
   ControllerSpec spec;
   for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
     spec.gains.emplace_back(name, value);

@@ -20,6 +20,7 @@
 #include "ayumi/sim/simulate.hpp"
 #include "commands.hpp"
 #include "pattern_input.hpp"
+#include "run_robot.hpp"
 
 namespace ayumi::app {
 
@@ -61,13 +62,14 @@ ReferenceTrajectory open_loop_reference(const RobotModel& model, const CommandSe
 /// The robot asked for, else `recorded`; with meshes where they are drawn.
 RobotModel robot_named(const ExportOptions& options, const std::string& recorded,
                        const Context& context) {
-  return load_robot(options.robot.empty() ? recorded : options.robot, robot_search(context),
-                    {.meshes = options.format == "gltf"});
+  return robot_of_run(context, options.robot, recorded, {.meshes = options.format == "gltf"});
 }
 
 Source source_of_pattern(const ExportOptions& options, const Context& context) {
   const Pattern pattern = read_given_pattern(options.input, read_pairs(options.set, "--set"));
-  Source source{robot_named(options, robot_of(pattern), context), {}};
+  Source source{load_robot(options.robot.empty() ? robot_of(pattern) : options.robot,
+                           robot_search(context), {.meshes = options.format == "gltf"}),
+                {}};
   const CommandSeries series = sample(source.model, pattern, {}, context.progress());
   if (!series.viip.empty())
     fail(ErrorCode::bad_pattern, options.input +
@@ -96,8 +98,7 @@ ReferenceTrajectory reference_of_run(const ExportOptions& options, const Context
   if (options.log.empty() && fs::exists(fs::path(options.input) / "reference.csv"))
     return read_reference(fs::path(options.input) / "reference.csv");
   const SimulationLog log = read_run_log(options.input, options.log);
-  const RobotModel model = load_robot(options.robot.empty() ? log.provenance.robot : options.robot,
-                                      robot_search(context));
+  const RobotModel model = robot_of_run(context, options.robot, log.provenance.robot);
   return extract_reference(model, log);
 }
 

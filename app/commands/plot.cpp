@@ -11,6 +11,7 @@
 #include "ayumi/io/run_folder.hpp"
 #include "ayumi/preview/loci.hpp"
 #include "commands.hpp"
+#include "run_robot.hpp"
 
 namespace ayumi::app {
 
@@ -66,10 +67,10 @@ std::vector<LabelledLog> logs_of(const PlotOptions& options) {
 }
 
 // The robot for the panel of the margin, which a plot can do without.
-std::optional<RobotModel> robot_at_hand(const std::string& robot, const PlotOptions& options,
+std::optional<RobotModel> robot_at_hand(const std::string& recorded, const PlotOptions& options,
                                         const Context& context) {
   try {
-    return load_robot(robot, robot_search(context));
+    return robot_of_run(context, options.robot, recorded);
   } catch (const Error& error) {
     if (!options.robot.empty()) throw;
     context.print(std::string("no panel of the ZMP margin: ") + error.what() + "\n");
@@ -84,15 +85,14 @@ void plot(const PlotOptions& options, Context& context) {
   std::vector<LociRun> runs;
   for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});
   if (runs.empty()) fail(ErrorCode::usage, "plot: the run holds no logs");
-  const std::string robot =
-      options.robot.empty() ? logs.back().log.provenance.robot : options.robot;
+  const std::string& recorded = logs.back().log.provenance.robot;
   std::vector<std::string> series;
   if (options.top) {
-    write_support_plot(load_robot(robot, robot_search(context)), runs, options.output,
+    write_support_plot(robot_of_run(context, options.robot, recorded), runs, options.output,
                        options.loci);
     series = {"COG x, y [m]", "ZMP x, y [m]", "footholds [m]"};
   } else {
-    const std::optional<RobotModel> model = robot_at_hand(robot, options, context);
+    const std::optional<RobotModel> model = robot_at_hand(recorded, options, context);
     LociOptions loci = options.loci;
     if (model) loci.model = &*model;
     write_loci(runs, options.output, loci);

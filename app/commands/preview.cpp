@@ -16,6 +16,7 @@
 #include "ayumi/preview/log_reading.hpp"
 #include "ayumi/preview/strip.hpp"
 #include "preview_batch.hpp"
+#include "run_robot.hpp"
 
 namespace ayumi::app {
 
@@ -123,8 +124,8 @@ ClipSummary write_glb(const RobotModel& model, const SimulationLog& log, const f
 ClipSummary draw_run(const PreviewOptions& options, const std::string& input, const fs::path& path,
                      int threads, const Context& context, const Progress& progress) {
   const SimulationLog log = read_run_log(input, options.log);
-  const RobotModel model = load_robot(options.robot.empty() ? log.provenance.robot : options.robot,
-                                      robot_search(context), {.meshes = true});
+  const RobotModel model =
+      robot_of_run(context, options.robot, log.provenance.robot, {.meshes = true});
   PreviewOptions own = options;
   own.clip.threads = threads;
   std::optional<SimulationLog> ghost;
@@ -181,8 +182,8 @@ void preview_one(const PreviewOptions& options, Context& context) {
 /// A tile of the contact sheet: the instant worth showing, named after its run.
 Image sheet_tile(const PreviewOptions& options, const std::string& input, const Context& context) {
   const SimulationLog log = read_run_log(input, options.log);
-  const RobotModel model = load_robot(options.robot.empty() ? log.provenance.robot : options.robot,
-                                      robot_search(context), {.meshes = true});
+  const RobotModel model =
+      robot_of_run(context, options.robot, log.provenance.robot, {.meshes = true});
   ClipOptions clip = options.clip;
   clip.picture.width = 480;
   clip.picture.height = 270;

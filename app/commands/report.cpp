@@ -7,6 +7,7 @@
 #include "ayumi/base/file.hpp"
 #include "pattern_input.hpp"
 #include "report_input.hpp"
+#include "run_robot.hpp"
 
 namespace ayumi::app {
 
@@ -36,8 +37,8 @@ void report_run(Options options, Context& context) {
   const std::string push =
       options.push.empty() ? (fs::path(options.input) / "push.json").string() : options.push;
   if (!options.push.empty() || fs::exists(push)) input.thresholds = read_push_thresholds(push);
-  const RobotModel model = load_robot(options.robot.empty() ? run.provenance.robot : options.robot,
-                                      robot_search(context), {.meshes = true});
+  const RobotModel model =
+      robot_of_run(context, options.robot, run.provenance.robot, {.meshes = true});
   const Report made = make_report(model, input, options.report, context.progress());
   write_file(options.output, made.html);
   context.print(options.output + ": " + std::to_string(made.html.size() / 1000) + " kB\n");

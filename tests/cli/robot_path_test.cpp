@@ -22,6 +22,15 @@ TEST(RobotPath, HoldsFromTheWorkingFolderWhereverThePatternIsWritten) {
   ayumi({"simulate", "patterns/stand.json", "-o", "run"});
   ayumi({"plot", "run", "-o", "loci.svg"});
   ayumi({"preview", "run", "--size", "64x48", "-o", "a.png"});
+
+  const Output lost =
+      run_program({"preview", "../run", "--size", "64x48", "-o", "b.png"}, folder / "mine");
+  EXPECT_EQ(lost.exit_code, 3) << "seen from here, patterns/../mine is not there";
+  EXPECT_NE(lost.err.find("name it by --robot"), std::string::npos) << lost.err;
+  EXPECT_EQ(run_program({"preview", "../run", "--robot", ".", "--size", "64x48", "-o", "b.png"},
+                        folder / "mine")
+                .exit_code,
+            0);
 }
 
 }  // namespace

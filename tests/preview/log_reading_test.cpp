@@ -36,6 +36,17 @@ TEST(LogReading, APushIsFoundWithItsValue) {
   EXPECT_EQ(push_text(pushes(log)[1]), "5 N") << "a long one by its force";
 }
 
+TEST(LogReading, ThePushOrTheFallIsWorthShowing) {
+  SimulationLog log = test::box_run(test::box_robot());
+  log.result.outcome = Outcome::fell;
+  log.result.fell_at = 0.8;
+  EXPECT_NEAR(telling_instant(log), 0.55, 1e-12);
+  for (SimulationSample& sample : log.samples) sample.push_force.setZero();
+  EXPECT_NEAR(telling_instant(log), 0.8, 1e-12);
+  log.result.outcome = Outcome::stands;
+  EXPECT_NEAR(telling_instant(log), 0.5, 1e-12);
+}
+
 TEST(LogReading, TheGroundIsTheSlopeWithEveryMotionOfTheFloor) {
   SimulationLog log = test::box_run(test::box_robot());
   log.world.slope = {0.1, 0};

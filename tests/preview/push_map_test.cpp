@@ -64,6 +64,12 @@ TEST(PushMap, SaysWhatItShows) {
     }
 }
 
+TEST(PushMap, LongRemarksFit) {
+  PushMap map = four_directions();
+  map.remarks.push_back(std::string(200, 'x'));
+  EXPECT_GT(draw_push_map(map).width, text_width(map.remarks.back(), 11));
+}
+
 TEST(PushMap, RefusesWhatItCannotDraw) {
   const auto message = [](const PushMap& map) -> std::string {
     try {

@@ -120,7 +120,8 @@ std::string push_text(const PushRecord& push) {
 double telling_instant(const SimulationLog& log) {
   const std::vector<PushRecord> pushed = pushes(log);
   const double last = duration(log);
-  return pushed.empty() ? 0.5 * last : std::min(last, pushed.front().begin + 0.25);
+  if (!pushed.empty()) return std::min(last, pushed.front().begin + 0.25);
+  return log.result.outcome == Outcome::fell ? std::min(last, log.result.fell_at) : 0.5 * last;
 }
 
 }  // namespace ayumi

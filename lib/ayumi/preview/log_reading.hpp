@@ -44,7 +44,8 @@ std::vector<PushRecord> pushes(const SimulationLog& log);
 /// Its value for people: "1.1 N s" for a short push (up to 0.2 s), "12 N" for a long one.
 std::string push_text(const PushRecord& push);
 
-/// The instant worth showing first: shortly after the first push, or the middle [s].
+/// The instant worth showing first: shortly after the first push, without one the fall, else the
+/// middle [s].
 double telling_instant(const SimulationLog& log);
 
 }  // namespace ayumi

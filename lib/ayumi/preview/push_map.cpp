@@ -177,6 +177,9 @@ Drawing draw_push_map(const PushMap& map) {
   const size_t rows = (map.phases.size() + columns - 1) / columns;
   Drawing drawing;
   drawing.width = std::max(2 * kSide + kPanel * static_cast<double>(columns), 620.0);
+  for (const std::string& remark : map.remarks)
+    drawing.width = std::max(drawing.width, 2 * kSide + text_width(remark, 11));
+  drawing.width = std::max(drawing.width, 2 * kSide + text_width(map.title, 15, true));
   drawing.height = kHead + kPanel * static_cast<double>(rows) +
                    kRemark * static_cast<double>(map.remarks.size()) + kSide;
   drawing.title = map.title;
