@@ -9,6 +9,7 @@
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/io/urdf.hpp"
 #include "ayumi/sim/plant.hpp"
+#include "tests/support/block.hpp"
 #include "tests/support/odd_urdf.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -115,7 +116,7 @@ TEST(MeshOnTheGround, LiesWhereItsShapeIs) {
         "<collision><origin xyz='0 0 0.01' rpy='1.5707963267948966 0 0'/><geometry><mesh "
         "filename='" +
             name + "' scale='0.001 0.001 0.001'/></geometry></collision></link></robot>");
-    const RobotModel model = load_robot(urdf, {}, {.meshes = true});
+    const RobotModel model = load_robot(urdf);
     // Turned by a right angle about x, it stands on its long narrow side, 100 mm high.
     Plant plant(model, model.limits(), World{.friction = 0.6, .slope = {0.1, 0}});
     RobotState s = model.rest_state();
@@ -129,6 +130,75 @@ TEST(MeshOnTheGround, LiesWhereItsShapeIs) {
     EXPECT_LT(place.head<2>().cwiseAbs().maxCoeff(), 0.301) << name;
     EXPECT_LT(plant.state().base_velocity.norm(), 1e-9) << name;
     EXPECT_LT(plant.state().base_angular_velocity.norm(), 1e-9) << name;
+  }
+}
+
+// A mesh touches with its corners, not with those of a box around it.
+TEST(MeshOnTheGround, AnOctahedronLiesOnItsFace) {
+  RobotDescription d = test::block_description({0.1, 0.1, 0.1}, 1.0);
+  MeshShape octahedron;
+  octahedron.mesh.parts.resize(1);
+  const float reach = 0.1f;
+  for (int k = 0; k < 3; ++k)
+    for (const float side : {-reach, reach})
+      octahedron.mesh.parts[0].vertices.push_back(side * Eigen::Vector3f::Unit(k));
+  d.links[0].collisions[0].shape = octahedron;
+  const RobotModel model(d);
+  Plant plant(model, model.limits(), World{.friction = 0.5});
+  RobotState s = model.rest_state();
+  s.base.attitude =
+      Eigen::Quaterniond::FromTwoVectors(Vector3d(1, 1, 1).normalized(), Vector3d(0, 0, -1));
+  s.base.position.z() = 0.06;
+  plant.set_state(s);
+  for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, 1e-3);
+  EXPECT_NEAR(plant.state().base.position.z(), 0.1 / std::sqrt(3.0), 1e-6);
+  EXPECT_LT(plant.state().base.position.head<2>().norm(), 1e-6);
+  EXPECT_LT(plant.state().base_angular_velocity.norm(), 1e-9);
+}
+
+// Balls, capsules and cylinders roll down by g sin / (1 + k), k = I / (m r^2), without slipping.
+TEST(RollingDown, FollowsTheInertia) {
+  const double r = 0.05, slope = 0.1, mass = 2;
+  const std::pair<Shape, double> cases[] = {
+      {Sphere{r}, 0.4}, {Capsule{r, 0.2}, 0.5}, {Cylinder{r, 0.2}, 0.5}, {Cylinder{r, 0.01}, 0.5}};
+  for (const auto& [shape, k] : cases) {
+    RobotDescription d = test::block_description({r, r, r}, mass);
+    d.links[0].inertia.about_com = k * mass * r * r * Eigen::Matrix3d::Identity();
+    d.links[0].collisions[0].shape = shape;
+    d.links[0].collisions[0].pose.linear() = exp_rotation({M_PI / 2, 0, 0}).toRotationMatrix();
+    const RobotModel model(d);
+    Plant plant(model, model.limits(), World{.friction = 0.8, .slope = {0, slope}});
+    RobotState s = model.rest_state();
+    s.base.attitude = exp_rotation({0, slope, 0});
+    s.base.position = s.base.attitude * Vector3d(0, 0, r);
+    plant.set_state(s);
+    for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, 1e-3);
+    const double way = (plant.state().base.position - s.base.position).norm();
+    const double expected = 0.5 * kGravity * std::sin(slope) / (1 + k);
+    EXPECT_NEAR(way, expected, 0.005 * expected) << shape.index();
+    EXPECT_NEAR(plant.state().base_velocity.norm(), r * plant.state().base_angular_velocity.y(),
+                1e-6);
+  }
+}
+
+// On its end it stands, and tips over the rim's corner.
+TEST(RollingDown, ACylinderStandsOnItsEnd) {
+  RobotDescription d = test::block_description({0.1, 0.1, 0.2}, 1.0);
+  d.links[0].collisions[0].shape = Cylinder{0.05, 0.2};
+  const RobotModel model(d);
+  for (const double share : {0.9, 1.1}) {
+    const double slope = share * std::atan(0.05 / 0.1);
+    Plant plant(model, model.limits(), World{.friction = 5.0, .slope = {0, slope}});
+    RobotState s = model.rest_state();
+    s.base.attitude = exp_rotation({0, slope, 0});
+    s.base.position = s.base.attitude * Vector3d(0, 0, 0.1);
+    plant.set_state(s);
+    for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, 1e-3);
+    const double turned = plant.state().base.attitude.angularDistance(s.base.attitude);
+    if (share < 1)
+      EXPECT_LT(turned, 1e-4);  // its corner gives way by a micrometre
+    else
+      EXPECT_GT(turned, 0.5);
   }
 }
 

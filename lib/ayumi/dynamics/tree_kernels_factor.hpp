@@ -13,7 +13,7 @@ bool factor_rows(const Paths& paths, double* rows, double* inverse) {
     const double pivot = row[depth];
     if (!(pivot > 0)) return false;
     const double root = __builtin_sqrt(pivot);
-    inverse[k] = 1.0 / root;
+    inverse[k] = root * (1.0 / pivot);  // neither waits for the other
     for (int t = 0; t < depth; t += 4) store_four(row + t, inverse[k] * load_four(row + t));
     row[depth] = root;
     for (int i = paths.parent[k], t = depth - 1; t >= 0; i = paths.parent[i], --t) {

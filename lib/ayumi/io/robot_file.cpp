@@ -47,7 +47,8 @@ fs::path find_file(const std::string& name, const RobotSearch& search) {
                                 text::suggestion(name, known));
 }
 
-void fill_meshes(RobotDescription& robot) {
+// What the robot touches with is always read; what it looks like only where it is drawn.
+void fill_meshes(RobotDescription& robot, bool visuals) {
   std::map<std::string, TriangleMesh> loaded;
   const auto fill = [&](std::vector<PlacedShape>& shapes, const std::string& link) {
     for (PlacedShape& placed : shapes) {
@@ -64,7 +65,7 @@ void fill_meshes(RobotDescription& robot) {
     }
   };
   for (LinkDescription& link : robot.links) {
-    fill(link.visuals, link.name);
+    if (visuals) fill(link.visuals, link.name);
     fill(link.collisions, link.name);
   }
 }
@@ -91,7 +92,7 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
   const fs::path file = find_file(name_or_path, search);
   const bool sidecar = file.extension() != ".urdf";
   RobotDescription robot = sidecar ? read_sidecar(file, search.folders) : read_urdf(file);
-  if (options.meshes) fill_meshes(robot);
+  fill_meshes(robot, options.meshes);
   std::error_code ignored;
   if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))
     robot.assumptions.push_back("the " + std::string(kSidecarName) +

@@ -23,6 +23,8 @@ struct MujocoPlant::Impl {
         world(ground_world),
         ground(ground_world),
         points(contact_points(robot)) {
+    // Its points are small balls, fixed to their bodies: a cylinder rolls on its eight corners.
+    std::erase_if(points, [](const ContactPoint& point) { return point.rim > 0; });
     build(false);
   }
   Impl(const Impl& o)

@@ -14,16 +14,48 @@ namespace {
 
 constexpr double kStaticSink = 1e-7;  // of a body on four of its points [m]
 
-/// Points of a body that may touch the ground besides the soles.
-std::vector<std::pair<Vector3d, double>> touch_points(const PlacedShape& placed) {
-  std::vector<std::pair<Vector3d, double>> points;
-  auto add = [&](const Vector3d& p, double radius) { points.push_back({placed.pose * p, radius}); };
-  auto add_box = [&](const Vector3d& low, const Vector3d& high) {
-    for (int k = 0; k < 8; ++k)
-      add({k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z()}, 0);
+constexpr size_t kMeshPoints = 32;  // a mesh of no more vertices touches with all of them
+constexpr int kDirections = 90;
+
+/// The vertices of a mesh that are farthest out in directions spread over the sphere; all of a
+/// small one.
+std::vector<Vector3d> outer_vertices(const TriangleMesh& mesh) {
+  std::vector<Vector3d> all, result;
+  for (const MeshPart& part : mesh.parts)
+    for (const Eigen::Vector3f& v : part.vertices) all.push_back(v.cast<double>());
+  const auto before = [](const Vector3d& a, const Vector3d& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  const auto sort_out = [&](std::vector<Vector3d>& points) {
+    std::sort(points.begin(), points.end(), before);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+  };
+  sort_out(all);
+  if (all.size() <= kMeshPoints) return all;
+  for (int i = 0; i < kDirections; ++i) {  // a spiral from pole to pole
+    const double z = 1 - (2 * i + 1.0) / kDirections, turn = M_PI * (3 - std::sqrt(5.0)) * i;
+    const double r = std::sqrt(1 - z * z);
+    const Vector3d out(r * std::cos(turn), r * std::sin(turn), z);
+    result.push_back(*std::max_element(all.begin(), all.end(), [&](const auto& p, const auto& q) {
+      return p.dot(out) < q.dot(out);
+    }));
+  }
+  sort_out(result);
+  return result;
+}
+
+/// Points of a body that may touch the ground besides the soles, in the frame of the link.
+std::vector<ContactPoint> touch_points(const PlacedShape& placed) {
+  std::vector<ContactPoint> points;
+  const auto add = [&](const Vector3d& p, double radius) {
+    points.push_back({.position = placed.pose * p, .radius = radius});
   };
   if (const auto* box = std::get_if<Box>(&placed.shape)) {
-    add_box(-0.5 * box->size, 0.5 * box->size);
+    const Vector3d half = 0.5 * box->size;
+    for (int k = 0; k < 8; ++k)
+      add({k & 1 ? half.x() : -half.x(), k & 2 ? half.y() : -half.y(),
+           k & 4 ? half.z() : -half.z()},
+          0);
   } else if (const auto* sphere = std::get_if<Sphere>(&placed.shape)) {
     add(Vector3d::Zero(), sphere->radius);
   } else if (const auto* capsule = std::get_if<Capsule>(&placed.shape)) {
@@ -34,14 +66,13 @@ std::vector<std::pair<Vector3d, double>> touch_points(const PlacedShape& placed)
       const double z = (k % 2 - 0.5) * cylinder->length;
       add({cylinder->radius * std::cos(a), cylinder->radius * std::sin(a), z}, 0);
     }
+    for (double s : {-0.5, 0.5}) {
+      add({0, 0, s * cylinder->length}, 0);
+      points.back().rim = cylinder->radius;
+      points.back().axis = placed.pose.linear().col(2);
+    }
   } else if (const auto* mesh = std::get_if<MeshShape>(&placed.shape)) {
-    Vector3d low = Vector3d::Constant(1e30), high = -low;
-    for (const MeshPart& part : mesh->mesh.parts)
-      for (const Eigen::Vector3f& v : part.vertices) {
-        low = low.cwiseMin(v.cast<double>());
-        high = high.cwiseMax(v.cast<double>());
-      }
-    if (low.x() <= high.x()) add_box(low, high);
+    for (const Vector3d& vertex : outer_vertices(mesh->mesh)) add(vertex, 0);
   }
   return points;
 }
@@ -75,11 +106,10 @@ std::vector<ContactPoint> contact_points(const RobotModel& model) {
                                             link.body == model.sole(Side::right).body);
     for (const PlacedShape& shape : link.collisions) {
       if (foot) continue;
-      for (const auto& [position, radius] : touch_points(shape)) {
-        ContactPoint point;
+      for (ContactPoint point : touch_points(shape)) {
         point.body = link.body;
-        point.position = link.pose * position;
-        point.radius = radius;
+        point.position = link.pose * point.position;
+        point.axis = link.pose.linear() * point.axis;
         point.stiffness = body_stiffness(model);
         point.damping_time = kBodyDamping;
         points.push_back(point);
@@ -100,8 +130,8 @@ std::vector<PointGroup> group_points(const std::vector<ContactPoint>& points) {
     const ContactPoint* first = &points[static_cast<size_t>(group.first)];
     for (int i = 0; i < group.count; ++i) group.center += first[i].position / group.count;
     for (int i = 0; i < group.count; ++i)
-      group.radius =
-          std::max(group.radius, (first[i].position - group.center).norm() + first[i].radius);
+      group.radius = std::max(
+          group.radius, (first[i].position - group.center).norm() + first[i].radius + first[i].rim);
   }
   return groups;
 }

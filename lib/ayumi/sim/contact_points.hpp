@@ -12,11 +12,15 @@ namespace ayumi {
 /// A point with its spring.
 struct ContactPoint {
   int body = 0;
-  Eigen::Vector3d position;    ///< body frame [m]
-  double radius = 0;           ///< of a sphere around it [m]
-  double stiffness = 0;        ///< [N/m]
-  double damping_time = 0;     ///< [s]
-  int side = -1, vertex = -1;  ///< of a sole, else -1
+  Eigen::Vector3d position;  ///< body frame [m]
+  double radius = 0;         ///< of a sphere around it [m]
+  /// Of a circle around it, whose lowest point is the one that touches [m]: an end of a cylinder
+  /// that rolls. Where the circle lies level no point is the lowest, and others hold the cylinder.
+  double rim = 0;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of that circle, body frame
+  double stiffness = 0;                            ///< [N/m]
+  double damping_time = 0;                         ///< [s]
+  int side = -1, vertex = -1;                      ///< of a sole, else -1
 };
 
 /// Consecutive points of one body and a sphere around them, body frame.
@@ -27,7 +31,9 @@ struct PointGroup {
 };
 
 /// Soles first (left, right, in the order of their polygons), then the collision shapes of all
-/// links that are not part of a foot.
+/// links that are not part of a foot: corners of boxes, spheres, ends of capsules, eight corners
+/// and the rim of a cylinder's ends, vertices of meshes (of large ones those farthest out in 90
+/// directions).
 std::vector<ContactPoint> contact_points(const RobotModel& model);
 
 /// Spring of a point of a body that is no sole: almost rigid.

@@ -191,15 +191,25 @@ bool ContactSolver::newton_step() {
   const int rows = 3 * static_cast<int>(closed_.size());
   Vector u(store_[6].data(), 3 * n_);
   u = b();
-  kernels_->multiply_add(matrix.data(), 3 * n_, 3 * n_, 3 * n_, l.data(), u.data());
-  bool all_stick = true;
+  bool all_stick = rows == 3 * n_;
   for (int i : closed_)
-    all_stick = all_stick && sticks(i, l.segment<3>(3 * i), u.segment<3>(3 * i));
-  if (!(all_stick && stick_together(rows)) && !stick_and_slide(rows)) return false;
+    all_stick = all_stick && inside_cone(l.segment<3>(3 * i), friction_[static_cast<size_t>(i)]);
+  const bool from_zero = all_stick;  // it is A l = -b, wherever l is now
+  if (!from_zero) {
+    kernels_->multiply_add(matrix.data(), 3 * n_, 3 * n_, 3 * n_, l.data(), u.data());
+    all_stick = true;
+    for (int i : closed_)
+      all_stick = all_stick && sticks(i, l.segment<3>(3 * i), u.segment<3>(3 * i));
+  }
+  const bool solved = all_stick && stick_together(rows);
+  if (!solved && (from_zero || !stick_and_slide(rows))) return false;
   const Vector F(store_[5].data(), rows);
   Vector next(store_[3].data(), 3 * n_);
-  next = l;
-  for (size_t a = 0; a < closed_.size(); ++a)
+  if (from_zero)
+    next = -F;
+  else
+    next = l;
+  for (size_t a = 0; a < closed_.size() && !from_zero; ++a)
     next.segment<3>(3 * closed_[a]) -= F.segment<3>(3 * static_cast<int>(a));
   return next.allFinite();
 }

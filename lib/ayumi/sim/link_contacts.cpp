@@ -1,6 +1,7 @@
 #include "ayumi/sim/link_contacts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "ayumi/dynamics/kinematics.hpp"
@@ -51,13 +52,14 @@ void LinkContacts::reset() {
 const std::vector<LinkTouch>& LinkContacts::find(const RobotData& data, double near, double dt) {
   touches_.clear();
   if (pairs_.empty()) return touches_;
-  double speed = 0;
+  double square = 0;
   for (const int body : bodies_) {
     const size_t i = static_cast<size_t>(body);
-    const Vector3d at = data.base_position + (data.position[i] + data.rotation[i] * center_[i]);
-    speed = std::max(speed, point_velocity(data, body, at).norm() +
-                                radius_[i] * data.angular_velocity[i].norm());
+    const Vector3d& w = data.angular_velocity[i];
+    const Vector3d v = data.velocity[i] + w.cross(data.rotation[i] * center_[i]);
+    square = std::max(square, v.squaredNorm() + radius_[i] * radius_[i] * w.squaredNorm());
   }
+  const double speed = std::sqrt(2 * square);  // at least |v| + r |w| of each
   // The step behind was made with the speeds there are now; those ahead may be faster.
   moved_ += 2 * speed * last_dt_;
   last_dt_ = dt;

@@ -80,7 +80,7 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
       chain_bodies_[body].push_back(b);
       chain_lines_[body].push_back(factor_.depth(factor_.place_of(6 + model.bodies()[b].dof)));
     }
-  still_ = velocity_ = lower_ = placed_ = momentum_ = VectorXd::Zero(columns);
+  still_ = velocity_ = lower_ = placed_ = impulse_ = VectorXd::Zero(columns);
   before_ = outside_ = still_;
   mass_.resize(factor_.row_doubles());
   for (int j = 0; j < n; ++j) {
@@ -116,6 +116,7 @@ void Plant::set_state(const RobotState& state) {
   time_ = 0;
   state_ = state;
   update_velocities(moving(), state_, data_);
+  momentum_ = centroidal_momentum(moving(), data_);
   fill_mass();
   active_.clear();
   links_.reset();
@@ -129,6 +130,7 @@ void Plant::load(const std::vector<CarriedMass>& payloads) {
   if (!payloads.empty()) loaded_.emplace(with_payloads(*model_, payloads));
   data_ = RobotData(moving());
   update_velocities(moving(), state_, data_);
+  momentum_ = centroidal_momentum(moving(), data_);
   fill_mass();
 }
 
@@ -175,37 +177,31 @@ void Plant::fill_mass() {
     mass_[joint_diagonal_[j]] += rotor_[static_cast<Eigen::Index>(j)];
 }
 
-// Fills the momentum and bias terms and what the contact solve needs; returns the momentum so far.
-Momentum Plant::assemble(const StepInput& input, double dt) {
+// Fills the impulses of bias and pushes and what the contact solve needs.
+void Plant::assemble(const StepInput& input, double dt) {
   newton_euler(moving(), state_, still_, data_, bias_);
   before_ << state_.base_velocity, state_.base_angular_velocity, state_.dtheta;
-  for (int k = 0; k < velocity_.size(); ++k) placed_[k] = before_[factor_.column_at(k)];
-  factor_.multiply(mass_, placed_, lower_);
-  for (int k = 0; k < velocity_.size(); ++k) momentum_[factor_.column_at(k)] = lower_[k];
-  Momentum momentum{momentum_.head<3>(), momentum_.segment<3>(3)};
-  momentum.angular -= data_.cog_offset.cross(momentum.linear);
-  momentum_ -= dt * bias_;
+  impulse_ = -dt * bias_;
   external_.linear = {0, 0, -dt * moving().mass() * kGravity};
   external_.angular.setZero();
   outside_.setZero();
   for (const ExternalWrench& w : input.wrenches) push(w, dt);
-  if (!input.wrenches.empty()) momentum_ += outside_;
+  if (!input.wrenches.empty()) impulse_ += outside_;
   collect_contacts(dt);
   fill_contact_rows(dt);
-  return momentum;
 }
 
-// velocity_ and contact impulses with the joints' laws as they are decided now.
+// velocity_ and contact impulses with the joints' laws as they are decided now, by (P1) for the
+// change of velocity: D of the joints' laws on the diagonal, M~ (v+ - v) = impulses - D v.
 void Plant::solve_velocity(double dt) {
   const int n = model_->dof_count();
   std::vector<double>& system = factor_.rows();
   system = mass_;
-  velocity_ = momentum_;
+  velocity_ = impulse_;
   for (int j = 0; j < n; ++j) {
     const double theta = state_.theta[j];
-    double& diagonal = system[joint_diagonal_[static_cast<size_t>(j)]];
     double& force = velocity_[6 + j];
-    diagonal += dt * viscous_now_[j];
+    double diagonal = dt * viscous_now_[j];
     if (saturated_[j]) {
       force += dt * fixed_[j];
     } else {
@@ -223,6 +219,8 @@ void Plant::solve_velocity(double dt) {
       diagonal += dt * dt * stop_[j] + dt * stop_damping_[j];
       force += dt * stop_[j] * (std::clamp(theta, dof.lower, dof.upper) - theta);
     }
+    force -= diagonal * before_[6 + j];
+    system[joint_diagonal_[static_cast<size_t>(j)]] += diagonal;
   }
   const int columns = model_->velocity_count();
   if (!factor_.factor_rows())
@@ -238,7 +236,10 @@ void Plant::solve_velocity(double dt) {
     add_impulses(lower_);
   }
   factor_.solve_lower(lower_);
-  for (int k = 0; k < columns; ++k) velocity_[factor_.column_at(k)] = lower_[k];
+  for (int k = 0; k < columns; ++k) {
+    const int c = factor_.column_at(k);
+    velocity_[c] = before_[c] + lower_[k];
+  }
 }
 
 bool Plant::limit_torques(double dt) {
@@ -267,7 +268,7 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
   load(input.payloads);
   take_joints(targets, input);
   ground_.set(input);
-  Momentum momentum = assemble(input, dt);
+  assemble(input, dt);
   const int n = model_->dof_count();
   // A joint that has left its servo's law, or sticking friction, keeps to that within the step.
   std::fill(saturated_.begin(), saturated_.end(), 0);
@@ -286,9 +287,9 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
     if (saturated_[j]) report_.saturated.push_back(j);
   report_contacts(dt);
   account(dt);
-  momentum.linear += external_.linear;
-  momentum.angular += external_.angular;
-  advance(momentum, dt);
+  momentum_.linear += external_.linear;
+  momentum_.angular += external_.angular;
+  advance(dt);
   time_ += dt;
   return report_;
 }
@@ -316,7 +317,7 @@ void Plant::account(double dt) {
 // Joints move with their solved rates. The base then takes the velocity that gives the robot, in
 // its new posture, exactly the momentum the outside has left it: M(q) v changes along the step, and
 // this is what keeps momentum to rounding in flight and ground forces equal to its rate in contact.
-void Plant::advance(const Momentum& momentum, double dt) {
+void Plant::advance(double dt) {
   const Vector3d cog = data_.cog;
   state_.dtheta = velocity_.tail(model_->dof_count());
   state_.theta += dt * state_.dtheta;
@@ -339,8 +340,8 @@ void Plant::advance(const Momentum& momentum, double dt) {
   const Vector3d& c = data_.cog_offset;
   joints.angular -= c.cross(joints.linear);
   locked -= mass * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());
-  const Vector3d cog_velocity = momentum.linear / mass;
-  const Vector3d w = locked.llt().solve(momentum.angular - joints.angular);
+  const Vector3d cog_velocity = momentum_.linear / mass;
+  const Vector3d w = locked.llt().solve(momentum_.angular - joints.angular);
   state_.base_angular_velocity = w;
   state_.base_velocity = cog_velocity - joints.linear / mass - w.cross(c);
   // Nothing but gravity and pushes: the force is constant and the way that of the mean velocity, so

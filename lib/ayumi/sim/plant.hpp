@@ -77,7 +77,7 @@ class Plant {
   bool far(double gap, int body, const Active& active, double dt) const;
   void place_frame(const Eigen::Vector3d& normal, Active& active) const;
   void remember_impulses();
-  Momentum assemble(const StepInput& input, double dt);
+  void assemble(const StepInput& input, double dt);
   void push(const ExternalWrench& wrench, double dt);
   void fill_mass();
   void find_runs();
@@ -96,7 +96,7 @@ class Plant {
   void contact_rates(const Eigen::VectorXd& velocity, std::vector<double>& rates);
   void share_among_cells(const Active& active, const Eigen::Vector3d& force);
   void account(double dt);
-  void advance(const Momentum& momentum, double dt);
+  void advance(double dt);
 
   const RobotModel* model_;
   std::optional<RobotModel> loaded_;
@@ -104,7 +104,8 @@ class Plant {
   ActuatorLimits limits_;
   Ground ground_;
   RobotState state_;
-  double time_ = 0;  // since set_state() [s]
+  Momentum momentum_;  // of state_, about the COG: what gravity and the outside have left it
+  double time_ = 0;    // since set_state() [s]
   RobotData data_;
   std::vector<ContactPoint> points_;
   std::vector<PointGroup> groups_;
@@ -130,7 +131,7 @@ class Plant {
   bool paired_ = false;                // some of them are of links that touch
   std::vector<double> J_, Y_, block_;  // contact Jacobians, L^-T times their transposes, Y'Y of two
   std::vector<double> product_, rates_before_, rates_;
-  Eigen::VectorXd momentum_, bias_, still_, velocity_, lower_, placed_, before_, outside_;
+  Eigen::VectorXd impulse_, bias_, still_, velocity_, lower_, placed_, before_, outside_;
   std::vector<double> compliance_;
   std::vector<Eigen::Vector3d> shift_;
   std::vector<char> saturated_, sliding_;

@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
+constexpr double kLevel = 1e-3;        // tilt below which a circle has no lowest point [rad]
 constexpr double kNear = 1e-3;         // a gap that may close within a step [m]
 constexpr long kInnerKeys = 1l << 40;  // keys of one sole's inner points
 constexpr long kEdgeKeys = 1l << 32;   // where edges of the ground meet shapes; times 4096
@@ -82,8 +83,13 @@ void Plant::collect_contacts(double dt) {
     if (far(height - 3 * dt * spread, group.body, active, dt)) continue;
     for (int i = group.first; i < group.first + group.count; ++i) {
       const ContactPoint& point = points_[static_cast<size_t>(i)];
-      const Vector3d center =
-          data_.base_position + (data_.position[group.body] + R * point.position);
+      Vector3d center = data_.base_position + (data_.position[group.body] + R * point.position);
+      if (point.rim > 0) {
+        const Vector3d across = R * point.axis, up = ground_.normal();
+        const Vector3d out = across.dot(up) * across - up;  // down, within the circle
+        if (out.squaredNorm() < kLevel * kLevel) continue;
+        center += point.rim / out.norm() * out;
+      }
       const Vector3d local = to_floor * (center - floor.translation());
       active.key = i;
       active.body = point.body;

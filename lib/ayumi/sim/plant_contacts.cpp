@@ -61,6 +61,8 @@ void Plant::fill_contact_rows(double dt) {
     solver_.friction()[i] = active_[i].friction;
   }
   for (const Run& run : runs_) fill_jacobian(run);
+  contact_rates(before_, rates_before_);
+  for (size_t i = 0; i < n; ++i) shift_[i] += Eigen::Map<const Vector3d>(&rates_before_[3 * i]);
 }
 
 void Plant::fill_jacobian(const Run& run) {
@@ -80,8 +82,9 @@ void Plant::fill_jacobian(const Run& run) {
   }
 }
 
-// A = Y' Y + compliance with Y = L^-T J'; b = Y' lower_ + shift, lower_ = L^-T right side. Where
-// links touch, J is that of one body less that of the other, and so is Y: sums over both runs.
+// A = Y' Y + compliance with Y = L^-T J'; b = Y' lower_ + J v + shift, lower_ = L^-T right side.
+// Where links touch, J is that of one body less that of the other, and so is Y: sums over both
+// runs.
 void Plant::fill_delassus() {
   auto A = solver_.A();
   auto b = solver_.b();
@@ -176,7 +179,6 @@ void Plant::report_contacts(double dt) {
   report_.max_penetration = 0;
   report_.work.contacts = 0;
   if (active_.empty()) return;
-  contact_rates(before_, rates_before_);
   contact_rates(velocity_, rates_);
   for (size_t i = 0; i < active_.size(); ++i) {
     Active& active = active_[i];
