@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kStaticSink = 1e-7;  // of a body on four of its points [m]
 
-constexpr size_t kMeshPoints = 32;  // a mesh of no more vertices touches with all of them
+constexpr size_t kMeshPoints = 32;      // a mesh of no more vertices touches with all of them
+constexpr size_t kManyVertices = 4096;  // beyond them equal ones are not looked for
 constexpr int kDirections = 90;
 
 /// The vertices of a mesh that are farthest out in directions spread over the sphere; all of a
@@ -30,7 +31,7 @@ std::vector<Vector3d> outer_vertices(const TriangleMesh& mesh) {
     std::sort(points.begin(), points.end(), before);
     points.erase(std::unique(points.begin(), points.end()), points.end());
   };
-  sort_out(all);
+  if (all.size() <= kManyVertices) sort_out(all);
   if (all.size() <= kMeshPoints) return all;
   for (int i = 0; i < kDirections; ++i) {  // a spiral from pole to pole
     const double z = 1 - (2 * i + 1.0) / kDirections, turn = M_PI * (3 - std::sqrt(5.0)) * i;

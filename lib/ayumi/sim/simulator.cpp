@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kBeforeStart = 0.4;  // servos hold the first posture this long before t = 0 [s]
 constexpr double kAfterFall = 0.8;    // of simulation kept after a fall [s]
+constexpr long kRoom = 1 << 15;       // samples that the log has room for from the start
 constexpr double kZmpShare = 0.02;    // of the weight below which the ZMP is held
 
 const CommandSeries& checked(const CommandSeries& series, const SimulateOptions& options) {
@@ -220,7 +221,10 @@ void Simulator::step_once() {
                        model_->bodies()[report_.self_contact[0]].name + " touches " +
                            model_->bodies()[report_.self_contact[1]].name});
   }
-  if (keep_samples_) samples_.push_back(last_);
+  if (keep_samples_) {
+    if (samples_.empty()) samples_.reserve(static_cast<size_t>(std::min(planned_, kRoom)));
+    samples_.push_back(last_);
+  }
   ++tick_;
 }
 
