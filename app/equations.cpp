@@ -81,15 +81,22 @@ Lines zmp_numbers(const Instant& i) {
   const SimulationSample& s = i.now();
   const Delta d = delta(i);
   Lines lines = {"K = " + text::brief(K(i)) + ", D = " + fixed(1e3 * D(i), 0) + " ms"};
+  Vector3d cut_off = Vector3d::Zero();
   for (int a = 0; a < 2; ++a) {
     const double wanted = s.command_zmp[a] - K(i) * d.e[a] - D(i) * d.de[a];
-    const double cut = s.reference_zmp[a] - wanted;
+    const double cut = cut_off[a] = s.reference_zmp[a] - wanted;
     lines.push_back(std::string(1, "xy"[a]) + ": " + mm(s.command_zmp[a]) + " - K x " + mm(d.e[a]) +
                     " - D x " + fixed(1e3 * d.de[a], 1) + " mm/s = " + mm(wanted) +
                     (std::abs(cut) > 1e-3
                          ? "; cut to " + mm(s.reference_zmp[a]) + ", the nearest in the support"
                          : "; in the support, so it is ref ZMP: " + mm(s.reference_zmp[a])));
   }
+  if (cut_off.norm() > 1e-3)
+    lines.push_back("the projection is at work: " + mm(cut_off.norm()) +
+                    " of what is wanted lie outside the support of the " +
+                    (s.planned_contact[0] && s.planned_contact[1] ? "feet"
+                     : s.planned_contact[0]                       ? "left foot"
+                                                                  : "right foot"));
   return lines;
 }
 
@@ -113,6 +120,17 @@ Lines delta_numbers(const Instant& i) {
   return lines;
 }
 
+/// Joints that have met a limit by now, and the tasks that gave way to them.
+Lines limit_numbers(const Instant& i) {
+  const double t = i.log.dt * (static_cast<double>(i.k) + 0.5);
+  Lines lines;
+  for (const SimulationEvent& event : i.log.events)
+    if (event.kind == "saturation" && event.t < t)
+      lines.push_back("from " + fixed(event.t, 3) + " s on: " + event.text);
+  if (lines.empty()) lines.push_back("no joint has met a limit by now: no task has given way");
+  return lines;
+}
+
 Lines resolution_numbers(const Instant& i) {
   const size_t n = i.log.samples.size();
   const size_t a = i.k > 0 ? i.k - 1 : 0, b = std::min(i.k + 1, n - 1);
@@ -128,10 +146,12 @@ Lines resolution_numbers(const Instant& i) {
   for (size_t j = 0; j < std::min<size_t>(5, order.size()); ++j)
     joints += (j ? ", " : "") + i.log.joints[static_cast<size_t>(order[j])] + " " +
               fixed(rates[order[j]], 2);
-  return {"ref COG rate " + fixed(1e3 * cog.x(), 1) + ", " + fixed(1e3 * cog.y(), 1) + ", " +
-              fixed(1e3 * cog.z(), 1) + " mm/s is met by " + std::to_string(rates.size()) +
-              " joints together; the fastest [rad/s]:",
-          "  " + joints};
+  Lines lines = {"ref COG rate " + fixed(1e3 * cog.x(), 1) + ", " + fixed(1e3 * cog.y(), 1) + ", " +
+                     fixed(1e3 * cog.z(), 1) + " mm/s is met by " + std::to_string(rates.size()) +
+                     " joints together; the fastest [rad/s]:",
+                 "  " + joints};
+  for (const std::string& line : limit_numbers(i)) lines.push_back(line);
+  return lines;
 }
 
 const char* kTree =
