@@ -337,7 +337,9 @@ class Repair {
     last_status_ = solution.status;
     const CorrectionTrack track = problem_->track(solution.x);
     take(track);
-    const bool on_its_way = last_status_ == NlpStatus::iteration_limit;
+    // Bodies that have met are hard to part again: then from the start.
+    const bool on_its_way =
+        last_status_ == NlpStatus::iteration_limit && result_.check.summary.min_self_clearance > 0;
     spec_.start =
         last_status_ == NlpStatus::solved || (on_its_way && solution.violation < kNearlyMet)
             ? track.coefficients
@@ -349,7 +351,9 @@ class Repair {
   void solve_elastic() {
     const Nlp hard = problem_->nlp();
     const Nlp soft = elastic(*problem_, hard, series_.dt);
+    constexpr int kEnough = 60;  // iterations: what is in the way shows long before the optimum
     NlpOptions options = nlp_options(false);
+    options.max_iterations = std::min(options.max_iterations, kEnough);
     options.least_violating = nullptr;
     const NlpSolution solution = solve(soft, options, progress_, "repair, what is in the way");
     const double violation = result_.constraint_violation;
