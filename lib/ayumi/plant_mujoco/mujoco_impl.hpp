@@ -17,8 +17,10 @@ inline void set_quaternion(mjtNum* to, const Eigen::Quaterniond& q) {
 }
 
 struct MujocoPlant::Impl {
-  Impl(const RobotModel& robot, const ActuatorLimits& actuators, const World& ground_world)
-      : model(&robot),
+  Impl(const RobotModel& robot, const ActuatorLimits& actuators, const World& ground_world,
+       int steps_per_step)
+      : steps(steps_per_step),
+        model(&robot),
         limits(actuators),
         world(ground_world),
         ground(ground_world),
@@ -28,7 +30,8 @@ struct MujocoPlant::Impl {
     build(false);
   }
   Impl(const Impl& o)
-      : model(o.model),
+      : steps(o.steps),
+        model(o.model),
         limits(o.limits),
         world(o.world),
         ground(o.ground),
@@ -73,6 +76,7 @@ struct MujocoPlant::Impl {
   void share_among_cells(int side, const Eigen::Vector3d& at, const Eigen::Vector3d& force);
   const RobotModel& moving() const { return loaded ? *loaded : *model; }
 
+  int steps;  // of MuJoCo per step of the plant
   const RobotModel* model;
   ActuatorLimits limits;
   World world;

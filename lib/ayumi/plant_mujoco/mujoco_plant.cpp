@@ -23,11 +23,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-// MuJoCo's steps per step. It finds contact forces before it damps joints implicitly, as if the
-// servos' torque at the step's start lasted: where kd h is above the rotor's inertia (twice it, on
-// HOAP-1, at 1 ms) a force that changes as fast as in a jump makes the soles chatter.
-constexpr int kSteps = 4;
-
 // What stands in the input when t of the step has passed.
 StepInput later(StepInput input, double t) {
   if (input.floor) {
@@ -153,9 +148,9 @@ void MujocoPlant::Impl::begin_report() {
 }
 
 void MujocoPlant::Impl::finish_report() {
-  report.torque /= kSteps;
+  report.torque /= steps;
   for (std::vector<SoleForce>& sole : report.soles)
-    for (SoleForce& cell : sole) cell.force /= kSteps;
+    for (SoleForce& cell : sole) cell.force /= steps;
 }
 
 void MujocoPlant::Impl::report_servos() {
@@ -224,8 +219,8 @@ void MujocoPlant::Impl::take_bumps(const std::vector<Bump>& now) {
   }
 }
 
-MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits,
-                         const World& world) {
+MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits, const World& world,
+                         int steps) {
   if (static_cast<int>(model.bodies().size()) != model.dof_count() + 1)
     fail(ErrorCode::bad_model, model.name() + ": the MuJoCo plant knows no mimic joints");
   for (const Dof& dof : model.dofs())
@@ -233,7 +228,7 @@ MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits,
       fail(ErrorCode::bad_model,
            model.name() + ": joint " + dof.name + " has no servo (kp); give it one in the sidecar");
   check_world(model, world);
-  impl_ = std::make_unique<Impl>(model, limits, world);
+  impl_ = std::make_unique<Impl>(model, limits, world, steps);
   impl_->report.torque = VectorXd::Zero(model.dof_count());
   set_state(model.rest_state());
 }
@@ -274,9 +269,10 @@ const StepReport& MujocoPlant::step(const VectorXd& targets, const StepInput& in
   Impl& p = *impl_;
   p.check_input(targets, input, dt);
   p.begin_report();
-  const double h = dt / kSteps;
+  const double h = dt / p.steps;
   const bool moves = input.floor || !input.bumps.empty();
-  for (int i = 0; i < kSteps; ++i) p.step(targets, i > 0 && moves ? later(input, i * h) : input, h);
+  for (int i = 0; i < p.steps; ++i)
+    p.step(targets, i > 0 && moves ? later(input, i * h) : input, h);
   if (!p.state.theta.allFinite() || !p.state.base.position.allFinite())
     fail(ErrorCode::internal, p.model->name() + ": MuJoCo left the finite numbers " +
                                   text::fixed(p.d->time, 3) + " s after its start");
@@ -304,9 +300,10 @@ void MujocoPlant::Impl::step(const VectorXd& targets, const StepInput& input, do
   report_contacts();
 }
 
-PlantKind mujoco_plant_kind() {
-  return {"mujoco", [](const RobotModel& model, const ActuatorLimits& limits, const World& world) {
-            return AnyPlant(MujocoPlant(model, limits, world));
+PlantKind mujoco_plant_kind(int steps) {
+  return {"mujoco",
+          [steps](const RobotModel& model, const ActuatorLimits& limits, const World& world) {
+            return AnyPlant(MujocoPlant(model, limits, world, steps));
           }};
 }
 

@@ -10,11 +10,17 @@
 
 namespace ayumi {
 
+/// MuJoCo's steps per step. It finds contact forces before it damps joints implicitly, as if the
+/// servos' torque at the step's start lasted: where kd h is above the rotor's inertia (twice it, on
+/// HOAP-1, at 1 ms) a force that changes as fast as in a jump makes the soles chatter.
+constexpr int kMujocoSteps = 4;
+
 class MujocoPlant {
  public:
   /// The model must outlive the plant. Throws Error(bad_model) for a robot with mimic joints or
   /// without servos.
-  MujocoPlant(const RobotModel& model, const ActuatorLimits& limits, const World& world);
+  MujocoPlant(const RobotModel& model, const ActuatorLimits& limits, const World& world,
+              int steps = kMujocoSteps);
   ~MujocoPlant();
   MujocoPlant(const MujocoPlant& other);
   MujocoPlant& operator=(const MujocoPlant& other);
@@ -25,8 +31,7 @@ class MujocoPlant {
   const RobotData& data() const;
   void set_state(const RobotState& state);
 
-  /// As Plant::step(). Throws Error(bad_pattern) for what it does not know: ground that is no plane
-  /// or moves, and disturbances other than impulse, force and torque.
+  /// As Plant::step(). Throws Error(bad_pattern) for more bumps at once than it keeps room for.
   const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt);
 
  private:
@@ -35,6 +40,6 @@ class MujocoPlant {
 };
 
 /// For SimulateOptions::plant.
-PlantKind mujoco_plant_kind();
+PlantKind mujoco_plant_kind(int steps = kMujocoSteps);
 
 }  // namespace ayumi
