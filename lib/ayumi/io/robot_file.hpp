@@ -17,7 +17,7 @@ struct RobotSearch {
 };
 
 struct LoadOptions {
-  bool meshes = false;  ///< fill MeshShape::mesh of every visual and collision
+  bool meshes = false;  ///< fill MeshShape::mesh of visuals too; of collisions always
 };
 
 struct RobotEntry {
