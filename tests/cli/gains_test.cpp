@@ -48,7 +48,8 @@ TEST(GainsCommand, RefusesWithTheReason) {
     EXPECT_EQ(made.exit_code, 2) << made.out;
     EXPECT_NE(made.err.find(why), std::string::npos) << made.err;
   };
-  refused({"gains", "hoap1", "--poles", "1,-2"}, "not left of 0; the COG would never come back");
+  refused({"gains", "hoap1", "--poles", "1,-2"},
+          "pole [1/s] 1: not left of 0; the COG would never come back");
   refused({"gains", "hoap1", "--gain", "k=1", "--gain", "d=1"}, "need K > 1 and D > 0");
   refused({"gains", "hoap1", "--gain", "k=2", "--gain", "d=0"}, "need K > 1 and D > 0");
   refused({"gains", "hoap1", "--absorb", "0.95"}, "the loop grows at");

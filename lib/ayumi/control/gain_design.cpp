@@ -118,8 +118,12 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
   const auto refuse = [](const std::string& what, double value, const std::string& why) {
     fail(ErrorCode::usage, what + " " + text::brief(value) + ": " + why);
   };
-  if (wishes.poles)
-    params = gains_from_poles((*wishes.poles)[0] / omega, (*wishes.poles)[1] / omega, params);
+  if (wishes.poles) {
+    const auto& [p1, p2] = *wishes.poles;
+    const double right = std::max(p1.real(), p2.real());
+    if (right >= 0) refuse("pole [1/s]", right, "not left of 0; the COG would never come back");
+    params = gains_from_poles(p1 / omega, p2 / omega, params);
+  }
   if (wishes.absorb) {
     if (!(*wishes.absorb >= 0 && *wishes.absorb < 1))
       refuse("absorbed share", *wishes.absorb, "from 0 (replay) to below 1 (the limit is (14))");
