@@ -92,17 +92,19 @@ void settle(PreviewOptions& options, const Context& context) {
     fail(ErrorCode::usage, "--strip and --exposures: one of them at a time");
 }
 
-/// Snapshots between --from and --to.
+/// Snapshots between --from and --to; without either, those that tell most.
 StripOptions strip_options(const PreviewOptions& options, const SimulationLog& log) {
   StripOptions strip;
   strip.clip = options.clip;
   strip.columns = options.columns;
   strip.one_picture = options.exposures > 0;
   const int count = std::max(options.strip, options.exposures);
+  strip.count = count;
   const double last = duration(log), begin = std::min(options.clip.begin, last);
   const double end = options.clip.end < 0 ? last : std::min(options.clip.end, last);
-  for (int i = 0; i < count; ++i)
-    strip.times.push_back(begin + (end - begin) * i / std::max(1, count - 1));
+  if (begin > 0 || end < last)
+    for (int i = 0; i < count; ++i)
+      strip.times.push_back(begin + (end - begin) * i / std::max(1, count - 1));
   return strip;
 }
 

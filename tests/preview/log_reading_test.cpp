@@ -45,6 +45,25 @@ TEST(LogReading, ThePushOrTheFallIsWorthShowing) {
   EXPECT_NEAR(telling_instant(log), 0.8, 1e-12);
   log.result.outcome = Outcome::stands;
   EXPECT_NEAR(telling_instant(log), 0.5, 1e-12);
+  EXPECT_EQ(telling_instants(log, 3), (std::vector<double>{0, 0.5, 1}));
+}
+
+TEST(LogReading, FlightsAreWorthShowing) {
+  SimulationLog log = test::box_run(test::box_robot());
+  for (SimulationSample& sample : log.samples) sample.push_force.setZero();
+  for (size_t k = 0; k < log.samples.size(); ++k)
+    if (const double t = k * log.dt; t > 0.5999 && t < 0.6999)
+      log.samples[k].planned_contact = {false, false};
+  ASSERT_EQ(flights(log).size(), 1u);
+  EXPECT_NEAR(flights(log)[0].begin, 0.6, 1e-12);
+  EXPECT_NEAR(flights(log)[0].end, 0.7, 1e-12);
+  EXPECT_NEAR(telling_instant(log), 0.65, 1e-12);
+  const std::vector<double> times = telling_instants(log, 4);
+  ASSERT_EQ(times.size(), 4u);
+  EXPECT_NEAR(times[0], 0.35, 1e-12) << "a little before";
+  EXPECT_NEAR(times[1], 0.65, 1e-12) << "the flight itself, not 0.567";
+  EXPECT_NEAR(times[2], 0.35 + 0.65 * 2 / 3, 1e-12);
+  EXPECT_NEAR(times[3], 1, 1e-12) << "within the run";
 }
 
 TEST(LogReading, TheGroundIsTheSlopeWithEveryMotionOfTheFloor) {

@@ -117,11 +117,47 @@ std::string push_text(const PushRecord& push) {
                                              : text::brief(push.peak.norm(), 3) + " N";
 }
 
+std::vector<FlightRecord> flights(const SimulationLog& log) {
+  std::vector<FlightRecord> result;
+  bool before = false;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const bool flies = !log.samples[k].planned_contact[0] && !log.samples[k].planned_contact[1];
+    const double t = static_cast<double>(k) * log.dt;
+    if (flies && !before) result.push_back({t, t});
+    if (flies) result.back().end = t + log.dt;
+    before = flies;
+  }
+  return result;
+}
+
 double telling_instant(const SimulationLog& log) {
   const std::vector<PushRecord> pushed = pushes(log);
+  const std::vector<FlightRecord> flown = flights(log);
   const double last = duration(log);
   if (!pushed.empty()) return std::min(last, pushed.front().begin + 0.25);
-  return log.result.outcome == Outcome::fell ? std::min(last, log.result.fell_at) : 0.5 * last;
+  if (log.result.outcome == Outcome::fell) return std::min(last, log.result.fell_at);
+  return flown.empty() ? 0.5 * last : 0.5 * (flown.front().begin + flown.front().end);
+}
+
+std::vector<double> telling_instants(const SimulationLog& log, int count) {
+  constexpr double kBefore = 0.25, kAfter = 0.35;  // of the flights [s]
+  const std::vector<FlightRecord> flown = flights(log);
+  double begin = 0, end = duration(log);
+  if (!flown.empty()) {
+    begin = std::max(begin, flown.front().begin - kBefore);
+    end = std::min(end, flown.back().end + kAfter);
+  }
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i)
+    times.push_back(begin + (end - begin) * i / std::max(1, count - 1));
+  if (2 * static_cast<int>(flown.size()) > count) return times;
+  for (const FlightRecord& flight : flown) {
+    const double middle = 0.5 * (flight.begin + flight.end);
+    *std::min_element(times.begin(), times.end(), [&](double a, double b) {
+      return std::abs(a - middle) < std::abs(b - middle);
+    }) = middle;
+  }
+  return times;
 }
 
 }  // namespace ayumi

@@ -44,8 +44,20 @@ std::vector<PushRecord> pushes(const SimulationLog& log);
 /// Its value for people: "1.1 N s" for a short push (up to 0.2 s), "12 N" for a long one.
 std::string push_text(const PushRecord& push);
 
-/// The instant worth showing first: shortly after the first push, without one the fall, else the
-/// middle [s].
+/// A stretch of ticks in which both feet are planned to be in the air.
+struct FlightRecord {
+  double begin = 0, end = 0;  ///< [s]; end excluded
+};
+
+/// Flights in the order of time.
+std::vector<FlightRecord> flights(const SimulationLog& log);
+
+/// The instant worth showing first: shortly after the first push, without one the fall, then the
+/// middle of the first flight, else that of the run [s].
 double telling_instant(const SimulationLog& log);
+
+/// `count` instants worth showing, evenly spaced over the run, or over its flights with a little
+/// before and after; the middle of each flight is among them where there are enough [s].
+std::vector<double> telling_instants(const SimulationLog& log, int count);
 
 }  // namespace ayumi

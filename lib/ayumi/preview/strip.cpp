@@ -35,10 +35,8 @@ Image draw_sheet(const std::vector<Image>& tiles, int columns) {
 
 Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options) {
   const double last = duration(log);
-  std::vector<double> times = options.times;
-  if (times.empty())
-    for (int i = 0; i < options.count; ++i)
-      times.push_back(last * i / std::max(1, options.count - 1));
+  std::vector<double> times =
+      options.times.empty() ? telling_instants(log, options.count) : options.times;
   for (double& t : times) t = std::clamp(t, 0.0, last);
   ClipOptions clip = options.clip;
   if (options.one_picture) {

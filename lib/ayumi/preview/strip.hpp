@@ -10,7 +10,7 @@ namespace ayumi {
 
 struct StripOptions {
   ClipOptions clip;           ///< picture size is that of one snapshot
-  std::vector<double> times;  ///< [s]; empty: `count` evenly spaced over the run
+  std::vector<double> times;  ///< [s]; empty: `count` telling_instants()
   int count = 8;
   int columns = 4;
   bool one_picture = false;  ///< all instants in one picture, the earlier the lighter
