@@ -34,7 +34,7 @@ const char* name_of(Trust trust) {
 
 namespace {
 
-constexpr int kRounds = 5;
+constexpr int kRounds = 8;
 constexpr size_t kReasons = 6;  // told at most
 constexpr double kPad = 0.5;    // free time around a finding, doubled when it is not enough [s]
 constexpr double kMarginBetween = 5e-4;     // of the ZMP, for what happens between constraints [m]
