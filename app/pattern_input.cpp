@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/pattern/sample.hpp"
@@ -57,11 +58,15 @@ void check_scenario(const Pattern& pattern, const RobotModel& model) {
 
 }  // namespace
 
+std::string read_input(const std::filesystem::path& file) {
+  if (file != "-") return read_file(file);
+  return {std::istreambuf_iterator<char>(std::cin), {}};
+}
+
 Pattern read_given_pattern(const std::filesystem::path& file,
                            const std::map<std::string, double>& set) {
   if (file != "-") return read_pattern(file, set);
-  const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-  return pattern_of_text(text, "standard input", set);
+  return pattern_of_text(read_input(file), "standard input", set);
 }
 
 PatternInput load_pattern(const Context& context, const std::filesystem::path& file,

@@ -27,6 +27,9 @@ struct PatternInput {
   std::string profile;  ///< by name
 };
 
+/// The bytes of a file; `-` is standard input.
+std::string read_input(const std::filesystem::path& file);
+
 /// The pattern of a file; `-` is standard input, what it names is then looked for in the working
 /// folder.
 Pattern read_given_pattern(const std::filesystem::path& file,

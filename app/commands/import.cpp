@@ -1,12 +1,9 @@
 // Motions of other origin as patterns: HOAP sequences, tables of angles, Ayumi's own joint tables.
 
 #include <filesystem>
-#include <iostream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/motion_import.hpp"
 #include "ayumi/io/pattern_table.hpp"
@@ -23,11 +20,6 @@ struct Options {
   std::string file, robot, out;
   ImportOptions import;
 };
-
-std::string bytes_of(const std::string& file) {
-  if (file != "-") return read_file(file);
-  return {std::istreambuf_iterator<char>(std::cin), {}};
-}
 
 Json json_of(const FootContact& contact) {
   const Foothold& place = contact.place;
@@ -65,7 +57,8 @@ void import_motion(const Context& context, const Options& options) {
   refuse_overwriting(context, table_beside(options.out));
   const RobotModel model = load_robot(options.robot, robot_search(context));
   const std::string name = options.file == "-" ? "standard input" : options.file;
-  const ImportedMotion imported = read_motion(bytes_of(options.file), name, model, options.import);
+  const ImportedMotion imported =
+      read_motion(read_input(options.file), name, model, options.import);
   GroundedMotion motion =
       grounded(model, imported.motion, table_beside(options.out).filename().string());
   motion.pattern.name = "imported from " + fs::path(name).filename().string();

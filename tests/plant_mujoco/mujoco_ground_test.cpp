@@ -11,6 +11,7 @@
 #include "ayumi/sim/schedule.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/block.hpp"
+#include "tests/support/ground.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi {
@@ -83,25 +84,14 @@ TEST(MujocoGround, PatchesHaveTheirOwnFriction) {
 // A height field that is an inclined plane, above and below the plane around it.
 TEST(MujocoGround, AnInclinedFieldIsASlope) {
   const double angle = 0.3, mu = 0.15;
-  World world{.friction = mu};
-  HeightField field{.origin = {-1, -1}, .spacing = 0.07, .heights = Eigen::MatrixXd(60, 30)};
-  for (Eigen::Index i = 0; i < 60; ++i)
-    field.heights.row(i).setConstant(-std::tan(angle) * (-1 + 0.07 * static_cast<double>(i)));
-  world.fields.push_back(field);
+  const World world = test::inclined_field(angle, mu);
   Block block(world, {0, 0, 0.0205}, angle);
   block.run(0.1);
   const Vector3d start = block.position();
   const double v0 = block.plant.state().base_velocity.norm(), T = 0.6;
   block.run(T);
-  const double a = kGravity * (std::sin(angle) - mu * std::cos(angle));
-  const double distance = v0 * T + 0.5 * a * T * T;
+  const double distance = test::sliding_distance(angle, mu, v0, T);
   EXPECT_NEAR((block.position() - start).norm(), distance, 0.02 * distance);
-}
-
-StepInput floor_input(const std::vector<FloorMotion>& motions, long k) {
-  StepInput input;
-  input.floor = moving_floor({}, motions, static_cast<double>(k) * kStep, kStep);
-  return input;
 }
 
 // Shaken more gently than friction holds, a block goes with the floor; more strongly, it slips.
@@ -109,17 +99,8 @@ TEST(MujocoGround, AMovingFloorCarriesABlockAsFarAsFrictionHolds) {
   const double mu = 0.4, w = 2 * M_PI * 2;
   for (const double share : {0.8, 1.5}) {
     const double amplitude = share * mu * kGravity / (w * w);
-    const std::vector<FloorMotion> motions = {
-        {MotionShape::sine, 0.2, 10, 2, {0, 0}, {amplitude, 0, 0}}};
     Block block(World{.friction = mu}, {0, 0, 0.0205});
-    double apart = 0, offset = 0;
-    for (long k = 0; k < 1700; ++k) {
-      block.plant.step(VectorXd(0), floor_input(motions, k), kStep);
-      const double floor =
-          floor_pose({}, motions, static_cast<double>(k + 1) * kStep).translation().x();
-      if (k == 700) offset = block.position().x() - floor;
-      if (k >= 700) apart = std::max(apart, std::abs(block.position().x() - floor - offset));
-    }
+    const double apart = test::moved_on_floor(block, test::shaking(amplitude), kStep);
     if (share < 1) {
       EXPECT_LT(apart, 0.05 * amplitude);
     } else {

@@ -1,5 +1,7 @@
 // Ground that is more than a plane, and that moves: closed forms with blocks, and HOAP-1's soles.
 
+#include "tests/support/ground.hpp"
+
 #include <gtest/gtest.h>
 
 #include "ayumi/base/version.hpp"
@@ -90,11 +92,7 @@ TEST(Ground, PatchesHaveTheirOwnFriction) {
 // A height field that is an inclined plane is a slope: a second route to the same slide.
 TEST(Ground, AnInclinedFieldIsASlope) {
   const double angle = 0.3, mu = 0.15;
-  World world{.friction = mu};
-  HeightField field{.origin = {-1, -1}, .spacing = 0.07, .heights = Eigen::MatrixXd(60, 30)};
-  for (Eigen::Index i = 0; i < 60; ++i)
-    field.heights.row(i).setConstant(-std::tan(angle) * (-1 + 0.07 * static_cast<double>(i)));
-  world.fields.push_back(field);
+  const World world = test::inclined_field(angle, mu);
   BlockIn block(world, Vector3d::Zero());
   RobotState s = block.plant.state();
   s.base.attitude = exp_rotation({0, angle, 0});
@@ -104,16 +102,8 @@ TEST(Ground, AnInclinedFieldIsASlope) {
   const Vector3d start = block.position();
   const double v0 = block.plant.state().base_velocity.norm(), T = 0.6;
   block.run(T);
-  const double a = kGravity * (std::sin(angle) - mu * std::cos(angle));
-  const double distance = v0 * T + 0.5 * a * T * T;
+  const double distance = test::sliding_distance(angle, mu, v0, T);
   EXPECT_NEAR((block.position() - start).norm(), distance, 0.005 * distance);
-}
-
-/// The floor at step k of a motion, as the simulator gives it.
-StepInput floor_input(const std::vector<FloorMotion>& motions, long k) {
-  StepInput input;
-  input.floor = moving_floor({}, motions, static_cast<double>(k) * kStep, kStep);
-  return input;
 }
 
 // Shaken more gently than friction holds, a block goes with the floor; more strongly, it slips.
@@ -121,18 +111,8 @@ TEST(MovingFloor, CarriesABlockAsFarAsFrictionHolds) {
   const double mu = 0.4, w = 2 * M_PI * 2;
   for (const double share : {0.8, 1.5}) {
     const double amplitude = share * mu * kGravity / (w * w);
-    const std::vector<FloorMotion> motions = {
-        {MotionShape::sine, 0.2, 10, 2, {0, 0}, {amplitude, 0, 0}}};
     BlockIn block(World{.friction = mu}, {0, 0, 0.02});
-    double apart = 0, offset = 0;
-    for (long k = 0; k < 1700; ++k) {
-      block.plant.step(VectorXd(0), floor_input(motions, k), kStep);
-      const double floor =
-          floor_pose({}, motions, static_cast<double>(k + 1) * kStep).translation().x();
-      // The sine begins at full speed: the block has caught up after a moment.
-      if (k == 700) offset = block.position().x() - floor;
-      if (k >= 700) apart = std::max(apart, std::abs(block.position().x() - floor - offset));
-    }
+    const double apart = test::moved_on_floor(block, test::shaking(amplitude), kStep);
     if (share < 1) {
       EXPECT_LT(apart, 1e-6);
     } else {
@@ -150,7 +130,7 @@ TEST(MovingFloor, TipsABlockAtTheRightEdgeAndAngle) {
   BlockIn block(World{.friction = 3}, {0, 0, 0.5 * size.z()}, size);
   double tipped_at = 0;
   for (long k = 0; k < 20000 && tipped_at == 0; ++k) {
-    block.plant.step(VectorXd(0), floor_input(motions, k), kStep);
+    block.plant.step(VectorXd(0), test::floor_input(motions, k, kStep), kStep);
     const Eigen::Matrix3d floor =
         floor_pose({}, motions, static_cast<double>(k + 1) * kStep).linear();
     const Eigen::Matrix3d R = block.plant.state().base.attitude.toRotationMatrix();

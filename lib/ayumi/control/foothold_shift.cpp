@@ -42,15 +42,6 @@ constexpr double kLongRest = 1.3;      // of a double support's ramp that counts
 int index(Side side) { return static_cast<int>(side); }
 Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
 
-double half_width(const RobotModel& model) {
-  double low = 1e9, high = -1e9;
-  for (const Vector2d& p : model.sole(Side::left).polygon) {
-    low = std::min(low, p.y());
-    high = std::max(high, p.y());
-  }
-  return 0.5 * (high - low);
-}
-
 ConvexPolygon about(const ConvexPolygon& polygon, const Vector2d& center) {
   std::vector<Vector2d> points;
   for (const Vector2d& p : polygon.vertices()) points.push_back(p - center);
@@ -122,7 +113,7 @@ FootholdShift::FootholdShift(const RobotModel& model, const CommandSeries& serie
     : model_(&model),
       series_(&series),
       params_(params),
-      half_width_(half_width(model)),
+      half_width_(sole_half_width(model)),
       foot_{Vector2d::Zero(), Vector2d::Zero()},
       before_(0, 0),
       after_(0, 0),

@@ -38,6 +38,15 @@ Isometry3d sole_frame(const RobotModel& model, Side side, const GroundPose& pose
   return frame;
 }
 
+double sole_half_width(const RobotModel& model) {
+  double low = 1e9, high = -1e9;
+  for (const Vector2d& p : model.sole(Side::left).polygon) {
+    low = std::min(low, p.y());
+    high = std::max(high, p.y());
+  }
+  return 0.5 * (high - low);
+}
+
 std::vector<Vector2d> landing_offsets(const std::vector<Vector2d>& footholds, double growth,
                                       const Vector2d& last) {
   std::vector<Vector2d> offsets(footholds.size(), last);

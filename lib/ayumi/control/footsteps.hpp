@@ -23,6 +23,9 @@ GroundPose ground_pose(const RobotModel& model, Side side, const Eigen::Isometry
 /// Sole frame, level at height z, of a sole centre.
 Eigen::Isometry3d sole_frame(const RobotModel& model, Side side, const GroundPose& pose, double z);
 
+/// Half the way between a sole's sides [m].
+double sole_half_width(const RobotModel& model);
+
 /// b of every foothold: xi - foothold when the foot lands, so that the pendulum reaches the next
 /// foothold's b after `growth` = exp(omega T) with its ZMP on this one; `last` is b of the last.
 std::vector<Eigen::Vector2d> landing_offsets(const std::vector<Eigen::Vector2d>& footholds,

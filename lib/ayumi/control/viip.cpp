@@ -40,15 +40,6 @@ constexpr double kFootClearance = 0.008;  // between the soles' sides [m]
 Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
 int index(Side side) { return static_cast<int>(side); }
 
-double half_width(const RobotModel& model) {
-  double low = 1e9, high = -1e9;
-  for (const Vector2d& p : model.sole(Side::left).polygon) {
-    low = std::min(low, p.y());
-    high = std::max(high, p.y());
-  }
-  return 0.5 * (high - low);
-}
-
 GroundPose middle(const RobotModel& model, const std::array<Isometry3d, 2>& feet) {
   const GroundPose left = ground_pose(model, Side::left, feet[0]);
   const GroundPose right = ground_pose(model, Side::right, feet[1]);
@@ -247,7 +238,7 @@ void Viip::swing(const Vector2d& xi) {
   // Soles side by side, seen from the stance foot.
   const GroundPose stance = ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]);
   Vector2d way = Eigen::Rotation2Dd(-stance.yaw) * (target - stance.position);
-  const double beside = 2 * half_width(*model_) + kFootClearance;
+  const double beside = 2 * sole_half_width(*model_) + kFootClearance;
   if (foot == Side::left)
     way.y() = std::max(way.y(), beside);
   else

@@ -16,6 +16,7 @@
 #include "ayumi/optimize/correction_problem.hpp"
 #include "ayumi/optimize/elastic.hpp"
 #include "ayumi/optimize/obstacles.hpp"
+#include "ayumi/optimize/repair_spec.hpp"
 
 namespace ayumi {
 
@@ -37,13 +38,11 @@ namespace {
 constexpr int kRounds = 8;
 constexpr size_t kReasons = 6;  // told at most
 constexpr double kPad = 0.5;    // free time around a finding, doubled when it is not enough [s]
-constexpr double kMarginBetween = 5e-4;     // of the ZMP, for what happens between constraints [m]
-constexpr double kRoundJointMargin = 5e-4;  // [rad]
-constexpr double kRoundShare = 0.004;       // of speed limits and friction
-constexpr double kWarmBarrier = 1e-5;       // of a start that violates little, where the first
-constexpr double kNearlyMet = 1e-3;         // an unsolved program's violation, to go on from there
-constexpr double kFarOff = 1e-3;            // barrier would only lead away from it
-constexpr double kKnotsOfFlight = 8;
+constexpr double kRoundJointMargin = 5e-4;   // [rad]
+constexpr double kRoundShare = 0.004;        // of speed limits and friction
+constexpr double kWarmBarrier = 1e-5;        // of a start that violates little, where the first
+constexpr double kNearlyMet = 1e-3;          // an unsolved program's violation, to go on from there
+constexpr double kFarOff = 1e-3;             // barrier would only lead away from it
 constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
 constexpr double kRoundMargin = 0.001;       // more ZMP margin each round [m]
 
@@ -61,20 +60,6 @@ std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>
       merged.push_back(w);
   }
   return merged;
-}
-
-int find_joint(const RobotModel& model, const std::string& name, const char* use) {
-  const int dof = model.find_dof(name);
-  if (dof < 0)
-    fail(ErrorCode::usage, std::string(use) + " joint '" + name + "': the robot '" + model.name() +
-                               "' has no such joint" + text::suggestion(name, model.dof_names()));
-  return dof;
-}
-
-std::vector<bool> locked_dofs(const RobotModel& model, const std::vector<std::string>& names) {
-  std::vector<bool> locked(model.dof_count(), false);
-  for (const std::string& name : names) locked[find_joint(model, name, "locked")] = true;
-  return locked;
 }
 
 // What is written to a file: numbers of nine decimals, and only the control points and joints that
@@ -106,57 +91,13 @@ CorrectionTrack trimmed(const CorrectionTrack& track) {
   return result;
 }
 
-// [s]; without a flight no bound.
-double shortest_flight(const CommandSeries& series) {
-  double shortest = kNoBound;
-  size_t first = 0;
-  for (size_t k = 0; k <= series.samples.size(); ++k) {
-    if (k < series.samples.size() && series.samples[k].support == Support::none) continue;
-    if (k > first) shortest = std::min(shortest, static_cast<double>(k - first) * series.dt);
-    first = k + 1;
-  }
-  return shortest;
-}
-
-VectorXd weight_factors(const RobotModel& model, const std::map<std::string, double>& weights) {
-  VectorXd factors = VectorXd::Ones(model.dof_count());
-  for (const auto& [joint, factor] : weights) {
-    const int dof = find_joint(model, joint, "weighted");
-    if (!(factor > 0) || !std::isfinite(factor))
-      fail(ErrorCode::usage, "weight of joint '" + joint + "': " + text::exact(factor) +
-                                 " must be above 0 (lock the joint to keep it still)");
-    factors[dof] = factor;
-  }
-  return factors;
-}
-
-void require_windows(const std::vector<std::pair<double, double>>& windows) {
-  for (const auto& [begin, end] : windows)
-    if (!(begin <= end) || !std::isfinite(begin) || !std::isfinite(end))
-      fail(ErrorCode::usage, "locked window " + text::exact(begin) + ".." + text::exact(end) +
-                                 " s: the end must not come before the beginning");
-}
-
 class Repair {
  public:
   Repair(const RobotModel& model, const CommandSeries& series, const RepairOptions& options,
          const Progress& progress)
       : model_(model), series_(series), options_(options), progress_(progress), collisions_(model) {
-    require_windows(options.locked_windows);
-    spec_.spacing = std::min(options.knot_spacing, shortest_flight(series) / kKnotsOfFlight);
-    spec_.locked = locked_dofs(model, options.locked_joints);
-    spec_.locked_feet = options.locked_feet;
-    spec_.locked_windows = options.locked_windows;
-    spec_.weights = weight_factors(model, options.joint_weights);
-    spec_.trust = options.trust;
+    spec_ = repair_spec(model, series, options);
     spec_.collisions = &collisions_;
-    spec_.tolerance = tolerances(options.check, model, series);
-    spec_.profile = options.check.profile;
-    spec_.friction = options.check.friction;
-    const double least = tolerances(options.check)[static_cast<int>(Kind::support_margin)];
-    const double safe = options.trust == Trust::zmp ? least : safe_margin(model);
-    spec_.safe_margin = options.zmp_margin.value_or(safe) + kMarginBetween;
-    spec_.zmp_margin = std::min(spec_.safe_margin, least + kMarginBetween);
   }
 
   RepairResult run() {
@@ -408,15 +349,6 @@ class Repair {
 };
 
 }  // namespace
-
-double safe_margin(const RobotModel& model) {
-  double least = kNoBound;
-  for (Side side : {Side::left, Side::right}) {
-    const ConvexPolygon polygon(model.sole(side).polygon);
-    least = std::min(least, polygon.margin(polygon.centroid()));
-  }
-  return 0.6 * least;
-}
 
 RepairResult repair(const RobotModel& model, const CommandSeries& series,
                     const RepairOptions& options, const Progress& progress) {

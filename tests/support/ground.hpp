@@ -1,0 +1,56 @@
+#pragma once
+// Ground that a block is tried on in every plant.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/sim/schedule.hpp"
+
+namespace ayumi::test {
+
+/// A height field that is an inclined plane [rad], falling forwards through the origin, above and
+/// below the plane around it.
+inline World inclined_field(double angle, double friction) {
+  World world{.friction = friction};
+  HeightField field{.origin = {-1, -1}, .spacing = 0.07, .heights = Eigen::MatrixXd(60, 30)};
+  for (Eigen::Index i = 0; i < 60; ++i)
+    field.heights.row(i).setConstant(-std::tan(angle) * (-1 + 0.07 * static_cast<double>(i)));
+  world.fields.push_back(field);
+  return world;
+}
+
+/// The way a block slides down such a slope in `time` by Coulomb's law [m].
+inline double sliding_distance(double angle, double friction, double v0, double time) {
+  const double a = kGravity * (std::sin(angle) - friction * std::cos(angle));
+  return v0 * time + 0.5 * a * time * time;
+}
+
+/// The floor at step k of a motion, as the simulator gives it.
+inline StepInput floor_input(const std::vector<FloorMotion>& motions, long k, double step) {
+  StepInput input;
+  input.floor = moving_floor({}, motions, static_cast<double>(k) * step, step);
+  return input;
+}
+
+/// A floor shaken along x, 2 Hz.
+inline std::vector<FloorMotion> shaking(double amplitude) {
+  return {{MotionShape::sine, 0.2, 10, 2, {0, 0}, {amplitude, 0, 0}}};
+}
+
+/// How far a block moves on that floor, once it has caught up: the sine begins at full speed [m].
+template <typename Block>
+double moved_on_floor(Block& block, const std::vector<FloorMotion>& motions, double step) {
+  double apart = 0, offset = 0;
+  for (long k = 0; k < 1700; ++k) {
+    block.plant.step(Eigen::VectorXd(0), floor_input(motions, k, step), step);
+    const double floor =
+        floor_pose({}, motions, static_cast<double>(k + 1) * step).translation().x();
+    if (k == 700) offset = block.position().x() - floor;
+    if (k >= 700) apart = std::max(apart, std::abs(block.position().x() - floor - offset));
+  }
+  return apart;
+}
+
+}  // namespace ayumi::test
