@@ -14,8 +14,9 @@ namespace ayumi::app {
 
 void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   command
-      .add_option("--controller", choice.controller,
-                  "none, dtad, viip, or for demonstration dtad-literal, viip-nofeedback")
+      .add_option(
+          "--controller", choice.controller,
+          "none, dtad, viip, or for demonstration dtad-literal, viip-landings, viip-nofeedback")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,

@@ -173,7 +173,8 @@ inline const std::vector<Broken>& mistakes() {
       {"world", R"({"friction": -0.1})", "/world/friction: -0.1 is below"},
       {"world", R"({"ground": "hilly"})", "/world/ground: 'hilly' is not one of flat"},
       {"controller", R"({"type": "pid"})",
-       "/controller/type: 'pid' is not one of none, dtad, dtad-literal, viip, viip-nofeedback"},
+       "/controller/type: 'pid' is not one of none, dtad, dtad-literal, viip, viip-landings, "
+       "viip-nofeedback"},
       {"controller", R"({"type": "dtad", "gains": {"q": 1, "k": 2, "d": 1}})", "q sets k and d"},
       {"controller", R"({"type": "dtad", "gains": {"k": 2}})", "k and d go together"},
       {"scenario", R"([{"type": "kick"}])",

@@ -48,8 +48,8 @@ CommandSample moved(const CommandSample& command, const Isometry3d& turn) {
 }  // namespace
 
 const std::vector<std::string>& controller_names() {
-  static const std::vector<std::string> names = {"none", "dtad", "dtad-literal", "viip",
-                                                 "viip-nofeedback"};
+  static const std::vector<std::string> names = {"none", "dtad",          "dtad-literal",
+                                                 "viip", "viip-landings", "viip-nofeedback"};
   return names;
 }
 

@@ -14,7 +14,8 @@ namespace ayumi {
 
 /// Names known to ControllerSpec::type. "none": open loop, VIIP phases hold their posture;
 /// "dtad", "dtad-literal": that law, VIIP in phases that carry goals; "viip": the same, its gains
-/// are those of VIIP; "viip-nofeedback": likewise without measured feedback, the rest open loop.
+/// are those of VIIP; "viip-nofeedback": likewise with nothing measured, feet land by the clock,
+/// the rest open loop; "viip-landings": the same, but the landing of a foot is noticed.
 const std::vector<std::string>& controller_names();
 
 /// Throws Error(usage) for an unknown name or gain.

@@ -34,6 +34,7 @@ constexpr double kShiftTime = 2.4;        // least length of the shift, times 1/
 constexpr double kSettle = 5;             // kept for standing after timed steps, times 1/omega
 constexpr double kTouchShare = 0.1;       // of the weight: the swing foot has landed
 constexpr double kTouchAfter = 0.6;       // of the swing: earlier forces are not a landing
+constexpr double kMostHurry = 4;          // of a step that comes sooner, times its own pace
 constexpr double kLeastReplan = 0.03;     // a swing is not planned for less than this [s]
 constexpr double kFootClearance = 0.008;  // between the soles' sides [m]
 
@@ -160,8 +161,8 @@ Vector2d Viip::regulate(const Vector2d& xi, int state) const {
     }
     case Stage::single:
       // Shortly before the landing only the foothold can still answer.
-      if (single - elapsed_ < kLeastToLanding) return clipped(zmp_[state]);
-      return clipped(arriving(anchor_, steps_left_, single - elapsed_));
+      if (to_landing() < kLeastToLanding) return clipped(zmp_[state]);
+      return clipped(arriving(anchor_, steps_left_, to_landing()));
     case Stage::both: {
       const double share = std::min(1.0, elapsed_ / both);
       const Vector2d& before = zmp_before_[state];
@@ -221,6 +222,27 @@ void Viip::start_single() {
   footsteps_.meet(anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]));
 }
 
+double Viip::to_landing() const {
+  return std::max(params_.single / omega_ - elapsed_, 0.0) / rate_;
+}
+
+// With Z at the edge xi gets away from where the foot was to meet it by a + c E, E = exp(w T): the
+// step comes as much sooner as keeps that within `hurry` z.
+void Viip::hurry(const PlannedStep& step, const Vector2d& xi) {
+  const double left = std::max(params_.single / omega_ - elapsed_, 0.0);
+  rate_ = 1;
+  if (!params_.feedback || left <= dt_) return;
+  const Vector2d a = zmp_[0] - step.offset - step.landing.position, c = xi - zmp_[0];
+  const double bound = params_.hurry * height_, grown = std::exp(omega_ * left);
+  if ((a + c * grown).norm() <= bound) return;
+  // The larger root of |a + c E| = bound.
+  const double cc = c.squaredNorm(), ac = a.dot(c);
+  const double root = ac * ac - cc * (a.squaredNorm() - bound * bound);
+  const double growth = root > 0 ? (std::sqrt(root) - ac) / cc : 1.0;
+  const double time = std::max(std::log(std::max(growth, 1.0)), params_.soonest) / omega_;
+  rate_ = std::clamp(left / time, 1.0, kMostHurry);
+}
+
 // The swing foot lifts off, goes to the landing point, which moves, and comes down.
 void Viip::swing(const Vector2d& xi) {
   const double length = params_.single / omega_;
@@ -228,8 +250,9 @@ void Viip::swing(const Vector2d& xi) {
   const PlannedStep step =
       footsteps_.step(steps_, anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]),
                       steps_left_, offset_.head<2>());
-  const double growth = std::exp(omega_ * std::max(length - elapsed_, 0.0));
   const Vector2d zmp = zmp_[0];
+  hurry(step, xi);
+  const double growth = std::exp(omega_ * to_landing());
   Vector2d target = zmp + (xi - zmp) * growth - step.offset;
   const Vector2d nominal = step.landing.position;
   const double reach = params_.reach * height_;
@@ -247,7 +270,8 @@ void Viip::swing(const Vector2d& xi) {
 
   // Least jerk from where the foot is to rest on the target, planned anew in every tick.
   GroundPose at = ground_pose(*model_, foot, plan_.feet[index(foot)]);
-  const double begin = kSwingMargin * length, time = (1 - kSwingMargin) * length - elapsed_;
+  const double begin = kSwingMargin * length;
+  const double time = ((1 - kSwingMargin) * length - elapsed_) / rate_;
   if (elapsed_ > begin && time > dt_) {
     const Vector3d way_left(target.x() - at.position.x(), target.y() - at.position.y(),
                             std::remainder(step.landing.yaw - at.yaw, 2 * M_PI));
@@ -259,24 +283,26 @@ void Viip::swing(const Vector2d& xi) {
     at.position += dt_ * swing_rate_.head<2>();
     at.yaw += dt_ * swing_rate_.z();
   }
-  const double after = std::min(1.0, (elapsed_ + dt_) / length);
+  const double after = std::min(1.0, (elapsed_ + rate_ * dt_) / length);
   const double up = std::pow(4 * after * (1 - after), 3);
   const double ground = plan_.feet[index(anchor_)].translation().z();
   next_.feet[index(foot)] = sole_frame(*model_, foot, at, ground + up * params_.lift * height_);
 }
 
-// Where the foot has landed, from where the plan has it: the plan does not follow, its path does.
+// Where the landed foot stands beside the other one, from where the plan has it: the plan does not
+// follow, its path does. To be asked when it bears: at first touch it is still on its way.
 Vector2d Viip::missed(const Estimate& e, Side foot) {
   update_positions(*model_, e.state, data_);
-  const Vector3d miss =
-      sole_pose(*model_, data_, foot).translation() - next_.feet[index(foot)].translation();
-  return miss.head<2>();
+  const auto off = [&](Side side) -> Vector3d {
+    return sole_pose(*model_, data_, side).translation() - plan_.feet[index(side)].translation();
+  };
+  return (off(foot) - off(other(foot))).head<2>();
 }
 
 // Stages, feet and support of the next tick.
 void Viip::go_on(const Estimate& e) {
   next_ = plan_;
-  elapsed_ += dt_;
+  elapsed_ += rate_ * dt_;
   --ticks_left_;
   const double lag = 1 - std::exp(-dt_ * omega_ / params_.goal);
   for (int i : {1, 2}) displacement_[i] += lag * (displacement_[i - 1] - displacement_[i]);
@@ -294,20 +320,21 @@ void Viip::go_on(const Estimate& e) {
   } else if (stage_ == Stage::single) {
     const Side foot = other(anchor_);
     swing(xi);
-    const bool touched = elapsed_ > kTouchAfter * single &&
+    const bool touched = params_.landings && elapsed_ > kTouchAfter * single &&
                          e.foot_fz[index(foot)] > kTouchShare * model_->mass() * kGravity;
     if (touched || elapsed_ >= single) {
       next_.feet[index(foot)].translation().z() = plan_.feet[index(anchor_)].translation().z();
       footsteps_.advance(steps_, anchor_, steps_left_);
-      if (params_.feedback) footsteps_.shift(missed(e, foot));
       --steps_left_;
       zmp_before_ = zmp_;
       stage_ = Stage::both;
       elapsed_ = 0;
+      rate_ = 1;
     }
   } else if (stage_ == Stage::both && elapsed_ >= both) {
     if (steps_left_ > 0) {
       anchor_ = other(anchor_);
+      if (params_.feedback) footsteps_.shift(missed(e, anchor_));
       start_single();
     } else {
       stage_ = Stage::stand;

@@ -11,23 +11,26 @@ namespace ayumi {
 
 /// Dimensionless: rates in units of omega = sqrt(g / z), lengths in units of the COG height z.
 struct ViipParams {
-  double q = 0.75;       ///< second pole of the standing regulator
-  double goal = 0.3;     ///< time constant of each of two lags of a displacement, times 1/omega
-  double ka = 2;         ///< short-term loop on the measured ZMP
-  double av = 3;         ///< leak of the reference velocity to the measured one
-  double ax = 1;         ///< leak of the reference COG to the measured one
-  double tau_z = 0.066;  ///< low-pass of the measured ZMP, times 1/omega
-  double margin = 0.01;  ///< kept inside the support polygon, times z
-  double kz = 1.5;       ///< sqrt(K_Pz / m) of (24), times omega
-  double dz = 1;         ///< K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
-  double ankle = 0.5;    ///< share of the stance foot's tilt taken back at the ankle
-  double single = 1.7;   ///< length of a single support, times 1/omega
-  double both = 0.4;     ///< of a double support, times 1/omega
-  double lift = 0.09;    ///< of the swing sole, times z
-  double reach = 0.5;    ///< largest departure from a nominal foothold, times z
-  double inside = 0.05;  ///< nominal ZMP, from the sole's centre to the other foot, times z
-  double hold = 0.5;     ///< share of a foot's error of place taken back by the next step
-  bool feedback = true;  ///< false: the reference pendulum alone, a demonstration
+  double q = 0.75;        ///< second pole of the standing regulator
+  double goal = 0.3;      ///< time constant of each of two lags of a displacement, times 1/omega
+  double ka = 2;          ///< short-term loop on the measured ZMP
+  double av = 3;          ///< leak of the reference velocity to the measured one
+  double ax = 1;          ///< leak of the reference COG to the measured one
+  double tau_z = 0.066;   ///< low-pass of the measured ZMP, times 1/omega
+  double margin = 0.01;   ///< kept inside the support polygon, times z
+  double kz = 1.5;        ///< sqrt(K_Pz / m) of (24), times omega
+  double dz = 1;          ///< K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
+  double ankle = 0.5;     ///< share of the stance foot's tilt taken back at the ankle
+  double single = 1.7;    ///< length of a single support, times 1/omega
+  double both = 0.4;      ///< of a double support, times 1/omega
+  double lift = 0.09;     ///< of the swing sole, times z
+  double reach = 0.5;     ///< largest departure from a nominal foothold, times z
+  double hurry = 0.1;     ///< a foothold moved farther than this comes sooner, times z
+  double soonest = 0.75;  ///< least time left to a step that comes sooner, times 1/omega
+  double inside = 0.05;   ///< nominal ZMP, from the sole's centre to the other foot, times z
+  double hold = 0.5;      ///< share of a foot's error of place taken back by the next step
+  bool feedback = true;   ///< false: the reference pendulum alone, a demonstration
+  bool landings = true;   ///< false: a foot lands when its time is up, whatever its cells say
 };
 
 /// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
@@ -70,6 +73,8 @@ class Viip {
   void go_on(const Estimate& estimate);
   void start_steps();
   void start_single();
+  double to_landing() const;
+  void hurry(const PlannedStep& step, const Eigen::Vector2d& xi);
   void swing(const Eigen::Vector2d& xi);
   Eigen::Vector2d missed(const Estimate& estimate, Side foot);
   void finish_plan();
@@ -89,6 +94,7 @@ class Viip {
   long ticks_left_ = 0;
   Stage stage_ = Stage::stand;
   double elapsed_ = 0;        // in this stage [s]
+  double rate_ = 1;           // of its clock: a step that comes sooner runs faster
   Side anchor_ = Side::left;  // foot the reference stands on
   Footsteps footsteps_;
   Eigen::Vector2d zmp_filtered_;

@@ -11,10 +11,11 @@ namespace ayumi {
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   ViipParams p;
   const std::map<std::string, double*> fields = {
-      {"q", &p.q},       {"goal", &p.goal},   {"ka", &p.ka},         {"av", &p.av},
-      {"ax", &p.ax},     {"tau_z", &p.tau_z}, {"margin", &p.margin}, {"kz", &p.kz},
-      {"dz", &p.dz},     {"ankle", &p.ankle}, {"single", &p.single}, {"both", &p.both},
-      {"lift", &p.lift}, {"reach", &p.reach}, {"hold", &p.hold},     {"inside", &p.inside}};
+      {"q", &p.q},         {"goal", &p.goal},      {"ka", &p.ka},         {"av", &p.av},
+      {"ax", &p.ax},       {"tau_z", &p.tau_z},    {"margin", &p.margin}, {"kz", &p.kz},
+      {"dz", &p.dz},       {"ankle", &p.ankle},    {"single", &p.single}, {"both", &p.both},
+      {"lift", &p.lift},   {"reach", &p.reach},    {"hold", &p.hold},     {"inside", &p.inside},
+      {"hurry", &p.hurry}, {"soonest", &p.soonest}};
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where) {
@@ -39,7 +40,8 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
     fail(ErrorCode::usage, "controller gains: dz = " + text::brief(p.dz) +
                                " overshoots; (25) asks for K_Dz^2 >= 4 m K_Pz, dz >= 1");
   if (p.hold > 1) fail(ErrorCode::usage, "controller gains: hold is a share, at most 1");
-  p.feedback = spec.type != "viip-nofeedback";
+  p.landings = spec.type != "viip-nofeedback";
+  p.feedback = p.landings && spec.type != "viip-landings";
   return p;
 }
 

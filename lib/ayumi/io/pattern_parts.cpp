@@ -130,7 +130,7 @@ ControllerSpec read_controller(const JsonNode& node, PatternScope& scope) {
   only_pattern_keys(node, "controller");
   ControllerSpec controller;
   controller.type =
-      node.at("type").one_of({"none", "dtad", "dtad-literal", "viip", "viip-nofeedback"});
+      node.at("type").one_of({"none", "dtad", "dtad-literal", "viip", "viip-landings", "viip-nofeedback"});
   const auto gains = node.find("gains");
   if (!gains) return controller;
   if (gains->has("q") && (gains->has("k") || gains->has("d")))
