@@ -40,7 +40,8 @@ class ContactSolver {
   Matrix A() { return Matrix(store_[0].data(), 3 * n_, 3 * n_); }
   Vector b() { return Vector(store_[1].data(), 3 * n_); }
   Vector impulse() { return Vector(store_[2].data(), 3 * n_); }  ///< start, then answer [N s]
-  std::vector<double>& friction() { return friction_; }          ///< n
+  Eigen::Map<const Eigen::VectorXd> impulse() const { return {store_[2].data(), 3 * n_}; }
+  std::vector<double>& friction() { return friction_; }  ///< n
 
   /// Stops when a sweep changes no shifted velocity by more than `tolerance` [m/s].
   ContactSolution solve(double tolerance = 1e-10, int max_iterations = 500);

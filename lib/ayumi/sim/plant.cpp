@@ -15,7 +15,6 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/math/rotation.hpp"
 #include "ayumi/sim/payload.hpp"
 #include "ayumi/sim/servo.hpp"
 #include "ayumi/sim/step_check.hpp"
@@ -87,8 +86,9 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
     const int place = factor_.place_of(6 + j);
     joint_diagonal_.push_back(static_cast<size_t>(factor_.row_begin(place) + factor_.depth(place)));
   }
-  fixed_ = dry_ = report_.torque = VectorXd::Zero(n);
+  fixed_ = dry_ = torque_ = report_.torque = VectorXd::Zero(n);
   saturated_.resize(static_cast<size_t>(n));
+  left_law_.resize(static_cast<size_t>(n));
   sliding_.resize(static_cast<size_t>(n));
   report_.saturated.reserve(static_cast<size_t>(n));
   for (int side = 0; side < 2 && model.has_soles(); ++side)
@@ -119,6 +119,7 @@ void Plant::set_state(const RobotState& state) {
   momentum_ = centroidal_momentum(moving(), data_);
   fill_mass();
   active_.clear();
+  pivot_ = {};
   links_.reset();
 }
 
@@ -228,11 +229,13 @@ void Plant::solve_velocity(double dt) {
                                   text::fixed(time_, 3) + " s after the plant's start");
   for (int k = 0; k < columns; ++k) lower_[k] = velocity_[factor_.column_at(k)];
   factor_.solve_upper(lower_);
+  iterations_ = 0;
+  residual_ = 0;
   if (!active_.empty()) {
     fill_delassus();
     const ContactSolution solution = solver_.solve();
-    report_.contact_iterations = solution.iterations;
-    report_.contact_residual = solution.residual;
+    iterations_ = solution.iterations;
+    residual_ = solution.residual;
     add_impulses(lower_);
   }
   factor_.solve_lower(lower_);
@@ -247,7 +250,7 @@ bool Plant::limit_torques(double dt) {
   for (int j = 0; j < model_->dof_count(); ++j) {
     const double rate = velocity_[6 + j];
     if (!saturated_[j]) {
-      double& torque = report_.torque[j];
+      double& torque = torque_[j];
       torque = kp_now_[j] * (target_now_[j] - state_.theta[j] - dt * rate) - kd_now_[j] * rate;
       const double limit = available_torque(limits_, j, rate, torque > 0 ? 1.0 : -1.0);
       if (std::abs(torque) > limit) {
@@ -268,13 +271,31 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
   load(input.payloads);
   take_joints(targets, input);
   ground_.set(input);
+  clear_report();
+  solve(input, dt);
+  // Where a robot that pivots lands, the step is taken in two parts: to there, and on from there.
+  const double landing = time_of_landing(dt);
+  if (landing < dt) {
+    active_.swap(last_active_);
+    solve(input, landing);
+    finish(landing, dt);
+    solve(input, dt - landing);
+    finish(dt - landing, dt);
+  } else {
+    finish(dt, dt);
+  }
+  for (int j = 0; j < model_->dof_count(); ++j)
+    if (left_law_[j]) report_.saturated.push_back(j);
+  return report_;
+}
+
+// Velocity and contact impulses of a step or of a part of it.
+void Plant::solve(const StepInput& input, double dt) {
   assemble(input, dt);
   const int n = model_->dof_count();
   // A joint that has left its servo's law, or sticking friction, keeps to that within the step.
   std::fill(saturated_.begin(), saturated_.end(), 0);
   std::fill(sliding_.begin(), sliding_.end(), 0);
-  report_.contact_iterations = 0;
-  report_.contact_residual = 0;
   for (int pass = 0; pass <= 2 * n; ++pass) {
     solve_velocity(dt);
     if (!limit_torques(dt)) break;
@@ -282,26 +303,42 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
   if (!velocity_.allFinite())
     fail(ErrorCode::internal, model_->name() + ": the plant left the finite numbers " +
                                   text::fixed(time_, 3) + " s after its start");
+}
+
+void Plant::clear_report() {
+  report_.torque.setZero();
+  for (std::vector<SoleForce>& sole : report_.soles)
+    for (SoleForce& cell : sole) cell = SoleForce{};
+  report_.body_contact = false;
   report_.saturated.clear();
-  for (int j = 0; j < n; ++j)
-    if (saturated_[j]) report_.saturated.push_back(j);
-  report_contacts(dt);
+  std::fill(left_law_.begin(), left_law_.end(), 0);
+  report_.contact_iterations = 0;
+  report_.contact_residual = report_.max_penetration = 0;
+  report_.work = Work{};
+  report_.self_contact = {-1, -1};
+}
+
+// Takes what solve() found: into the report, where it counts for dt of `whole`, and into the state.
+void Plant::finish(double dt, double whole) {
+  report_.torque += dt / whole * torque_;
+  for (size_t j = 0; j < saturated_.size(); ++j) left_law_[j] |= saturated_[j];
+  report_.contact_iterations += iterations_;
+  report_.contact_residual = std::max(report_.contact_residual, residual_);
+  report_contacts(dt, whole);
   account(dt);
   momentum_.linear += external_.linear;
   momentum_.angular += external_.angular;
   advance(dt);
   time_ += dt;
-  return report_;
 }
 
 // Work of what acts on the joints and from outside, at the mean of the rates before and after:
 // impulse times mean rate is exactly the change of kinetic energy that it makes.
 void Plant::account(double dt) {
   Work& work = report_.work;
-  work.servos = work.joints = work.outside = 0;
   for (int j = 0; j < model_->dof_count(); ++j) {
     const double rate = velocity_[6 + j], mean = 0.5 * (before_[6 + j] + rate);
-    work.servos += dt * report_.torque[j] * mean;
+    work.servos += dt * torque_[j] * mean;
     double force = -viscous_now_[j] * rate;
     if (coulomb_now_[j] > 0) force += sliding_[j] ? dry_[j] : -coulomb_now_[j] / kStickRate * rate;
     const Dof& dof = model_->dofs()[j];
@@ -311,47 +348,7 @@ void Plant::account(double dt) {
                stop_damping_[j] * rate;
     work.joints += dt * force * mean;
   }
-  work.outside = 0.5 * outside_.dot(before_ + velocity_);
-}
-
-// Joints move with their solved rates. The base then takes the velocity that gives the robot, in
-// its new posture, exactly the momentum the outside has left it: M(q) v changes along the step, and
-// this is what keeps momentum to rounding in flight and ground forces equal to its rate in contact.
-void Plant::advance(double dt) {
-  const Vector3d cog = data_.cog;
-  state_.dtheta = velocity_.tail(model_->dof_count());
-  state_.theta += dt * state_.dtheta;
-  state_.base.attitude =
-      (exp_rotation(dt * velocity_.segment<3>(3)) * state_.base.attitude).normalized();
-  update_positions(moving(), state_, data_);
-  fill_mass();
-  // What the joints alone do, and the inertia with the joints locked, both about the base origin.
-  Momentum joints;
-  Matrix3d locked;
-  const auto row = [&](int place) { return mass_.data() + factor_.row_begin(place); };
-  for (int j = 0; j < model_->dof_count(); ++j) {
-    const double* of_joint = row(factor_.place_of(6 + j));
-    joints.linear += state_.dtheta[j] * Eigen::Map<const Vector3d>(of_joint);
-    joints.angular += state_.dtheta[j] * Eigen::Map<const Vector3d>(of_joint + 3);
-  }
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j <= i; ++j) locked(i, j) = locked(j, i) = row(3 + i)[3 + j];
-  const double mass = moving().mass();
-  const Vector3d& c = data_.cog_offset;
-  joints.angular -= c.cross(joints.linear);
-  locked -= mass * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());
-  const Vector3d cog_velocity = momentum_.linear / mass;
-  const Vector3d w = locked.llt().solve(momentum_.angular - joints.angular);
-  state_.base_angular_velocity = w;
-  state_.base_velocity = cog_velocity - joints.linear / mass - w.cross(c);
-  // Nothing but gravity and pushes: the force is constant and the way that of the mean velocity, so
-  // that the COG of a flight is on its parabola. Contacts are solved for the velocity they end in.
-  Vector3d way = dt * cog_velocity;
-  if (active_.empty()) way -= 0.5 * dt / mass * external_.linear;
-  state_.base.position = cog + way - c;
-  data_.base_position = state_.base.position;
-  data_.cog = data_.base_position + c;
-  carry_velocities(moving(), state_, data_);
+  work.outside += 0.5 * outside_.dot(before_ + velocity_);
 }
 
 }  // namespace ayumi

@@ -61,11 +61,22 @@ class Plant {
     size_t begin = 0;  ///< in J_ and Y_
   };
 
+  /// What the contacts that press leave the whole robot free to do with its joints locked: turn
+  /// about a point (freedom 3), about a line (1), or nothing.
+  struct Pivot {
+    int freedom = 0;
+    Eigen::Vector3d point, axis;  ///< world; the axis of length 1
+  };
+
   void load(const std::vector<CarriedMass>& payloads);
   void take_joints(const Eigen::VectorXd& targets, const StepInput& input);
   /// The robot with what it carries.
   const RobotModel& moving() const { return loaded_ ? *loaded_ : *model_; }
 
+  void solve(const StepInput& input, double dt);
+  double time_of_landing(double dt) const;
+  void clear_report();
+  void finish(double dt, double whole);
   void collect_contacts(double dt);
   void collect_inner(size_t group, double dt);
   void collect_edges(double dt);
@@ -88,7 +99,7 @@ class Plant {
   void couple(const Run& run, const Run& other);
   void solve_velocity(double dt);
   bool limit_torques(double dt);
-  void report_contacts(double dt);
+  void report_contacts(double dt, double whole);
   void report_sole(const Active& active, const Eigen::Vector3d& force);
   Eigen::Map<const Eigen::VectorXd> times_path(const Run& run, const double* rows,
                                                const Eigen::VectorXd& x);
@@ -97,6 +108,10 @@ class Plant {
   void share_among_cells(const Active& active, const Eigen::Vector3d& force);
   void account(double dt);
   void advance(double dt);
+  Eigen::Matrix3d locked_inertia() const;
+  void find_pivot();
+  Eigen::Vector3d pivot_lag(double dt) const;
+  void follow_points(double dt);
 
   const RobotModel* model_;
   std::optional<RobotModel> loaded_;
@@ -119,6 +134,7 @@ class Plant {
   // Workspace of step().
   Eigen::VectorXd kp_now_, kd_now_, viscous_now_, coulomb_now_, target_now_;
   std::vector<Active> active_, last_active_;
+  Pivot pivot_;  // of the last step
   std::vector<Eigen::Vector3d> outline_;
   std::vector<InnerPoint> inner_;
   std::vector<FieldTip> tips_;
@@ -134,8 +150,10 @@ class Plant {
   Eigen::VectorXd impulse_, bias_, still_, velocity_, lower_, placed_, before_, outside_;
   std::vector<double> compliance_;
   std::vector<Eigen::Vector3d> shift_;
-  std::vector<char> saturated_, sliding_;
-  Eigen::VectorXd fixed_, dry_;
+  std::vector<char> saturated_, left_law_, sliding_;
+  Eigen::VectorXd fixed_, dry_, torque_;
+  int iterations_ = 0;
+  double residual_ = 0;
   ContactSolver solver_;
   Momentum external_;  // linear and angular (about the COG) momentum from outside in this step
   StepReport report_;

@@ -171,13 +171,8 @@ void Plant::contact_rates(const VectorXd& velocity, std::vector<double>& rates) 
   }
 }
 
-void Plant::report_contacts(double dt) {
-  for (std::vector<SoleForce>& sole : report_.soles)
-    for (SoleForce& cell : sole) cell = SoleForce{};
-  report_.body_contact = false;
-  report_.self_contact = {-1, -1};
-  report_.max_penetration = 0;
-  report_.work.contacts = 0;
+// Forces are those of the contacts' impulses over `whole`, of which the step or its part is dt.
+void Plant::report_contacts(double dt, double whole) {
   if (active_.empty()) return;
   contact_rates(velocity_, rates_);
   for (size_t i = 0; i < active_.size(); ++i) {
@@ -204,7 +199,7 @@ void Plant::report_contacts(double dt) {
     if (active.side < 0)
       report_.body_contact |= touching;
     else
-      report_sole(active, force / dt);
+      report_sole(active, force / whole);
   }
 }
 
