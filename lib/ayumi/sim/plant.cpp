@@ -179,7 +179,7 @@ void Plant::fill_mass() {
 }
 
 // Fills the impulses of bias and pushes and what the contact solve needs.
-void Plant::assemble(const StepInput& input, double dt) {
+void Plant::assemble(const StepInput& input, double dt, bool landing) {
   newton_euler(moving(), state_, still_, data_, bias_);
   before_ << state_.base_velocity, state_.base_angular_velocity, state_.dtheta;
   impulse_ = -dt * bias_;
@@ -189,6 +189,9 @@ void Plant::assemble(const StepInput& input, double dt) {
   for (const ExternalWrench& w : input.wrenches) push(w, dt);
   if (!input.wrenches.empty()) impulse_ += outside_;
   collect_contacts(dt);
+  if (landing)
+    std::erase_if(active_, [](const Active& a) { return a.gap > 0 && a.impulse.isZero(0); });
+  if (pivot_.freedom > 0) turn_half(dt);
   fill_contact_rows(dt);
 }
 
@@ -277,7 +280,7 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
   const double landing = time_of_landing(dt);
   if (landing < dt) {
     active_.swap(last_active_);
-    solve(input, landing);
+    solve(input, landing, true);
     finish(landing, dt);
     solve(input, dt - landing);
     finish(dt - landing, dt);
@@ -289,9 +292,10 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
   return report_;
 }
 
-// Velocity and contact impulses of a step or of a part of it.
-void Plant::solve(const StepInput& input, double dt) {
-  assemble(input, dt);
+// Velocity and contact impulses of a step or of a part of it; of one that ends in a landing without
+// what lands.
+void Plant::solve(const StepInput& input, double dt, bool landing) {
+  assemble(input, dt, landing);
   const int n = model_->dof_count();
   // A joint that has left its servo's law, or sticking friction, keeps to that within the step.
   std::fill(saturated_.begin(), saturated_.end(), 0);

@@ -73,7 +73,7 @@ class Plant {
   /// The robot with what it carries.
   const RobotModel& moving() const { return loaded_ ? *loaded_ : *model_; }
 
-  void solve(const StepInput& input, double dt);
+  void solve(const StepInput& input, double dt, bool landing = false);
   double time_of_landing(double dt) const;
   void clear_report();
   void finish(double dt, double whole);
@@ -88,7 +88,7 @@ class Plant {
   bool far(double gap, int body, const Active& active, double dt) const;
   void place_frame(const Eigen::Vector3d& normal, Active& active) const;
   void remember_impulses();
-  void assemble(const StepInput& input, double dt);
+  void assemble(const StepInput& input, double dt, bool landing);
   void push(const ExternalWrench& wrench, double dt);
   void fill_mass();
   void find_runs();
@@ -109,8 +109,10 @@ class Plant {
   void account(double dt);
   void advance(double dt);
   Eigen::Matrix3d locked_inertia() const;
+  bool is_pivot(const Active& active) const;
   void find_pivot();
-  Eigen::Vector3d pivot_lag(double dt) const;
+  void turn_half(double dt);
+  Eigen::Vector3d turn_about_pivot(const Momentum& given) const;
   void follow_points(double dt);
 
   const RobotModel* model_;
@@ -134,7 +136,8 @@ class Plant {
   // Workspace of step().
   Eigen::VectorXd kp_now_, kd_now_, viscous_now_, coulomb_now_, target_now_;
   std::vector<Active> active_, last_active_;
-  Pivot pivot_;  // of the last step
+  Pivot pivot_;                                              // of the last step
+  Eigen::Matrix3d half_turn_ = Eigen::Matrix3d::Identity();  // within this one
   std::vector<Eigen::Vector3d> outline_;
   std::vector<InnerPoint> inner_;
   std::vector<FieldTip> tips_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/sim/plant.hpp"
@@ -13,10 +14,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kOnePoint = 1e-6;       // contacts no further apart are one [m]
-constexpr double kStraight = 1e-4;       // contacts no further off a line, in shares of its length
-constexpr double kShortPart = 0.02;      // of a step: below, it is not taken in two parts
-constexpr double kBeforeLanding = 0.99;  // of the time to a landing: gravity hastens it
+constexpr double kOnePoint = 1e-6;   // contacts no further apart are one [m]
+constexpr double kStraight = 1e-4;   // contacts no further off a line, in shares of its length
+constexpr double kShortPart = 0.02;  // of a step: below, it is not taken in two parts
 
 Matrix3d about(const Matrix3d& inertia, double mass, const Vector3d& r) {
   return inertia + mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
@@ -34,12 +34,21 @@ Matrix3d Plant::locked_inertia() const {
   return about(locked, -moving().mass(), data_.cog_offset);
 }
 
+// A point of the robot, or of the ground under a sole, that stays where it is while the robot
+// turns.
+bool Plant::is_pivot(const Active& active) const {
+  if (active.key >= static_cast<long>(points_.size())) return active.side >= 0;
+  const ContactPoint& point = points_[static_cast<size_t>(active.key)];
+  return point.radius == 0 && point.rim == 0;
+}
+
 void Plant::find_pivot() {
   pivot_.freedom = 0;
   const Vector3d* first = nullptr;
   double farthest = 0;
   for (const Active& active : active_) {
     if (active.other >= 0 || !(active.impulse[0] > 0)) continue;
+    if (!is_pivot(active)) return;
     if (!first) {
       first = &active.position;
       continue;
@@ -62,15 +71,37 @@ void Plant::find_pivot() {
   }
 }
 
-// The half step by which the turning that gravity and pushes give a pivoting robot is ahead of the
-// mean rate, as a turn [rad]. The contacts' own forces do not turn it: they pass through the pivot.
-Vector3d Plant::pivot_lag(double dt) const {
+// The rate about the pivot that this momentum gives the robot with its joints locked; forces in the
+// pivot give none.
+Vector3d Plant::turn_about_pivot(const Momentum& given) const {
   const Vector3d r = data_.cog - pivot_.point;
-  const Vector3d moment = external_.angular + r.cross(external_.linear);
+  const Vector3d moment = given.angular + r.cross(given.linear);
   const Matrix3d inertia = about(locked_inertia(), moving().mass(), r);
-  if (pivot_.freedom == 3) return 0.5 * dt * inertia.llt().solve(moment);
+  if (pivot_.freedom == 3) return inertia.llt().solve(moment);
   const Vector3d& e = pivot_.axis;
-  return 0.5 * dt * e.dot(moment) / e.dot(inertia * e) * e;
+  return e.dot(moment) / e.dot(inertia * e) * e;
+}
+
+// The step of a robot that pivots is that of its posture half a step on. All that has turned as one
+// keeps its numbers in axes that have turned with it; in these gravity and the ground turn back.
+void Plant::turn_half(double dt) {
+  half_turn_ = exp_rotation(0.5 * dt * turn_about_pivot(momentum_)).toRotationMatrix();
+  const Vector3d gravity(0, 0, -kGravity);
+  const Vector3d more = dt * (half_turn_.transpose() * gravity - gravity);
+  const double mass = moving().mass();
+  impulse_.head<3>() += mass * more;
+  impulse_.segment<3>(3) += mass * data_.cog_offset.cross(more);
+  for (int j = 0; j < model_->dof_count(); ++j) {
+    const double* of_joint = mass_.data() + factor_.row_begin(factor_.place_of(6 + j));
+    impulse_[6 + j] += Eigen::Map<const Vector3d>(of_joint).dot(more);
+  }
+  before_.head<3>() = half_turn_.transpose() * before_.head<3>();
+  before_.segment<3>(3) = half_turn_.transpose() * before_.segment<3>(3);
+  for (Active& active : active_)
+    if (active.other < 0) {
+      active.to_contact = active.to_contact * half_turn_;
+      active.ground_velocity = half_turn_.transpose() * active.ground_velocity;
+    }
 }
 
 // When a robot that pivots meets the ground with another point; dt or more when it does not. To be
@@ -86,7 +117,7 @@ double Plant::time_of_landing(double dt) const {
     const double approach =
         active.to_contact.row(0).dot(active.ground_velocity) - rates_before_[3 * i];
     landing = true;
-    if (approach > 0) time = std::min(time, kBeforeLanding * active.gap / approach);
+    if (approach > 0) time = std::min(time, active.gap / approach);
   }
   // One that only gravity brings down within the step lands at its end.
   if (landing) time = std::min(time, (1 - kShortPart) * dt);
@@ -100,7 +131,6 @@ void Plant::follow_points(double dt) {
     Active& active = active_[i];
     if (active.key >= static_cast<long>(points_.size()) || !(active.impulse[0] > 0)) continue;
     const ContactPoint& point = points_[static_cast<size_t>(active.key)];
-    if (point.radius > 0 || point.rim > 0) continue;  // rolls: another point touches next
     const Vector3d now = data_.base_position +
                          (data_.position[point.body] + data_.rotation[point.body] * point.position);
     active.deflection += active.to_contact.bottomRows<2>() * (now - active.position) -
@@ -114,11 +144,15 @@ void Plant::follow_points(double dt) {
 void Plant::advance(double dt) {
   const Vector3d cog = data_.cog;
   find_pivot();
-  const Vector3d lag = pivot_.freedom > 0 ? pivot_lag(dt) : Vector3d::Zero();
+  // About a pivot the way is that of the mean rate too: without the half step that the turn by
+  // gravity and pushes is ahead of it.
+  const Vector3d lag =
+      pivot_.freedom > 0 ? Vector3d(0.5 * dt * turn_about_pivot(external_)) : Vector3d::Zero();
   state_.dtheta = velocity_.tail(model_->dof_count());
   state_.theta += dt * state_.dtheta;
   state_.base.attitude =
-      (exp_rotation(dt * velocity_.segment<3>(3) - lag) * state_.base.attitude).normalized();
+      (exp_rotation(dt * (half_turn_ * velocity_.segment<3>(3)) - lag) * state_.base.attitude)
+          .normalized();
   update_positions(moving(), state_, data_);
   fill_mass();
   // What the joints alone do, about the base origin, and the inertia with the joints locked.
@@ -145,6 +179,7 @@ void Plant::advance(double dt) {
   data_.cog = data_.base_position + c;
   carry_velocities(moving(), state_, data_);
   if (pivot_.freedom > 0) follow_points(dt);
+  half_turn_.setIdentity();
 }
 
 }  // namespace ayumi
