@@ -4,23 +4,27 @@
 //   foot      one foot out of its place shows as slip, depth and height: the largest is the cause
 //   posture   an angle beyond its limit, a collision, a foot out of place or a jump between two
 //             samples  ->  forces and residuals, as long as the posture is off the command; an
-//             angle also  ->  its rates and the feet on its leg; but not a ZMP outside the support
-//             that the command itself asks for
+//             angle also  ->  its rates, the feet on its leg and bodies that just touch by it; but
+//             not a ZMP outside the support that the command itself asks for
+//   edges     a posture that is wrong from one sample to the next and back  ->  the speeds of both
+//   flight    a COG that does not fall freely  ->  the moment of the same force, f_z, COG residual,
+//             how deep the feet come meanwhile
 //   phase     a foot that is said to land too early  ->  forces at the other end of that phase,
 //             where the other foot is let go too early
-//   flight    a COG that does not fall freely  ->  the moment of the same force, f_z, COG residual
 //   haste     joints too fast or too weak  ->  forces and residuals that the same path, played
 //             slower, does not have
 //   support   a ZMP outside the sole  ->  leg torques, which no sole could bear
 //   ground    too little friction  ->  too little resistance to turning
-//   command   a posture off the commanded COG  ->  ZMP and f_z off theirs
+//   command   a COG that is not the posture's  ->  ZMP and f_z off theirs, and its own free fall; a
+//             commanded ZMP outside the support, where the motion's is inside  ->  their distance
 #include "ayumi/check/causes.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/check/residuals.hpp"
+#include "ayumi/check/slower_pace.hpp"
+#include "ayumi/check/spans.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 
 namespace ayumi {
@@ -29,19 +33,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kTrace = 1e-4;   // COG deviation that still belongs to a fault [m]
-constexpr double kSlack = 0.050;  // the ZMP answers before the COG is off by kTrace [s]
 constexpr double kReach = 0.5;    // an outer force acts within this part of the height
-constexpr double kStill = 0.01;   // joints slower than this rest [rad/s]
-constexpr double kSlowest = 0.3;  // pace down to which haste is looked for
-constexpr double kPaceStep = 0.05;
-constexpr int kStencil = 3;         // samples that one jump spoils by differences
-constexpr int kThermalLooks = 100;  // of the RMS torque at another pace
-
-struct Span {
-  int first = 0, last = 0;
-  bool touches(const FindingWindow& w) const { return w.first <= last && w.last >= first; }
-};
+constexpr double kTouch = 0.015;  // deeper overlaps are facts of their own [m]
+constexpr int kStencil = 3;       // samples that one jump spoils by differences
 
 bool is_foot(Kind k) {
   return k == Kind::foot_slip || k == Kind::foot_penetration || k == Kind::foot_float;
@@ -63,21 +57,31 @@ bool is_need(const Violation& v) {
   }
 }
 
+bool is_rate(Kind k) { return k == Kind::joint_speed || k == Kind::servo_step; }
+
 bool is_residual(Kind k) {
   return k == Kind::cog_residual || k == Kind::zmp_residual || k == Kind::fz_residual;
 }
 
 class Causes {
  public:
-  Causes(CheckPass& pass, std::vector<FindingWindow>& windows) : pass_(pass), windows_(windows) {}
+  Causes(CheckPass& pass, std::vector<FindingWindow>& windows)
+      : pass_(pass), windows_(windows), pace_(pass) {}
 
   void run() {
     one_foot();
-    for (const Kind kind : {Kind::joint_position, Kind::foot_float, Kind::foot_slip,
-                            Kind::foot_penetration, Kind::self_collision, Kind::servo_step})
+    posture(Kind::joint_position);
+    edges(Kind::foot_slip);
+    edges(Kind::foot_float);
+    edges(Kind::foot_penetration);
+    edges(Kind::self_collision);
+    posture(Kind::foot_float);
+    posture(Kind::foot_slip);
+    moved_command_in_flight();
+    flight();
+    for (const Kind kind : {Kind::foot_penetration, Kind::self_collision, Kind::servo_step})
       posture(kind);
     moved_phase();
-    flight();
     haste();
     support();
     ground();
@@ -92,10 +96,7 @@ class Causes {
   bool open(int i) const {
     return windows_[i].cause < 0 && windows_[i].worst.severity == Severity::error;
   }
-  Span span(int i, int slack = 0) const {
-    return {windows_[i].first - slack, windows_[i].last + slack};
-  }
-  int slack() const { return static_cast<int>(std::lround(kSlack / pass_.series.dt)); }
+  int slack() const { return slack_samples(pass_); }
 
   // Every other error j that touches the span and of which follows(j) holds comes from cause i.
   template <typename Follows>
@@ -115,21 +116,9 @@ class Causes {
       if (!is_foot(of(i).kind) || !open(i)) continue;
       for (int j = 0; j < count() && open(i); ++j)
         if (j != i && is_foot(of(j).kind) && of(j).item == of(i).item && open(j) &&
-            span(i, slack()).touches(windows_[j]) && larger(j, i))
+            around(windows_[i], slack()).touches(windows_[j]) && larger(j, i))
           windows_[i].cause = j;
     }
-  }
-
-  // The window of a fault, and around it as far as the posture's COG is off the command.
-  Span episode(int i) const {
-    const int gap = std::max(1, static_cast<int>(std::lround(kWindowGap / pass_.series.dt)));
-    const auto grow = [&](int from, int step) {
-      int edge = from;
-      for (int k = from; k >= 0 && k < pass_.count() && std::abs(k - edge) <= gap; k += step)
-        if (pass_.cog_deviation[k] > kTrace) edge = k;
-      return edge;
-    };
-    return {grow(windows_[i].first, -1) - slack(), grow(windows_[i].last, 1) + slack()};
   }
 
   bool in_a_leg(int dof) const {
@@ -151,18 +140,74 @@ class Causes {
            plane.polygon.margin(inside.head<2>()) < -kRounding;
   }
 
+  // Forces answer 50 ms around.
+  Span episode(int i) const {
+    const Span s = deviation_around(pass_, windows_[i]);
+    return {s.first - slack(), s.last + slack()};
+  }
+
+  Span episode_of_joint(int i) const {
+    const Span s = episode(i), stroke = stroke_around(pass_, windows_[i]);
+    return {std::min(s.first, stroke.first - slack()), std::max(s.last, stroke.last + slack())};
+  }
+
+  // With every joint within its limits, these bodies would not touch.
+  bool touches_by_limits(const Violation& v) const {
+    if (-v.value > kTouch) return false;
+    RobotState state = pass_.series.samples[v.sample].state;
+    for (int i = 0; i < pass_.model.dof_count(); ++i)
+      if (const Dof& dof = pass_.model.dofs()[i]; dof.limited)
+        state.theta[i] = std::clamp(state.theta[i], dof.lower, dof.upper);
+    RobotData data(pass_.model);
+    update_positions(pass_.model, state, data);
+    return pass_.collisions.clearance(pass_.collisions.pairs()[v.item], data, kTouch) >= 0;
+  }
+
   void posture(Kind kind) {
     for (int i = 0; i < count(); ++i) {
       if (of(i).kind != kind || !open(i)) continue;
-      const bool joint = kind == Kind::joint_position || kind == Kind::servo_step;
+      const bool limit = kind == Kind::joint_position;
+      const bool joint = limit || kind == Kind::servo_step;
       const bool places_feet = joint && in_a_leg(of(i).item);
-      blame(i, episode(i), [&](int j) {
+      blame(i, limit ? episode_of_joint(i) : episode(i), [&](int j) {
         const Violation& v = of(j);
         if (is_asked_for(v)) return false;
         if (is_need(v) || is_residual(v.kind)) return true;
         if (places_feet && is_foot(v.kind)) return true;
-        const bool rate = v.kind == Kind::joint_speed || v.kind == Kind::servo_step;
-        return joint && rate && v.item == of(i).item;
+        if (limit && v.kind == Kind::self_collision) return touches_by_limits(v);
+        return joint && is_rate(v.kind) && v.item == of(i).item;
+      });
+    }
+  }
+
+  // Largest step of a joint between two samples near this one.
+  double step_near(int dof, int sample) const {
+    double step = 0;
+    for (int k = std::max(1, sample - kStencil);
+         k <= std::min(pass_.count() - 1, sample + kStencil); ++k) {
+      const double here =
+          pass_.series.samples[k].state.theta[dof] - pass_.series.samples[k - 1].state.theta[dof];
+      if (std::abs(here) > std::abs(step)) step = here;
+    }
+    return step;
+  }
+
+  bool is_jump(int j, int sample) const {
+    const FindingWindow& w = windows_[j];
+    return is_rate(w.worst.kind) && w.last - w.first <= 2 * kStencil &&
+           around(w, kStencil).contains(sample);
+  }
+
+  // A key in a wrong place, held between two jumps of the same joint, there and back.
+  void edges(Kind kind) {
+    for (int i = 0; i < count(); ++i) {
+      if (of(i).kind != kind || !open(i)) continue;
+      const int there = windows_[i].first, back = windows_[i].last + 1;
+      blame(i, {there - kStencil, back + kStencil}, [&](int j) {
+        if (!is_jump(j, there) && !is_jump(j, back)) return false;
+        const double to = step_near(of(j).item, there), from = step_near(of(j).item, back);
+        return to * from < 0 && std::abs(to) > 0.5 * std::abs(from) &&
+               std::abs(from) > 0.5 * std::abs(to);
       });
     }
   }
@@ -174,7 +219,7 @@ class Causes {
     for (int i = 0; i < count(); ++i) {
       if (of(i).kind != Kind::foot_float || !open(i)) continue;
       const Support here = pass_.series.samples[of(i).sample].support;
-      Span phase = span(i);
+      Span phase = around(windows_[i]);
       const auto same = [&](int k) { return pass_.series.samples[k].support == here; };
       while (phase.first > 0 && same(phase.first - 1)) --phase.first;
       while (phase.last + 1 < pass_.count() && same(phase.last + 1)) ++phase.last;
@@ -205,105 +250,43 @@ class Causes {
   void support() {
     for (int i = 0; i < count(); ++i)
       if (of(i).kind == Kind::support_margin && of(i).item == 0 && open(i))
-        blame(i, span(i, kStencil),
+        blame(i, around(windows_[i], kStencil),
               [&](int j) { return of(j).kind == Kind::joint_torque && in_a_leg(of(j).item); });
+  }
+
+  bool flies(int k) const {
+    return k >= 0 && k < pass_.count() && pass_.series.samples[k].support == Support::none;
+  }
+
+  // The posture falls freely and only the commanded COG does not: where it is off the posture's
+  // beyond the flight too, a COG key is wrong rather than the flight.
+  void moved_command_in_flight() {
+    for (int i = 0; i < count(); ++i) {
+      if (of(i).kind != Kind::cog_residual || !open(i)) continue;
+      const Span off = deviation_around(pass_, windows_[i]);
+      if (flies(off.first - kStencil) && flies(off.last + kStencil)) continue;
+      blame(i, off, [&](int j) { return of(j).kind == Kind::ballistic && of(j).item == 1; });
+    }
   }
 
   // A force in flight, wherever it acts on the robot, turns it too.
   void flight() {
     const double arm = kReach * pass_.series.samples.front().cog.z();
-    for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != Kind::ballistic || !open(i)) continue;
+    for (const int i : by_excess(Kind::ballistic)) {
+      if (!open(i)) continue;
       const double moment = of(i).value * pass_.model.mass() * arm;
-      blame(i, span(i, kStencil), [&](int j) {
+      Span whole = around(windows_[i]);
+      while (flies(whole.first - 1)) --whole.first;
+      while (flies(whole.last + 1)) ++whole.last;
+      blame(i, whole, [&](int j) {
+        return of(j).kind == Kind::ballistic || of(j).kind == Kind::foot_penetration;
+      });
+      blame(i, around(windows_[i], kStencil), [&](int j) {
         const Violation& v = of(j);
         if (v.kind == Kind::angular_momentum) return v.value <= moment;
-        return v.kind == Kind::ballistic || v.kind == Kind::fz_residual ||
-               v.kind == Kind::cog_residual;
+        return v.kind == Kind::fz_residual || v.kind == Kind::cog_residual;
       });
     }
-  }
-
-  // Samples between two rests.
-  Span motion_around(int k) const {
-    const auto moves = [&](int i) {
-      return pass_.series.samples[i].state.dtheta.cwiseAbs().maxCoeff() > kStill;
-    };
-    Span s{k, k};
-    while (s.first > 0 && moves(s.first - 1)) --s.first;
-    while (s.last + 1 < pass_.count() && moves(s.last + 1)) ++s.last;
-    return s;
-  }
-
-  bool speed_holds(const Violation& v, double pace) const {
-    return std::abs(v.value) * pace <= std::abs(v.limit);
-  }
-
-  bool torque_holds(const Violation& v, double pace) {
-    return std::abs(pass_.dynamics.at(v.sample, pace).torque[v.item]) <= std::abs(v.limit);
-  }
-
-  bool rms_holds(int j, double pace) {
-    const Violation& v = of(j);
-    const int whole = static_cast<int>(std::lround(pass_.limits.thermal_window / pass_.series.dt));
-    const int length = std::clamp(whole, 1, v.sample + 1);
-    double sum = 0;
-    for (int n = 0; n < kThermalLooks; ++n) {
-      const int k = v.sample - static_cast<int>(static_cast<long>(n) * length / kThermalLooks);
-      const double torque = std::min(std::abs(pass_.dynamics.at(k, pace).torque[v.item]),
-                                     pass_.limits.peak_torque[v.item]);
-      sum += torque * torque;
-    }
-    return std::sqrt(sum / kThermalLooks) <= v.limit;
-  }
-
-  // Whether the worst sample of a finding is sound when the path is played at this pace.
-  bool holds(int j, double pace) {
-    const Violation& v = of(j);
-    if (v.kind == Kind::joint_speed) return speed_holds(v, pace);
-    if (v.kind == Kind::joint_torque) return torque_holds(v, pace);
-    if (v.kind == Kind::continuous_torque) return rms_holds(j, pace);
-    const SampleDynamics& now = pass_.dynamics.at(v.sample, pace);
-    const CommandSample& s = pass_.series.samples[v.sample];
-    const double limit = std::abs(v.limit);
-    switch (v.kind) {
-      case Kind::zmp_residual:
-        return now.use.has_zmp && (now.use.zmp_world - s.zmp).norm() <= limit;
-      case Kind::fz_residual:
-        return std::abs(now.wrench[2] - s.fz) <= limit;
-      case Kind::support_margin:
-        return now.use.has_zmp && now.use.margin >= -kRounding;
-      case Kind::unilateral:
-        return now.use.normal_force >= 0;
-      case Kind::friction:
-        return now.use.tangential_force <= limit * pass_.friction * now.use.normal_force;
-      case Kind::yaw_moment:
-        return std::abs(now.use.yaw_moment) <=
-               limit * pass_.friction * now.use.normal_force *
-                   yaw_lever(pass_.dynamics.plane().polygon, now.use.zmp);
-      case Kind::ballistic:
-        return (now.ddcog + Vector3d(0, 0, kGravity)).norm() <= limit;
-      case Kind::angular_momentum:
-        return now.moment.norm() <= limit;
-      default:
-        return false;
-    }
-  }
-
-  bool rough_near(int sample) const {
-    for (int k = std::max(0, sample - kStencil);
-         k <= std::min(pass_.count() - 1, sample + kStencil); ++k)
-      if (pass_.rough[k]) return true;
-    return false;
-  }
-
-  // One pace at which the motors follow and this finding is gone as well. Where the motion is
-  // broken by differences over a jump, no pace mends it: then it is haste's doing.
-  bool mended_by_time(int cause, int j) {
-    if (rough_near(of(j).sample)) return true;
-    for (double pace = 1 - kPaceStep; pace > kSlowest; pace -= kPaceStep)
-      if (holds(cause, pace) && holds(j, pace)) return true;
-    return false;
   }
 
   // Errors of one kind, the worst first.
@@ -324,12 +307,13 @@ class Causes {
         if (std::any_of(told.begin(), told.end(),
                         [&](const Span& s) { return s.touches(windows_[i]); }))
           continue;
-        told.push_back(motion_around(of(i).sample));
+        told.push_back(motion_around(pass_, of(i).sample));
         blame(i, told.back(), [&](int j) {
           const Violation& v = of(j);
           const bool follows = (is_need(v) && v.kind != Kind::joint_torque) ||
-                               v.kind == Kind::zmp_residual || v.kind == Kind::fz_residual;
-          return follows && mended_by_time(i, j);
+                               v.kind == Kind::zmp_residual || v.kind == Kind::fz_residual ||
+                               v.kind == Kind::servo_step;
+          return follows && pace_.mends(of(i), of(j));
         });
       }
     }
@@ -350,10 +334,14 @@ class Causes {
       blame(i, episode(i), [&](int j) {
         return of(j).kind == Kind::zmp_residual || of(j).kind == Kind::fz_residual;
       });
+    for (const int i : by_excess(Kind::support_margin))
+      if (of(i).item == 1)
+        blame(i, around(windows_[i]), [&](int j) { return of(j).kind == Kind::zmp_residual; });
   }
 
   CheckPass& pass_;
   std::vector<FindingWindow>& windows_;
+  SlowerPace pace_;
 };
 
 }  // namespace

@@ -43,7 +43,8 @@ void scan_clearance(const RobotModel& model, const CommandSeries& series,
       const double next = clearance(c + 1, p);
       const bool minimum =
           c == 0 || here <= clearance(c - 1, p) || c + 2 >= n || next <= clearance(c + 2, p);
-      if (std::min(here, next) >= near || !minimum) continue;
+      const bool meets = (here < 0) != (next < 0);
+      if (std::min(here, next) >= near || !(minimum || meets)) continue;
       for (int k = coarse[c] + 1; k < coarse[c + 1]; ++k) {
         update_positions(model, series.samples[k].state, data);
         note(p, k, collisions.clearance(collisions.pairs()[p], data, near));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ayumi/dynamics/kinematics.hpp"
+
 namespace ayumi {
 
 std::vector<ContactInterval> contact_intervals(const CommandSeries& series, Side side) {
@@ -43,6 +45,33 @@ ContactPlan contact_plan(const CommandSeries& series) {
     plan.index[s] = interval_index(plan.intervals[s]);
   }
   return plan;
+}
+
+RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side side,
+                   const ContactInterval& contact, bool lands) {
+  constexpr double kArrived = 0.02;   // of the height at the edge
+  constexpr double kRunOnFall = 0.8;  // of it, without a halt
+  const int edge = lands ? contact.first : contact.last, step = lands ? 1 : -1;
+  const Eigen::Isometry3d inverse = contact.sole.inverse();
+  const Eigen::Vector3d center(model.sole(side).center.x(), model.sole(side).center.y(), 0);
+  RobotData data(model);
+  const auto height = [&](int k) {
+    update_positions(model, series.samples[k].state, data);
+    return (inverse * (sole_pose(model, data, side) * center)).z();
+  };
+  const double at_edge = height(edge);
+  RunOn run;
+  if (at_edge <= 0) return run;
+  double lowest = at_edge;
+  for (int k = edge + step; k >= contact.first && k <= contact.last; k += step) {
+    const double now = height(k);
+    if (now > lowest) break;
+    lowest = now;
+    if (now > kArrived * at_edge) run.samples = std::abs(k - edge);
+  }
+  if (lowest > (1 - kRunOnFall) * at_edge) return {};
+  run.height = at_edge;
+  return run;
 }
 
 bool at_flight_edge(const CommandSeries& series, int k) {

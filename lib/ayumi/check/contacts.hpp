@@ -38,6 +38,20 @@ struct ContactPlan {
 };
 ContactPlan contact_plan(const CommandSeries& series);
 
+/// How the swing goes on beyond the edge of a contact: a foot that lands later, or lifts off
+/// earlier, than the phases say.
+struct RunOn {
+  double height = 0;  ///< of the sole's centre over its place at the edge, if it is on its way [m]
+  int samples = 0;    ///< from the edge until it has as good as come to its place
+};
+/// At the first sample of a contact (`lands`) or at its last one. Zero height: the sole is in its
+/// place, or hangs still (which is floating, not a swing).
+RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side side,
+                   const ContactInterval& contact, bool lands);
+
+/// What a swing may run on, as a share of the height by which a supporting sole may float.
+inline constexpr double kRunOnShare = 0.2;
+
 /// Whether the differences that make the rates of sample k mix support and flight: acceleration
 /// jumps there, and what it needs of the ground is not known.
 bool at_flight_edge(const CommandSeries& series, int k);

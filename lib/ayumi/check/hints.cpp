@@ -10,6 +10,8 @@ namespace {
 
 std::string mm(double metres) { return text::fixed(1000 * std::abs(metres), 1) + " mm"; }
 
+std::string fine_mm(double metres) { return text::fixed(1000 * metres, 2) + " mm"; }
+
 std::string slow_down(double factor) {
   return "slow this window down by " + text::fixed(std::ceil(100 * factor) / 100, 2);
 }
@@ -39,7 +41,15 @@ std::string joint_hint(const RobotModel& model, const Violation& v) {
   }
 }
 
-std::string foot_hint(const Violation& v) {
+std::string contact_edge_hint(const Violation& v, const std::string& foot, double dt) {
+  const std::string time = text::fixed(std::abs(v.detail) * dt, 3) + " s";
+  return v.detail > 0 ? "the " + foot + " sole is still coming down, " + fine_mm(v.value) +
+                            " to go, when its contact begins: begin it " + time + " later"
+                      : "the " + foot + " sole has risen by " + fine_mm(v.value) +
+                            " when its contact ends: end it " + time + " earlier";
+}
+
+std::string foot_hint(const Violation& v, double dt) {
   const std::string foot = v.item == 0 ? "left" : "right";
   switch (v.kind) {
     case Kind::foot_slip:
@@ -48,6 +58,7 @@ std::string foot_hint(const Violation& v) {
     case Kind::foot_penetration:
       return "raise the " + foot + " sole by " + mm(v.value) + ", or repair";
     case Kind::foot_float:
+      if (v.detail != 0) return contact_edge_hint(v, foot, dt);
       return "the " + foot + " sole is " + mm(v.value) +
              " above the ground while it should support: begin its contact later or end it "
              "earlier, or lower the foot";
@@ -144,7 +155,7 @@ std::string hint_text(const RobotModel& model, const FindingWindow& window, doub
     case Kind::foot_penetration:
     case Kind::foot_float:
     case Kind::landing_speed:
-      return foot_hint(v);
+      return foot_hint(v, dt);
     case Kind::support_margin:
     case Kind::friction:
     case Kind::unilateral:

@@ -151,6 +151,22 @@ void check_landing(CheckPass& pass, int k, Side side, const Isometry3d& ground,
              Severity::warning);
 }
 
+// A foot that is said to have landed but goes on coming down to its place, or rises from it before
+// it is said to lift off: the swing is longer than the phases say. A slow swing hangs less than a
+// sole may float by, so this is told by how it moves.
+void check_contact_edge(CheckPass& pass, int k, Side side, const ContactInterval& interval) {
+  const bool lands = k == interval.first;
+  const double limit = kRunOnShare * pass.tolerance(Kind::foot_float);
+  const RunOn run = swing_run_on(pass.model, pass.series, side, interval, lands);
+  raise_to(pass.summary.max_foot_float, run.height);
+  if (run.height <= limit) return;
+  const int foot = static_cast<int>(side), rest = lands ? k + run.samples : k - run.samples;
+  const int detail = lands ? run.samples : -run.samples;
+  if (!lands) pass.add(Kind::foot_float, foot, rest, limit, limit, limit, detail);
+  pass.add(Kind::foot_float, foot, k, run.height, limit, run.height, detail);
+  if (lands) pass.add(Kind::foot_float, foot, rest, limit, limit, limit, detail);
+}
+
 // Height and slip of a supporting sole; returns its depth.
 double check_supporting_foot(CheckPass& pass, int k, Side side, const ContactInterval& interval,
                              const Isometry3d& sole) {
@@ -164,7 +180,11 @@ double check_supporting_foot(CheckPass& pass, int k, Side side, const ContactInt
     raise_to(pass.summary.max_foot_slip, e.slip);
     if (e.slip > far) pass.add(Kind::foot_slip, foot, k, e.slip, far, e.slip);
   }
-  if (k == interval.first && k > 0) check_landing(pass, k, side, interval.sole, sole);
+  if (k == interval.first && k > 0) {
+    check_landing(pass, k, side, interval.sole, sole);
+    check_contact_edge(pass, k, side, interval);
+  }
+  if (k == interval.last && k + 1 < pass.count()) check_contact_edge(pass, k, side, interval);
   return e.penetration;
 }
 

@@ -190,6 +190,7 @@ void CorrectionProblem::place_ground_blocks(int instant) {
 void CorrectionProblem::soften_landing(int instant, Side side) {
   constexpr double kMoment = 0.05;  // [s]
   constexpr double kShare = 0.6;
+  constexpr double kMargin = 0.4;  // of the band upwards: a swing must not run on between instants
   const Instant& at = instants_[instant];
   const ContactInterval& contact = plan_.at(side, at.sample);
   const int last = static_cast<int>(series_.samples.size()) - 1;
@@ -201,8 +202,11 @@ void CorrectionProblem::soften_landing(int instant, Side side) {
   const double used = std::max({error.gap / tolerance(Kind::foot_float),
                                 error.penetration / tolerance(Kind::foot_penetration),
                                 error.slip / tolerance(Kind::foot_slip)});
-  const Vector6d own =
-      std::min(1.0, kShare / std::max(used, 1e-9)) * sole_deviation(sole, contact.sole);
+  Vector6d own = std::min(1.0, kShare / std::max(used, 1e-9)) * sole_deviation(sole, contact.sole);
+  // A sole over its place has not landed yet: that is what is to be mended.
+  const Eigen::Vector3d normal = contact.sole.linear().col(2);
+  own.head<3>() -= std::max(0.0, normal.dot(own.head<3>())) * normal;
+  upper_.tail<6>()[2] *= kMargin;
   lower_.tail<6>() += own.cwiseMin(0);
   upper_.tail<6>() += own.cwiseMax(0);
 }

@@ -1,0 +1,95 @@
+#include "ayumi/check/slower_pace.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/check/residuals.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kSlowest = 0.05;  // pace down to which haste is looked for
+constexpr double kStep = 0.97;     // from pace to pace: commands tell their own pace within 6 %
+constexpr double kCoarseStep = 0.85;
+constexpr int kStencil = 3;         // samples that one jump spoils by differences
+constexpr int kThermalLooks = 100;  // of the RMS torque at another pace
+
+}  // namespace
+
+bool SlowerPace::rms_holds(const Violation& v, double pace) {
+  const int whole = static_cast<int>(std::lround(pass_.limits.thermal_window / pass_.series.dt));
+  const int length = std::clamp(whole, 1, v.sample + 1);
+  double sum = 0;
+  for (int n = 0; n < kThermalLooks; ++n) {
+    const int k = v.sample - static_cast<int>(static_cast<long>(n) * length / kThermalLooks);
+    const double torque = std::min(std::abs(pass_.dynamics.at(k, pace).torque[v.item]),
+                                   pass_.limits.peak_torque[v.item]);
+    sum += torque * torque;
+  }
+  return std::sqrt(sum / kThermalLooks) <= v.limit;
+}
+
+// What is asked of the ground, and what commands say of it.
+bool SlowerPace::ground_holds(const Violation& v, double pace) {
+  const SampleDynamics& now = pass_.dynamics.at(v.sample, pace);
+  const CommandSample& s = pass_.series.samples[v.sample];
+  const double limit = std::abs(v.limit);
+  switch (v.kind) {
+    case Kind::zmp_residual:
+      return now.use.has_zmp && (now.use.zmp_world - s.zmp).norm() <= limit;
+    case Kind::fz_residual:
+      return std::abs(now.wrench[2] - s.fz) <= limit;
+    case Kind::support_margin:
+      return now.use.has_zmp && now.use.margin >= -kRounding;
+    case Kind::unilateral:
+      return now.use.normal_force >= 0;
+    case Kind::friction:
+      return now.use.tangential_force <= limit * pass_.friction * now.use.normal_force;
+    case Kind::yaw_moment:
+      return std::abs(now.use.yaw_moment) <=
+             limit * pass_.friction * now.use.normal_force *
+                 yaw_lever(pass_.dynamics.plane().polygon, now.use.zmp);
+    case Kind::ballistic:
+      return (now.ddcog + Vector3d(0, 0, kGravity)).norm() <= limit;
+    case Kind::angular_momentum:
+      return now.moment.norm() <= limit;
+    default:
+      return false;
+  }
+}
+
+// Whether the worst sample of a finding is sound when the path is played at this pace.
+bool SlowerPace::holds(const Violation& v, double pace) {
+  switch (v.kind) {
+    case Kind::joint_speed:
+    case Kind::servo_step:
+      return std::abs(v.value) * pace <= std::abs(v.limit);
+    case Kind::joint_torque:
+      return std::abs(pass_.dynamics.at(v.sample, pace).torque[v.item]) <= std::abs(v.limit);
+    case Kind::continuous_torque:
+      return rms_holds(v, pace);
+    default:
+      return ground_holds(v, pace);
+  }
+}
+
+bool SlowerPace::rough_near(int sample) const {
+  for (int k = std::max(0, sample - kStencil); k <= std::min(pass_.count() - 1, sample + kStencil);
+       ++k)
+    if (pass_.rough[k]) return true;
+  return false;
+}
+
+bool SlowerPace::mends(const Violation& cause, const Violation& v) {
+  if (rough_near(v.sample)) return v.kind != Kind::servo_step;
+  const double step = v.kind == Kind::continuous_torque ? kCoarseStep : kStep;
+  for (double pace = step; pace > kSlowest; pace *= step)
+    if (holds(cause, pace) && holds(v, pace)) return true;
+  return false;
+}
+
+}  // namespace ayumi
