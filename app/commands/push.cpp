@@ -2,6 +2,7 @@
 
 #include "ayumi/study/push.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -111,26 +112,38 @@ std::string baseline(const CommandSeries& series) {
   return series.viip.empty() ? "open loop" : "no feedback";
 }
 
+/// What the robot does in the phases that are not its standing in the first posture.
+std::string motion_of(const CommandSeries& series) {
+  const auto one = [](const CommandSample& s) {
+    return s.support == Support::left || s.support == Support::right;
+  };
+  const auto steps = [](const ViipSpan& s) { return std::holds_alternative<StepGoal>(s.goal); };
+  const bool walks = std::any_of(series.samples.begin(), series.samples.end(), one) ||
+                     std::any_of(series.viip.begin(), series.viip.end(), steps);
+  return walks ? "walking" : "in the pattern";
+}
+
 std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const PushOptions& push,
-                                       const std::string& open) {
+                                       const CommandSeries& series) {
+  const std::string open = baseline(series), motion = motion_of(series);
   std::vector<std::string> lines;
   for (size_t k = 0; k < push.controllers.size(); ++k)
     for (const bool standing : {false, true}) {
       const PushSummary s = summarize(cases, k, standing, push.step);
       if (s.cases == 0) continue;
-      lines.push_back(std::string(standing ? "standing" : "walking") + ": " +
-                      push.controllers[k].type + " worst " + text::fixed(s.worst, 2) + " B, mean " +
-                      text::fixed(s.mean, 2) + " B; " + open + " worst " +
-                      text::fixed(s.open_worst, 2) + " B, mean " + text::fixed(s.open_mean, 2) +
-                      " B; below " + open + " in " + std::to_string(s.below_open) + " of " +
-                      std::to_string(s.cases) + " cases");
+      lines.push_back((standing ? "standing" : motion) + ": " + push.controllers[k].type +
+                      " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
+                      " B; " + open + " worst " + text::fixed(s.open_worst, 2) + " B, mean " +
+                      text::fixed(s.open_mean, 2) + " B; below " + open + " in " +
+                      std::to_string(s.below_open) + " of " + std::to_string(s.cases) + " cases");
     }
   return lines;
 }
 
 /// One block per phase: B in N s, then every law in shares of B, one column per direction.
 std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
-                  const std::string& open) {
+                  const CommandSeries& series) {
+  const std::string open = baseline(series);
   constexpr size_t kLabel = 16, kCell = 7;
   const size_t directions = static_cast<size_t>(push.directions);
   std::string out;
@@ -151,7 +164,7 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
       line(push.controllers[k].type + " / B",
            [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
   }
-  for (const std::string& line : summary_lines(cases, push, open)) out += line + "\n";
+  for (const std::string& line : summary_lines(cases, push, series)) out += line + "\n";
   return out;
 }
 
@@ -163,7 +176,7 @@ PushMap push_map(const PatternInput& input, const std::vector<PushCase>& cases,
               text::fixed(1e3 * push.duration, 0) + " ms";
   for (const ControllerSpec& c : push.controllers) map.laws.push_back(c.type);
   map.baseline = baseline(input.series);
-  map.remarks = summary_lines(cases, push, map.baseline);
+  map.remarks = summary_lines(cases, push, input.series);
   const size_t directions = static_cast<size_t>(push.directions);
   for (size_t p = 0; p < cases.size(); p += directions) {
     PushMapPhase phase;
@@ -228,7 +241,7 @@ void find_limits(Context& context, const Options& options) {
       context.progress());
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  context.print(table(cases, push, baseline(input.series)));
+  context.print(table(cases, push, input.series));
   if (!options.map.empty()) {
     write_push_map(push_map(input, cases, push), options.map);
     context.print("  drawn in " + options.map + "\n");

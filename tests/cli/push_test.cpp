@@ -44,7 +44,7 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
   const Study study;
   const Output first = study.run(study.command);
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_NE(first.out.find("walking: dtad worst"), std::string::npos) << first.out;
+  EXPECT_NE(first.out.find("in the pattern: dtad worst"), std::string::npos) << first.out;
   const std::string whole = contents(study.folder / "results.json");
   Json partly = Json::parse(whole);
   ASSERT_EQ(partly["cases"].size(), 2u);

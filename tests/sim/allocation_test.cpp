@@ -95,6 +95,27 @@ TEST(Allocations, ATickOfTheClosedLoopHasNoneAfterTheFirstSteps) {
   }
 }
 
+// Footholds move from 3 s on, under the pattern's push and more.
+TEST(Allocations, ATickThatMovesFootholdsHasNoneAfterTheFirstSteps) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
+  const CommandSeries series = sample(model, pattern);
+  SimulateOptions options;
+  options.controller = {"dtad", {{"step", 1}}};
+  options.profile = "hoap1-strong";
+  options.scenario = pattern.scenario;
+  options.scenario.front().direction = {1, 0, 0};
+  options.scenario.front().magnitude = 2.8;
+  Simulator simulator(model, series, options);
+  simulator.keep_samples(false);
+  simulator.advance(3700);  // joints at their limits have been told
+  EXPECT_EQ(allocations_of([&] { simulator.advance(900); }), 0);
+  EXPECT_FALSE(simulator.fell());
+  EXPECT_GT((simulator.plan().feet[0].translation() - simulator.command(4600).feet[0].translation())
+                .norm(),
+            0.01);
+}
+
 TEST(Allocations, DynamicsHaveNoneWithTheirWorkspace) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   RobotData data(model);

@@ -20,9 +20,9 @@ struct DtadParams {
   std::optional<double> d;  ///< D omega given directly, with k; must be positive
   double long_term = 1;     ///< share of the long-term term; 0: ref ZMP is the commanded one
   double as_printed = 0;    ///< 1: D of (18)(19) with the printed sign, a demonstration
-  double ka = 1.5;          ///< short-term loop on the measured ZMP; grows towards (14)
-  double ks = 1.5;          ///< pull of the reference COG to the command
-  double kd = 1.5;          ///< damping of that pull
+  double ka = 2.5;          ///< short-term loop on the measured ZMP; grows towards (14)
+  double ks = 2;            ///< pull of the reference COG to the command
+  double kd = 2;            ///< damping of that pull
   double tau_z = 0.066;     ///< low-pass of the measured ZMP, times 1/omega
   double margin = 0.01;     ///< kept inside the support polygon, times z
   double washout = 6.6;     ///< forgetting of a constant ZMP offset, times 1/omega; 0: off
@@ -31,7 +31,7 @@ struct DtadParams {
   double kaz = 0.3;         ///< short-term loop on the measured f_z
   double ankle = 0.5;       ///< share of the stance foot's measured tilt taken back at the ankle
   double conform = 0.5;     ///< share of one foot's slope against the ground's that its ankle takes
-  double trunk = 0;      ///< turn of the trunk where the ZMP wanted is outside the support; 0: off
+  double trunk = 1;      ///< turn of the trunk where the ZMP wanted is outside the support; 0: off
   double step = 0;       ///< share of what the supports leave over that footholds take; 0: off
   double hurry = 2.5;    ///< fastest clock of a pattern whose footholds move
   bool literal = false;  ///< (14) integrated as printed, D sign corrected: a demonstration

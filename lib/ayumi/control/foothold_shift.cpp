@@ -81,13 +81,16 @@ std::vector<PlannedSwing> swings_of(const CommandSeries& series) {
   return swings;
 }
 
-CommandSample command_between(const CommandSeries& series, double place) {
+void command_between(const CommandSeries& series, double place, CommandSample& c) {
   const std::vector<CommandSample>& s = series.samples;
-  if (place >= static_cast<double>(s.size() - 1)) return s.back();
+  if (place >= static_cast<double>(s.size() - 1)) {
+    c = s.back();
+    return;
+  }
   const size_t k = static_cast<size_t>(place);
   const double share = place - static_cast<double>(k);
-  CommandSample c = s[k];
-  if (share == 0) return c;
+  c = s[k];
+  if (share == 0) return;
   const CommandSample& d = s[k + 1];
   mix(c.state.theta, d.state.theta, share);
   mix(c.state.dtheta, d.state.dtheta, share);
@@ -105,6 +108,11 @@ CommandSample command_between(const CommandSeries& series, double place) {
     c.feet[i].linear() = from.slerp(share, to).toRotationMatrix();
     c.feet[i].translation() += share * (d.feet[i].translation() - c.feet[i].translation());
   }
+}
+
+CommandSample command_between(const CommandSeries& series, double place) {
+  CommandSample c;
+  command_between(series, place, c);
   return c;
 }
 
@@ -265,7 +273,8 @@ bool FootholdShift::lands_early(const Estimate& e) const {
 void FootholdShift::meet(const Estimate& e) {
   const PlannedSwing& swing = steps_[coming_].swing;
   update_positions(*model_, e.state, data_);
-  const CommandSample landed = command_between(*series_, swing.land);
+  command_between(*series_, swing.land, work_);
+  const CommandSample& landed = work_;
   const Vector3d place = sole_pose(*model_, data_, swing.foot).translation();
   foot_[index(swing.foot)] = (place - landed.feet[index(swing.foot)].translation()).head<2>();
   cog_ += (now_.cog - landed.cog).head<2>();
@@ -291,7 +300,9 @@ void FootholdShift::go_on() {
   const Vector2d cog = now_.cog.head<2>() + cog_ + series_->dt * rate;
   place_ += rate_;
   if (coming_ < steps_.size() && place_ > steps_[coming_].swing.land - 1e-6) land();
-  if (moved_) cog_ = cog - command_between(*series_, place_).cog.head<2>();
+  if (!moved_) return;
+  command_between(*series_, place_, work_);
+  cog_ = cog - work_.cog.head<2>();
 }
 
 /// Least jerk from where the foot is to rest on the target, planned anew in every tick.
@@ -311,7 +322,7 @@ void FootholdShift::move_foot() {
 }
 
 void FootholdShift::refresh() {
-  now_ = command_between(*series_, place_);
+  command_between(*series_, place_, now_);
   plan_ = now_;
   if (!moved_) return;
   plan_.state.dtheta *= rate_;

@@ -22,6 +22,7 @@ std::vector<PlannedSwing> swings_of(const CommandSeries& series);
 
 /// The command at a place between ticks; after the end that of the end.
 CommandSample command_between(const CommandSeries& series, double place);
+void command_between(const CommandSeries& series, double place, CommandSample& command);
 
 struct FootholdParams {
   double share = 0;    ///< of what the supports leave over that footholds take; 0: off
@@ -87,6 +88,7 @@ class FootholdShift {
   Eigen::Vector2d cog_;                              // of the COG [m]
   Eigen::Vector2d swing_rate_, swing_acceleration_;  // of the foot in the air
   CommandSample now_, plan_;                         // of the pattern; shifted
+  CommandSample work_;                               // to work in
   RobotData data_;
 };
 

@@ -13,9 +13,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kSpeedLimit = 0.8;       // of the reference COG, times omega z
-constexpr double kAccelerationLimit = 4;  // of the reference COG, times g
-constexpr double kLies = 0.15;            // of the way from the edge of the sole to its middle
+constexpr double kSpeedLimit = 0.8;        // of the reference COG, times omega z
+constexpr double kAccelerationLimit = 4;   // of the reference COG, times g
+constexpr double kLies = 0.15;             // of the way from the edge of the sole to its middle
+constexpr char kTooFast = 1, kTooFar = 2;  // what a servo target was held to, as bits
 
 }  // namespace
 
@@ -29,6 +30,7 @@ ReferenceBody::ReferenceBody(const RobotModel& model, const ActuatorLimits& limi
       weight_(model.joint_weight()),
       lead_(servo_lead(model)),
       previous_target_(start.theta),
+      told_(static_cast<size_t>(model.dof_count())),
       reference_(start) {}
 
 void ReferenceBody::take_over(const Handover& handover) {
@@ -91,12 +93,24 @@ void ReferenceBody::advance(const CogReference& wanted, double z, const CommandS
   reference_.theta += dt_ * resolution_.dtheta;
   out.reference = reference_;
   out.target = reference_.theta + lead_.cwiseProduct(resolution_.dtheta) + offsets;
+  bound_target(out);
+}
+
+// The lead and the ankles may ask for more than the resolution did. Each joint is told once.
+void ReferenceBody::bound_target(ControlOutput& out) {
+  const auto hold = [&](int j, double low, double high, char what, const char* text) {
+    double& target = out.target[j];
+    if (target >= low && target <= high) return;
+    target = std::clamp(target, low, high);
+    if (told_[static_cast<size_t>(j)] & what) return;
+    told_[static_cast<size_t>(j)] |= what;
+    out.notes.push_back("servo target of " + model_->dofs()[j].name + " held to its " + text);
+  };
   for (int j = 0; j < out.target.size(); ++j) {
     const Dof& dof = model_->dofs()[j];
-    const double step = limits_.speed[j] * dt_;
-    out.target[j] =
-        std::clamp(out.target[j], previous_target_[j] - step, previous_target_[j] + step);
-    if (dof.limited) out.target[j] = std::clamp(out.target[j], dof.lower, dof.upper);
+    const double step = limits_.speed[j] * dt_, before = previous_target_[j];
+    hold(j, before - step, before + step, kTooFast, "speed limit");
+    if (dof.limited) hold(j, dof.lower, dof.upper, kTooFar, "position limit");
   }
   previous_target_ = out.target;
 }

@@ -77,12 +77,15 @@ class ReferenceBody {
                const CommandSample& next, const Eigen::VectorXd& offsets, ControlOutput& out);
 
  private:
+  void bound_target(ControlOutput& out);
+
   const RobotModel* model_;
   ActuatorLimits limits_;
   ResolverOptions options_;
   double dt_;
   RobotData data_;
   Eigen::VectorXd weight_, lead_, previous_target_, offsets_;
+  std::vector<char> told_;  // by dof: limits its servo target was held to
   ResolverWork work_;
   Resolution resolution_;
   RobotState reference_;
