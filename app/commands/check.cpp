@@ -8,6 +8,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/profiles.hpp"
+#include "ayumi/control/viip_goals.hpp"
 #include "ayumi/io/pattern_table.hpp"
 #include "ayumi/io/results_json.hpp"
 #include "check_table.hpp"
@@ -43,7 +44,10 @@ Json check_one(const Context& context, const Options& options, const std::string
   const PatternInput input = load_pattern(context, file, options.input);
   const CheckOptions judged = check_options(input, options.tolerances);
   ConsistencyReport report = check_consistency(input.model, input.series, judged);
-  const ActuatorNeed need = actuator_need(input.model, input.series, judged, report);
+  ActuatorNeed need = actuator_need(input.model, input.series, judged, report);
+  if (need.text.empty())
+    need = actuator_need(input.model,
+                         keyed_goals(input.model, input.series, input.pattern.controller), judged);
   report.consistent = report.consistent && need.text.empty();
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

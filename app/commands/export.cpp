@@ -8,6 +8,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/consistency.hpp"
 #include "ayumi/control/dtad.hpp"
 #include "ayumi/io/hoap.hpp"
 #include "ayumi/io/pattern_file.hpp"
@@ -38,6 +39,8 @@ struct ExportOptions {
 struct Source {
   RobotModel model;
   ReferenceTrajectory reference;
+  Eigen::MatrixXd torque;             ///< of a run's motors, rows x dof; empty where not known
+  std::optional<CommandSeries> plan;  ///< of a pattern: the check knows what it needs
 };
 
 // What the servos receive when a pattern is replayed as it is.
@@ -69,6 +72,8 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
   const Pattern pattern = read_given_pattern(options.input, read_pairs(options.set, "--set"));
   Source source{load_robot(options.robot.empty() ? robot_of(pattern) : options.robot,
                            robot_search(context), {.meshes = options.format == "gltf"}),
+                {},
+                {},
                 {}};
   const CommandSeries series = sample(source.model, pattern, {}, context.progress());
   if (!series.viip.empty())
@@ -80,13 +85,14 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
       source.model.name(), source.model.description().sha256,         pattern.name,
       pattern.sha256,      source.model.limits(pattern.profile).name, "none",
       context.command_line};
+  source.plan = series;
   return source;
 }
 
 Source source_of_table(const ExportOptions& options, const Context& context,
                        ReferenceTrajectory reference) {
   const Provenance& made = reference.provenance;
-  Source source{robot_named(options, made.robot, context), std::move(reference)};
+  Source source{robot_named(options, made.robot, context), std::move(reference), {}, {}};
   require_joints(source.reference, source.model.dof_names(), options.input);
   if (!made.robot_sha256.empty() && made.robot_sha256 != source.model.description().sha256)
     fail(ErrorCode::bad_file, options.input + ": robot '" + source.model.name() +
@@ -108,9 +114,22 @@ bool is_reference_table(const std::string& path) {
          read_file(path).substr(0, 200).find("\"ayumi.reference/") != std::string::npos;
 }
 
+// What the motors gave in the run. A folder that holds tables alone knows of none.
+Eigen::MatrixXd torque_of_run(const ExportOptions& options, const Source& source) {
+  const SimulationLog log = read_run_log(options.input, options.log);
+  if (log.samples.size() != source.reference.rows.size()) return {};
+  Eigen::MatrixXd torque(static_cast<Eigen::Index>(log.samples.size()), source.model.dof_count());
+  for (Eigen::Index k = 0; k < torque.rows(); ++k)
+    torque.row(k) = log.samples[static_cast<size_t>(k)].torque.transpose();
+  return torque;
+}
+
 Source source_of(const ExportOptions& options, const Context& context) {
-  if (fs::is_directory(options.input))
-    return source_of_table(options, context, reference_of_run(options, context));
+  if (fs::is_directory(options.input)) {
+    Source source = source_of_table(options, context, reference_of_run(options, context));
+    if (options.format == "hoap") source.torque = torque_of_run(options, source);
+    return source;
+  }
   if (is_reference_table(options.input))
     return source_of_table(options, context, read_reference(options.input));
   return source_of_pattern(options, context);
@@ -142,6 +161,48 @@ std::string bytes_of(const std::string& format, const Source& source,
   return format == "json" ? reference_json(table) : reference_csv(table);
 }
 
+bool knows_torque(const Source& source) { return source.plan || source.torque.size() > 0; }
+
+std::vector<SafetyViolation> torque_violations_of(const Source& source, const SafeTable& safe,
+                                                  const std::string& profile) {
+  const double begin = static_cast<double>(safe.first) * safe.table.dt;
+  if (!source.plan)
+    return torque_violations(source.model, source.torque, safe.table.dt, begin, profile);
+  CheckOptions check;
+  check.profile = profile;
+  std::vector<SafetyViolation> found;
+  for (const Finding& f : check_consistency(source.model, *source.plan, check).findings)
+    if (f.kind == "joint_torque" && f.severity == Severity::error)
+      found.push_back({"torque", f.where, begin + f.at, std::abs(f.worst), std::abs(f.limit),
+                       f.unit,
+                       static_cast<int>(std::lround((f.end - f.begin) / safe.table.dt)) + 1});
+  return found;
+}
+
+/// Ramp, hold and judgement, by the torque too where a robot is to receive the table.
+SafeTable judged(const ExportOptions& options, const Source& source, const std::string& profile) {
+  SafetyOptions safety = options.safety;
+  safety.profile = profile;
+  SafeTable safe = make_safe(source.model, source.reference, safety);
+  if (options.format != "hoap" || !knows_torque(source)) return safe;
+  for (const SafetyViolation& found : torque_violations_of(source, safe, profile)) {
+    safe.report.violations.push_back(found);
+    safe.report.safe = false;
+  }
+  return safe;
+}
+
+/// Profiles of the robot whose motors would carry out an unsafe table, the motor board's own cap of
+/// counts per tick apart.
+std::vector<std::string> sufficient_profiles(ExportOptions options, const Source& source) {
+  const std::string profile = options.safety.profile;
+  options.safety.counts_per_ms = 1e9;
+  std::vector<std::string> names;
+  for (const std::string& name : source.model.profile_names())
+    if (name != profile && judged(options, source, name).report.safe) names.push_back(name);
+  return names;
+}
+
 std::string in_words(const ExportOptions& options, const SafeTable& safe, bool written) {
   const SafetyReport& report = safe.report;
   std::string text = written ? options.output + ": " + std::to_string(safe.table.rows.size()) +
@@ -163,7 +224,8 @@ std::string in_words(const ExportOptions& options, const SafeTable& safe, bool w
   return text;
 }
 
-std::string as_json(const ExportOptions& options, const SafeTable& safe, bool written) {
+std::string as_json(const ExportOptions& options, const SafeTable& safe,
+                    const std::vector<std::string>& sufficient, bool written) {
   const nlohmann::ordered_json json = {
       {"format", options.format},
       {"output", written ? nlohmann::ordered_json(options.output) : nullptr},
@@ -171,6 +233,8 @@ std::string as_json(const ExportOptions& options, const SafeTable& safe, bool wr
       {"first_row", safe.first},
       {"rate_hz", 1 / safe.table.dt},
       {"joints", safe.table.joints},
+      {"profile", options.safety.profile},
+      {"sufficient_profiles", sufficient},
       {"safety", nlohmann::ordered_json::parse(safety_json(safe.report))}};
   return json.dump(2);
 }
@@ -184,12 +248,21 @@ void export_table(ExportOptions options, Context& context) {
   if (options.safety.profile.empty())
     options.safety.profile =
         options.format == "hoap" ? source.model.limits().name : source.reference.provenance.profile;
-  const SafeTable safe = make_safe(source.model, source.reference, options.safety);
+  const SafeTable safe = judged(options, source, options.safety.profile);
+  std::vector<std::string> others;
+  if (!safe.report.safe) others = sufficient_profiles(options, source);
   const bool write = safe.report.safe || options.force_unsafe;
   if (write)
     write_file(options.output, bytes_of(options.format, source, safe.table, options.safety));
   context.print(in_words(options, safe, write));
-  context.print_json(as_json(options, safe, write));
+  if (!safe.report.safe)
+    context.print("  judged by profile " + options.safety.profile + "; " +
+                  (others.empty() ? "the motors of no other profile would do"
+                                  : "the motors of " + text::join(others, ", ") + " would do") +
+                  "\n");
+  if (options.format == "hoap" && !knows_torque(source))
+    context.print("  torque not judged: a table alone does not tell it; export the RUN\n");
+  context.print_json(as_json(options, safe, others, write));
   context.exit_code = write ? 0 : 1;
 }
 

@@ -7,7 +7,9 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/check/profiles.hpp"
 #include "ayumi/control/viip.hpp"
+#include "ayumi/control/viip_goals.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/postures.hpp"
@@ -113,6 +115,37 @@ void new_squat(const Context& context, NewOptions options) {
 constexpr double kStandFirst = 0.5;  // before a goal of VIIP [s]
 constexpr double kDisplaced = 2.5;   // for a displacement, and for its way back [s]
 
+// The first profile that carries the goals out in their keyed form; "" when none does.
+std::string profile_for(const Context& context, const RobotModel& model,
+                        const std::vector<KeyedGoal>& goals) {
+  std::string need;
+  for (const std::string& name : model.profile_names()) {
+    CheckOptions options;
+    options.profile = name;
+    const ActuatorNeed missing = actuator_need(model, goals, options);
+    if (missing.text.empty()) return name;
+    if (need.empty()) need = missing.text;
+  }
+  context.print(need + "\n");
+  return {};
+}
+
+// COG height at which the legs reach the footholds: that of the home posture (0) or, for long
+// steps, a lower one.
+double height_for_steps(const RobotModel& model, Pattern pattern) {
+  const double home = default_cog_height(model, pattern);
+  for (const double share : {1.0, 0.97, 0.94, 0.91, 0.88, 0.85}) {
+    pattern.cog_height = share == 1 ? 0 : std::round(1e3 * share * home) / 1e3;
+    try {
+      require_reachable_goals(model, sample(model, pattern), pattern.controller);
+      return pattern.cog_height;
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::internal) throw;
+    }
+  }
+  return 0;
+}
+
 // Stands, does what the goal asks, stands.
 void new_viip(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
@@ -126,6 +159,9 @@ void new_viip(const Context& context, const NewOptions& options) {
   Pattern pattern;
   pattern.robot = options.robot;
   pattern.controller.type = "viip";
+  for (const std::vector<double>& values : {options.cog, options.velocity, {options.turn_deg}})
+    for (const double value : values)
+      if (!std::isfinite(value)) fail(ErrorCode::usage, "viip: a value is not a finite number");
   double t = kStandFirst;
   const auto phase = [&](double length, const ViipGoal& goal) {
     t += length;
@@ -139,6 +175,9 @@ void new_viip(const Context& context, const NewOptions& options) {
     for (size_t i = 0; i < options.velocity.size(); ++i)
       goal.velocity[static_cast<Eigen::Index>(i)] = options.velocity[i];
     goal.turn = options.turn_deg * std::numbers::pi / 180;
+    pattern.phases.push_back({kStandFirst + 10.0 * goal.steps, Support::both, {}, goal});
+    pattern.cog_height = height_for_steps(model, pattern);
+    pattern.phases.pop_back();
     const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
     phase(stepping_time(viip_params(model, pattern.controller), omega, goal.steps) + 0.05, goal);
     comments = {std::to_string(goal.steps) + " steps, the last one closing; VIIP places the feet.",
@@ -149,6 +188,9 @@ void new_viip(const Context& context, const NewOptions& options) {
     phase(kDisplaced, CogGoal{});
     comments = {"The COG goes to a displacement over both feet, and back."};
   }
+  const CommandSeries series = sample(model, pattern);
+  require_reachable_goals(model, series, pattern.controller);
+  pattern.profile = profile_for(context, model, keyed_goals(model, series, pattern.controller));
   write_new(context, model, pattern, options, comments);
 }
 

@@ -152,5 +152,20 @@ TEST_F(Export, BrokenPatternsAreOneLineAndExit3) {
   }
 }
 
+TEST_F(Export, HoapNamesTheTorqueBeyondTheRobotsOwnMotors) {
+  ASSERT_EQ(
+      run_program({"new", "jump", "--height", "0.02", "-o", "j.json"}, folder.path()).exit_code, 0);
+  const Output output = ayumi({"j.json", "--format", "hoap", "-o", "j.csv", "--json"});
+  EXPECT_EQ(output.exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "j.csv"));
+  const auto json = nlohmann::json::parse(output.out);
+  EXPECT_EQ(json.at("profile"), "hoap1");
+  bool named = false;
+  for (const auto& v : json.at("safety").at("violations"))
+    named = named || (v.at("kind") == "torque" && v.at("joint") == "r_knee" &&
+                      v.at("limit") == 4.5 && v.at("value") > 4.5 && v.at("at_s") > 2);
+  EXPECT_TRUE(named) << output.out;
+}
+
 }  // namespace
 }  // namespace ayumi::test

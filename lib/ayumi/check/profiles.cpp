@@ -5,8 +5,6 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
 
 namespace ayumi {
 
@@ -40,19 +38,6 @@ std::vector<std::string> missing(const ConsistencyReport& report) {
   return parts;
 }
 
-// The keyed jump of a goal, from the height at which the pattern holds the COG.
-CommandSeries keyed_jump(const RobotModel& model, const CommandSeries& series, const ViipSpan& span,
-                         const JumpGoal& goal) {
-  const CommandSample& held = series.samples[static_cast<size_t>(span.begin)];
-  JumpParameters p = jump_defaults(model);
-  p.height = goal.height;
-  p.stoop = goal.stoop;
-  p.forward = goal.forward;
-  p.cog_height =
-      held.cog.z() - 0.5 * (held.feet[0].translation().z() + held.feet[1].translation().z());
-  return sample(model, jump_pattern(model, p));
-}
-
 ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
                      const CheckOptions& options, const ConsistencyReport& report) {
   ActuatorNeed need;
@@ -75,25 +60,20 @@ ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
 
 ActuatorNeed actuator_need(const RobotModel& model, const CommandSeries& series,
                            const CheckOptions& options, const ConsistencyReport& report) {
-  const ActuatorNeed need = need_of(model, series, options, report);
-  if (!need.text.empty()) return need;
-  for (const ViipSpan& span : series.viip) {
-    const auto* goal = std::get_if<JumpGoal>(&span.goal);
-    if (!goal) continue;
-    const std::string place =
-        "VIIP jump at " + text::fixed(static_cast<double>(span.begin) * series.dt, 2) + " s: ";
-    try {
-      const CommandSeries jump = keyed_jump(model, series, span, *goal);
-      ActuatorNeed of_jump = need_of(model, jump, options, check_consistency(model, jump, options));
-      if (of_jump.text.empty()) continue;
-      of_jump.text = place + of_jump.text + " (times from the start of its keyed form)";
-      return of_jump;
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::internal) throw;
-      return {place + error.what(), {}};
-    }
+  return need_of(model, series, options, report);
+}
+
+ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>& goals,
+                           const CheckOptions& options) {
+  for (const KeyedGoal& goal : goals) {
+    if (!goal.obstacle.empty()) return {goal.place + ": " + goal.obstacle, {}};
+    ActuatorNeed need =
+        need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
+    if (need.text.empty()) continue;
+    need.text = goal.place + ": " + need.text + " (times from the start of its keyed form)";
+    return need;
   }
-  return need;
+  return {};
 }
 
 }  // namespace ayumi

@@ -3,6 +3,7 @@
 // which profiles of the robot would do.
 
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/pattern/keyed_goal.hpp"
 
 namespace ayumi {
 
@@ -12,8 +13,12 @@ struct ActuatorNeed {
 };
 
 /// For `report`, the check of `series` with `options`; looks at joint speed, torque and steps only.
-/// A phase with a VIIP jump goal is judged by the keyed jump of that height and stoop.
 ActuatorNeed actuator_need(const RobotModel& model, const CommandSeries& series,
                            const CheckOptions& options, const ConsistencyReport& report);
+
+/// For the goals of VIIP, which a series only holds still for: what the first of them needs whose
+/// keyed form the profile of `options` cannot carry out, or why there is none.
+ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>& goals,
+                           const CheckOptions& options);
 
 }  // namespace ayumi

@@ -219,6 +219,21 @@ std::string text_of(const SafetyViolation& v) {
          (v.rows == 1 ? " row)" : " rows)");
 }
 
+std::vector<SafetyViolation> torque_violations(const RobotModel& model,
+                                               const Eigen::MatrixXd& torque, double dt,
+                                               double begin, const std::string& profile) {
+  const Eigen::VectorXd& peak = model.limits(profile).peak_torque;
+  Violations violations;
+  for (int dof = 0; dof < model.dof_count(); ++dof)
+    for (Eigen::Index k = 0; k < torque.rows(); ++k) {
+      const double value = std::abs(torque(k, dof));
+      if (value > peak[dof] * (1 + 1e-6))
+        violations.add({"torque", model.dofs()[static_cast<size_t>(dof)].name,
+                        begin + static_cast<double>(k) * dt, value, peak[dof], "N m", 0});
+    }
+  return violations.list();
+}
+
 Eigen::VectorXd count_step_limits(const RobotModel& model, double dt,
                                   const SafetyOptions& options) {
   Eigen::VectorXd limits(model.dof_count());

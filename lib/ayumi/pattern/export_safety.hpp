@@ -22,11 +22,11 @@ struct SafetyOptions {
 
 /// One way in which a table is unsafe: its worst instant.
 struct SafetyViolation {
-  std::string kind;  ///< "position", "step", "range", "start_speed", "end_speed"
+  std::string kind;  ///< "position", "step", "range", "torque", "start_speed", "end_speed"
   std::string joint;
   double t = 0;                 ///< [s]
   double value = 0, limit = 0;  ///< in `unit`
-  std::string unit;             ///< "rad", "counts", "rad/s"
+  std::string unit;             ///< "rad", "counts", "rad/s", "N m"
   int rows = 0;                 ///< how many rows break this limit
 };
 
@@ -57,6 +57,12 @@ struct SafeTable {
 /// are not the robot's, Error(bad_model) for an unknown posture or profile.
 SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& reference,
                     const SafetyOptions& options = {});
+
+/// Where motor torques (rows x dof of the robot, the first at `begin` [s] of a table) are beyond
+/// the peaks of a profile: the worst of every joint. A table tells nothing of forces; a log does.
+std::vector<SafetyViolation> torque_violations(const RobotModel& model,
+                                               const Eigen::MatrixXd& torque, double dt,
+                                               double begin, const std::string& profile);
 
 /// Encoder counts of every row, rows x dof in the robot's joint order: the nearest whole count, or
 /// its neighbour (less than one count off) where only that one keeps the position limits and

@@ -1,0 +1,232 @@
+// A displacement is reachable when the robot can stand there: the COG is inside the support of the
+// feet with the margin that VIIP keeps, and VIIP's own resolution gets there, joints inside their
+// limits. How much of it is possible is found by bisection. Steps are judged by the walk with keys.
+#include "ayumi/control/viip_goals.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/control/resolver.hpp"
+#include "ayumi/control/support.hpp"
+#include "ayumi/control/viip.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kReached = 0.001;   // of a goal [m]
+constexpr double kLeadTick = 0.004;  // [s]
+constexpr int kLeadTicks = 1500;
+constexpr double kLeadTime = 0.1;   // in which the rest of the way is gone [s]
+constexpr double kLeadSpeed = 0.1;  // but not faster than this [m/s]
+constexpr double kLowest = 0.3;     // that a COG is led to, of the height held
+constexpr int kHalvings = 10;       // of the search for what is possible
+constexpr int kMostKeyedSteps = 6;  // a longer walk repeats itself
+
+const CommandSample& held_in(const CommandSeries& series, const ViipSpan& span) {
+  return series.samples[static_cast<size_t>(span.begin)];
+}
+
+double ground_under(const CommandSample& held) {
+  return 0.5 * (held.feet[0].translation().z() + held.feet[1].translation().z());
+}
+
+CommandSeries keyed_steps(const RobotModel& model, const CommandSample& held,
+                          const ViipParams& params, const StepGoal& goal) {
+  const double z = held.cog.z() - ground_under(held), omega = std::sqrt(kGravity / z);
+  WalkParameters w = walk_defaults(model);
+  w.steps = goal.steps > 0 ? std::clamp(goal.steps - 1, 1, kMostKeyedSteps) : kMostKeyedSteps;
+  w.period = (params.single + params.both) / omega;
+  w.double_support = params.both / (params.single + params.both);
+  w.stride = goal.velocity.x() * w.period;
+  w.side = 2 * goal.velocity.y() * w.period;
+  w.turn = goal.turn * w.period;
+  w.lift = params.lift * z;
+  w.cog_height = z;
+  w.first_swing = goal.velocity.y() > 0 || goal.turn > 0 ? Side::left : Side::right;
+  return sample(model, walk_pattern(model, w));
+}
+
+CommandSeries keyed_jump(const RobotModel& model, const CommandSample& held, const JumpGoal& goal) {
+  JumpParameters p = jump_defaults(model);
+  p.height = goal.height;
+  p.stoop = goal.stoop;
+  p.forward = goal.forward;
+  p.cog_height = held.cog.z() - ground_under(held);
+  return sample(model, jump_pattern(model, p));
+}
+
+std::string in_millimetres(const Vector3d& d) {
+  return text::fixed(1e3 * d.x(), 1) + ", " + text::fixed(1e3 * d.y(), 1) + ", " +
+         text::fixed(1e3 * d.z(), 1) + " mm";
+}
+
+/// How far the resolution is from a COG, and the joint that stops it.
+struct Attempt {
+  double miss = 0;  ///< [m]
+  std::string joint;
+};
+
+bool in_a_leg(const RobotModel& model, int dof) {
+  for (const Side side : {Side::left, Side::right})
+    for (int i = model.sole(side).body; i > 0; i = model.bodies()[static_cast<size_t>(i)].parent)
+      if (model.bodies()[static_cast<size_t>(i)].dof == dof) return true;
+  return false;
+}
+
+// The reference posture led to the goal as VIIP leads it, but so slowly that only limits count.
+Attempt lead_to(const RobotModel& model, const CommandSample& held, const Vector3d& goal) {
+  CommandSample wanted = held;
+  wanted.state.dtheta.setZero();
+  wanted.state.base_angular_velocity.setZero();
+  RobotState state = held.state;
+  RobotData data(model);
+  ResolverOptions options;
+  options.in_order = false;
+  Attempt attempt;
+  for (int i = 0; i < kLeadTicks; ++i) {
+    anchor_base(model, Side::left, held.feet[0], state, data);
+    const Vector3d way = goal - data.cog;
+    attempt.miss = way.norm();
+    if (attempt.miss < kReached) break;
+    const Resolution r = resolve(model, model.limits(), state, data, Side::left,
+                                 way / std::max(kLeadTime, way.norm() / kLeadSpeed), wanted, wanted,
+                                 kLeadTick, model.joint_weight(), options);
+    state.theta += kLeadTick * r.dtheta;
+    attempt.joint.clear();
+    for (const int dof : r.held)
+      if (in_a_leg(model, dof)) attempt.joint = model.dofs()[static_cast<size_t>(dof)].name;
+  }
+  return attempt;
+}
+
+// What keeps the robot from standing displaced; "" when it can.
+std::string obstacle(const RobotModel& model, const CommandSample& held, const ViipParams& params,
+                     const Vector3d& displacement) {
+  const double yaw = matrix_to_rpy(held.feet[0].linear()).z();
+  const Vector3d goal = held.cog + rpy_to_matrix({0, 0, yaw}) * displacement;
+  const double height = held.cog.z() - ground_under(held), margin = params.margin * height;
+  if (!(height + displacement.z() > kLowest * height))
+    return "the COG would be at " + text::fixed(1e3 * (height + displacement.z()), 1) +
+           " mm above the ground";
+  const double inside = support_polygon(model, held.feet, Support::both).margin(goal.head<2>());
+  if (inside < margin)
+    return "the COG would be " + text::fixed(1e3 * std::abs(inside), 1) + " mm " +
+           (inside < 0 ? "outside" : "inside") + " the support of the feet, of which " +
+           text::fixed(1e3 * margin, 1) + " mm are kept";
+  const Attempt attempt = lead_to(model, held, goal);
+  if (attempt.miss < kReached) return {};
+  return "the legs end " + text::fixed(1e3 * attempt.miss, 1) + " mm before it" +
+         (attempt.joint.empty() ? "" : ", " + attempt.joint + " at its limit");
+}
+
+void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,
+                       const std::string& place, const CogGoal& goal) {
+  if (!goal.displacement.allFinite())
+    fail(ErrorCode::bad_pattern, place + "a COG displacement is not finite");
+  const std::string why = obstacle(model, held, params, goal.displacement);
+  if (why.empty()) return;
+  double possible = 0, not_possible = 1;
+  if (obstacle(model, held, params, Vector3d::Zero()).empty())
+    for (int i = 0; i < kHalvings; ++i) {
+      const double share = 0.5 * (possible + not_possible);
+      (obstacle(model, held, params, share * goal.displacement).empty() ? possible : not_possible) =
+          share;
+    }
+  fail(ErrorCode::bad_pattern,
+       place + "COG displacement " + in_millimetres(goal.displacement) + ": " + why + "; " +
+           (possible > 0 ? "that way " + in_millimetres(possible * goal.displacement) +
+                               " is possible: ask for less, or hold the COG at another height"
+                         : std::string("not even the posture held keeps them")));
+}
+
+void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,
+                       const std::string& place, const StepGoal& goal) {
+  if (!goal.velocity.allFinite() || !std::isfinite(goal.turn))
+    fail(ErrorCode::bad_pattern, place + "a velocity is not finite");
+  const double z = held.cog.z() - ground_under(held);
+  const double period = (params.single + params.both) / std::sqrt(kGravity / z);
+  const double length = period * goal.velocity.norm(), most = params.reach * z;
+  if (!(length <= most))
+    fail(ErrorCode::bad_pattern, place + "a COG velocity of " + text::brief(goal.velocity.norm()) +
+                                     " m/s asks for steps of " + text::fixed(1e3 * length, 1) +
+                                     " mm every " + text::fixed(period, 3) +
+                                     " s; footholds reach " + text::fixed(1e3 * most, 1) + " mm, " +
+                                     text::fixed(most / period, 3) + " m/s at most");
+  const double turn = std::abs(goal.turn) * period;
+  constexpr double kMostTurn = 0.35;  // of a step [rad]: soles beside each other must not meet
+  if (!(turn <= kMostTurn))
+    fail(ErrorCode::bad_pattern, place + "turning by " + text::brief(goal.turn * 180 / M_PI) +
+                                     " deg/s asks for " + text::fixed(turn * 180 / M_PI, 1) +
+                                     " deg in every step; at most " +
+                                     text::fixed(kMostTurn * 180 / M_PI, 1) + " deg, " +
+                                     text::fixed(kMostTurn / period * 180 / M_PI, 1) + " deg/s");
+  try {
+    keyed_steps(model, held, params, goal);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::internal) throw;
+    fail(ErrorCode::bad_pattern, place + "steps at " + text::brief(goal.velocity.x()) + ", " +
+                                     text::brief(goal.velocity.y()) + " m/s: " + error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<KeyedGoal> keyed_goals(const RobotModel& model, const CommandSeries& series,
+                                   const ControllerSpec& controller) {
+  std::vector<KeyedGoal> result;
+  const ViipParams params = viip_params(model, controller);
+  for (const ViipSpan& span : series.viip) {
+    const CommandSample& held = held_in(series, span);
+    KeyedGoal keyed;
+    const std::string at =
+        " at " + text::fixed(static_cast<double>(span.begin) * series.dt, 2) + " s";
+    try {
+      if (const auto* cog = std::get_if<CogGoal>(&span.goal)) {
+        if (cog->displacement.norm() == 0) continue;
+        keyed.place = "VIIP displacement" + at;
+        require_reachable(model, held, params, "", *cog);
+        continue;  // slow, from rest to rest: the posture at its end is all there is to judge
+      } else if (const auto* steps = std::get_if<StepGoal>(&span.goal)) {
+        keyed.place = "VIIP steps" + at;
+        require_reachable(model, held, params, "", *steps);
+        keyed.motion = keyed_steps(model, held, params, *steps);
+      } else {
+        keyed.place = "VIIP jump" + at;
+        keyed.motion = keyed_jump(model, held, std::get<JumpGoal>(span.goal));
+      }
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::internal) throw;
+      keyed.obstacle = error.what();
+    }
+    result.push_back(std::move(keyed));
+  }
+  return result;
+}
+
+void require_reachable_goals(const RobotModel& model, const CommandSeries& series,
+                             const ControllerSpec& controller) {
+  const ViipParams params = viip_params(model, controller);
+  for (const ViipSpan& span : series.viip) {
+    const std::string place =
+        "VIIP goal at " + text::fixed(static_cast<double>(span.begin) * series.dt, 2) + " s: ";
+    if (const auto* cog = std::get_if<CogGoal>(&span.goal)) {
+      if (!(cog->displacement.norm() == 0))
+        require_reachable(model, held_in(series, span), params, place, *cog);
+    } else if (const auto* steps = std::get_if<StepGoal>(&span.goal)) {
+      require_reachable(model, held_in(series, span), params, place, *steps);
+    }
+  }
+}
+
+}  // namespace ayumi

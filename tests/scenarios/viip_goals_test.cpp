@@ -1,0 +1,94 @@
+// Goals that a robot cannot reach are refused with what it can.
+#include "ayumi/control/viip_goals.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/check/profiles.hpp"
+#include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/sim/simulate.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+
+const RobotModel& hoap1() {
+  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  return model;
+}
+
+Pattern with(const ViipGoal& goal, double until = 5) {
+  Pattern p;
+  p.phases.push_back({0.5, Support::both, {}, CogGoal{}});
+  p.phases.push_back({until, Support::both, {}, goal});
+  p.controller.type = "viip";
+  return p;
+}
+
+std::string refusal(const ViipGoal& goal) {
+  const Pattern p = with(goal);
+  try {
+    require_reachable_goals(hoap1(), sample(hoap1(), p), p.controller);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_pattern);
+    return error.what();
+  }
+  return {};
+}
+
+TEST(ViipGoals, DisplacementsBeyondFeetOrLegsAreRefused) {
+  struct Case {
+    Vector3d displacement;
+    const char* words;
+  };
+  for (const Case& c : {Case{{0.2, 0, 0}, "151.0 mm outside the support of the feet"},
+                        Case{{-0.2, 0, 0}, "outside the support of the feet"},
+                        Case{{0, 0.06, 0}, "l_ankle_roll at its limit; that way 0.0, 51"},
+                        Case{{0, 0, 0.05}, "the legs end"},
+                        Case{{0, 0, -0.1}, "at its limit; that way 0.0, 0.0, -66"},
+                        Case{{0, 0, -5}, "above the ground"},
+                        Case{{std::numeric_limits<double>::quiet_NaN(), 0, 0}, "not finite"}})
+    EXPECT_NE(refusal(CogGoal{c.displacement}).find(c.words), std::string::npos)
+        << refusal(CogGoal{c.displacement});
+}
+
+TEST(ViipGoals, StepsBeyondTheLegsAreRefused) {
+  StepGoal far{6, {0.5, 0}, 0}, turning{6, {0, 0}, 5}, aside{6, {0, 0.3}, 0};
+  EXPECT_NE(refusal(far).find("0.369 m/s at most"), std::string::npos) << refusal(far);
+  EXPECT_NE(refusal(turning).find("60.4 deg/s"), std::string::npos) << refusal(turning);
+  EXPECT_NE(refusal(aside).find("out of range"), std::string::npos) << refusal(aside);
+}
+
+// What is not refused is reached, up to the edge of it.
+TEST(ViipGoals, WhatIsAcceptedIsReached) {
+  for (const Vector3d& way : {Vector3d(0.045, 0, 0), Vector3d(-0.044, 0, 0), Vector3d(0, 0.05, 0),
+                              Vector3d(0, 0, 0.019), Vector3d(0, 0, -0.064)}) {
+    const Pattern p = with(CogGoal{way}, 3);
+    ASSERT_EQ(refusal(CogGoal{way}), "") << way.transpose();
+    SimulateOptions options;
+    options.controller = p.controller;
+    options.profile = "hoap1";
+    const SimulationLog log = simulate(hoap1(), sample(hoap1(), p), options);
+    const Vector3d end = log.samples.back().cog - log.samples.front().cog;
+    EXPECT_LT((end - way).norm(), 2e-3) << way.transpose() << " ends at " << end.transpose();
+  }
+}
+
+TEST(ViipGoals, StepsAreJudgedByAWalkWithKeys) {
+  const Pattern p = with(StepGoal{10, {0.1, 0}, 0}, 6);
+  const std::vector<KeyedGoal> goals = keyed_goals(hoap1(), sample(hoap1(), p), p.controller);
+  ASSERT_EQ(goals.size(), 1u);
+  EXPECT_EQ(goals[0].place, "VIIP steps at 0.50 s");
+  CheckOptions options;
+  options.profile = "hoap1";
+  const ActuatorNeed need = actuator_need(hoap1(), goals, options);
+  EXPECT_NE(need.text.find("rad/s at"), std::string::npos) << need.text;
+  EXPECT_EQ(need.sufficient, std::vector<std::string>{"hoap1-strong"});
+  options.profile = "hoap1-strong";
+  EXPECT_EQ(actuator_need(hoap1(), goals, options).text, "");
+}
+
+}  // namespace
+}  // namespace ayumi
