@@ -179,7 +179,7 @@ void add_repair(CLI::App& app, Context& context) {
   command
       ->add_option("--margin", options.repair.zmp_margin,
                    "of the ZMP inside the support where the motion's own is too "
-                   "small [m]; left out: 0.6 of the sole's inner radius")
+                   "small [m]; left out: 0.9 of the sole's inner radius")
       ->check(CLI::Range(0.0, 0.1))
       ->type_name("M");
   command->add_option("--knots", options.repair.knot_spacing, "spacing of the correction [s]")

@@ -66,6 +66,8 @@ class CorrectionProblem {
   const std::vector<Instant>& instants() const { return instants_; }
   const Eigen::VectorXd& lower() const { return lower_; }  ///< of the constraints
   const Eigen::VectorXd& upper() const { return upper_; }
+  /// What the ZMP is wanted further inside than it has to be at least, by instant [m].
+  double safety(int instant) const { return margin_[instant] - spec_.zmp_margin; }
 
   Eigen::VectorXd constraints(const Eigen::VectorXd& x) const;
 

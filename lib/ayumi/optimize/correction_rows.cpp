@@ -61,10 +61,11 @@ std::array<const CommandSample*, 2> CorrectionProblem::watched(int instant) cons
   return {&series_.samples[k], &current.samples[k]};
 }
 
-// Where the motion's ZMP is outside, or too near the edge, it is brought back to where it is safe;
-// around that, and where it is inside anyhow, it stays as far inside as it is, or safe is.
+// Where the motion's ZMP is outside, or too near the edge, it is brought back to where it is safe,
+// and so around that: a step that begins badly is not safe when its end is. Where it is inside
+// anyhow it stays as far inside as it is, or safe is.
 void CorrectionProblem::place_margins() {
-  constexpr double kAround = 0.1;  // [s]
+  constexpr double kAround = 0.5;  // [s]
   constexpr double kOwn = 0.8;     // share of its own margin that a sound motion keeps
   RobotData data(model_);
   std::vector<double> own;

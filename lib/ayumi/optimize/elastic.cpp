@@ -15,6 +15,12 @@ constexpr double kWindow = 0.1;      // rows of one limit that share a slack [s]
 constexpr double kPrice = 100;       // of one unit of violation; a repair costs about 1
 constexpr double kHardFactor = 100;  // feet and flight against the rest
 
+// With a tenth of it walks at 0.65 of their time fall when played open loop, with three times of it
+// their repair takes twice the iterations and stands no better.
+constexpr double kSafetyPrice = 0.1;    // of a millimetre of the ZMP's safety in one window
+constexpr double kSafetyWindow = 0.05;  // [s]
+constexpr double kMillimetre = 1e-3;
+
 // What is as bad as a millimetre.
 double unit_of(ConstraintGroup group) {
   switch (group) {
@@ -64,7 +70,9 @@ Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
   soft.lower.resize(n + slacks);
   soft.lower << nlp.lower, VectorXd::Zero(slacks);
   soft.upper.resize(n + slacks);
-  soft.upper << nlp.upper, VectorXd::Constant(slacks, kNoBound);
+  soft.upper << nlp.upper,
+      soft_rows.most.size() > 0 ? soft_rows.most : VectorXd::Constant(slacks, kNoBound);
+  soft.start = soft.start.cwiseMin(0.5 * soft.upper);
   soft.constraint_lower.resize(m + extra);
   soft.constraint_upper.resize(m + extra);
   soft.constraint_lower << nlp.constraint_lower, VectorXd::Constant(extra, -kNoBound);
@@ -130,6 +138,29 @@ Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
     nlp.hessian_values(x.head(n), scale, multipliers.head(m), values);
   };
   return soft;
+}
+
+Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt) {
+  Slacks slacks;
+  slacks.group.assign(static_cast<size_t>(problem.constraint_count()), -1);
+  std::map<long, int> index;
+  std::vector<double> most;
+  for (const ConstraintBlock& block : problem.blocks()) {
+    const double spare = problem.safety(block.instant) / kMillimetre;
+    if (block.group != ConstraintGroup::support || spare <= 0) continue;
+    const double t = problem.instants()[block.instant].sample * dt;
+    const auto found =
+        index.try_emplace(std::lround(t / kSafetyWindow), static_cast<int>(most.size()));
+    if (found.second) most.push_back(spare);
+    double& all = most[static_cast<size_t>(found.first->second)];
+    all = std::min(all, spare);
+    for (int i = 0; i < block.rows; ++i) slacks.group[block.row + i] = found.first->second;
+  }
+  if (most.empty()) return nlp;
+  slacks.most = Eigen::Map<VectorXd>(most.data(), static_cast<Eigen::Index>(most.size()));
+  slacks.unit = VectorXd::Constant(slacks.most.size(), kMillimetre);
+  slacks.price = VectorXd::Constant(slacks.most.size(), kSafetyPrice);
+  return elastic(nlp, slacks);
 }
 
 Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt) {

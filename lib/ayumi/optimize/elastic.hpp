@@ -7,10 +7,10 @@
 namespace ayumi {
 
 /// What gives way: `group` by row, -1 for rows that stay hard; by group what one of it is worth in
-/// the row, and its price.
+/// the row, its price, and the most there may be of it (empty: no end).
 struct Slacks {
   std::vector<int> group;
-  Eigen::VectorXd unit, price;
+  Eigen::VectorXd unit, price, most;
 };
 
 /// One more variable s >= 0 per group: g >= lower - unit s, g <= upper + unit s for its rows, and
@@ -21,5 +21,9 @@ Nlp elastic(const Nlp& nlp, const Slacks& slacks);
 /// The program of `problem` with every limit soft, per limit and tenth of a second. Feet on the
 /// ground and flight are the last to give way.
 Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt);
+
+/// The program of `problem` with the ZMP's safety to be had at a price: where it costs more change
+/// than it is worth, or is not to be had, it gives way as far as to the least margin asked for.
+Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt);
 
 }  // namespace ayumi

@@ -50,7 +50,8 @@ std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>
                                                       double pad) {
   std::vector<std::pair<double, double>> windows;
   for (const Finding& f : findings)
-    if (f.severity == Severity::error) windows.emplace_back(f.begin - pad, f.end + pad);
+    if (f.severity == Severity::error || f.kind == "support_margin")
+      windows.emplace_back(f.begin - pad, f.end + pad);
   std::sort(windows.begin(), windows.end());
   std::vector<std::pair<double, double>> merged;
   for (const auto& w : windows) {
@@ -122,7 +123,8 @@ class Repair {
     double pad = kPad;
     int unsolved = 0;
     // Wider windows help once against a program without a solution; twice was never seen to.
-    for (int round = 0; round < kRounds && !done() && unsolved < 2; ++round) {
+    for (int round = 0; round < kRounds && unsolved < 2; ++round) {
+      if (round == 0 ? sound() : done()) break;
       if (result_.check.consistent) passing_ = result_;
       choose_windows(round, pad);
       try {
@@ -149,6 +151,15 @@ class Repair {
       return;
     }
     if (!result_.check.consistent && last_status_ != NlpStatus::solved) solve_elastic();
+  }
+
+  // What is to be mended anyhow also gets the margin that the check asks for.
+  bool sound() const {
+    const auto& findings = result_.check.findings;
+    return result_.check.consistent &&
+           std::none_of(findings.begin(), findings.end(), [](const Finding& f) {
+             return f.kind == "support_margin" && f.severity == Severity::warning;
+           });
   }
 
   // A motion that passes though its program was not solved to the end is looked at once more.
@@ -270,13 +281,14 @@ class Repair {
     const CommandSeries current = result_.series;
     spec_.current = &current;
     problem_.emplace(model_, series_, spec_);
-    const Nlp nlp = problem_->nlp();
-    const bool warm = spec_.start.size() > 0 && violation_at_start(nlp) < kFarOff;
+    const Nlp hard = problem_->nlp();
+    const bool warm = spec_.start.size() > 0 && violation_at_start(hard) < kFarOff;
+    const Nlp nlp = with_soft_safety(*problem_, hard, series_.dt);
     const NlpSolution solution =
         solve(nlp, nlp_options(warm), progress_, "repair round " + std::to_string(round + 1));
     note_work(nlp, solution);
     last_status_ = solution.status;
-    const CorrectionTrack track = problem_->track(solution.x);
+    const CorrectionTrack track = problem_->track(solution.x.head(problem_->variable_count()));
     take(track);
     // Bodies that have met are hard to part again: then from the start.
     const bool on_its_way =
@@ -308,8 +320,8 @@ class Repair {
   void keep_partial() {
     result_.partial = true;
     last_status_ = NlpStatus::iteration_limit;
-    if (problem_ && least_violating_.size() == problem_->variable_count())
-      take(problem_->track(least_violating_));
+    if (problem_ && least_violating_.size() >= problem_->variable_count())
+      take(problem_->track(least_violating_.head(problem_->variable_count())));
     spec_.current = nullptr;
   }
 

@@ -78,7 +78,7 @@ struct RepairResult {
 };
 
 /// A margin with which a walk played open loop stands, though its servos sag and its feet land a
-/// little early: 0.6 of the largest circle's radius that the smaller sole holds about its centre.
+/// little early: 0.9 of the largest circle's radius that the smaller sole holds about its centre.
 double safe_margin(const RobotModel& model);
 
 /// Throws Error(usage) for a joint, window or weight that is not there or out of range.

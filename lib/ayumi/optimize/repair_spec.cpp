@@ -55,7 +55,7 @@ double safe_margin(const RobotModel& model) {
     const ConvexPolygon polygon(model.sole(side).polygon);
     least = std::min(least, polygon.margin(polygon.centroid()));
   }
-  return 0.6 * least;
+  return 0.9 * least;
 }
 
 double shortest_flight(const CommandSeries& series) {
