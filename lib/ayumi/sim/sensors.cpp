@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
 
 using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kRestRoot = 20;  // root of the number of readings that are averaged before a start
+
+}  // namespace
 
 Sensors::Sensors(const RobotModel& model, double dt, bool noise, std::uint64_t seed)
     : model_(&model),
@@ -52,24 +59,7 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
     m.dtheta = state.dtheta;
   previous_theta_ = m.theta;
 
-  const Link& link = model_->links()[imu_];
-  Eigen::Quaterniond attitude(Eigen::Matrix3d(truth.rotation[link.body] * link.pose.linear()));
-  auto noise = [&](double sigma) {
-    return Vector3d(sigma * random_.normal(), sigma * random_.normal(), sigma * random_.normal());
-  };
-  Vector3d w = attitude.conjugate() * truth.angular_velocity[link.body];
-  if (noise_) {
-    Vector3d error = noise(s.attitude_noise);
-    error.head<2>().array() += s.attitude_bias;
-    attitude = exp_rotation(error) * attitude;
-    w += noise(s.gyro_noise);
-  }
-  if (!fault.tilt.isZero(0))
-    attitude = exp_rotation({fault.tilt.x(), fault.tilt.y(), 0}) * attitude;
-  w += fault.gyro;
-  m.attitude = attitude.normalized();
-  m.gyro = w;
-
+  measure_imu(truth, fault, m);
   for (int side = 0; side < 2; ++side) {
     const std::vector<SoleForce>& cells = report.soles[side];
     const Sole& sole = model_->sole(static_cast<Side>(side));
@@ -90,6 +80,49 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
     }
     load.cop = load.fz > 0 ? Eigen::Vector2d(moment / load.fz) : sole.center;
   }
+}
+
+Vector3d Sensors::noise(double sigma) {
+  return Vector3d(sigma * random_.normal(), sigma * random_.normal(), sigma * random_.normal());
+}
+
+Vector3d Sensors::specific_force(const RobotData& truth, const Eigen::Quaterniond& attitude) {
+  const Link& link = model_->links()[imu_];
+  const Vector3d arm =
+      truth.rotation[link.body] * (link.pose * model_->description().sensors.imu_position);
+  const Vector3d velocity =
+      truth.velocity[link.body] + truth.angular_velocity[link.body].cross(arm);
+  const Vector3d acceleration = (velocity - imu_velocity_) / dt_;
+  imu_velocity_ = velocity;
+  return attitude.conjugate() * (acceleration + Vector3d(0, 0, kGravity));
+}
+
+void Sensors::measure_imu(const RobotData& truth, const SensorFault& fault, Measurement& m) {
+  const SensorDescription& s = model_->description().sensors;
+  const Link& link = model_->links()[imu_];
+  Eigen::Quaterniond attitude(Eigen::Matrix3d(truth.rotation[link.body] * link.pose.linear()));
+  m.gyro = attitude.conjugate() * truth.angular_velocity[link.body] + fault.gyro;
+  if (noise_) {
+    m.gyro += noise(s.gyro_noise);
+    if (s.accelerometer_noise > 0) {
+      const Vector3d force = specific_force(truth, attitude) + noise(s.accelerometer_noise);
+      // Switched on at rest and left there for a while.
+      if (tilt_.started()) {
+        tilt_.update(m.gyro, force, dt_);
+      } else {
+        const Vector3d level = noise(s.accelerometer_noise / kGravity / kRestRoot);
+        tilt_.start(exp_rotation({level.x(), level.y(), 0}) * attitude,
+                    fault.gyro + noise(s.gyro_noise / kRestRoot));
+      }
+      attitude = tilt_.attitude();
+    }
+    Vector3d error = noise(s.attitude_noise);
+    error.head<2>().array() += s.attitude_bias;
+    attitude = exp_rotation(error) * attitude;
+  }
+  if (!fault.tilt.isZero(0))
+    attitude = exp_rotation({fault.tilt.x(), fault.tilt.y(), 0}) * attitude;
+  m.attitude = attitude.normalized();
 }
 
 const Measurement& Sensors::read(const RobotState& state, const RobotData& truth,

@@ -1,6 +1,7 @@
 #pragma once
 // The robot's own sensors on top of the plant's truth: encoders, IMU, and load cells at the corners
-// of each sole, with the sidecar's noise, bias, resolution and latency when asked for.
+// of each sole, with the sidecar's noise, bias, resolution and latency when asked for. Then the
+// attitude of an IMU whose accelerometer noise is given is what it makes of gyro and accelerometer.
 
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "ayumi/math/random.hpp"
 #include "ayumi/sim/schedule.hpp"
 #include "ayumi/sim/step.hpp"
+#include "ayumi/sim/tilt_estimate.hpp"
 
 namespace ayumi {
 
@@ -28,6 +30,10 @@ class Sensors {
  private:
   void measure(const RobotState& state, const RobotData& truth, const StepReport& report,
                const SensorFault& fault, const std::vector<JointFault>& faults, Measurement& m);
+  void measure_imu(const RobotData& truth, const SensorFault& fault, Measurement& m);
+  Eigen::Vector3d noise(double sigma);
+  /// Mean of the IMU's specific force since the last reading, its axes [m/s^2].
+  Eigen::Vector3d specific_force(const RobotData& truth, const Eigen::Quaterniond& attitude);
 
   const RobotModel* model_;
   int imu_;  // link
@@ -35,7 +41,9 @@ class Sensors {
   bool noise_;
   Random random_;
   Eigen::VectorXd previous_theta_;
-  size_t latency_ = 0;             // of the robot's own sensors [ticks]
+  TiltEstimate tilt_;
+  Eigen::Vector3d imu_velocity_ = Eigen::Vector3d::Zero();  // at the last reading, world [m/s]
+  size_t latency_ = 0;                                      // of the robot's own sensors [ticks]
   std::vector<Measurement> ring_;  // the longest latency + 1 readings, the newest at newest_
   size_t newest_ = 0, filled_ = 0;
 };
