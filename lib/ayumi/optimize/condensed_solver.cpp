@@ -1,16 +1,24 @@
 // The face is that of the solver MA27, which Ipopt's loader takes from outside: analyse the
 // pattern, factor, solve. All memory is Ipopt's: `ikeep` (3 n) goes from analysis to factorization,
-// `iw` and `a` from there to the solution, so that nothing is kept here.
-//   ikeep  class or place of every unknown [n], width of the band, number of places
-//   iw     the same, then rows and columns of the nonzeros, from 0
-//   a      values of the nonzeros, pivots [n], then by block: diagonal block, block below it
+// `iw` and `a` from there to the solution, and stay as they are from one factorization to the next,
+// so that nothing is kept here.
+//   ikeep  class or place of every unknown [n], width of the band (minus it once iw holds the
+//          plan), number of places
+//   iw     the same, number of nonzeros, then the plan: which nonzero goes where
+//   a      values of the nonzeros, pivots [n], values of the rows by group, the band
+// Rows that meet the same unknowns form a group, a dense matrix V: the band gets V' D V, D the
+// inverse pivots. The band is stored by columns, each as long as the width and a panel, so that
+// parts of it are dense matrices whose columns lie one less than that apart; what a panel holds
+// beyond the width is zero and stays so.
 #include "ayumi/optimize/condensed_solver.hpp"
 
 #include <coin/HSLLoader.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <map>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace ayumi {
@@ -35,9 +43,11 @@ struct Nonzeros {
 };
 
 struct Band {
-  int width = 1, places = 0;
-  int blocks() const { return (places + width - 1) / width; }
-  Index size() const { return 2 * static_cast<Index>(blocks()) * width * width; }
+  static constexpr int kPanel = 32;  // columns factored at once
+  int width = 1, places = 0;         // farthest below the diagonal, columns that mean something
+  int columns() const { return (places + kPanel - 1) / kPanel * kPanel; }
+  int length() const { return width + kPanel; }  // of a stored column
+  Index size() const { return static_cast<Index>(columns()) * length(); }
 };
 
 // Multipliers are the last unknowns; two that look like rows and meet are a variable and one.
@@ -114,136 +124,177 @@ Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
   return band;
 }
 
+// Which nonzero goes where, as integers one after another.
+struct Plan {
+  std::vector<int> diagonal;  // unknown, nonzero
+  std::vector<int> links;     // slack, its neighbour, nonzero
+  std::vector<int> inner;     // lower place, upper place, nonzero
+  std::vector<int> groups;    // numbers of rows and places, the rows, the places, their nonzeros
+                              // place by place
+};
+
+Plan plan(int n, const Nonzeros& entries, const int* place) {
+  Plan result;
+  std::vector<std::vector<std::pair<int, int>>> rows(n);  // place, nonzero
+  for (int k = 0; k < entries.count; ++k) {
+    const int i = entries.row(k), j = entries.column(k);
+    if (i == j)
+      result.diagonal.insert(result.diagonal.end(), {i, k});
+    else if (place[i] == kSlack || place[j] == kSlack)
+      result.links.insert(result.links.end(),
+                          {place[i] == kSlack ? i : j, place[i] == kSlack ? j : i, k});
+    else if (place[i] >= 0 && place[j] >= 0)
+      result.inner.insert(result.inner.end(),
+                          {std::max(place[i], place[j]), std::min(place[i], place[j]), k});
+    else
+      rows[place[i] == kRow ? i : j].emplace_back(place[place[i] == kRow ? j : i], k);
+  }
+  std::map<std::vector<int>, std::vector<int>> groups;  // rows by their places
+  for (int i = 0; i < n; ++i) {
+    if (rows[i].empty()) continue;
+    std::sort(rows[i].begin(), rows[i].end());
+    std::vector<int> places;
+    for (const auto& entry : rows[i]) places.push_back(entry.first);
+    groups[places].push_back(i);
+  }
+  for (const auto& [places, members] : groups) {
+    auto& out = result.groups;
+    out.insert(out.end(), {static_cast<int>(members.size()), static_cast<int>(places.size())});
+    out.insert(out.end(), members.begin(), members.end());
+    out.insert(out.end(), places.begin(), places.end());
+    for (size_t p = 0; p < places.size(); ++p)
+      for (const int i : members) out.push_back(rows[i][p].second);
+  }
+  return result;
+}
+
+// A part of the plan in Ipopt's memory: its length, then its integers.
+struct Part {
+  int count;
+  const int* at;
+  explicit Part(const int* begin) : count(*begin), at(begin + 1) {}
+  const int* end() const { return at + count; }
+};
+
+// Rows that meet the same places.
+struct Group {
+  int rows, places;
+  const int *row, *place, *nonzero;
+  double* values;  // rows x places
+  Map<MatrixXd> matrix() const { return {values, rows, places}; }
+};
+
+using Block = Map<MatrixXd, 0, Eigen::OuterStride<>>;
+
 // What factor and solve see of Ipopt's arrays.
 struct Factors {
   int n;
   const int* place;
   Band band;
-  Nonzeros entries;
-  double *values, *pivot, *blocks;
+  Part diagonal, links, inner, groups;
+  double *values, *pivot, *of_groups, *columns;
 
   Factors(int size, double* a, const int* iw)
       : n(size),
         place(iw),
         band{iw[n], iw[n + 1]},
-        entries{iw[n + 2], iw + n + 3, iw + n + 3 + iw[n + 2], 0},
+        diagonal(iw + n + 3),
+        links(diagonal.end()),
+        inner(links.end()),
+        groups(inner.end()),
         values(a),
-        pivot(a + entries.count),
-        blocks(pivot + n) {}
+        pivot(a + iw[n + 2]),
+        of_groups(pivot + n),
+        columns(of_groups + iw[n + 2]) {}
 
-  Map<MatrixXd> diagonal(int block) const { return map(2 * block); }
-  Map<MatrixXd> below(int block) const { return map(2 * block + 1); }
-  // Column `j` of the band from row `i` to the end of `i`'s block.
-  double* at(int i, int j) const {
-    const int block = j / band.width, row = i / band.width;
-    const Index which = 2 * block + (row > block ? 1 : 0);
-    return blocks + (which * band.width + j % band.width) * band.width + i % band.width;
+  double& at(int i, int j) const { return columns[i + static_cast<Index>(j) * stride()]; }
+  Index stride() const { return band.length() - 1; }
+  Block block(int i, int j, int rows, int width) const {
+    return {&at(i, j), rows, width, Eigen::OuterStride<>(stride())};
   }
 
- private:
-  Map<MatrixXd> map(Index which) const {
-    return {blocks + which * band.width * band.width, band.width, band.width};
-  }
-};
-
-// Of one row: the unknowns in the band and their values, by k-th row of `first` on.
-struct Rows {
-  std::vector<int> first, place;
-  std::vector<double> value;
-
-  explicit Rows(const Factors& f) : first(f.n + 1, 0) {
-    auto each = [&](const auto& use) {
-      for (int k = 0; k < f.entries.count; ++k) {
-        const int i = f.entries.row(k), j = f.entries.column(k);
-        if (f.place[i] == kRow && f.place[j] >= 0) use(i, f.place[j], f.values[k]);
-        if (f.place[j] == kRow && f.place[i] >= 0) use(j, f.place[i], f.values[k]);
-      }
-    };
-    each([&](int row, int, double) { ++first[row + 1]; });
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    place.resize(first.back());
-    value.resize(first.back());
-    std::vector<int> next(first.begin(), first.end() - 1);
-    each([&](int row, int p, double v) {
-      place[next[row]] = p;
-      value[next[row]++] = v;
-    });
+  template <class Use>
+  void for_groups(const Use& use) const {
+    double* next = of_groups;
+    for (const int* g = groups.at; g != groups.end();) {
+      const Group group{g[0], g[1], g + 2, g + 2 + g[0], g + 2 + g[0] + g[1], next};
+      use(group);
+      next += group.rows * group.places;
+      g = group.nonzero + group.rows * group.places;
+    }
   }
 };
 
 // Pivots of slacks and rows; adds what concerns places alone to the band.
 void eliminate_slacks(const Factors& f) {
   std::fill_n(f.pivot, f.n, 0.0);
-  for (int k = 0; k < f.entries.count; ++k)
-    if (f.entries.row(k) == f.entries.column(k)) f.pivot[f.entries.row(k)] += f.values[k];
+  for (const int* e = f.diagonal.at; e != f.diagonal.end(); e += 2) f.pivot[e[0]] += f.values[e[1]];
+  for (const int* e = f.inner.at; e != f.inner.end(); e += 3) f.at(e[0], e[1]) += f.values[e[2]];
   std::vector<double> link(f.n, 0.0);  // of a slack to its neighbour; nonzeros may come in parts
   std::vector<int> neighbour(f.n, -1);
-  for (int k = 0; k < f.entries.count; ++k) {
-    const int i = f.entries.row(k), j = f.entries.column(k);
-    if (i == j) continue;
-    const int slack = f.place[i] == kSlack ? i : j;
-    if (f.place[slack] == kSlack) {
-      link[slack] += f.values[k];
-      neighbour[slack] = i + j - slack;
-    } else if (f.place[i] >= 0 && f.place[j] >= 0) {
-      *f.at(std::max(f.place[i], f.place[j]), std::min(f.place[i], f.place[j])) += f.values[k];
-    }
+  for (const int* e = f.links.at; e != f.links.end(); e += 3) {
+    link[e[0]] += f.values[e[2]];
+    neighbour[e[0]] = e[1];
   }
   for (int i = 0; i < f.n; ++i)
     if (neighbour[i] >= 0) f.pivot[neighbour[i]] -= link[i] * link[i] / f.pivot[i];
   for (int i = 0; i < f.n; ++i)
-    if (f.place[i] >= 0) *f.at(f.place[i], f.place[i]) += f.pivot[i];
-  for (int p = f.band.places; p < f.band.blocks() * f.band.width; ++p) *f.at(p, p) = 1;
+    if (f.place[i] >= 0) f.at(f.place[i], f.place[i]) += f.pivot[i];
+  for (int p = f.band.places; p < f.band.columns(); ++p) f.at(p, p) = 1;
 }
 
 // Adds  -v v' / pivot  of every row.
 void eliminate_rows(const Factors& f) {
-  const Rows rows(f);
-  VectorXd v = VectorXd::Zero(f.band.width + 1);
-  for (int i = 0; i < f.n; ++i) {
-    if (f.place[i] != kRow || rows.first[i] == rows.first[i + 1]) continue;
-    int low = f.band.places, high = 0;
-    for (int k = rows.first[i]; k < rows.first[i + 1]; ++k) {
-      low = std::min(low, rows.place[k]);
-      high = std::max(high, rows.place[k]);
+  MatrixXd scaled, sum;
+  f.for_groups([&](const Group& g) {
+    for (int k = 0; k < g.rows * g.places; ++k) g.values[k] = f.values[g.nonzero[k]];
+    const Map<MatrixXd> v = g.matrix();
+    scaled = v;
+    for (int r = 0; r < g.rows; ++r) scaled.row(r) /= -f.pivot[g.row[r]];
+    sum.resize(g.places, g.places);
+    if (g.places < 8)
+      sum.noalias() = scaled.transpose().lazyProduct(v);
+    else
+      sum.triangularView<Eigen::Lower>() = scaled.transpose() * v;
+    for (int j = 0; j < g.places; ++j) {
+      double* column = &f.at(0, g.place[j]);
+      column[g.place[j]] += sum(j, j);
+      for (int i = j + 1; i < g.places; ++i)  // a nonzero in parts meets itself twice
+        column[g.place[i]] += g.place[i] == g.place[j] ? 2 * sum(i, j) : sum(i, j);
     }
-    v.head(high - low + 1).setZero();
-    for (int k = rows.first[i]; k < rows.first[i + 1]; ++k) v[rows.place[k] - low] += rows.value[k];
-    for (int j = low; j <= high; ++j) {
-      const double factor = -v[j - low] / f.pivot[i];
-      if (factor == 0) continue;
-      const int edge = (j / f.band.width + 1) * f.band.width;  // first row of the next block
-      const int here = std::min(high + 1, edge) - j, there = std::max(0, high + 1 - edge);
-      Map<VectorXd>(f.at(j, j), here) += factor * v.segment(j - low, here);
-      if (there > 0) Map<VectorXd>(f.at(edge, j), there) += factor * v.segment(edge - low, there);
-    }
-  }
+  });
 }
 
 bool factor_band(const Factors& f) {
-  for (int b = 0; b < f.band.blocks(); ++b) {
-    Map<MatrixXd> own = f.diagonal(b);
-    if (b > 0) own.selfadjointView<Eigen::Lower>().rankUpdate(f.below(b - 1), -1);
-    Eigen::Ref<MatrixXd> in_place = own;
-    if (Eigen::LLT<Eigen::Ref<MatrixXd>>(in_place).info() != Eigen::Success) return false;
-    if (b + 1 == f.band.blocks()) continue;
-    Map<MatrixXd> next = f.below(b);
-    own.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(next);
+  const int count = f.band.columns(), panel = Band::kPanel;
+  for (int j = 0; j < count; j += panel) {
+    Block own = f.block(j, j, panel, panel);
+    Eigen::Ref<MatrixXd, 0, Eigen::OuterStride<>> in_place = own;
+    if (Eigen::LLT<decltype(in_place)>(in_place).info() != Eigen::Success) return false;
+    const int after = j + panel, rows = std::min(f.band.width, count - after);
+    if (rows <= 0) continue;
+    Block below = f.block(after, j, rows, panel);
+    own.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
+    Block rest = f.block(after, after, rows, rows);
+    rest.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
   }
   return true;
 }
 
 void solve_band(const Factors& f, VectorXd& x) {
-  const int width = f.band.width, blocks = f.band.blocks();
-  for (int b = 0; b < blocks; ++b) {
-    auto own = x.segment(b * width, width);
-    if (b > 0) own -= f.below(b - 1) * x.segment((b - 1) * width, width);
-    f.diagonal(b).triangularView<Eigen::Lower>().solveInPlace(own);
+  const int count = f.band.columns(), panel = Band::kPanel;
+  for (int j = 0; j < count; j += panel) {
+    auto own = x.segment(j, panel);
+    f.block(j, j, panel, panel).triangularView<Eigen::Lower>().solveInPlace(own);
+    const int rows = std::min(f.band.width, count - j - panel);
+    if (rows > 0) x.segment(j + panel, rows).noalias() -= f.block(j + panel, j, rows, panel) * own;
   }
-  for (int b = blocks - 1; b >= 0; --b) {
-    auto own = x.segment(b * width, width);
-    if (b + 1 < blocks) own -= f.below(b).transpose() * x.segment((b + 1) * width, width);
-    f.diagonal(b).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+  for (int j = count - panel; j >= 0; j -= panel) {
+    auto own = x.segment(j, panel);
+    const int rows = std::min(f.band.width, count - j - panel);
+    if (rows > 0)
+      own.noalias() -= f.block(j + panel, j, rows, panel).transpose() * x.segment(j + panel, rows);
+    f.block(j, j, panel, panel).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
   }
 }
 
@@ -260,22 +311,30 @@ void analyse(int* n, int* nz, const int* rows, const int* columns, int*, int*, i
   ikeep[*n + 1] = band.places;
   *steps = 1;
   std::fill_n(info, 20, 0);
-  info[4] = static_cast<int>(*nz + *n + band.size());
-  info[5] = *n + 3 + 2 * *nz;
+  info[4] = static_cast<int>(2 * *nz + *n + band.size());
+  info[5] = 4 * (*n + *nz) + 8;
+}
+
+// Into `iw`, once after the analysis.
+void write_plan(int n, const Nonzeros& entries, int* ikeep, int* iw) {
+  std::copy_n(ikeep, n + 2, iw);
+  const Plan p = plan(n, entries, ikeep);
+  iw[n + 2] = entries.count;
+  int* out = iw + n + 3;
+  for (const std::vector<int>* part : {&p.diagonal, &p.links, &p.inner, &p.groups}) {
+    *out++ = static_cast<int>(part->size());
+    out = std::copy(part->begin(), part->end(), out);
+  }
+  ikeep[n] = -ikeep[n];
 }
 
 void factor(int* n, int* nz, const int* rows, const int* columns, double* a, int*, int* iw, int*,
             int* ikeep, int*, int* front, int*, int*, double*, int* info) {
-  std::copy_n(ikeep, *n + 2, iw);
-  iw[*n + 2] = *nz;
-  for (int k = 0; k < *nz; ++k) {
-    iw[*n + 3 + k] = rows[k] - 1;
-    iw[*n + 3 + *nz + k] = columns[k] - 1;
-  }
+  if (ikeep[*n] > 0) write_plan(*n, {*nz, rows, columns, 1}, ikeep, iw);
   *front = 1;
   std::fill_n(info, 20, 0);
   const Factors f(*n, a, iw);
-  std::fill_n(f.blocks, f.band.size(), 0.0);
+  std::fill_n(f.columns, f.band.size(), 0.0);
   eliminate_slacks(f);
   for (int i = 0; i < *n; ++i) {
     if (f.place[i] >= 0) continue;
@@ -290,32 +349,30 @@ void factor(int* n, int* nz, const int* rows, const int* columns, double* a, int
 void solve(int* n, double* a, int*, int* iw, int*, double*, int*, double* rhs, int*, int*, int*,
            double*) {
   const Factors f(*n, a, iw);
-  VectorXd x = VectorXd::Zero(f.band.blocks() * f.band.width);
-  auto for_pairs = [&](int of, const auto& use) {  // (unknown of that class, other, value)
-    for (int k = 0; k < f.entries.count; ++k) {
-      const int i = f.entries.row(k), j = f.entries.column(k);
-      if (i == j) continue;
-      if (f.place[i] == of)
-        use(i, j, f.values[k]);
-      else if (f.place[j] == of)
-        use(j, i, f.values[k]);
-    }
-  };
-  for_pairs(kSlack, [&](int i, int j, double v) { rhs[j] -= v * rhs[i] / f.pivot[i]; });
-  for (int i = 0; i < *n; ++i)
-    if (f.place[i] >= 0) x[f.place[i]] = rhs[i];
-  for_pairs(kRow, [&](int i, int j, double v) {
-    if (f.place[j] >= 0) x[f.place[j]] -= v * rhs[i] / f.pivot[i];
-  });
-  solve_band(f, x);
-  for_pairs(kRow, [&](int i, int j, double v) {
-    if (f.place[j] >= 0) rhs[i] -= v * x[f.place[j]];
-  });
+  VectorXd x = VectorXd::Zero(f.band.columns()), row, met;
+  for (const int* e = f.links.at; e != f.links.end(); e += 3)
+    rhs[e[1]] -= f.values[e[2]] * rhs[e[0]] / f.pivot[e[0]];
   for (int i = 0; i < *n; ++i) {
-    if (f.place[i] >= 0) rhs[i] = x[f.place[i]];
+    if (f.place[i] >= 0) x[f.place[i]] = rhs[i];
     if (f.place[i] == kRow) rhs[i] /= f.pivot[i];
   }
-  for_pairs(kSlack, [&](int i, int j, double v) { rhs[i] -= v * rhs[j]; });
+  f.for_groups([&](const Group& g) {
+    row.resize(g.rows);
+    for (int r = 0; r < g.rows; ++r) row[r] = rhs[g.row[r]];
+    met.noalias() = g.matrix().transpose() * row;
+    for (int p = 0; p < g.places; ++p) x[g.place[p]] -= met[p];
+  });
+  solve_band(f, x);
+  f.for_groups([&](const Group& g) {
+    met.resize(g.places);
+    for (int p = 0; p < g.places; ++p) met[p] = x[g.place[p]];
+    row.noalias() = g.matrix() * met;
+    for (int r = 0; r < g.rows; ++r) rhs[g.row[r]] -= row[r] / f.pivot[g.row[r]];
+  });
+  for (int i = 0; i < *n; ++i)
+    if (f.place[i] >= 0) rhs[i] = x[f.place[i]];
+  for (const int* e = f.links.at; e != f.links.end(); e += 3)
+    rhs[e[0]] -= f.values[e[2]] * rhs[e[1]];
   for (int i = 0; i < *n; ++i)
     if (f.place[i] == kSlack) rhs[i] /= f.pivot[i];
 }

@@ -3,10 +3,10 @@
 //   [ W      J' ]   W  of the variables, S of the slacks (diagonal), J of the constraints,
 //   [    S  -I  ]   D  regularization (diagonal),
 //   [ J -I  -D  ]
-// slacks and multipliers are eliminated one by one, and what is left,
+// slacks and multipliers are eliminated first, for their pivots need no search, and what is left,
 //   W + J' (S^-1 + D)^-1 J,
-// is banded in programs along time: a Cholesky factorization in blocks as wide as the band. MUMPS
-// cannot know that the pivots need no search and spends ten times as long. Without equality
+// is banded in programs along time: a Cholesky factorization in panels of a band. An iteration
+// takes a third to a quarter of what it takes with MUMPS. Without equality
 // constraints only: those have no slack to eliminate them by.
 
 namespace ayumi {

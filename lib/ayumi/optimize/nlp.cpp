@@ -1,9 +1,9 @@
 #include "ayumi/optimize/nlp.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <coin/IpIpoptApplication.hpp>
 #include <coin/IpTNLP.hpp>
+#include <ctime>
 #include <exception>
 
 #include "ayumi/base/text.hpp"
@@ -17,10 +17,11 @@ using Ipopt::Number;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
+// Processor time of this thread: what else the machine does is no work of the solver [s].
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 VectorXd vector(const Number* values, Index n) { return Eigen::Map<const VectorXd>(values, n); }
@@ -147,10 +148,10 @@ class Adapter : public Ipopt::TNLP {
   template <class Work>
   bool guarded(Work work) {
     if (thrown) return false;
-    const auto begin = Clock::now();
+    const double begin = thread_seconds();
     try {
       work();
-      solution.function_seconds += seconds_since(begin);
+      solution.function_seconds += thread_seconds() - begin;
       return true;
     } catch (...) {
       thrown = std::current_exception();
@@ -217,14 +218,14 @@ NlpSolution solve(const Nlp& nlp, const NlpOptions& options, const Progress& pro
   set_linear_solver(*application->Options(), !options.mumps && !has_equalities(nlp));
   if (application->Initialize("") != Ipopt::Solve_Succeeded)
     fail(ErrorCode::solver, "Ipopt does not start: is its MUMPS linear solver installed?");
-  const auto begin = Clock::now();
+  const double begin = thread_seconds();
   const Ipopt::ApplicationReturnStatus status =
       application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(adapter)));
   if (adapter->thrown) std::rethrow_exception(adapter->thrown);
   if (status == Ipopt::User_Requested_Stop) throw Interrupted();
   NlpSolution solution = adapter->solution;
   solution.status = status_of(status);
-  solution.solver_seconds = seconds_since(begin) - solution.function_seconds;
+  solution.solver_seconds = thread_seconds() - begin - solution.function_seconds;
   if (solution.x.size() == 0) solution.x = nlp.start;
   return solution;
 }

@@ -61,7 +61,7 @@ struct NlpSolution {
   int iterations = 0;
   double objective = 0;
   double violation = 0;                             ///< largest of any constraint or bound
-  double function_seconds = 0, solver_seconds = 0;  ///< in the functions of the Nlp; in the rest
+  double function_seconds = 0, solver_seconds = 0;  ///< of processor, in functions; in the rest
 };
 
 /// Throws Interrupted when `progress` stops the work. `stage` names the work to `progress`.
