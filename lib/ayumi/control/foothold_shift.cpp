@@ -39,9 +39,6 @@ constexpr double kLeastReplan = 0.03;  // a swing is not planned for less than t
 constexpr double kClearance = 0.008;   // between the soles' sides [m]
 constexpr double kLongRest = 1.3;      // of a double support's ramp that counts, times 1/omega
 
-int index(Side side) { return static_cast<int>(side); }
-Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
-
 ConvexPolygon about(const ConvexPolygon& polygon, const Vector2d& center) {
   std::vector<Vector2d> points;
   for (const Vector2d& p : polygon.vertices()) points.push_back(p - center);

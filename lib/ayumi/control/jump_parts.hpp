@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "ayumi/control/support.hpp"
 #include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/math/rotation.hpp"
 
@@ -13,10 +14,6 @@ namespace ayumi::jump {
 inline double smooth(double x) {
   const double s = std::clamp(x, 0.0, 1.0);
   return s * s * (3 - 2 * s);
-}
-
-inline double ground_of(const std::array<Eigen::Isometry3d, 2>& feet) {
-  return 0.5 * (feet[0].translation().z() + feet[1].translation().z());
 }
 
 inline Eigen::Vector2d middle_of(const RobotModel& model,

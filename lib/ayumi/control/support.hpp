@@ -1,6 +1,7 @@
 #pragma once
 // The support region of planned feet, and the nearest admissible ZMP and vertical force.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -12,6 +13,11 @@ namespace ayumi {
 /// Convex hull of the soles that support, seen from above, world axes [m].
 ConvexPolygon support_polygon(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet,
                               Support support);
+
+/// Height of the ground under two feet [m]: that of the lower one, since the other may be lifted.
+inline double ground_of(const std::array<Eigen::Isometry3d, 2>& feet) {
+  return std::min(feet[0].translation().z(), feet[1].translation().z());
+}
 
 /// That polygon less a margin, worked out again only when feet or support have changed.
 class SupportRegion {

@@ -38,19 +38,11 @@ constexpr double kMostHurry = 4;          // of a step that comes sooner, times 
 constexpr double kLeastReplan = 0.03;     // a swing is not planned for less than this [s]
 constexpr double kFootClearance = 0.008;  // between the soles' sides [m]
 
-Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
-int index(Side side) { return static_cast<int>(side); }
-
 GroundPose middle(const RobotModel& model, const std::array<Isometry3d, 2>& feet) {
   const GroundPose left = ground_pose(model, Side::left, feet[0]);
   const GroundPose right = ground_pose(model, Side::right, feet[1]);
   return {0.5 * (left.position + right.position),
           left.yaw + 0.5 * std::remainder(right.yaw - left.yaw, 2 * M_PI)};
-}
-
-// The lower foot is on the ground.
-double ground_of(const std::array<Isometry3d, 2>& feet) {
-  return std::min(feet[0].translation().z(), feet[1].translation().z());
 }
 
 Vector3d rotated(const Vector3d& v, double yaw) { return rpy_to_matrix({0, 0, yaw}) * v; }

@@ -37,13 +37,9 @@ const CommandSample& held_in(const CommandSeries& series, const ViipSpan& span) 
   return series.samples[static_cast<size_t>(span.begin)];
 }
 
-double ground_under(const CommandSample& held) {
-  return 0.5 * (held.feet[0].translation().z() + held.feet[1].translation().z());
-}
-
 CommandSeries keyed_steps(const RobotModel& model, const CommandSample& held,
                           const ViipParams& params, const StepGoal& goal) {
-  const double z = held.cog.z() - ground_under(held), omega = std::sqrt(kGravity / z);
+  const double z = held.cog.z() - ground_of(held.feet), omega = std::sqrt(kGravity / z);
   WalkParameters w = walk_defaults(model);
   w.steps = goal.steps > 0 ? std::clamp(goal.steps - 1, 1, kMostKeyedSteps) : kMostKeyedSteps;
   w.period = (params.single + params.both) / omega;
@@ -62,7 +58,7 @@ CommandSeries keyed_jump(const RobotModel& model, const CommandSample& held, con
   p.height = goal.height;
   p.stoop = goal.stoop;
   p.forward = goal.forward;
-  p.cog_height = held.cog.z() - ground_under(held);
+  p.cog_height = held.cog.z() - ground_of(held.feet);
   return sample(model, jump_pattern(model, p));
 }
 
@@ -115,7 +111,7 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
                      const Vector3d& displacement) {
   const double yaw = matrix_to_rpy(held.feet[0].linear()).z();
   const Vector3d goal = held.cog + rpy_to_matrix({0, 0, yaw}) * displacement;
-  const double height = held.cog.z() - ground_under(held), margin = params.margin * height;
+  const double height = held.cog.z() - ground_of(held.feet), margin = params.margin * height;
   if (!(height + displacement.z() > kLowest * height))
     return "the COG would be at " + text::fixed(1e3 * (height + displacement.z()), 1) +
            " mm above the ground";
@@ -154,7 +150,7 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
                        const std::string& place, const StepGoal& goal) {
   if (!goal.velocity.allFinite() || !std::isfinite(goal.turn))
     fail(ErrorCode::bad_pattern, place + "a velocity is not finite");
-  const double z = held.cog.z() - ground_under(held);
+  const double z = held.cog.z() - ground_of(held.feet);
   const double period = (params.single + params.both) / std::sqrt(kGravity / z);
   const double length = period * goal.velocity.norm(), most = params.reach * z;
   if (!(length <= most))

@@ -20,8 +20,6 @@ namespace {
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
 constexpr double kInstant = 1e-9;  // times nearer than this are the same [s]
 
-int index(Side side) { return static_cast<int>(side); }
-
 [[noreturn]] void complain(const Pattern& pattern, const std::string& place,
                            const std::string& message) {
   fail(ErrorCode::bad_pattern, in_file(pattern, place) + ": " + message);

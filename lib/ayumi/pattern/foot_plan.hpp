@@ -11,6 +11,11 @@
 
 namespace ayumi {
 
+/// Of what is kept by Side, left first.
+inline int index(Side side) { return static_cast<int>(side); }
+/// That foot alone.
+inline Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
+
 /// A swing moves over the ground between these shares of its phase: it lifts straight off and
 /// comes down straight.
 inline constexpr double kSwingMargin = 0.08;
