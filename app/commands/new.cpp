@@ -1,5 +1,6 @@
 // Generators: write a keyframed pattern that a person can then edit.
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -156,6 +157,13 @@ void new_viip(const Context& context, const NewOptions& options) {
          "--velocity and --turn");
   if (!steps && (!options.velocity.empty() || options.turn_deg != 0))
     fail(ErrorCode::usage, "viip: --velocity and --turn go with --steps");
+  const auto moves = [](double v) { return v != 0; };
+  if (options.viip_steps == 1 &&
+      (options.turn_deg != 0 ||
+       std::any_of(options.velocity.begin(), options.velocity.end(), moves)))
+    fail(
+        ErrorCode::usage,
+        "viip: the last step closes, so that one step goes nowhere; one step forward is --steps 2");
   Pattern pattern;
   pattern.robot = options.robot;
   pattern.controller.type = "viip";

@@ -1,0 +1,50 @@
+// `ayumi new viip`: what the robot can do is written, what it cannot is refused in one line.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+class NewViip : public testing::Test {
+ protected:
+  Output make(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"new", "viip", "-o", "v.json", "-q", "--force"});
+    return run_program(arguments, folder.path());
+  }
+  Folder folder;
+};
+
+TEST_F(NewViip, RefusesWhatTheRobotCannotReach) {
+  struct Case {
+    std::vector<std::string> arguments;
+    int exit_code;
+    const char* words;
+  };
+  for (const Case& c : {Case{{"--cog", "0.2,0,0"}, 3, "outside the support of the feet"},
+                        Case{{"--cog", "0,0,-0.1"}, 3, "is possible"},
+                        Case{{"--cog", "nan,0,0"}, 2, "not a finite"},
+                        Case{{"--steps", "6", "--velocity", "0.5"}, 3, "m/s at most"},
+                        Case{{"--steps", "6", "--turn", "300"}, 3, "deg/s"},
+                        Case{{"--steps", "1", "--velocity", "0.1"}, 2, "--steps 2"},
+                        Case{{"--steps", "6", "--velocity", "inf"}, 2, "not a finite"}}) {
+    const Output output = make(c.arguments);
+    EXPECT_EQ(output.exit_code, c.exit_code) << output.err;
+    EXPECT_NE(output.err.find(c.words), std::string::npos) << output.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "v.json"));
+  }
+}
+
+TEST_F(NewViip, LongStepsHoldTheCogLowerAndNameTheirActuators) {
+  const Output output = make({"--steps", "6", "--velocity", "0.25"});
+  ASSERT_EQ(output.exit_code, 0) << output.err;
+  const std::string text = contents(folder.path() / "v.json");
+  EXPECT_NE(text.find("\"profile\": \"hoap1-strong\""), std::string::npos) << text;
+  EXPECT_NE(text.find("\"cog_height\": 0.238"), std::string::npos) << text;
+  ASSERT_EQ(make({"--cog", "0.03,0,-0.01"}).exit_code, 0);
+  EXPECT_NE(contents(folder.path() / "v.json").find("\"profile\": \"hoap1\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ayumi::test
