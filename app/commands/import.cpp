@@ -99,6 +99,12 @@ void add_import(CLI::App& app, Context& context) {
   command->add_flag("--commands", options.import.commands,
                     "angles are what servos receive, as ayumi export writes them: take the lead "
                     "kd/kp out again; of reference tables it always is");
+  command
+      ->add_option("--smooth", options.import.smooth,
+                   "angles may change by that to become smooth; left out: 0.1 of a sequence's "
+                   "counts, 0 of angles")
+      ->check(CLI::Range(0.0, 5.0))
+      ->type_name("DEG");
   command->callback([&context] {
     options.import.degrees = unit == "deg";
     import_motion(context, options);

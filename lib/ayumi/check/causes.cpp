@@ -35,6 +35,7 @@ namespace {
 
 constexpr double kReach = 0.5;    // an outer force acts within this part of the height
 constexpr double kTouch = 0.015;  // deeper overlaps are facts of their own [m]
+constexpr double kTwist = 2;      // what holds a turn is reckoned low by no more than this
 constexpr int kStencil = 3;       // samples that one jump spoils by differences
 
 bool is_foot(Kind k) {
@@ -163,23 +164,6 @@ class Causes {
     return pass_.collisions.clearance(pass_.collisions.pairs()[v.item], data, kTouch) >= 0;
   }
 
-  void posture(Kind kind) {
-    for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != kind || !open(i)) continue;
-      const bool limit = kind == Kind::joint_position;
-      const bool joint = limit || kind == Kind::servo_step;
-      const bool places_feet = joint && in_a_leg(of(i).item);
-      blame(i, limit ? episode_of_joint(i) : episode(i), [&](int j) {
-        const Violation& v = of(j);
-        if (is_asked_for(v)) return false;
-        if (is_need(v) || is_residual(v.kind)) return true;
-        if (places_feet && is_foot(v.kind)) return true;
-        if (limit && v.kind == Kind::self_collision) return touches_by_limits(v);
-        return joint && is_rate(v.kind) && v.item == of(i).item;
-      });
-    }
-  }
-
   // Largest step of a joint between two samples near this one.
   double step_near(int dof, int sample) const {
     double step = 0;
@@ -198,16 +182,45 @@ class Causes {
            around(w, kStencil).contains(sample);
   }
 
+  bool jumps(const Violation& v) const {
+    const auto begin = pass_.rough.begin();
+    return std::any_of(begin + std::max(0, v.sample - kStencil),
+                       begin + std::min(pass_.count(), v.sample + kStencil + 1),
+                       [](char rough) { return rough; });
+  }
+
+  // The joint jumps there at the beginning of the window, and back at its end.
+  bool comes_back(int dof, const FindingWindow& w) const {
+    const double to = step_near(dof, w.first), from = step_near(dof, w.last + 1);
+    return to * from < 0 && std::abs(to) > 0.5 * std::abs(from) &&
+           std::abs(from) > 0.5 * std::abs(to);
+  }
+
+  void posture(Kind kind) {
+    for (int i = 0; i < count(); ++i) {
+      if (of(i).kind != kind || !open(i)) continue;
+      const bool limit = kind == Kind::joint_position;
+      const bool joint = limit || kind == Kind::servo_step;
+      const bool places_feet = joint && in_a_leg(of(i).item);
+      blame(i, limit ? episode_of_joint(i) : episode(i), [&](int j) {
+        const Violation& v = of(j);
+        if (is_asked_for(v)) return false;
+        if (is_need(v) || is_residual(v.kind)) return true;
+        if (places_feet && is_foot(v.kind)) return true;
+        if (limit && v.kind == Kind::self_collision) return touches_by_limits(v);
+        if (!joint || !is_rate(v.kind) || v.item != of(i).item) return false;
+        return !limit || !jumps(v) || comes_back(v.item, windows_[i]);
+      });
+    }
+  }
+
   // A key in a wrong place, held between two jumps of the same joint, there and back.
   void edges(Kind kind) {
     for (int i = 0; i < count(); ++i) {
       if (of(i).kind != kind || !open(i)) continue;
       const int there = windows_[i].first, back = windows_[i].last + 1;
       blame(i, {there - kStencil, back + kStencil}, [&](int j) {
-        if (!is_jump(j, there) && !is_jump(j, back)) return false;
-        const double to = step_near(of(j).item, there), from = step_near(of(j).item, back);
-        return to * from < 0 && std::abs(to) > 0.5 * std::abs(from) &&
-               std::abs(from) > 0.5 * std::abs(to);
+        return (is_jump(j, there) || is_jump(j, back)) && comes_back(of(j).item, windows_[i]);
       });
     }
   }
@@ -319,12 +332,13 @@ class Causes {
     }
   }
 
-  // The coefficient that the worst place needs would also keep the foot from turning.
+  // The coefficient that the worst place needs would also keep the foot from turning: the lever of
+  // what resists a turn is a lower bound.
   void ground() {
     for (const int i : by_excess(Kind::friction)) {
       const double more = of(i).value / of(i).limit;
       blame(i, {0, pass_.count()}, [&](int j) {
-        return of(j).kind == Kind::yaw_moment && of(j).value <= more * of(j).limit;
+        return of(j).kind == Kind::yaw_moment && of(j).value <= kTwist * more * of(j).limit;
       });
     }
   }

@@ -1,6 +1,8 @@
 // Real sequence files are no clean tables: line ends of two kinds, blanks around cells, "-0",
-// requests where others have hobby servo words, commands to single devices between the rows.
+// requests where others have hobby servo words, commands to single devices between the rows; and
+// what robots answer, or other programs write for them, is bare: no intervals, counts or radians.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -17,8 +19,6 @@ namespace ayumi {
 namespace {
 
 constexpr double kRadiansPerDegree = EIGEN_PI / 180;
-constexpr double kSmoothing = 0.050;  // to either side of a sample [s]
-constexpr double kBandDegrees = 0.1;  // of change by it; servos follow no better
 
 std::optional<int> whole_number(std::string_view cell) {
   int value = 0;
@@ -31,14 +31,34 @@ int motors_of(size_t columns) {
   return columns == 25 ? 20 : columns == 27 || columns == 29 ? 21 : 0;
 }
 
+constexpr size_t kBareColumns = 23;  // 21 motors, then two that say nothing of them
+constexpr int kBareMotors = 21;
+
+// Counts per degree of the motors, in the makers' own angles.
+constexpr double kCounts = 209;
+constexpr std::array<int, kBareMotors> kSigns = {1, 1, -1, 1,  1,  -1, 1, 1,  -1, -1, 1,
+                                                 1, 1, -1, -1, -1, -1, 1, -1, 1,  1};
+
 struct Row {
-  int at = 0;               // [ms]
-  std::vector<int> counts;  // by device from 1
+  int at = 0;                  // [ms]
+  std::vector<double> counts;  // by device from 1
 };
+
+std::optional<double> any_number(std::string_view cell) {
+  double value = 0;
+  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
 
 class Reader {
  public:
-  Reader(const std::string& bytes, const std::string& file) : rest_(bytes), file_(file) {}
+  Reader(const std::string& bytes, const std::string& file) : rest_(bytes), file_(file) {
+    std::string_view rest = rest_;
+    bare_ = is_bare_hoap_row(take_line(rest));
+  }
 
   std::vector<Row> rows() {
     while (!rest_.empty()) {
@@ -47,8 +67,16 @@ class Reader {
       if (!line.empty()) read(line);
     }
     if (rows_.empty()) fail(ErrorCode::bad_file, file_ + ": no row with targets for the motors");
+    if (radians_) {
+      for (Row& row : rows_)
+        for (int m = 0; m < kBareMotors; ++m)
+          row.counts[static_cast<size_t>(m)] *=
+              kSigns[static_cast<size_t>(m)] * kCounts / kRadiansPerDegree;
+    }
     return std::move(rows_);
   }
+  bool bare() const { return bare_; }
+  bool radians() const { return radians_; }
   int general_commands() const { return general_; }
   size_t columns() const { return columns_; }
 
@@ -57,8 +85,26 @@ class Reader {
     fail(ErrorCode::bad_file, file_ + ":" + std::to_string(line_) + ": " + reason);
   }
 
+  // One row per tick of 1 ms until the rate is known.
+  void read_bare(const std::vector<std::string_view>& cells) {
+    if (cells.size() != kBareColumns)
+      stop(std::to_string(cells.size()) + " columns, the rows before have 23");
+    Row row{now_++, {}};
+    for (int m = 0; m < kBareMotors; ++m) {
+      const std::string_view cell = cells[static_cast<size_t>(m)];
+      const auto value = any_number(cell);
+      if (!value || std::abs(*value) > 32768)
+        stop("column " + std::to_string(1 + m) + ": '" + std::string(cell.substr(0, 24)) +
+             "' is neither a count of 16 bits nor an angle");
+      radians_ = radians_ || *value != std::round(*value);
+      row.counts.push_back(*value);
+    }
+    rows_.push_back(std::move(row));
+  }
+
   void read(std::string_view line) {
     const std::vector<std::string_view> cells = cells_of(line);
+    if (bare_) return read_bare(cells);
     const auto interval = whole_number(cells[0]);
     if (!interval || *interval < 1 || *interval > 60000)
       stop("'" + std::string(cells[0].substr(0, 24)) + "' is not an interval in milliseconds");
@@ -93,6 +139,7 @@ class Reader {
   std::string_view rest_;
   const std::string& file_;
   std::vector<Row> rows_;
+  bool bare_ = false, radians_ = false;
   int now_ = 0, general_ = 0;
   size_t columns_ = 0, line_ = 0;
 };
@@ -121,43 +168,37 @@ void refuse_lost_motion(const std::vector<Row>& rows, size_t device, const Robot
   const auto [least, most] = std::minmax_element(
       rows.begin(), rows.end(),
       [&](const Row& a, const Row& b) { return a.counts[device] < b.counts[device]; });
-  const int low = least->counts[device], high = most->counts[device];
+  constexpr double kTrembling = 10;  // [counts], of an axis that holds its place
+  const double low = least->counts[device], high = most->counts[device];
   const std::string name = "device " + std::to_string(device + 1);
-  if (low != high)
-    fail(ErrorCode::bad_file, file + ": " + name + " moves from " + std::to_string(low) + " to " +
-                                  std::to_string(high) + " counts, but no joint of '" +
-                                  model.name() + "' has it (encoders in its sidecar)");
-  filled.push_back(name + " is not on this robot: left out, it rests at " + std::to_string(low) +
+  if (high - low > kTrembling)
+    fail(ErrorCode::bad_file, file + ": " + name + " moves from " + text::brief(low) + " to " +
+                                  text::brief(high) + " counts, but no joint of '" + model.name() +
+                                  "' has it (encoders in its sidecar)");
+  filled.push_back(name + " is not on this robot: left out, it rests at " + text::brief(low) +
                    " counts");
+}
+
+// Rows without intervals: one per millisecond as robots answer, one per 2 ms as files in radians
+// are meant, or as is said.
+void set_bare_rate(const Reader& reader, double rate, ImportedMotion& result) {
+  result.motion.dt = rate > 0 ? 1 / rate : reader.radians() ? 0.002 : 0.001;
+  result.filled.push_back(std::string(reader.radians() ? "angles in radians" : "counts") +
+                          " without intervals: " + text::brief(1000 * result.motion.dt) +
+                          " ms from row to row" + (rate > 0 ? "" : " (--rate HZ for another)"));
 }
 
 }  // namespace
 
-Eigen::VectorXd smoothed_within(const Eigen::VectorXd& x, double band, int reach) {
-  const Eigen::Index n = x.size();
-  constexpr int kDegree = 4;
-  if (reach < 3 || n <= reach) return x;
-  // Least squares over -reach .. reach: the value at 0 is linear in the samples.
-  Eigen::MatrixXd powers(2 * reach + 1, kDegree + 1);
-  for (int i = -reach; i <= reach; ++i)
-    for (int p = 0; p <= kDegree; ++p)
-      powers(i + reach, p) = std::pow(static_cast<double>(i) / reach, p);
-  const Eigen::MatrixXd normal = powers.transpose() * powers;
-  const Eigen::VectorXd weights =
-      powers * normal.ldlt().solve(Eigen::VectorXd::Unit(kDegree + 1, 0));
-  Eigen::VectorXd padded(n + 2 * reach), y(n);
-  padded.segment(reach, n) = x;
-  for (int i = 1; i <= reach; ++i) {  // point-symmetric about both ends
-    padded[reach - i] = 2 * x[0] - x[i];
-    padded[reach + n - 1 + i] = 2 * x[n - 1] - x[n - 1 - i];
-  }
-  for (Eigen::Index k = 0; k < n; ++k)
-    y[k] = x[k] + band * std::tanh((weights.dot(padded.segment(k, 2 * reach + 1)) - x[k]) / band);
-  return y;
+bool is_bare_hoap_row(std::string_view line) {
+  const std::vector<std::string_view> cells = cells_of(line);
+  return cells.size() == kBareColumns &&
+         std::all_of(cells.begin(), cells.end(),
+                     [](std::string_view cell) { return any_number(cell).has_value(); });
 }
 
 ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
-                                const RobotModel& model) {
+                                const RobotModel& model, double rate) {
   Reader reader(bytes, file);
   const std::vector<Row> rows = reader.rows();
   int tick = 0;
@@ -172,6 +213,7 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
   result.format = "hoap";
   result.rows = static_cast<int>(rows.size());
   result.motion.dt = 0.001 * tick;
+  if (reader.bare()) set_bare_rate(reader, rate, result);
   if (!even)
     result.filled.push_back("intervals change: straight between rows, every " +
                             std::to_string(tick) + " ms");
@@ -196,12 +238,8 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
     }
     told[static_cast<size_t>(dof)] = 1;
     const double per_degree = model.dofs()[dof].encoder.counts_per_degree;
-    const int reach = static_cast<int>(std::lround(kSmoothing / result.motion.dt));
-    result.motion.theta.col(dof) =
-        smoothed_within(on_ticks(rows, device, tick), kBandDegrees * std::abs(per_degree), reach) *
-        (kRadiansPerDegree / per_degree);
+    result.motion.theta.col(dof) = on_ticks(rows, device, tick) * (kRadiansPerDegree / per_degree);
   }
-  result.filled.push_back("angles smoothed by at most " + text::brief(kBandDegrees) + " deg");
   for (int dof = 0; dof < model.dof_count(); ++dof)
     if (!told[static_cast<size_t>(dof)])
       result.filled.push_back(model.dofs()[dof].name + ": not in the file, rests at home");

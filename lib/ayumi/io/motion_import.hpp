@@ -3,7 +3,9 @@
 // joint tables Ayumi writes. What was understood, filled in or left out is said in words.
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ayumi/pattern/grounded_motion.hpp"
@@ -15,6 +17,8 @@ struct ImportOptions {
   bool degrees = false;   ///< unit of bare joint columns
   double rate = 0;        ///< of rows without a time column [1/s]
   bool commands = false;  ///< angles are what servos receive, as in Ayumi's reference tables
+  std::optional<double> smooth{};  ///< largest change of an angle [deg]; left out: 0.1 of counts,
+                                   ///< none of angles
 };
 
 struct ImportedMotion {
@@ -27,12 +31,17 @@ struct ImportedMotion {
 
 /// Layouts of HOAP sequences by columns: 25 (HOAP-1: 20 motors), 27 (HOAP-2: 21), 29 (HOAP-3: 21).
 /// Blanks, CR, `-0` and `R` anywhere behind the motors are fine. General commands (3) only take
-/// their time. Changing intervals become the smallest one, straight between rows. Angles are the
-/// smoothed by at most 0.1 deg. Throws Error(bad_file) "file:line:
+/// their time. Changing intervals become the smallest one, straight between rows. Bare rows of 23
+/// numbers are encoder answers (counts, 1 ms) or, with a fraction anywhere, radians of 21 motors
+/// (2 ms); `rate` [1/s] says otherwise. Throws
+/// Error(bad_file) "file:line:
 /// ..." for another number of columns, a cell that is no count, and where a device moves that the
 /// robot does not have.
 ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
-                                const RobotModel& model);
+                                const RobotModel& model, double rate = 0);
+
+/// Whether a row is one without interval and command: 21 motors, then two more numbers.
+bool is_bare_hoap_row(std::string_view line);
 
 /// A head row and numbers: t[s] (or t, time, time_s), joints as theta.<joint>[rad] or by their bare
 /// names, and whole groups of cog, zmp, fz, base, contact columns as in Ayumi's tables. Rows that
@@ -41,12 +50,8 @@ ImportedMotion read_table_motion(const std::string& bytes, const std::string& fi
                                  const RobotModel& model, const ImportOptions& options = {});
 
 /// Either of them, by the content. `bytes` from `file`. Postures: where the file holds commands,
-/// the servos' lead is taken out.
+/// the servos' lead is taken out. Angles are then smoothed within what ImportOptions::smooth says.
 ImportedMotion read_motion(const std::string& bytes, const std::string& file,
                            const RobotModel& model, const ImportOptions& options = {});
-
-/// Each sample replaced by the quartic that fits it and `reach` samples to either side best, but by
-/// less than `band`: rounding goes, curvature stays, and so does a jump.
-Eigen::VectorXd smoothed_within(const Eigen::VectorXd& x, double band, int reach);
 
 }  // namespace ayumi

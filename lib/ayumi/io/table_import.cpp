@@ -3,8 +3,10 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/comma_cells.hpp"
 #include "ayumi/io/motion_import.hpp"
 #include "ayumi/io/table_columns.hpp"
+#include "ayumi/math/smoothing.hpp"
 #include "ayumi/pattern/servo_lead.hpp"
 
 namespace ayumi {
@@ -158,7 +160,33 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
       "angles: what servos receive; postures are without their lead of kd/kp");
 }
 
+// Counts are rounded, and straight between the times for which they were made: differences of that
+// are no accelerations of anything. Servos do not follow a tenth of a degree.
+void smooth_angles(const RobotModel& model, const ImportOptions& options,
+                   ImportedMotion& imported) {
+  constexpr double kOfCounts = 0.1;  // [deg]
+  constexpr double kCutoff = 20;     // what a motion of a robot is slower than [1/s]
+  const double degrees = options.smooth.value_or(imported.format == "hoap" ? kOfCounts : 0);
+  if (degrees <= 0) return;
+  Eigen::MatrixXd& theta = imported.motion.theta;
+  for (int i = 0; i < model.dof_count(); ++i) {
+    const Dof& dof = model.dofs()[i];
+    if (dof.prismatic) continue;
+    const Eigen::VectorXd raw = theta.col(i);
+    theta.col(i) = smoothed_within(raw, degrees * kRadiansPerDegree, kCutoff * imported.motion.dt);
+    if (!dof.limited) continue;
+    // Beside a jump it swings over: no limit is to be broken by that.
+    const double margin = model.description().soft_limit_margin;
+    theta.col(i) = theta.col(i)
+                       .cwiseMax(std::min(dof.lower + margin, raw.minCoeff()))
+                       .cwiseMin(std::max(dof.upper - margin, raw.maxCoeff()));
+  }
+  imported.filled.push_back("angles smoothed by at most " + text::brief(degrees) + " deg");
+}
+
 bool looks_like_hoap(const std::string& bytes) {
+  std::string_view rest = bytes;
+  if (is_bare_hoap_row(take_line(rest))) return true;
   // Interval, 2 or 3, then more: no head row could begin so.
   size_t i = 0;
   const auto skip = [&](const char* set) {
@@ -208,9 +236,10 @@ ImportedMotion read_table_motion(const std::string& bytes, const std::string& fi
 ImportedMotion read_motion(const std::string& bytes, const std::string& file,
                            const RobotModel& model, const ImportOptions& options) {
   const bool hoap = options.format == "hoap" || (options.format.empty() && looks_like_hoap(bytes));
-  ImportedMotion result =
-      hoap ? read_hoap_motion(bytes, file, model) : read_table_motion(bytes, file, model, options);
+  ImportedMotion result = hoap ? read_hoap_motion(bytes, file, model, options.rate)
+                               : read_table_motion(bytes, file, model, options);
   if (options.commands || result.commands) take_out_lead(model, result);
+  smooth_angles(model, options, result);
   if (result.motion.support.empty()) result.filled.push_back("contacts: detected from the motion");
   if (result.motion.base.empty())
     result.filled.push_back("base: from the feet that carry, level on the ground");
