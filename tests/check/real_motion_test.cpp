@@ -15,6 +15,7 @@
 #include "ayumi/io/motion_import.hpp"
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/math/polygon.hpp"
+#include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -257,6 +258,35 @@ TEST(HoapImport, QuirksOfRealFiles) {
   EXPECT_NE(said.find("1 commands to single devices"), std::string::npos) << said;
   EXPECT_NE(said.find("device 21 is not on this robot"), std::string::npos) << said;
   EXPECT_NE(said.find("intervals change"), std::string::npos) << said;
+}
+
+// A walk that is sound is sound after its way through counts, its contacts where they were.
+TEST(HoapImport, AWalkRoundedToCountsPassesTheCheck) {
+  const Pattern walk = walk_pattern(hoap1(), {.steps = 3, .turn = 0.05});
+  const CommandSeries series = sample(hoap1(), walk);
+  std::string text;
+  for (const CommandSample& s : series.samples) {
+    std::array<long, 20> counts{};
+    for (int i = 0; i < hoap1().dof_count(); ++i) {
+      const EncoderDescription& encoder = hoap1().dofs()[i].encoder;
+      counts.at(encoder.device - 1) =
+          std::lround(s.state.theta[i] * 180 / M_PI * encoder.counts_per_degree);
+    }
+    text += "1,2";
+    for (const long count : counts) text += "," + std::to_string(count);
+    text += ",R,R,R\n";
+  }
+  const GroundedMotion motion = grounded(hoap1(), read(text).motion, "t.csv");
+  const ConsistencyReport r = check_consistency(hoap1(), sample(hoap1(), motion.pattern));
+  for (const Finding& f : r.findings)
+    EXPECT_NE(f.severity, Severity::error) << f.kind << " " << f.where << " at " << f.at;
+  EXPECT_LT(r.summary.max_foot_float, 5e-5);
+  // Swings end with (1 - s)^3: the last hundredth of a millimetre of them is rest.
+  ASSERT_EQ(motion.pattern.phases.size(), walk.phases.size());
+  for (size_t i = 0; i < walk.phases.size(); ++i) {
+    EXPECT_EQ(motion.pattern.phases[i].support, walk.phases[i].support);
+    EXPECT_NEAR(motion.pattern.phases[i].until, walk.phases[i].until, 0.030);
+  }
 }
 
 // What a robot answers, and what other programs write in radians: no intervals.

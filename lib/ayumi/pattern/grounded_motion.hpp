@@ -25,7 +25,8 @@ struct RawMotion {
 /// other's frame; where one takes over from the other at once, both carry as long as they do not
 /// part along the ground (4 cm/s) or by more than 1 cm in height. With a base, a sole carries that
 /// is within 3 mm of the lowest height of all and rests; flight is when none does. Stretches
-/// shorter than 20 ms belong to their neighbours.
+/// shorter than 20 ms belong to their neighbours. A contact lasts from where a swing has come to
+/// rest, if it does, to where the next one begins.
 std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion);
 
 /// One foot on the ground.
