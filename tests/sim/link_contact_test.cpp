@@ -54,7 +54,8 @@ RobotDescription stack_description() {
 }
 
 struct Stack {
-  Stack() : model(stack_description()), plant(model, model.limits(), World{.friction = 0.5}) {
+  explicit Stack(const RobotDescription& description = stack_description())
+      : model(description), plant(model, model.limits(), World{.friction = 0.5}) {
     RobotState s = model.rest_state();
     s.base.position.z() = 0.025;
     plant.set_state(s);
@@ -183,9 +184,10 @@ GroundBlock rectangle(double x0, double x1, double height) {
 
 /// A plank let down over two supports of 0.05 m at x = -0.1 and 0.05: it lies still on them.
 struct Plank {
-  explicit Plank(const World& world)
-      : model(test::block_description({0.5, 0.06, 0.02}, 1.0)),
-        plant(model, model.limits(), world) {
+  explicit Plank(const World& world,
+                 const RobotDescription& description = test::block_description({0.5, 0.06, 0.02},
+                                                                               1.0))
+      : model(description), plant(model, model.limits(), world) {
     RobotState s = model.rest_state();
     s.base.position.z() = 0.061;
     plant.set_state(s);
@@ -207,6 +209,49 @@ TEST(Edges, APlankLiesOnTwoRails) {
   World world{.friction = 0.6};
   world.blocks = {rectangle(-0.12, -0.10, 0.05), rectangle(0.05, 0.07, 0.05)};
   const Plank plank(world);
+}
+
+/// A box as a mesh whose own axes are turned by half a right angle about y, so that the box around
+/// it in these is many times as high.
+PlacedShape askew_mesh(const Vector3d& size) {
+  PlacedShape placed;
+  MeshShape mesh;
+  mesh.mesh.parts.resize(1);
+  const Eigen::Quaterniond turn = exp_rotation({0, M_PI / 4, 0});
+  for (int k = 0; k < 8; ++k) {
+    const Vector3d corner(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+    mesh.mesh.parts[0].vertices.push_back((turn * (0.5 * size.cwiseProduct(corner))).cast<float>());
+  }
+  placed.shape = mesh;
+  placed.pose.linear() = turn.conjugate().toRotationMatrix();
+  return placed;
+}
+
+// A mesh lies over edges with its own faces.
+TEST(Edges, AMeshLiesOnTwoRails) {
+  World world{.friction = 0.6};
+  world.blocks = {rectangle(-0.12, -0.10, 0.05), rectangle(0.05, 0.07, 0.05)};
+  RobotDescription d = test::block_description({0.5, 0.06, 0.02}, 1.0);
+  d.links[0].collisions[0] = askew_mesh({0.5, 0.06, 0.02});
+  const Plank plank(world, d);
+}
+
+// Boxes given as meshes on top of each other rest where boxes do.
+TEST(Stack, OfMeshesRestsLikeOneOfBoxes) {
+  RobotDescription d = stack_description();
+  for (LinkDescription& link : d.links)
+    for (PlacedShape& shape : link.collisions) {
+      const Vector3d place = shape.pose.translation();
+      shape = askew_mesh(std::get<Box>(shape.shape).size);
+      shape.pose.translation() = place;
+    }
+  Stack stack(d);
+  stack.run(2);
+  const std::pair<const char*, double> heights[] = {
+      {"block", 0.025}, {"middle", 0.08}, {"top", 0.13}};
+  for (const auto& [name, height] : heights)
+    EXPECT_NEAR(stack.place(name).z(), height, 1e-6) << name;
+  EXPECT_LT(stack.plant.state().dtheta.cwiseAbs().maxCoeff(), 1e-6);
 }
 
 // The same over two ridges of a height field: no node is a corner of the plank.

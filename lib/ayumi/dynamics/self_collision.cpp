@@ -38,10 +38,11 @@ std::set<std::pair<int, int>> ignored_pairs(const RobotModel& model) {
 
 }  // namespace
 
-CollisionModel::CollisionModel(const RobotModel& model) : shapes_(model.bodies().size()) {
+CollisionModel::CollisionModel(const RobotModel& model, MeshAs mesh_as)
+    : shapes_(model.bodies().size()) {
   for (const Link& link : model.links())
     for (const PlacedShape& shape : link.collisions)
-      shapes_[link.body].push_back({Collider(shape.shape), link.pose * shape.pose});
+      shapes_[link.body].push_back({Collider(shape.shape, mesh_as), link.pose * shape.pose});
 
   RobotData data(model);
   update_positions(model, model.rest_state(), data);

@@ -14,7 +14,7 @@ namespace ayumi {
 /// than 5 mm there (housings of one compound joint, made to pass each other).
 class CollisionModel {
  public:
-  explicit CollisionModel(const RobotModel& model);
+  explicit CollisionModel(const RobotModel& model, MeshAs mesh_as = MeshAs::box);
 
   struct Pair {
     int a = 0, b = 0;  ///< bodies, a < b

@@ -24,7 +24,7 @@ constexpr int kOther = 100, kCrossing = 200, kNearest = 1000, kSwapped = 2000;  
 /// or a point.
 struct Feature {
   int count = 0;
-  std::array<Vector3d, 8> corner;
+  std::array<Vector3d, 16> corner;
   Vector3d normal = Vector3d::Zero();  ///< of a face
 
   void add(const Vector3d& p) { corner[static_cast<size_t>(count++)] = p; }
@@ -82,12 +82,31 @@ Feature of_box(const Vector3d& half, const Vector3d& direction) {
   return f;
 }
 
+/// The face that looks most along the direction; where none does, the corner that is farthest out.
+Feature of_hull(const Collider& hull, const Vector3d& direction) {
+  Feature f;
+  const HullFace* best = nullptr;
+  for (const HullFace& face : hull.faces())
+    if (!best || face.normal.dot(direction) > best->normal.dot(direction)) best = &face;
+  if (best->normal.dot(direction) > 0.7) {
+    for (const Vector3d& p : best->corners) f.add(p);
+    f.normal = best->normal;
+    return f;
+  }
+  const std::vector<Vector3d>& points = hull.core().points;
+  f.add(*std::max_element(points.begin(), points.end(), [&](const auto& p, const auto& q) {
+    return p.dot(direction) < q.dot(direction);
+  }));
+  return f;
+}
+
 Feature feature(const Collider& collider, const Isometry3d& core_pose, const Vector3d& direction) {
   const Vector3d d = core_pose.linear().transpose() * direction;
   const ConvexCore& core = collider.core();
-  Feature f = collider.swept() ? of_segment(core.half.z(), d)
-              : core.disc > 0  ? of_cylinder(core, d)
-                               : of_box(core.half, d);
+  Feature f = !core.points.empty() ? of_hull(collider, d)
+              : collider.swept()   ? of_segment(core.half.z(), d)
+              : core.disc > 0      ? of_cylinder(core, d)
+                                   : of_box(core.half, d);
   for (int i = 0; i < f.count; ++i)
     f.corner[static_cast<size_t>(i)] = core_pose * f.corner[static_cast<size_t>(i)];
   f.normal = core_pose.linear() * f.normal;
@@ -99,8 +118,8 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 /// Corners seen from above the reference face, anticlockwise.
 struct Outline {
   int count = 0;
-  std::array<Vector2d, 8> corner;
-  std::array<int, 8> name;
+  std::array<Vector2d, 16> corner;
+  std::array<int, 16> name;
 
   const Vector2d& at(int i) const { return corner[static_cast<size_t>((i + count) % count)]; }
   bool holds(const Vector2d& p) const {
@@ -182,7 +201,7 @@ class Over {
     if (std::abs(area) < 1e-9 * along.norm() * edge.norm()) return;
     const double s = cross(b - a, edge) / area, t = cross(b - a, along) / area;
     if (s <= 0 || s >= 1 || t <= 0 || t >= 1) return;
-    add(kCrossing + 8 * above_.name[static_cast<size_t>(i)] + j, a + s * along, false);
+    add(kCrossing + 16 * above_.name[static_cast<size_t>(i)] + j, a + s * along, false);
   }
 
   const Feature &reference_, &other_;

@@ -27,6 +27,10 @@ double sign(double x) { return x < 0 ? -1 : 1; }
 
 Vector3d farthest(const ConvexCore& core, const Isometry3d& pose, const Vector3d& direction) {
   const Vector3d d = pose.linear().transpose() * direction;
+  if (!core.points.empty())
+    return pose *
+           *std::max_element(core.points.begin(), core.points.end(),
+                             [&](const auto& p, const auto& q) { return p.dot(d) < q.dot(d); });
   Vector3d p(sign(d.x()) * core.half.x(), sign(d.y()) * core.half.y(), sign(d.z()) * core.half.z());
   const double radial = std::hypot(d.x(), d.y());
   if (core.disc > 0 && radial > 0) {

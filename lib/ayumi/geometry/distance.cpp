@@ -59,13 +59,16 @@ ConvexPair swept_pair(const Vector3d& ca, const Vector3d& za, const Vector3d& cb
 /// How far a core reaches from its centre.
 double reach(const ConvexCore& core, const Isometry3d& pose, const Vector3d& direction) {
   const Vector3d d = pose.linear().transpose() * direction;
+  double far = -std::numeric_limits<double>::infinity();
+  for (const Vector3d& p : core.points) far = std::max(far, p.dot(d));
+  if (!core.points.empty()) return far;
   const double round = core.disc > 0 ? core.disc * d.head<2>().norm() : 0;
   return core.half.dot(d.cwiseAbs()) + round;
 }
 
 }  // namespace
 
-Collider::Collider(const Shape& shape) {
+Collider::Collider(const Shape& shape, MeshAs mesh_as) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     swept_ = true;
     rounding_ = radius_ = sphere->radius;
@@ -86,7 +89,19 @@ Collider::Collider(const Shape& shape) {
     core_.half = 0.5 * (bounds.high - bounds.low);
     center_ = 0.5 * (bounds.low + bounds.high);
     radius_ = core_.half.norm();
+    if (mesh_as == MeshAs::hull) take_hull(std::get<MeshShape>(shape));
   }
+}
+
+// A mesh that is flat has no faces and stays the box.
+void Collider::take_hull(const MeshShape& mesh) {
+  std::vector<Vector3d> points = outer_vertices(mesh.mesh);
+  for (Vector3d& p : points) p -= center_;
+  faces_ = hull_faces(points);
+  if (faces_.empty()) return;
+  radius_ = 0;
+  for (const Vector3d& p : points) radius_ = std::max(radius_, p.norm());
+  core_.points = std::move(points);
 }
 
 Closest closest(const Collider& a, const Isometry3d& pose_a, const Collider& b,
@@ -113,7 +128,7 @@ double clearance_bound(const Collider& a, const Isometry3d& pose_a, const Collid
 double clearance_along(const Vector3d& direction, const Collider& a, const Isometry3d& pose_a,
                        const Collider& b, const Isometry3d& pose_b) {
   return direction.dot(pose_b * b.center() - pose_a * a.center()) -
-         reach(a.core(), pose_a, direction) - reach(b.core(), pose_b, direction) - a.rounding() -
+         reach(a.core(), pose_a, direction) - reach(b.core(), pose_b, -direction) - a.rounding() -
          b.rounding();
 }
 

@@ -2,11 +2,13 @@
 // Distance between two shapes. Spheres and capsules against each other in closed form; every other
 // pair by the Gilbert-Johnson-Keerthi distance, expanding-polytope depth when they overlap
 // (convex.hpp). A mesh counts as the box that bounds it in its own axes: larger than the mesh,
-// so a clearance is never promised that is not there.
+// so a clearance is never promised that is not there; or, where what touches is asked for, as the
+// convex hull of its outer vertices (mesh_hull.hpp).
 
 #include <Eigen/Geometry>
 
 #include "ayumi/geometry/convex.hpp"
+#include "ayumi/geometry/mesh_hull.hpp"
 #include "ayumi/geometry/shape.hpp"
 
 namespace ayumi {
@@ -19,25 +21,31 @@ struct Closest {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< along which b leaves a
 };
 
+enum class MeshAs { box, hull };
+
 /// A shape made ready for distance queries: everything within `rounding` of a convex core.
 class Collider {
  public:
-  explicit Collider(const Shape& shape);
+  explicit Collider(const Shape& shape, MeshAs mesh_as = MeshAs::box);
 
   /// Bounding sphere, shape frame [m]; its centre is the core's, whose axes are the shape's.
   const Eigen::Vector3d& center() const { return center_; }
   double radius() const { return radius_; }
 
   const ConvexCore& core() const { return core_; }
-  double rounding() const { return rounding_; }  ///< [m]
-  bool swept() const { return swept_; }          ///< sphere or capsule: a point or segment along z
+  const std::vector<HullFace>& faces() const { return faces_; }  ///< of a hull, core's frame
+  double rounding() const { return rounding_; }                  ///< [m]
+  bool swept() const { return swept_; }  ///< sphere or capsule: a point or segment along z
   /// The core's frame for a shape at `pose`.
   Eigen::Isometry3d core_pose(const Eigen::Isometry3d& pose) const {
     return pose * Eigen::Translation3d(center_);
   }
 
  private:
+  void take_hull(const MeshShape& mesh);
+
   ConvexCore core_;
+  std::vector<HullFace> faces_;
   double rounding_ = 0, radius_ = 0;
   bool swept_ = false;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();

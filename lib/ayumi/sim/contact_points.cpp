@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/base/version.hpp"
+#include "ayumi/geometry/mesh_hull.hpp"
 
 namespace ayumi {
 
@@ -13,37 +14,6 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kStaticSink = 1e-7;  // of a body on four of its points [m]
-
-constexpr size_t kMeshPoints = 32;      // a mesh of no more vertices touches with all of them
-constexpr size_t kManyVertices = 4096;  // beyond them equal ones are not looked for
-constexpr int kDirections = 90;
-
-/// The vertices of a mesh that are farthest out in directions spread over the sphere; all of a
-/// small one.
-std::vector<Vector3d> outer_vertices(const TriangleMesh& mesh) {
-  std::vector<Vector3d> all, result;
-  for (const MeshPart& part : mesh.parts)
-    for (const Eigen::Vector3f& v : part.vertices) all.push_back(v.cast<double>());
-  const auto before = [](const Vector3d& a, const Vector3d& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  };
-  const auto sort_out = [&](std::vector<Vector3d>& points) {
-    std::sort(points.begin(), points.end(), before);
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-  };
-  if (all.size() <= kManyVertices) sort_out(all);
-  if (all.size() <= kMeshPoints) return all;
-  for (int i = 0; i < kDirections; ++i) {  // a spiral from pole to pole
-    const double z = 1 - (2 * i + 1.0) / kDirections, turn = M_PI * (3 - std::sqrt(5.0)) * i;
-    const double r = std::sqrt(1 - z * z);
-    const Vector3d out(r * std::cos(turn), r * std::sin(turn), z);
-    result.push_back(*std::max_element(all.begin(), all.end(), [&](const auto& p, const auto& q) {
-      return p.dot(out) < q.dot(out);
-    }));
-  }
-  sort_out(result);
-  return result;
-}
 
 /// Points of a body that may touch the ground besides the soles, in the frame of the link.
 std::vector<ContactPoint> touch_points(const PlacedShape& placed) {

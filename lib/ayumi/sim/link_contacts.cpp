@@ -18,7 +18,7 @@ constexpr long kPairKeys = 1l << 24, kShapeKeys = 1l << 12;
 }  // namespace
 
 LinkContacts::LinkContacts(const RobotModel& model)
-    : shapes_(model),
+    : shapes_(model, MeshAs::hull),
       center_(model.bodies().size(), Vector3d::Zero()),
       radius_(model.bodies().size(), 0.0) {
   for (const CollisionModel::Pair& pair : shapes_.pairs()) {

@@ -1,0 +1,107 @@
+#include "ayumi/geometry/mesh_hull.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr size_t kMeshPoints = 32;      // a mesh of no more vertices touches with all of them
+constexpr size_t kManyVertices = 4096;  // beyond them equal ones are not looked for
+constexpr int kDirections = 90;
+
+constexpr double kCoplanar = 1e-6;  // of the points' extent
+constexpr size_t kFaceCorners = 16;
+
+/// Corners of the convex polygon of points in a plane, anticlockwise about the normal.
+std::vector<Vector3d> outline(const std::vector<Vector3d>& points, const Vector3d& normal) {
+  const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
+  std::vector<Eigen::Vector2d> flat;
+  for (const Vector3d& p : points) flat.emplace_back(x.dot(p), y.dot(p));
+  std::vector<size_t> order(points.size()), corners;
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return std::pair(flat[a].x(), flat[a].y()) < std::pair(flat[b].x(), flat[b].y());
+  });
+  const auto chain = [&](size_t keep, size_t p) {  // Andrew's monotone chain
+    while (corners.size() >= keep + 2) {
+      const Eigen::Vector2d &a = flat[corners[corners.size() - 2]], &b = flat[corners.back()];
+      const Eigen::Vector2d u = b - a, v = flat[p] - b;
+      if (u.x() * v.y() - u.y() * v.x() > 1e-9 * u.norm() * v.norm()) break;
+      corners.pop_back();
+    }
+    corners.push_back(p);
+  };
+  for (const size_t p : order) chain(0, p);
+  const size_t upper = corners.size() - 1;
+  for (size_t i = order.size() - 1; i-- > 0;) chain(upper, order[i]);
+  corners.pop_back();
+  std::vector<Vector3d> result;
+  const size_t n = corners.size(), kept = std::min(n, kFaceCorners);
+  for (size_t i = 0; i < kept; ++i) result.push_back(points[corners[i * n / kept]]);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Vector3d> outer_vertices(const TriangleMesh& mesh) {
+  std::vector<Vector3d> all, result;
+  for (const MeshPart& part : mesh.parts)
+    for (const Eigen::Vector3f& v : part.vertices) all.push_back(v.cast<double>());
+  const auto before = [](const Vector3d& a, const Vector3d& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  const auto sort_out = [&](std::vector<Vector3d>& points) {
+    std::sort(points.begin(), points.end(), before);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+  };
+  if (all.size() <= kManyVertices) sort_out(all);
+  if (all.size() <= kMeshPoints) return all;
+  for (int i = 0; i < kDirections; ++i) {  // a spiral from pole to pole
+    const double z = 1 - (2 * i + 1.0) / kDirections, turn = M_PI * (3 - std::sqrt(5.0)) * i;
+    const double r = std::sqrt(1 - z * z);
+    const Vector3d out(r * std::cos(turn), r * std::sin(turn), z);
+    result.push_back(*std::max_element(all.begin(), all.end(), [&](const auto& p, const auto& q) {
+      return p.dot(out) < q.dot(out);
+    }));
+  }
+  sort_out(result);
+  return result;
+}
+
+std::vector<HullFace> hull_faces(const std::vector<Vector3d>& points) {
+  std::vector<HullFace> faces;
+  double extent = 0;
+  for (const Vector3d& p : points) extent = std::max(extent, (p - points[0]).norm());
+  const double flat = kCoplanar * extent;
+  // The plane of three points is a face's when no point is on its outer side.
+  const auto take = [&](const Vector3d& origin, const Vector3d& normal) {
+    for (const HullFace& face : faces)
+      if ((face.normal - normal).squaredNorm() < 1e-8 &&
+          std::abs(normal.dot(face.corners[0] - origin)) <= 2 * flat)
+        return;
+    std::vector<Vector3d> on;
+    bool any_below = false;
+    for (const Vector3d& p : points) {
+      const double out = normal.dot(p - origin);
+      if (out > flat) return;
+      any_below |= out < -flat;
+      if (out >= -flat) on.push_back(p);
+    }
+    if (any_below) faces.push_back({normal, outline(on, normal)});
+  };
+  for (size_t i = 0; i < points.size(); ++i)
+    for (size_t j = i + 1; j < points.size(); ++j)
+      for (size_t k = j + 1; k < points.size(); ++k) {
+        const Vector3d u = points[j] - points[i], v = points[k] - points[i], n = u.cross(v);
+        if (n.norm() <= 1e-4 * u.norm() * v.norm()) continue;
+        take(points[i], n.normalized());
+        take(points[i], -n.normalized());
+      }
+  return faces;
+}
+
+}  // namespace ayumi
