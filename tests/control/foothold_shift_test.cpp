@@ -10,6 +10,7 @@
 #include "ayumi/control/support.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/robot_file.hpp"
+#include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulator.hpp"
 
@@ -195,6 +196,27 @@ TEST(FootholdShift, WalkWithoutAPushIsTheSame) {
   const Outcomes free = pushed(3.37, {1, 0, 0}, 0, 1);
   EXPECT_EQ(fixed.result.final_cog_error, free.result.final_cog_error);
   EXPECT_EQ(free.moved, Vector2d(0, 0));
+}
+
+// The pattern's own footholds may be nearer to each other than moved ones.
+TEST(FootholdShift, TurningAndSideWalksWithoutAPushAreTheSame) {
+  const RobotModel& model = walk().model;
+  for (const WalkParameters& gait : {WalkParameters{.steps = 4, .stride = 0.02, .turn = 0.2},
+                                     WalkParameters{.steps = 4, .stride = 0, .side = 0.04}}) {
+    const CommandSeries series = sample(model, walk_pattern(model, gait));
+    SimulateOptions options;
+    options.profile = "hoap1-strong";
+    options.controller.gains = {{"step", 1}};
+    options.settle = 0;
+    Simulator run(model, series, options);
+    run.keep_samples(false);
+    bool same = true;
+    while (run.advance(1))
+      same = same && run.plan().cog == run.command(run.tick() - 1).cog &&
+             run.plan().feet[0].matrix() == run.command(run.tick() - 1).feet[0].matrix();
+    EXPECT_TRUE(same) << gait.turn;
+    EXPECT_EQ(run.result().outcome, Outcome::stands);
+  }
 }
 
 TEST(FootholdShift, GainsOutOfRangeAreRefused) {

@@ -243,7 +243,9 @@ void FootholdShift::choose(const Estimate& e) {
   for (int i = 0; rate_ + i * kRateStep <= params_.hurry + 1e-9; ++i) {
     const double rate = rate_ + i * kRateStep;
     const Vector2d rest = left_over(xi, rate);
-    const Vector2d wanted = not_crossing(after_ + params_.share / steps_[coming_].share * rest);
+    const Vector2d wanted =
+        rest.isZero(0) ? after_
+                       : not_crossing(after_ + params_.share / steps_[coming_].share * rest);
     const Vector2d target = reachable(wanted, rate);
     const double cost = (wanted - target).norm() + kMoveCost * (target - after_).norm() +
                         kHurryCost * height_ * rate;
