@@ -314,6 +314,7 @@ class Repair {
     result_.constraint_violation = violation;
     // The least violating motion there is nearby, and still one too many: nothing passes.
     if (solution.status != NlpStatus::failed) last_status_ = NlpStatus::infeasible;
+    cut_short_ = solution.status == NlpStatus::iteration_limit;
     take(problem_->track(solution.x.head(problem_->variable_count())));
   }
 
@@ -338,6 +339,10 @@ class Repair {
         result_.reasons.resize(kReasons);
         result_.reasons.push_back(std::to_string(count - kReasons) + " more like these");
       }
+      if (cut_short_)
+        result_.reasons.push_back(
+            "the search for the least violating motion stopped at its limit of iterations: this is "
+            "what was left, no proof that nothing passes");
     }
     result_.moved = motion_change(model_, series_, result_.series);
     result_.max_joint_change = result_.moved.joint.size;
@@ -358,6 +363,7 @@ class Repair {
   std::optional<RepairResult> passing_;  // an earlier one, where the last does not pass
   std::vector<Finding> findings_;
   NlpStatus last_status_ = NlpStatus::failed;
+  bool cut_short_ = false;  // the program of what is in the way, by its limit of iterations
 };
 
 }  // namespace
