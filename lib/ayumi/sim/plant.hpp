@@ -112,6 +112,9 @@ class Plant {
   bool is_pivot(const Active& active) const;
   void find_pivot();
   void turn_half(double dt);
+  Eigen::Vector3d turned_forward(const Eigen::Vector3d& v) const {
+    return turned_ ? Eigen::Vector3d(half_turn_ * v) : v;
+  }
   Eigen::Vector3d turn_about_pivot(const Momentum& given) const;
   void follow_points(double dt);
 
@@ -136,8 +139,9 @@ class Plant {
   // Workspace of step().
   Eigen::VectorXd kp_now_, kd_now_, viscous_now_, coulomb_now_, target_now_;
   std::vector<Active> active_, last_active_;
-  Pivot pivot_;                                              // of the last step
-  Eigen::Matrix3d half_turn_ = Eigen::Matrix3d::Identity();  // within this one
+  Pivot pivot_;          // of the last step
+  bool turned_ = false;  // this one is that of the posture half_turn_ on
+  Eigen::Matrix3d half_turn_;
   std::vector<Eigen::Vector3d> outline_;
   std::vector<InnerPoint> inner_;
   std::vector<FieldTip> tips_;

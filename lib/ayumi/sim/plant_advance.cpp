@@ -62,13 +62,14 @@ void Plant::find_pivot() {
   pivot_.point = *first;
   pivot_.freedom = 3;
   if (farthest <= kOnePoint * kOnePoint) return;
-  pivot_.axis.normalize();
-  pivot_.freedom = 1;
+  pivot_.freedom = 0;
   for (const Active& active : active_) {
     if (active.other >= 0 || !(active.impulse[0] > 0)) continue;
     const double off = pivot_.axis.cross(active.position - pivot_.point).squaredNorm();
-    if (off > kStraight * kStraight * farthest) pivot_.freedom = 0;
+    if (off > kStraight * kStraight * farthest * farthest) return;
   }
+  pivot_.axis.normalize();
+  pivot_.freedom = 1;
 }
 
 // The rate about the pivot that this momentum gives the robot with its joints locked; forces in the
@@ -85,6 +86,7 @@ Vector3d Plant::turn_about_pivot(const Momentum& given) const {
 // The step of a robot that pivots is that of its posture half a step on. All that has turned as one
 // keeps its numbers in axes that have turned with it; in these gravity and the ground turn back.
 void Plant::turn_half(double dt) {
+  turned_ = true;
   half_turn_ = exp_rotation(0.5 * dt * turn_about_pivot(momentum_)).toRotationMatrix();
   const Vector3d gravity(0, 0, -kGravity);
   const Vector3d more = dt * (half_turn_.transpose() * gravity - gravity);
@@ -151,7 +153,7 @@ void Plant::advance(double dt) {
   state_.dtheta = velocity_.tail(model_->dof_count());
   state_.theta += dt * state_.dtheta;
   state_.base.attitude =
-      (exp_rotation(dt * (half_turn_ * velocity_.segment<3>(3)) - lag) * state_.base.attitude)
+      (exp_rotation(dt * turned_forward(velocity_.segment<3>(3)) - lag) * state_.base.attitude)
           .normalized();
   update_positions(moving(), state_, data_);
   fill_mass();
@@ -179,7 +181,7 @@ void Plant::advance(double dt) {
   data_.cog = data_.base_position + c;
   carry_velocities(moving(), state_, data_);
   if (pivot_.freedom > 0) follow_points(dt);
-  half_turn_.setIdentity();
+  turned_ = false;
 }
 
 }  // namespace ayumi

@@ -178,7 +178,7 @@ void Plant::report_contacts(double dt, double whole) {
   for (size_t i = 0; i < active_.size(); ++i) {
     Active& active = active_[i];
     const Vector3d l = solver_.impulse().segment<3>(3 * static_cast<int>(i));
-    const Vector3d force = half_turn_ * (active.to_contact.transpose() * l);
+    const Vector3d force = turned_forward(active.to_contact.transpose() * l);
     const Eigen::Map<const Vector3d> rate(&rates_[3 * i]), earlier(&rates_before_[3 * i]);
     active.impulse = l;
     const bool touching = l[0] > 0;
@@ -195,7 +195,7 @@ void Plant::report_contacts(double dt, double whole) {
       continue;
     }
     external_.linear += force;
-    external_.angular += (half_turn_ * (active.position - data_.cog)).cross(force);
+    external_.angular += turned_forward(active.position - data_.cog).cross(force);
     if (active.side < 0)
       report_.body_contact |= touching;
     else
