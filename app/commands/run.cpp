@@ -13,7 +13,8 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/consistency.hpp"
+#include "ayumi/check/profiles.hpp"
+#include "ayumi/control/viip_goals.hpp"
 #include "ayumi/io/hoap.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/results_json.hpp"
@@ -134,19 +135,23 @@ std::string check_text(const ConsistencyReport& report) {
 }
 
 bool MainJob::check(PatternInput& input) {
-  const ConsistencyReport report =
-      check_consistency(input.model, input.series, check_options(input));
-  say("check", check_text(report));
+  const CheckOptions judged = check_options(input);
+  ConsistencyReport report = check_consistency(input.model, input.series, judged);
+  const ActuatorNeed need = actuator_need(
+      input.model, keyed_goals(input.model, input.series, input.pattern.controller), judged);
+  const bool mendable = !report.consistent;
+  report.consistent = report.consistent && need.text.empty();
+  say("check", check_text(report) + (need.text.empty() ? "" : "\n            " + need.text));
   summary_["check"] = Json::parse(check_json(report));
   summary_["repair"] = nullptr;  // stays so unless a repair was asked for and needed
   folder_.sections.emplace_back("check", check_json(report));
-  if (report.consistent) return true;
+  if (!mendable) return report.consistent;  // goals of VIIP are not keys that repair could move
   if (!options_.repair) {
     say("repair", "not asked for; --repair looks for the nearest consistent pattern");
     return false;
   }
   repair_pattern(input);
-  return summary_["repair"]["status"] == "repaired";
+  return summary_["repair"]["status"] == "repaired" && need.text.empty();
 }
 
 void MainJob::repair_pattern(PatternInput& input) {
