@@ -35,6 +35,8 @@ constexpr double kSettle = 5;             // kept for standing after timed steps
 constexpr double kTouchShare = 0.1;       // of the weight: the swing foot has landed
 constexpr double kTouchAfter = 0.6;       // of the swing: earlier forces are not a landing
 constexpr double kMostHurry = 4;          // of a step that comes sooner, times its own pace
+constexpr double kHabit = 0.5;            // of what a foot misses is learned at each landing
+constexpr double kMostHabit = 0.015;      // and at most this, times z
 constexpr double kLeastReplan = 0.03;     // a swing is not planned for less than this [s]
 constexpr double kFootClearance = 0.008;  // between the soles' sides [m]
 
@@ -250,6 +252,7 @@ void Viip::swing(const Vector2d& xi) {
   const double reach = params_.reach * height_;
   for (int i = 0; i < 2; ++i)
     target[i] = std::clamp(target[i], nominal[i] - reach, nominal[i] + reach);
+  target -= Eigen::Rotation2Dd(step.landing.yaw) * habit_[index(foot)];
   // Soles side by side, seen from the stance foot.
   const GroundPose stance = ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]);
   Vector2d way = Eigen::Rotation2Dd(-stance.yaw) * (target - stance.position);
@@ -291,6 +294,16 @@ Vector2d Viip::missed(const Estimate& e, Side foot) {
   return (off(foot) - off(other(foot))).head<2>();
 }
 
+// What a foot misses step after step it is aimed off by; what a push made it miss once, hardly.
+void Viip::learn(const Vector2d& miss) {
+  footsteps_.shift(miss);
+  const double yaw = ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]).yaw;
+  Vector2d& habit = habit_[index(anchor_)];
+  habit += kHabit * (Eigen::Rotation2Dd(-yaw) * miss - habit);
+  const double most = kMostHabit * height_;
+  if (habit.norm() > most) habit *= most / habit.norm();
+}
+
 // Stages, feet and support of the next tick.
 void Viip::go_on(const Estimate& e) {
   next_ = plan_;
@@ -326,7 +339,7 @@ void Viip::go_on(const Estimate& e) {
   } else if (stage_ == Stage::both && elapsed_ >= both) {
     if (steps_left_ > 0) {
       anchor_ = other(anchor_);
-      if (params_.feedback) footsteps_.shift(missed(e, anchor_));
+      if (params_.feedback) learn(missed(e, anchor_));
       start_single();
     } else {
       stage_ = Stage::stand;

@@ -76,6 +76,7 @@ class Viip {
   double to_landing() const;
   void hurry(const PlannedStep& step, const Eigen::Vector2d& xi);
   void swing(const Eigen::Vector2d& xi);
+  void learn(const Eigen::Vector2d& miss);
   Eigen::Vector2d missed(const Estimate& estimate, Side foot);
   void finish_plan();
 
@@ -97,6 +98,8 @@ class Viip {
   double rate_ = 1;           // of its clock: a step that comes sooner runs faster
   Side anchor_ = Side::left;  // foot the reference stands on
   Footsteps footsteps_;
+  // What each foot always misses of its plan when it lands, axes of the foot [m].
+  std::array<Eigen::Vector2d, 2> habit_ = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   Eigen::Vector2d zmp_filtered_;
   Eigen::Vector3d swing_rate_, swing_acceleration_;  // of x, y, yaw of the foot in the air
   // Clipped ref ZMP by the measured and by the reference state: now, and at the end of the last
