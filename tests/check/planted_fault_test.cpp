@@ -362,12 +362,28 @@ TEST(PlantedFault, ZmpErrorsBelowAQuarterOfTheWeight) {
   for (const auto& [share, limit] : {std::pair{0.125, 0.010}, {0.25, 0.005}, {0.9, 0.005}}) {
     for (const double size : {0.9, 1.1}) {
       CommandSeries series = sound;
-      series.samples[at].fz = share * hoap1().mass() * kGravity;
-      series.samples[at].zmp.x() += size * limit;
+      for (size_t k = at; k < at + 5; ++k) {
+        series.samples[k].fz = share * hoap1().mass() * kGravity;
+        series.samples[k].zmp.x() += size * limit;
+      }
       Kinds expected = {"fz_residual"};
       if (size > 1) expected.insert("zmp_residual");
       EXPECT_EQ(error_kinds(check_consistency(hoap1(), series)), expected) << share << " " << size;
     }
+  }
+}
+
+// Single samples may be thrown by up to three limits; longer or farther is an error.
+TEST(PlantedFault, ZmpErrorsOfAFewSamples) {
+  const CommandSeries sound = sample(hoap1(), walk());
+  const size_t at = sound.samples.size() / 2;
+  for (const auto& [samples, size, wrong] :
+       {std::tuple{4, 0.012, false}, {5, 0.012, true}, {1, 0.017, true}}) {
+    CommandSeries series = sound;
+    for (int k = 0; k < samples; ++k) series.samples[at + k].zmp.x() += size;
+    const ConsistencyReport r = check_consistency(hoap1(), series);
+    EXPECT_EQ(error_kinds(r), wrong ? Kinds{"zmp_residual"} : Kinds{}) << samples << print(r);
+    EXPECT_NEAR(r.summary.max_zmp_residual, size, 1e-3);
   }
 }
 

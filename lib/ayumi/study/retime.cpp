@@ -12,6 +12,8 @@ namespace ayumi {
 namespace {
 
 constexpr double kStep = 1.25;
+constexpr double kLook = 1.01;  // from scale to scale beyond an edge
+constexpr int kLooks = 12;
 
 struct Trial {
   bool passes = false;
@@ -45,9 +47,15 @@ class Search {
       result.bounded = true;
     }
     result.found = true;
-    while (result.bounded && passing / failing > 1 + options_.resolution) {
-      const double middle = std::sqrt(passing * failing);
-      (trial(middle).passes ? passing : failing) = middle;
+    while (result.bounded) {
+      passing = edge(passing, failing);
+      const double quicker = beyond(passing);
+      if (quicker == 0) break;
+      passing = quicker;
+      for (failing = passing / kLook; failing > options_.fastest && trial(failing).passes;
+           failing /= kLook)
+        passing = failing;
+      result.bounded = failing > options_.fastest;
     }
     result.scale = rounded(passing);
     return finish(result);
@@ -58,6 +66,32 @@ class Search {
     if (result.bounded || !result.found) result.limited_by = reason_;
     result.evaluations = evaluations_;
     return result;
+  }
+
+  // The least passing scale between one that passes and one that does not.
+  double edge(double passing, double failing) {
+    while (passing / failing > 1 + options_.resolution) {
+      const double middle = std::sqrt(passing * failing);
+      (trial(middle).passes ? passing : failing) = middle;
+    }
+    return passing;
+  }
+
+  // What breaks may hold again a little faster (samples fall otherwise on the edges of flights):
+  // the fastest scale of the next ones that passes, 0 when none does. The reason stays that of the
+  // edge.
+  double beyond(double passing) {
+    const std::string reason = reason_;
+    double found = 0, scale = passing;
+    bool before = false;
+    for (int i = 0; i < kLooks && scale / kLook > options_.fastest; ++i) {
+      scale /= kLook;
+      const bool passes = trial(scale).passes;
+      if (passes && before) found = scale;
+      before = passes;
+    }
+    reason_ = reason;
+    return found;
   }
 
   // Three decimals for people, where they pass too.

@@ -23,7 +23,8 @@ struct FastestPace {
 };
 
 /// Bisection between a scale that passes check and one that does not, from 1 on: by quarters
-/// faster while it passes, else slower. A scale that cannot be sampled does not pass.
+/// faster while it passes, else slower; beyond the edge it goes on where one of the next twelve
+/// hundredths passes. A scale that cannot be sampled does not pass.
 FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
                          const RetimeOptions& options, const Progress& progress = {});
 
