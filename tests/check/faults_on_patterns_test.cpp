@@ -159,6 +159,9 @@ TEST(FaultsOnPatterns, JointBeyondItsLimit) {
                    static_cast<double>(worst) * smooth.table->dt);
       hard.table->theta.col(column).segment(row, 80).setConstant(goal);
       expect_alone(m, hard, {"joint_position"}, joint);
+      Pattern single = m.pattern;
+      single.table->theta(row, column) = goal;
+      expect_alone(m, single, {"joint_position"}, joint, m.at);
     }
   }
 }

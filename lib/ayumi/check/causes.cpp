@@ -164,11 +164,10 @@ class Causes {
     return pass_.collisions.clearance(pass_.collisions.pairs()[v.item], data, kTouch) >= 0;
   }
 
-  // Largest step of a joint between two samples near this one.
-  double step_near(int dof, int sample) const {
+  // Largest step of a joint to one of the samples first .. last.
+  double step_between(int dof, int first, int last) const {
     double step = 0;
-    for (int k = std::max(1, sample - kStencil);
-         k <= std::min(pass_.count() - 1, sample + kStencil); ++k) {
+    for (int k = std::max(1, first); k <= std::min(pass_.count() - 1, last); ++k) {
       const double here =
           pass_.series.samples[k].state.theta[dof] - pass_.series.samples[k - 1].state.theta[dof];
       if (std::abs(here) > std::abs(step)) step = here;
@@ -191,7 +190,8 @@ class Causes {
 
   // The joint jumps there at the beginning of the window, and back at its end.
   bool comes_back(int dof, const FindingWindow& w) const {
-    const double to = step_near(dof, w.first), from = step_near(dof, w.last + 1);
+    const double to = step_between(dof, w.first - kStencil, w.first);
+    const double from = step_between(dof, w.last + 1, w.last + 1 + kStencil);
     return to * from < 0 && std::abs(to) > 0.5 * std::abs(from) &&
            std::abs(from) > 0.5 * std::abs(to);
   }
