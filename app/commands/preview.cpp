@@ -148,7 +148,7 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
     const StripOptions strip = strip_options(own, log);
     const Image image = draw_strip(model, log, strip);
     write_png(path, image);
-    return {static_cast<int>(strip.times.size()), image.width, image.height, 0, {}};
+    return {strip.count, image.width, image.height, 0, {}};
   }
   return write_clip(model, log, path, own.clip, progress);
 }

@@ -71,6 +71,7 @@ TEST_F(Batch, FurtherFormats) {
   const Output strip = ayumi({"preview", "run", "-o", "s.png", "--size", "64x36", "--strip", "3",
                               "--columns", "3", "--json"});
   EXPECT_EQ(Json::parse(strip.out).at("size"), Json({192, 36}));
+  EXPECT_EQ(Json::parse(strip.out).at("frames"), 3) << "snapshots";
   const Output many = ayumi(
       {"preview", "run", "-o", "e.png", "--size", "64x36", "--exposures", "3", "--show", "heat"});
   EXPECT_EQ(many.exit_code, 0) << many.err;
