@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <set>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/pattern_table.hpp"
@@ -376,11 +374,10 @@ TEST(PlantedFault, ZmpErrorsBelowAQuarterOfTheWeight) {
 // Single samples may be thrown by up to three limits; longer or farther is an error.
 TEST(PlantedFault, ZmpErrorsOfAFewSamples) {
   const CommandSeries sound = sample(hoap1(), walk());
-  const size_t at = sound.samples.size() / 2;
   for (const auto& [samples, size, wrong] :
        {std::tuple{4, 0.012, false}, {5, 0.012, true}, {1, 0.017, true}}) {
     CommandSeries series = sound;
-    for (int k = 0; k < samples; ++k) series.samples[at + k].zmp.x() += size;
+    for (int k = 0; k < samples; ++k) series.samples[sound.samples.size() / 2 + k].zmp.x() += size;
     const ConsistencyReport r = check_consistency(hoap1(), series);
     EXPECT_EQ(error_kinds(r), wrong ? Kinds{"zmp_residual"} : Kinds{}) << samples << print(r);
     EXPECT_NEAR(r.summary.max_zmp_residual, size, 1e-3);
