@@ -23,6 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr double kStiff = 1e7;  // of a sole [N/m]
+
 /// Any plant; takes down how long each of its steps took [us].
 struct TimedPlant {
   AnyPlant inner;
@@ -43,6 +45,7 @@ struct TimedPlant {
 struct Contender {
   std::string name;
   PlantKind kind;
+  const RobotModel* model;
   std::vector<double> loop = {}, plant = {};  ///< least time of each tick [us]
   SimulationLog log = {};
 };
@@ -56,8 +59,7 @@ void keep_least(std::vector<double>& times, size_t tick, double time) {
   times[tick] = std::min(times[tick], time);
 }
 
-void run_once(const RobotModel& model, const CommandSeries& series, SimulateOptions options,
-              Contender& contender) {
+void run_once(const CommandSeries& series, SimulateOptions options, Contender& contender) {
   const auto step_time = std::make_shared<double>(0);
   const PlantKind kind = contender.kind;
   options.plant.name = kind.name;
@@ -67,7 +69,7 @@ void run_once(const RobotModel& model, const CommandSeries& series, SimulateOpti
         kind.make ? kind.make(robot, limits, world) : AnyPlant(Plant(robot, limits, world)),
         step_time});
   };
-  Simulator simulator(model, series, options);
+  Simulator simulator(*contender.model, series, options);
   bool goes_on = true;
   for (size_t tick = 0; goes_on; ++tick) {
     const auto start = Clock::now();
@@ -135,14 +137,19 @@ Kernels tick_kernels() {
 
 int run_closed_loop(int rounds) {
   const Walk walk;
+  // MuJoCo's contacts are as soft as its step allows whatever the sole is; Ayumi's may be stiff.
+  RobotDescription stiff_soles = walk.model.description();
+  for (auto& [side, sole] : stiff_soles.soles) sole.stiffness = kStiff;
+  const RobotModel stiff(stiff_soles);
   std::vector<Contender> contenders;
-  contenders.push_back({"Ayumi", {}});
+  contenders.push_back({"Ayumi", {}, &walk.model});
+  contenders.push_back({"Ayumi, stiff soles", {}, &stiff});
 #ifdef BENCH_HAS_MUJOCO
-  contenders.push_back({"MuJoCo, one step of 1 ms", mujoco_plant_kind(1)});
-  contenders.push_back({"MuJoCo", mujoco_plant_kind()});
+  contenders.push_back({"MuJoCo, one step of 1 ms", mujoco_plant_kind(1), &walk.model});
+  contenders.push_back({"MuJoCo", mujoco_plant_kind(), &walk.model});
 #endif
   for (int round = 0; round < rounds; ++round)
-    for (Contender& each : contenders) run_once(walk.model, walk.series, walk.options, each);
+    for (Contender& each : contenders) run_once(walk.series, walk.options, each);
   std::printf("hoap1_walk.json with its controller, least time of each step in %d rounds\n",
               rounds);
   std::printf("%-24s %9s %9s %9s %7s %7s\n", "plant", "loop us", "plant us", "real time", "loop",
