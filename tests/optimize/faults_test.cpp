@@ -11,6 +11,7 @@
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/optimize/repair.hpp"
 #include "ayumi/pattern/correction.hpp"
+#include "ayumi/pattern/generate.hpp"
 
 using namespace ayumi;
 using namespace ayumi::test;
@@ -86,6 +87,19 @@ TEST_F(Faults, CogKeyMovedAndTrusted) {
   const RepairResult r = repaired("cog_residual");
   EXPECT_NEAR(r.max_cog_change, 0.015, 0.001);
   EXPECT_LT(r.check.summary.max_cog_residual, 0.002);
+}
+
+// The trusted COG draws the feet of a quick walk through each other: boxes that pass closely, whose
+// nearest points jump.
+TEST_F(Faults, CogMovedAndTrustedPartsTheFeet) {
+  WalkParameters quick{.steps = 11, .stride = 0.04, .period = 0.5, .lift = 0.018};
+  Pattern walk = walk_pattern(hoap1(), quick);
+  walk.robot = "hoap1";
+  pattern = baked(hoap1(), walk);
+  move_cog(-0.015, 2.092);
+  options.trust = Trust::cog;
+  const RepairResult r = repaired("cog_residual");
+  EXPECT_GE(r.check.summary.min_self_clearance, 0.002);
 }
 
 TEST_F(Faults, ZmpTrackOutsideTheFeet) {

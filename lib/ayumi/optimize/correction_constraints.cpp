@@ -15,6 +15,7 @@
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/optimize/clearance_rows.hpp"
 #include "ayumi/optimize/motor_torque.hpp"
 
 namespace ayumi {
@@ -179,13 +180,23 @@ MatrixXd foot_derivatives(const RobotModel& model, const ConstraintBlock& block,
 
 MatrixXd clearance_derivatives(const RobotModel& model, const ConstraintBlock& block,
                                const Instant& instant, const InstantState& state) {
-  const CollisionModel::Pair& pair = instant.collisions->pairs()[block.item];
-  const Closest c = instant.collisions->closest(pair, *state.data);
-  const MatrixXd a = body_jacobian(model, *state.data, pair.a, c.on_a);
-  const MatrixXd b = body_jacobian(model, *state.data, pair.b, c.on_b);
-  MatrixXd by = c.normal.transpose() * (b.topRows<3>() - a.topRows<3>());
+  MatrixXd by = clearance_gradient(model, *instant.collisions, block.item, *state.data);
   by.middleCols<3>(3) = (by.middleCols<3>(3) * state.motion.tangent).eval();
   return by;
+}
+
+// The distance itself as the check has it, not as the nearest points do.
+VectorXd clearance_values(const ConstraintBlock& block, const Instant& instant,
+                          const InstantState& state) {
+  const CollisionModel& collisions = *instant.collisions;
+  VectorXd values(block.rows);
+  if (block.rows > 1) {
+    const auto points = clearance_points(collisions, block.item, *state.data);
+    for (int i = 0; i < block.rows; ++i) values[i] = points[static_cast<size_t>(i)].clearance;
+  }
+  values[0] = collisions.clearance(collisions.pairs()[block.item], *state.data,
+                                   std::numeric_limits<double>::infinity());
+  return values;
 }
 
 std::array<MatrixXd, 3> ground_derivatives(const ConstraintBlock& block, const Instant& instant,
@@ -248,9 +259,7 @@ VectorXd block_values(const RobotModel& model, const ConstraintBlock& block, con
     case ConstraintGroup::torque:
       return VectorXd::Constant(1, block.scale * state.torque[block.item]);
     case ConstraintGroup::clearance:
-      return VectorXd::Constant(
-          1, instant.collisions->clearance(instant.collisions->pairs()[block.item], *state.data,
-                                           std::numeric_limits<double>::infinity()));
+      return clearance_values(block, instant, state);
     default:
       return state.data->cog - instant.cog;
   }

@@ -21,7 +21,7 @@ namespace ayumi {
 /// the ZMP) / (m g) [m], the lever held as it is in the motion; stance: sole from its place,
 /// position [m] and rotation [rad]; path: the same from where the motion has it; swing: corner
 /// heights [m]; position: joint angle [rad]; speed: joint speed / limit; acceleration: joint
-/// acceleration / limit; torque: motor torque / limit; clearance: between two bodies [m]; cog: from
+/// acceleration / limit; torque: motor torque / limit; clearance: clearance_rows.hpp [m]; cog: from
 /// the commanded COG [m].
 enum class ConstraintGroup {
   support,

@@ -6,6 +6,7 @@
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/optimize/clearance_rows.hpp"
 #include "ayumi/optimize/correction_problem.hpp"
 #include "ayumi/optimize/motor_torque.hpp"
 
@@ -312,7 +313,8 @@ void CorrectionProblem::place_clearance_blocks(int instant) {
     if (std::min(clearance[0], clearance[1]) >= kNear) continue;
     const double least =
         clearance[0] > kTouch ? std::min(spec_.clearance, clearance[0]) : spec_.clearance;
-    add_block(block_of(ConstraintGroup::clearance, instant, pair, 1), least, kNoBound);
+    const int rows = clearance_rows(*spec_.collisions, pair);
+    add_block(block_of(ConstraintGroup::clearance, instant, pair, rows), least, kNoBound);
   }
 }
 
