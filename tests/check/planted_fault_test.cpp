@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "ayumi/base/version.hpp"
 #include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/pattern_table.hpp"
