@@ -1,5 +1,4 @@
-// Sound motions baked to tables pass; one fault planted in a table, a phase or the world is found
-// with its kind, place and time, and nothing else is an error.
+// Sound motions baked to tables pass; of one planted fault kind, place and time are found, no more.
 
 #include <gtest/gtest.h>
 
