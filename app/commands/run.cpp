@@ -312,7 +312,8 @@ void add_run(CLI::App& app, Context& context) {
       ->type_name("DIR")
       ->required();
   command->add_flag("--repair", options->repair, "mend an inconsistent pattern first");
-  command->add_flag("!--no-pictures", options->pictures, "tables and verdicts only");
+  command->add_flag_callback(
+      "--no-pictures", [options] { options->pictures = false; }, "tables and verdicts only");
   add_pattern_options(*command, options->input);
   add_simulation_options(*command, options->choice);
   command->callback([options, &context] { run_patterns(context, *options); });

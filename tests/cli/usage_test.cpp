@@ -33,6 +33,13 @@ TEST_F(Usage, HelpOfACommandBeginsWithExamples) {
   EXPECT_LT(example, options);
 }
 
+// A switch that turns something off is shown as it is typed.
+TEST_F(Usage, HelpShowsSwitchesAsTyped) {
+  const Output help = ayumi({"run", "--help"});
+  EXPECT_NE(help.out.find("--no-pictures "), std::string::npos) << help.out;
+  EXPECT_EQ(help.out.find("{false}"), std::string::npos) << help.out;
+}
+
 TEST_F(Usage, VersionNamesTheLibraries) {
   const Output version = ayumi({"--version"});
   EXPECT_EQ(version.exit_code, 0);
