@@ -11,6 +11,7 @@
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/generate.hpp"
+#include "tests/support/check_report.hpp"
 #include "tests/support/faults.hpp"
 
 namespace ayumi::test {
@@ -69,12 +70,7 @@ const std::vector<Motion>& motions() {
   return all;
 }
 
-ConsistencyReport report_of(const Pattern& pattern) {
-  CheckOptions options;
-  options.friction = pattern.world.friction;
-  options.profile = pattern.profile;
-  return check_consistency(hoap1(), sample(hoap1(), pattern), options);
-}
+ConsistencyReport report_of(const Pattern& pattern) { return test::report_of(hoap1(), pattern); }
 
 // The errors, all of one kind of those named; the first at `at` where one is given.
 void expect_alone(const Motion& motion, const Pattern& pattern, const std::set<std::string>& kinds,

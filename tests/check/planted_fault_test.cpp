@@ -13,6 +13,7 @@
 #include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
+#include "tests/support/check_report.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace ayumi::test {
@@ -45,12 +46,7 @@ const Pattern& walk() {
   return pattern;
 }
 
-ConsistencyReport report_of(const Pattern& pattern) {
-  CheckOptions options;
-  options.friction = pattern.world.friction;
-  options.profile = pattern.profile;
-  return check_consistency(hoap1(), sample(hoap1(), pattern), options);
-}
+ConsistencyReport report_of(const Pattern& pattern) { return test::report_of(hoap1(), pattern); }
 
 std::string print(const ConsistencyReport& r) {
   std::ostringstream out;

@@ -2,23 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/random_robot.hpp"
+#include "tests/support/random_pose.hpp"
 
 using namespace ayumi;
 using namespace ayumi::test;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-namespace {
-
-Isometry3d random_pose(Random& random, double reach) {
-  Isometry3d pose = Isometry3d::Identity();
-  pose.translation() = random.vector(reach);
-  pose.linear() = exp_rotation(random.vector(3)).toRotationMatrix();
-  return pose;
-}
-
-}  // namespace
 
 TEST(Distance, SegmentsAgainstSampling) {
   Random random(1);

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "ayumi/geometry/contact_patch.hpp"
-#include "tests/support/random_robot.hpp"
+#include "tests/support/random_pose.hpp"
 
 using namespace ayumi;
 using namespace ayumi::test;
@@ -15,13 +15,6 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 namespace {
-
-Isometry3d random_pose(Random& random, double reach) {
-  Isometry3d pose = Isometry3d::Identity();
-  pose.translation() = random.vector(reach);
-  pose.linear() = exp_rotation(random.vector(3)).toRotationMatrix();
-  return pose;
-}
 
 /// Corners of a box seen from axes in which it stands askew.
 MeshShape box_mesh(const Vector3d& half, const Isometry3d& in_mesh) {
