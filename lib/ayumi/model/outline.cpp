@@ -3,15 +3,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "ayumi/geometry/box_corner.hpp"
+
 namespace ayumi {
 
 namespace {
 
 std::vector<Eigen::Vector3d> corners_of(const Eigen::Vector3d& size) {
   std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < 8; ++i)
-    points.emplace_back((i & 1 ? 0.5 : -0.5) * size.x(), (i & 2 ? 0.5 : -0.5) * size.y(),
-                        (i & 4 ? 0.5 : -0.5) * size.z());
+  for (int i = 0; i < 8; ++i) points.push_back(box_corner(0.5 * size, i));
   return points;
 }
 

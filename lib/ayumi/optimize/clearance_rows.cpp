@@ -1,6 +1,7 @@
 #include "ayumi/optimize/clearance_rows.hpp"
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/geometry/box_corner.hpp"
 
 namespace ayumi {
 
@@ -24,10 +25,7 @@ struct PlacedBox {
   Isometry3d pose;
   Vector3d half;
 
-  Vector3d corner(int i) const {
-    return pose * Vector3d(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
-                           i & 4 ? half.z() : -half.z());
-  }
+  Vector3d corner(int i) const { return pose * box_corner(half, i); }
 };
 
 PlacedBox placed_box(const CollisionModel& collisions, int body, const RobotData& data) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/base/version.hpp"
+#include "ayumi/geometry/box_corner.hpp"
 #include "ayumi/geometry/mesh_hull.hpp"
 
 namespace ayumi {
@@ -23,10 +24,7 @@ std::vector<ContactPoint> touch_points(const PlacedShape& placed) {
   };
   if (const auto* box = std::get_if<Box>(&placed.shape)) {
     const Vector3d half = 0.5 * box->size;
-    for (int k = 0; k < 8; ++k)
-      add({k & 1 ? half.x() : -half.x(), k & 2 ? half.y() : -half.y(),
-           k & 4 ? half.z() : -half.z()},
-          0);
+    for (int k = 0; k < 8; ++k) add(box_corner(half, k), 0);
   } else if (const auto* sphere = std::get_if<Sphere>(&placed.shape)) {
     add(Vector3d::Zero(), sphere->radius);
   } else if (const auto* capsule = std::get_if<Capsule>(&placed.shape)) {
