@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/model/robot_model.hpp"
+#include "ayumi/preview/overlay.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi::test {
@@ -104,6 +105,18 @@ inline SimulationLog box_run(const RobotModel& model) {
     log.samples.push_back(s);
   }
   return log;
+}
+
+/// The picture of the robot alone.
+inline OverlayOptions no_marks() {
+  return {.cog = false,
+          .zmp = false,
+          .reference_zmp = false,
+          .support = false,
+          .forces = false,
+          .push = false,
+          .trails = false,
+          .caption = false};
 }
 
 }  // namespace ayumi::test

@@ -129,14 +129,8 @@ TEST_F(Clip, CaptionAndMarksCanBeSwitchedOff) {
 }
 
 TEST_F(Clip, ThePushStaysVisibleForAWhile) {
-  options.overlay = {.cog = false,
-                     .zmp = false,
-                     .reference_zmp = false,
-                     .support = false,
-                     .forces = false,
-                     .push = true,
-                     .trails = false,
-                     .caption = false};
+  options.overlay = test::no_marks();
+  options.overlay.push = true;
   const auto pink = [](const Image& image) {
     int count = 0;
     for (size_t i = 0; i < image.rgb.size(); i += 3)

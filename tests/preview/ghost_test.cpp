@@ -14,14 +14,7 @@ ClipOptions bare() {
   options.picture = {.width = 160, .height = 120, .shadow = false, .ground = false};
   options.camera.mode = CameraMode::fixed;
   options.camera.view = "front";
-  options.overlay = {.cog = false,
-                     .zmp = false,
-                     .reference_zmp = false,
-                     .support = false,
-                     .forces = false,
-                     .push = false,
-                     .trails = false,
-                     .caption = false};
+  options.overlay = no_marks();
   return options;
 }
 

@@ -123,14 +123,7 @@ TEST(Golden, Hoap1PushedWithAllMarks) {
   expect_golden("hoap1_push", ClipRenderer(model, log, options).frame(0));
   options.ghost = {};
   options.camera.view = "back";
-  options.overlay = {.cog = false,
-                     .zmp = false,
-                     .reference_zmp = false,
-                     .support = false,
-                     .forces = false,
-                     .push = false,
-                     .trails = false,
-                     .caption = false};
+  options.overlay = no_marks();
   expect_golden("hoap1_back", ClipRenderer(model, log, options).frame(0));
 }
 

@@ -93,14 +93,7 @@ TEST(Scenery, AHollowIsSeenInThePlane) {
   field.heights = Eigen::MatrixXd::Constant(7, 7, -0.05);
   ClipOptions options;
   options.picture = {.width = 160, .height = 120, .shadow = false};
-  options.overlay = {.cog = false,
-                     .zmp = false,
-                     .reference_zmp = false,
-                     .support = false,
-                     .forces = false,
-                     .push = false,
-                     .trails = false,
-                     .caption = false};
+  options.overlay = test::no_marks();
   const Image plane = ClipRenderer(model, log, options).frame(0);
   log.world.fields = {field};
   const Image hollow = ClipRenderer(model, log, options).frame(0);

@@ -72,14 +72,7 @@ TEST(Strip, SeveralInstantsInOnePicture) {
   options.one_picture = true;
   options.clip.picture = {.width = 240, .height = 90, .shadow = false, .ground = false};
   options.clip.camera.view = "front";
-  options.clip.overlay = {.cog = false,
-                          .zmp = false,
-                          .reference_zmp = false,
-                          .support = false,
-                          .forces = false,
-                          .push = false,
-                          .trails = false,
-                          .caption = false};
+  options.clip.overlay = no_marks();
   const Image all = draw_strip(model, log, options);
   ASSERT_EQ(all.width, 240);
   // Walking to the right of the picture: three robots, further left the earlier and the lighter.

@@ -1,18 +1,11 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/postures.hpp"
+#include "ayumi/pattern/viip_phases.hpp"
 
 namespace ayumi {
 
 namespace {
-
-void refuse_goals(const Pattern& pattern) {
-  for (size_t i = 0; i < pattern.phases.size(); ++i)
-    if (pattern.phases[i].viip)
-      fail(ErrorCode::bad_pattern, in_file(pattern, "phases/" + std::to_string(i)) +
-                                       ": a phase with a goal moves as its controller decides, "
-                                       "it cannot be baked; simulate it and use its tables");
-}
 
 // What a table cannot say: weights of joints, and where a foot is planned while it swings.
 std::vector<Keyframe> kept_keys(const Pattern& pattern) {
@@ -34,7 +27,7 @@ std::vector<Keyframe> kept_keys(const Pattern& pattern) {
 
 Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
               const std::string& table) {
-  refuse_goals(pattern);
+  refuse_viip_phases(pattern, "baked");
   Pattern result = pattern;
   result.keyframes = kept_keys(pattern);
   result.correction.reset();

@@ -8,25 +8,14 @@
 #include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/postures.hpp"
 #include "ayumi/pattern/servo_lead.hpp"
+#include "ayumi/pattern/viip_phases.hpp"
 
 namespace ayumi {
-
-namespace {
-
-void refuse_goals(const Pattern& pattern) {
-  for (size_t i = 0; i < pattern.phases.size(); ++i)
-    if (pattern.phases[i].viip)
-      fail(ErrorCode::bad_pattern, in_file(pattern, "phases/" + std::to_string(i)) +
-                                       ": a phase with a goal moves as its controller decides, "
-                                       "it cannot be retimed; simulate it and use its tables");
-}
-
-}  // namespace
 
 Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
   if (!(scale >= 0.01 && scale <= 100))
     fail(ErrorCode::usage, "a time scale of " + text::exact(scale) + "; 0.01 to 100 is possible");
-  refuse_goals(pattern);
+  refuse_viip_phases(pattern, "retimed");
   Pattern result = pattern;
   if (scale == 1) return result;
   const double weight = model.mass() * kGravity;

@@ -84,6 +84,15 @@ bool has_viip_phases(const Pattern& pattern) {
                      [](const Phase& phase) { return phase.viip.has_value(); });
 }
 
+void refuse_viip_phases(const Pattern& pattern, const std::string& done) {
+  for (size_t i = 0; i < pattern.phases.size(); ++i)
+    if (pattern.phases[i].viip)
+      fail(ErrorCode::bad_pattern, in_file(pattern, "phases/" + std::to_string(i)) +
+                                       ": a phase with a goal moves as its controller decides, it "
+                                       "cannot be " +
+                                       done + "; simulate it and use its tables");
+}
+
 Pattern without_viip_phases(const Pattern& pattern) {
   if (pattern.table)
     fail(ErrorCode::bad_pattern, in_file(pattern, "table") +

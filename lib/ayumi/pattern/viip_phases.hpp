@@ -9,6 +9,10 @@ namespace ayumi {
 
 bool has_viip_phases(const Pattern& pattern);
 
+/// Throws Error(bad_pattern) naming the first VIIP phase: it moves as its controller decides, so
+/// the pattern cannot be `done` ("baked").
+void refuse_viip_phases(const Pattern& pattern, const std::string& done);
+
 /// The pattern with its VIIP phases cut out of time and without its correction. Throws
 /// Error(bad_pattern) for keys inside a VIIP phase and for a table beside one.
 Pattern without_viip_phases(const Pattern& pattern);
