@@ -9,10 +9,10 @@
 
 #include "ayumi/base/version.hpp"
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/faults.hpp"
+#include "tests/support/hoap1.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -20,11 +20,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDegree = M_PI / 180;
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
 
 struct Motion {
   std::string name;

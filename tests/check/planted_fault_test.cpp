@@ -9,11 +9,11 @@
 #include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/io/pattern_table.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "tests/support/check_report.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace ayumi::test {
@@ -22,11 +22,6 @@ namespace {
 using Kinds = std::set<std::string>;
 
 constexpr double kDegree = M_PI / 180;
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
 
 // Through files, as a user would have it.
 Pattern bake(const Pattern& pattern) {

@@ -17,6 +17,7 @@
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace ayumi::test {
@@ -158,11 +159,6 @@ TEST(RealMotion, EveryFileOfTheRobotIsRead) {
     EXPECT_EQ(read.motion.dt, dt);
     EXPECT_FALSE(grounded(model, read.motion, "t.csv").contacts.empty());
   }
-}
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
 }
 
 // A sidecar elsewhere than its URDF, with figures of its own.

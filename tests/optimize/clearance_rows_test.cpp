@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/random_robot.hpp"
 
 using namespace ayumi;
@@ -17,11 +17,6 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 namespace {
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
 
 int pair_of(const CollisionModel& collisions, const char* one, const char* other) {
   const int a = hoap1().links()[hoap1().find_link(one)].body;

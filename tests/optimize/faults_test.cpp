@@ -8,21 +8,16 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/optimize/repair.hpp"
 #include "ayumi/pattern/correction.hpp"
 #include "ayumi/pattern/generate.hpp"
+#include "tests/support/hoap1.hpp"
 
 using namespace ayumi;
 using namespace ayumi::test;
 using Eigen::Vector3d;
 
 namespace {
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
 
 // A walk of 7 s as a table of theta, base, COG, ZMP and f_z.
 const Pattern& table_walk() {

@@ -2,20 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/optimize/repair.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "tests/support/faults.hpp"
+#include "tests/support/hoap1.hpp"
 
 using namespace ayumi;
 using namespace ayumi::test;
 
 namespace {
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
 
 class JumpRepair : public testing::Test {
  protected:

@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/optimize/elastic.hpp"
 #include "ayumi/optimize/repair.hpp"
 #include "ayumi/optimize/repair_spec.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "tests/support/faults.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/weighted_change.hpp"
 
@@ -18,11 +18,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
 
 Pattern walk(const WalkParameters& parameters) {
   Pattern pattern = walk_pattern(hoap1(), parameters);

@@ -5,17 +5,12 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
+#include "tests/support/hoap1.hpp"
 
 namespace ayumi::test {
 namespace {
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
 
 // A walk that uses every track there is, not its own mirror image in any of them.
 Pattern rich() {

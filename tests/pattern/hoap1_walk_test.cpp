@@ -6,11 +6,11 @@
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/pattern/differentiate.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
+#include "tests/support/hoap1.hpp"
 
 namespace ayumi {
 namespace {
@@ -18,13 +18,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using test::hoap1;
 
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
 
 struct Figures {
   double zmp_error = 0, margin = 1, landing_speed = 0;

@@ -5,13 +5,13 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/plant_mujoco/mujoco_plant.hpp"
 #include "ayumi/sim/schedule.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/ground.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi {
@@ -20,6 +20,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using test::hoap1;
 
 constexpr double kStep = 1e-3;
 
@@ -107,11 +108,6 @@ TEST(MujocoGround, AMovingFloorCarriesABlockAsFarAsFrictionHolds) {
       EXPECT_GT(apart, 0.2 * amplitude);
     }
   }
-}
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
 }
 
 Disturbance lasting(DisturbanceType type, double magnitude) {

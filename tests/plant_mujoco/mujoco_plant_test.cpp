@@ -8,10 +8,10 @@
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/plant.hpp"
 #include "ayumi/sim/simulator.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi {
@@ -19,11 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
+using test::hoap1;
 
 const CommandSeries& walk() {
   static const CommandSeries series =

@@ -5,18 +5,15 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/plant_mujoco/mujoco_plant.hpp"
 #include "ayumi/sim/simulator.hpp"
+#include "tests/support/hoap1.hpp"
 
 namespace ayumi {
 namespace {
 
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
+using test::hoap1;
 
 const CommandSeries& walk() {
   static const CommandSeries series =

@@ -10,15 +10,13 @@
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace ayumi {
 namespace {
 
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
+using test::hoap1;
 
 Disturbance push(double at, double angle, double impulse) {
   Disturbance d;

@@ -5,21 +5,18 @@
 #include "ayumi/check/profiles.hpp"
 #include "ayumi/control/viip_goals.hpp"
 #include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/jump_figures.hpp"
 
 namespace ayumi {
 namespace {
 
-constexpr double kRef = 0.22;  // ref z_G of the patterns [m]
+using test::hoap1;
 
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
+constexpr double kRef = 0.22;  // ref z_G of the patterns [m]
 
 Pattern pattern_of(const std::string& name) {
   return read_pattern(AYUMI_SOURCE_DIR "/patterns/" + name + ".json");

@@ -5,19 +5,15 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/check/profiles.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/hoap1.hpp"
 
 namespace ayumi {
 namespace {
 
 using Eigen::Vector3d;
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
+using test::hoap1;
 
 Pattern with(const ViipGoal& goal, double until = 5) {
   Pattern p;

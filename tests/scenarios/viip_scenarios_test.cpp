@@ -3,21 +3,17 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "ayumi/study/push.hpp"
+#include "tests/support/hoap1.hpp"
 
 namespace ayumi {
 namespace {
 
 using Eigen::Vector3d;
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
+using test::hoap1;
 
 struct Goal {
   double until;

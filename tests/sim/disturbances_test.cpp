@@ -5,21 +5,17 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/sim/plant.hpp"
 #include "ayumi/sim/simulator.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi {
 namespace {
 
 using Eigen::Vector3d;
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
+using test::hoap1;
 
 const CommandSeries& stand() {
   static const CommandSeries series = test::standing(hoap1(), 2.0);

@@ -5,11 +5,11 @@
 
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/mirror.hpp"
 #include "tests/support/walk.hpp"
 
@@ -17,11 +17,7 @@ namespace ayumi {
 namespace {
 
 using Eigen::Vector3d;
-
-const RobotModel& hoap1() {
-  static const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  return model;
-}
+using test::hoap1;
 
 RobotModel with_gain(double kp) {
   RobotDescription d = hoap1().description();
