@@ -133,6 +133,22 @@ TEST(Distance, DepthOfBoxesBySeparatingAxes) {
   EXPECT_GT(meeting, 200);
 }
 
+// Deep in each other, nearest points lie across from each other along the normal, also where the
+// deepest facet is made of several triangles.
+TEST(Distance, PointsOfDeepBoxesLieAcross) {
+  Random random(9);
+  const Collider a(Box{{0.1, 0.05, 0.07}}), b(Box{{0.03, 0.08, 0.06}});
+  int deep = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Isometry3d A = random_pose(random, 0.05), B = random_pose(random, 0.05);
+    const Closest c = closest(a, A, b, B);
+    if (c.clearance > -1e-4) continue;
+    ++deep;
+    EXPECT_LT((c.on_a + c.clearance * c.normal - c.on_b).norm(), 1e-8) << i;
+  }
+  EXPECT_GT(deep, 500);
+}
+
 // The nearest points have the clearance between them, and their normal is its slope, apart and
 // deep.
 TEST(Distance, SlopeOfTheClearance) {

@@ -239,15 +239,25 @@ class Polytope {
     return !horizon.empty();
   }
 
-  ConvexPair pair_of(const Face& face) const {
+  // A facet of D may be several triangles of one plane: the points are those of the one that holds
+  // the foot of the perpendicular, else they would not lie across from each other.
+  ConvexPair pair_of(const Face& nearest) const {
+    constexpr double kSamePlane = 1e-9;  // [m]
     ConvexPair pair;
-    pair.distance = -face.distance;
-    pair.normal = face.normal;
-    Simplex simplex;
-    for (const int v : face.v) simplex.vertices.push_back(vertices_[v]);
-    reduce(simplex);
-    pair.on_a = simplex.sum(&Vertex::on_a);
-    pair.on_b = simplex.sum(&Vertex::on_b);
+    pair.distance = -nearest.distance;
+    pair.normal = nearest.normal;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Face& face : faces_) {
+      if (face.dead || face.distance > nearest.distance + kSamePlane) continue;
+      Simplex simplex;
+      for (const int v : face.v) simplex.vertices.push_back(vertices_[v]);
+      reduce(simplex);
+      const double far = simplex.sum(&Vertex::d).norm();
+      if (far >= least) continue;
+      least = far;
+      pair.on_a = simplex.sum(&Vertex::on_a);
+      pair.on_b = simplex.sum(&Vertex::on_b);
+    }
     return pair;
   }
 
