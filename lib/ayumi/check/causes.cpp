@@ -25,7 +25,7 @@
 #include "ayumi/check/residuals.hpp"
 #include "ayumi/check/slower_pace.hpp"
 #include "ayumi/check/spans.hpp"
-#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/check/what_if.hpp"
 
 namespace ayumi {
 
@@ -34,8 +34,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kReach = 0.5;    // an outer force acts within this part of the height
-constexpr double kTouch = 0.015;  // deeper overlaps are facts of their own [m]
 constexpr double kTwist = 2;      // what holds a turn is reckoned low by no more than this
+constexpr double kReturn = 0.1;   // of a displacement, as good as back in its place
 constexpr int kStencil = 3;       // samples that one jump spoils by differences
 
 bool is_foot(Kind k) {
@@ -122,13 +122,12 @@ class Causes {
     }
   }
 
-  bool in_a_leg(int dof) const {
-    for (const Side side : {Side::left, Side::right}) {
-      const std::vector<int>& leg = pass_.model.leg(side);
-      if (std::find(leg.begin(), leg.end(), dof) != leg.end()) return true;
-    }
-    return false;
+  bool in_leg_of(int foot, int dof) const {
+    const std::vector<int>& leg = pass_.model.leg(static_cast<Side>(foot));
+    return std::find(leg.begin(), leg.end(), dof) != leg.end();
   }
+
+  bool in_a_leg(int dof) const { return in_leg_of(0, dof) || in_leg_of(1, dof); }
 
   // A ZMP outside the support because the command wants it there: no posture is to blame.
   bool is_asked_for(const Violation& v) {
@@ -143,36 +142,22 @@ class Causes {
 
   // Forces answer 50 ms around.
   Span episode(int i) const {
-    const Span s = deviation_around(pass_, windows_[i]);
-    return {s.first - slack(), s.last + slack()};
+    Span s = deviation_around(pass_, windows_[i]);
+    if (is_foot(of(i).kind)) {
+      const Span off = displacement_around(pass_, windows_[i]);
+      s = {std::min(s.first, off.first), std::max(s.last, off.last)};
+    }
+    return around(s, slack());
+  }
+
+  // While an angle is wrong: its stroke, and as long as it moves the COG off the command.
+  Span wrong_angle(int i) const {
+    const Span s = deviation_around(pass_, windows_[i]), stroke = stroke_around(pass_, windows_[i]);
+    return {std::min(s.first, stroke.first), std::max(s.last, stroke.last)};
   }
 
   Span episode_of_joint(int i) const {
-    const Span s = episode(i), stroke = stroke_around(pass_, windows_[i]);
-    return {std::min(s.first, stroke.first - slack()), std::max(s.last, stroke.last + slack())};
-  }
-
-  // With every joint within its limits, these bodies would not touch.
-  bool touches_by_limits(const Violation& v) const {
-    if (-v.value > kTouch) return false;
-    RobotState state = pass_.series.samples[v.sample].state;
-    for (int i = 0; i < pass_.model.dof_count(); ++i)
-      if (const Dof& dof = pass_.model.dofs()[i]; dof.limited)
-        state.theta[i] = std::clamp(state.theta[i], dof.lower, dof.upper);
-    RobotData data(pass_.model);
-    update_positions(pass_.model, state, data);
-    return pass_.collisions.clearance(pass_.collisions.pairs()[v.item], data, kTouch) >= 0;
-  }
-
-  // Largest step of a joint to one of the samples first .. last.
-  double step_between(int dof, int first, int last) const {
-    double step = 0;
-    for (int k = std::max(1, first); k <= std::min(pass_.count() - 1, last); ++k) {
-      const double here =
-          pass_.series.samples[k].state.theta[dof] - pass_.series.samples[k - 1].state.theta[dof];
-      if (std::abs(here) > std::abs(step)) step = here;
-    }
-    return step;
+    return around(wrong_angle(i), slack());
   }
 
   bool is_jump(int j, int sample) const {
@@ -188,12 +173,28 @@ class Causes {
                        [](char rough) { return rough; });
   }
 
-  // The joint jumps there at the beginning of the window, and back at its end.
-  bool comes_back(int dof, const FindingWindow& w) const {
-    const double to = step_between(dof, w.first - kStencil, w.first);
-    const double from = step_between(dof, w.last + 1, w.last + 1 + kStencil);
-    return to * from < 0 && std::abs(to) > 0.5 * std::abs(from) &&
-           std::abs(from) > 0.5 * std::abs(to);
+  // The joint's largest step is undone by another one in the same span.
+  bool comes_back(int dof, const Span& span) const {
+    double up = 0, down = 0;
+    for (int k = std::max(1, span.first); k <= std::min(pass_.count() - 1, span.last); ++k) {
+      const double step =
+          pass_.series.samples[k].state.theta[dof] - pass_.series.samples[k - 1].state.theta[dof];
+      up = std::max(up, step);
+      down = std::min(down, step);
+    }
+    return up > 0 && up > -0.5 * down && -down > 0.5 * up;
+  }
+
+  // A sole that is out of its place all at once, and back in it all at once or at the end of its
+  // contact: the leg jumps with it, each joint as its geometry asks.
+  bool stands_before_and_after(const FindingWindow& w) const {
+    const int foot = w.worst.item;
+    const ContactInterval& contact = pass_.plan.at(static_cast<Side>(foot), w.worst.sample);
+    const double small = kReturn * displacement(pass_, foot, w.worst.sample);
+    const auto stands = [&](int k) {
+      return k < contact.first || k > contact.last || displacement(pass_, foot, k) <= small;
+    };
+    return contact.contact && stands(w.first - kStencil) && stands(w.last + kStencil);
   }
 
   void posture(Kind kind) {
@@ -207,9 +208,11 @@ class Causes {
         if (is_asked_for(v)) return false;
         if (is_need(v) || is_residual(v.kind)) return true;
         if (places_feet && is_foot(v.kind)) return true;
-        if (limit && v.kind == Kind::self_collision) return touches_by_limits(v);
+        if (limit && v.kind == Kind::self_collision)
+          return touches_by_limits(pass_, v) ||
+                 (hangs_on(pass_, v, of(i).item) && wrong_angle(i).contains(windows_[j]));
         if (!joint || !is_rate(v.kind) || v.item != of(i).item) return false;
-        return !limit || !jumps(v) || comes_back(v.item, windows_[i]);
+        return !limit || !jumps(v) || comes_back(v.item, around(wrong_angle(i), kStencil));
       });
     }
   }
@@ -219,44 +222,43 @@ class Causes {
     for (int i = 0; i < count(); ++i) {
       if (of(i).kind != kind || !open(i)) continue;
       const int there = windows_[i].first, back = windows_[i].last + 1;
-      blame(i, {there - kStencil, back + kStencil}, [&](int j) {
-        return (is_jump(j, there) || is_jump(j, back)) && comes_back(of(j).item, windows_[i]);
+      const bool foot = is_foot(kind) && stands_before_and_after(windows_[i]);
+      const Span edges = {there - kStencil, back + kStencil};
+      blame(i, edges, [&](int j) {
+        if (!is_jump(j, there) && !is_jump(j, back)) return false;
+        return comes_back(of(j).item, edges) || (foot && in_leg_of(of(i).item, of(j).item));
       });
     }
   }
 
-  // The supporting foot lands too early and the other one is let go just as much too early, or the
-  // other way round: one phase has moved. The forces of the samples where a foot that still stands
-  // is not counted follow from it.
+  // The supporting foot lands too early and the other one is let go just as much too early, or its
+  // own swing or flight began too early: one phase has moved. What is asked of the samples where a
+  // foot that still stands is not counted follows from it.
   void moved_phase() {
     for (int i = 0; i < count(); ++i) {
       if (of(i).kind != Kind::foot_float || !open(i)) continue;
-      const Support here = pass_.series.samples[of(i).sample].support;
-      Span phase = around(windows_[i]);
-      const auto same = [&](int k) { return pass_.series.samples[k].support == here; };
-      while (phase.first > 0 && same(phase.first - 1)) --phase.first;
-      while (phase.last + 1 < pass_.count() && same(phase.last + 1)) ++phase.last;
-      blame(i, {phase.first - 1, phase.last + 1},
-            [&](int j) { return is_need(of(j)) && another_foot_stands(of(j).sample); });
+      const Span phase = moved_phases(of(i));
+      blame(i, {phase.first - kStencil, phase.last + kStencil}, [&](int j) {
+        const bool asks = is_need(of(j)) || of(j).kind == Kind::support_margin;
+        return asks && uncounted_foot_stands(pass_, of(j).sample);
+      });
     }
   }
 
-  bool another_foot_stands(int k) const {
-    RobotData data(pass_.model);
-    update_positions(pass_.model, pass_.series.samples[k].state, data);
-    for (const Side side : {Side::left, Side::right}) {
-      const int s = static_cast<int>(side), interval = pass_.plan.index[s][k];
-      if (pass_.plan.at(side, k).contact) continue;
-      for (const int next : {interval - 1, interval + 1}) {
-        if (next < 0 || next >= static_cast<int>(pass_.plan.intervals[s].size())) continue;
-        const SoleError e = sole_error(pass_.model.sole(side), sole_pose(pass_.model, data, side),
-                                       pass_.plan.intervals[s][next].sole);
-        if (e.gap <= pass_.tolerance(Kind::foot_float) &&
-            e.slip <= pass_.tolerance(Kind::foot_slip))
-          return true;
-      }
-    }
-    return false;
+  // The phase of this sample, and the time off the ground at that end of the foot's contact.
+  Span moved_phases(const Violation& v) const {
+    const Support here = pass_.series.samples[v.sample].support;
+    Span phase = {v.sample, v.sample};
+    const auto same = [&](int k) { return pass_.series.samples[k].support == here; };
+    while (phase.first > 0 && same(phase.first - 1)) --phase.first;
+    while (phase.last + 1 < pass_.count() && same(phase.last + 1)) ++phase.last;
+    const auto& intervals = pass_.plan.intervals[v.item];
+    const int n = pass_.plan.index[v.item][v.sample];
+    const bool lands = v.sample - intervals[n].first < intervals[n].last - v.sample;
+    if (lands && n > 0) phase.first = std::min(phase.first, intervals[n - 1].first);
+    if (!lands && n + 1 < static_cast<int>(intervals.size()))
+      phase.last = std::max(phase.last, intervals[n + 1].last);
+    return phase;
   }
 
   // No sole can give the moment of a ZMP outside it: the leg torques found for it are no fact.
@@ -277,7 +279,7 @@ class Causes {
     for (int i = 0; i < count(); ++i) {
       if (of(i).kind != Kind::cog_residual || !open(i)) continue;
       const Span off = deviation_around(pass_, windows_[i]);
-      if (flies(off.first - kStencil) && flies(off.last + kStencil)) continue;
+      if (flies(off.first + kStencil) && flies(off.last - kStencil)) continue;
       blame(i, off, [&](int j) { return of(j).kind == Kind::ballistic && of(j).item == 1; });
     }
   }
@@ -292,6 +294,7 @@ class Causes {
       while (flies(whole.first - 1)) --whole.first;
       while (flies(whole.last + 1)) ++whole.last;
       blame(i, whole, [&](int j) {
+        if (of(j).kind == Kind::joint_torque) return holds_falling(pass_, of(j));
         return of(j).kind == Kind::ballistic || of(j).kind == Kind::foot_penetration;
       });
       blame(i, around(windows_[i], kStencil), [&](int j) {

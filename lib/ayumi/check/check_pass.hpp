@@ -42,12 +42,15 @@ struct CheckPass {
   Eigen::MatrixXd square_sum;                  ///< of torques before a sample, dof x (samples + 1)
   std::vector<Eigen::Vector3d> flight_moment;  ///< about the COG, by sample; 0 on the ground [N m]
   std::vector<double> cog_deviation;           ///< of the posture from the command, by sample [m]
+  std::array<std::vector<SoleError>, 2> soles;  ///< by Side and sample; of a swing the depth only
   std::vector<char> rough;  ///< a joint accelerates beyond the tolerance, by sample
 };
 
 /// Everything that one sample tells by itself.
 void check_samples(CheckPass& pass);
 
+/// The soles, by what check_samples() noted of them.
+void check_feet(CheckPass& pass);
 /// Steps between samples that the planned speed does not tell.
 void check_servo_steps(CheckPass& pass);
 /// Mean moment over a few samples of a flight: momentum must not change, while the rate of a single

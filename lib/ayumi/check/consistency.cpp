@@ -29,6 +29,7 @@ CheckPass::CheckPass(const RobotModel& model, const CommandSeries& series,
       square_sum(Eigen::MatrixXd::Zero(model.dof_count(), count() + 1)),
       flight_moment(count(), Eigen::Vector3d::Zero()),
       cog_deviation(count(), 0.0),
+      soles{std::vector<SoleError>(count()), std::vector<SoleError>(count())},
       rough(count(), 0) {
   summary.min_zmp_margin = std::numeric_limits<double>::infinity();
   summary.min_self_clearance = std::numeric_limits<double>::infinity();
@@ -134,6 +135,7 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
   if (!(series.dt > 0)) fail(ErrorCode::usage, "the command series has no sample time");
   CheckPass pass(model, series, options);
   check_samples(pass);
+  check_feet(pass);
   check_angular_momentum(pass);
   check_servo_steps(pass);
   check_continuous_torque(pass);

@@ -5,14 +5,15 @@
 
 namespace ayumi {
 
-void FindingWindows::add(const Violation& v) {
+void FindingWindows::add(const Violation& v, int first, int last) {
   std::vector<FindingWindow>& windows = windows_[{static_cast<int>(v.kind), v.item}];
-  if (windows.empty() || v.sample - windows.back().last > gap_) {
-    windows.push_back({v, v.sample, v.sample});
+  if (windows.empty() || first - windows.back().last > gap_) {
+    windows.push_back({v, first, last});
     return;
   }
   FindingWindow& window = windows.back();
-  window.last = std::max(window.last, v.sample);
+  window.first = std::min(window.first, first);
+  window.last = std::max(window.last, last);
   const bool graver = v.severity < window.worst.severity;
   const bool same = v.severity == window.worst.severity;
   if (graver || (same && v.excess > window.worst.excess)) window.worst = v;

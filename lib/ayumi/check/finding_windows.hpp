@@ -31,7 +31,9 @@ struct FindingWindow {
 class FindingWindows {
  public:
   explicit FindingWindows(int gap) : gap_(gap) {}
-  void add(const Violation& violation);
+  void add(const Violation& violation) { add(violation, violation.sample, violation.sample); }
+  /// One that lasts from `first` to `last`.
+  void add(const Violation& violation, int first, int last);
   /// All windows, errors first, then by time, kind and item.
   std::vector<FindingWindow> finish() const;
 

@@ -33,6 +33,19 @@ const SampleDynamics& MotionDynamics::at(int k, double pace) {
     state_.dtheta *= pace;
     acceleration_ *= pace * pace;
   }
+  evaluate(k);
+  return now_;
+}
+
+const SampleDynamics& MotionDynamics::falling(int k) {
+  at(k);
+  acceleration_.head<3>() -= now_.ddcog + Vector3d(0, 0, kGravity);
+  evaluate(k);
+  return now_;
+}
+
+void MotionDynamics::evaluate(int k) {
+  const CommandSample& s = series_.samples[k];
   const VectorXd force = inverse_dynamics(model_, state_, acceleration_, data_);
   const Vector3d base = s.state.base.position;
   now_.wrench = force.head<6>();
@@ -43,7 +56,6 @@ const SampleDynamics& MotionDynamics::at(int k, double pace) {
                                          0.02 * model_.mass() * kGravity);
   const auto foot = foot_wrenches(model_, s.support, soles_, plane_, now_.use, base, now_.wrench);
   now_.torque = motor_torques(model_, state_, acceleration_, force, foot, data_);
-  return now_;
 }
 
 }  // namespace ayumi

@@ -25,6 +25,10 @@ class MotionDynamics {
   /// the same path, that much slower.
   const SampleDynamics& at(int k, double pace = 1);
 
+  /// Sample k of a flight with the base accelerated so that the COG falls freely: what is left of
+  /// the motors' torques without the force that no ground gives.
+  const SampleDynamics& falling(int k);
+
   const RobotData& data() const { return data_; }       ///< positions and rates of that sample
   const SupportPlane& plane() const { return plane_; }  ///< empty in flight
   /// Planned soles of the supporting feet, by Side.
@@ -32,6 +36,7 @@ class MotionDynamics {
 
  private:
   void update_plane(int k);
+  void evaluate(int k);
 
   const RobotModel& model_;
   const CommandSeries& series_;

@@ -137,67 +137,16 @@ double swing_depth(const CheckPass& pass, Side side, int k, const Isometry3d& so
   return std::isfinite(depth) ? depth : 0;
 }
 
-// By the sample before contact: at the first one in contact the plan already stands still.
-void check_landing(CheckPass& pass, int k, Side side, const Isometry3d& ground,
-                   const Isometry3d& sole) {
-  RobotData before(pass.model);
-  update_positions(pass.model, pass.series.samples[k - 1].state, before);
-  const Vector3d way = sole.translation() - sole_pose(pass.model, before, side).translation();
-  const double speed = -ground.linear().col(2).dot(way) / pass.series.dt;
-  raise_to(pass.summary.max_landing_speed, speed);
-  const double limit = pass.tolerance(Kind::landing_speed);
-  if (speed > limit)
-    pass.add(Kind::landing_speed, static_cast<int>(side), k, speed, limit, speed, 0,
-             Severity::warning);
-}
-
-// A foot that is said to have landed but goes on coming down to its place, or rises from it before
-// it is said to lift off: the swing is longer than the phases say. A slow swing hangs less than a
-// sole may float by, so this is told by how it moves.
-void check_contact_edge(CheckPass& pass, int k, Side side, const ContactInterval& interval) {
-  const bool lands = k == interval.first;
-  const double limit = kRunOnShare * pass.tolerance(Kind::foot_float);
-  const RunOn run = swing_run_on(pass.model, pass.series, side, interval, lands);
-  raise_to(pass.summary.max_foot_float, run.height);
-  if (run.height <= limit) return;
-  const int foot = static_cast<int>(side), rest = lands ? k + run.samples : k - run.samples;
-  const int detail = lands ? run.samples : -run.samples;
-  if (!lands) pass.add(Kind::foot_float, foot, rest, limit, limit, limit, detail);
-  pass.add(Kind::foot_float, foot, k, run.height, limit, run.height, detail);
-  if (lands) pass.add(Kind::foot_float, foot, rest, limit, limit, limit, detail);
-}
-
-// Height and slip of a supporting sole; returns its depth.
-double check_supporting_foot(CheckPass& pass, int k, Side side, const ContactInterval& interval,
-                             const Isometry3d& sole) {
-  const int foot = static_cast<int>(side);
-  const SoleError e = sole_error(pass.model.sole(side), sole, interval.sole);
-  const double high = pass.tolerance(Kind::foot_float), far = pass.tolerance(Kind::foot_slip);
-  raise_to(pass.summary.max_foot_float, e.gap);
-  if (e.gap > high) pass.add(Kind::foot_float, foot, k, e.gap, high, e.gap);
-  // A foot in the air does not slip: it floats.
-  if (e.lowest <= high) {
-    raise_to(pass.summary.max_foot_slip, e.slip);
-    if (e.slip > far) pass.add(Kind::foot_slip, foot, k, e.slip, far, e.slip);
-  }
-  if (k == interval.first && k > 0) {
-    check_landing(pass, k, side, interval.sole, sole);
-    check_contact_edge(pass, k, side, interval);
-  }
-  if (k == interval.last && k + 1 < pass.count()) check_contact_edge(pass, k, side, interval);
-  return e.penetration;
-}
-
-void check_feet(CheckPass& pass, int k) {
+// Judged when all of it is known: foot_checks.cpp.
+void note_soles(CheckPass& pass, int k) {
   for (Side side : {Side::left, Side::right}) {
     const ContactInterval& interval = pass.plan.at(side, k);
     const Isometry3d sole = sole_pose(pass.model, pass.dynamics.data(), side);
-    const double depth = interval.contact ? check_supporting_foot(pass, k, side, interval, sole)
-                                          : swing_depth(pass, side, k, sole);
-    raise_to(pass.summary.max_foot_penetration, depth);
-    const double deep = pass.tolerance(Kind::foot_penetration);
-    if (depth > deep)
-      pass.add(Kind::foot_penetration, static_cast<int>(side), k, depth, deep, depth);
+    SoleError& error = pass.soles[static_cast<int>(side)][k];
+    if (interval.contact)
+      error = sole_error(pass.model.sole(side), sole, interval.sole);
+    else
+      error.penetration = swing_depth(pass, side, k, sole);
   }
 }
 
@@ -254,7 +203,7 @@ void check_sample(CheckPass& pass, int k) {
   if (known) check_vertical_force(pass, k, flight ? 0 : motion.wrench[2]);
   if (known && flight) check_flight(pass, k, motion);
   if (known && !flight) check_ground(pass, k, motion);
-  check_feet(pass, k);
+  note_soles(pass, k);
   for (int i = 0; i < pass.model.dof_count(); ++i) {
     check_position(pass, k, i);
     check_joint_rates(pass, k, i);

@@ -8,6 +8,7 @@ namespace ayumi {
 namespace {
 
 constexpr double kTrace = 1e-4;    // COG deviation that still belongs to a fault [m]
+constexpr double kOff = 1e-5;      // out of its place, of a sole [m]
 constexpr double kSlack = 0.050;   // the ZMP answers before the COG is off by kTrace [s]
 constexpr double kStill = 0.01;    // joints slower than this rest [rad/s]
 constexpr double kRest = 0.020;    // for at least so long: a squat only turns at its depth [s]
@@ -43,6 +44,22 @@ Span deviation_around(const CheckPass& pass, const FindingWindow& window) {
     return edge;
   };
   return {grow(window.first, -1), grow(window.last, 1)};
+}
+
+double displacement(const CheckPass& pass, int foot, int sample) {
+  const SoleError& e = pass.soles[foot][sample];
+  return std::max({e.slip, e.penetration, e.gap});
+}
+
+Span displacement_around(const CheckPass& pass, const FindingWindow& window) {
+  const int foot = window.worst.item;
+  const ContactInterval& contact = pass.plan.at(static_cast<Side>(foot), window.worst.sample);
+  Span span = around(window);
+  if (!contact.contact) return span;
+  const auto off = [&](int k) { return displacement(pass, foot, k) > kOff; };
+  while (span.first > contact.first && off(span.first - 1)) --span.first;
+  while (span.last < contact.last && off(span.last + 1)) ++span.last;
+  return span;
 }
 
 Span stroke_around(const CheckPass& pass, const FindingWindow& window) {

@@ -160,6 +160,8 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
     track.rpy[i] = Track(keys[3 + i]);
   }
   keyed_[index(side)] = track;
+  // A table with a base says itself where the feet are: the check compares it with the phases.
+  if (pattern.table && !pattern.table->base.empty()) return;
   for (size_t i = 0; i < phases_.size(); ++i) {
     if (!supports(phases_[i].support, side)) continue;
     const double first = begin(static_cast<int>(i)), length = phases_[i].until - first;

@@ -1,0 +1,61 @@
+#include "ayumi/check/what_if.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/check/residuals.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kTouch = 0.015;  // deeper overlaps are facts of their own [m]
+
+}  // namespace
+
+bool touches_by_limits(const CheckPass& pass, const Violation& v) {
+  if (-v.value > kTouch) return false;
+  RobotState state = pass.series.samples[v.sample].state;
+  for (int i = 0; i < pass.model.dof_count(); ++i)
+    if (const Dof& dof = pass.model.dofs()[i]; dof.limited)
+      state.theta[i] = std::clamp(state.theta[i], dof.lower, dof.upper);
+  RobotData data(pass.model);
+  update_positions(pass.model, state, data);
+  return pass.collisions.clearance(pass.collisions.pairs()[v.item], data, kTouch) >= 0;
+}
+
+bool hangs_on(const CheckPass& pass, const Violation& v, int dof) {
+  const CollisionModel::Pair& pair = pass.collisions.pairs()[v.item];
+  const int trunk = pass.model.trunk_body();
+  if (pair.a == trunk || pair.b == trunk) return false;
+  const auto beyond = [&](int body) {
+    while (body > 0 && pass.model.bodies()[body].dof != dof)
+      body = pass.model.bodies()[body].parent;
+    return body > 0;
+  };
+  return beyond(pair.a) != beyond(pair.b);
+}
+
+bool holds_falling(CheckPass& pass, const Violation& v) {
+  return std::abs(pass.dynamics.falling(v.sample).torque[v.item]) <= std::abs(v.limit);
+}
+
+bool uncounted_foot_stands(const CheckPass& pass, int k) {
+  RobotData data(pass.model);
+  update_positions(pass.model, pass.series.samples[k].state, data);
+  for (const Side side : {Side::left, Side::right}) {
+    const int s = static_cast<int>(side), interval = pass.plan.index[s][k];
+    if (pass.plan.at(side, k).contact) continue;
+    for (const int next : {interval - 1, interval + 1}) {
+      if (next < 0 || next >= static_cast<int>(pass.plan.intervals[s].size())) continue;
+      const SoleError e = sole_error(pass.model.sole(side), sole_pose(pass.model, data, side),
+                                     pass.plan.intervals[s][next].sole);
+      if (e.gap <= pass.tolerance(Kind::foot_float) && e.slip <= pass.tolerance(Kind::foot_slip))
+        return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,22 @@
+#pragma once
+// What would be left of a finding without its cause: the same motion looked at again with one thing
+// put right.
+
+#include "ayumi/check/check_pass.hpp"
+
+namespace ayumi {
+
+/// Bodies that meet by no more than 15 mm and would not with every joint within its limits.
+bool touches_by_limits(const CheckPass& pass, const Violation& collision);
+
+/// Bodies whose distance this joint sets, and neither is the trunk: an arm in it is a fact of its
+/// own.
+bool hangs_on(const CheckPass& pass, const Violation& collision, int dof);
+
+/// The torque of a flight is within its limit when the COG falls freely.
+bool holds_falling(CheckPass& pass, const Violation& torque);
+
+/// A foot that is not counted at this sample stands where it stood before or will stand after.
+bool uncounted_foot_stands(const CheckPass& pass, int sample);
+
+}  // namespace ayumi
