@@ -33,10 +33,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kReach = 0.5;    // an outer force acts within this part of the height
-constexpr double kTwist = 2;      // what holds a turn is reckoned low by no more than this
-constexpr double kReturn = 0.1;   // of a displacement, as good as back in its place
-constexpr int kStencil = 3;       // samples that one jump spoils by differences
+constexpr double kReach = 0.5;   // an outer force acts within this part of the height
+constexpr double kTwist = 2;     // what holds a turn is reckoned low by no more than this
+constexpr double kReturn = 0.1;  // of a displacement, as good as back in its place
+constexpr int kStencil = 3;      // samples that one jump spoils by differences
 
 bool is_foot(Kind k) {
   return k == Kind::foot_slip || k == Kind::foot_penetration || k == Kind::foot_float;
@@ -156,9 +156,7 @@ class Causes {
     return {std::min(s.first, stroke.first), std::max(s.last, stroke.last)};
   }
 
-  Span episode_of_joint(int i) const {
-    return around(wrong_angle(i), slack());
-  }
+  Span episode_of_joint(int i) const { return around(wrong_angle(i), slack()); }
 
   bool is_jump(int j, int sample) const {
     const FindingWindow& w = windows_[j];
@@ -197,6 +195,15 @@ class Causes {
     return contact.contact && stands(w.first - kStencil) && stands(w.last + kStencil);
   }
 
+  // Something of that leg overlaps by less than its foot is displaced, and only as long.
+  bool touches_by_foot(int i, int j) const {
+    const Violation& foot = of(i);
+    const int hip = pass_.model.leg(static_cast<Side>(foot.item)).front();
+    return -of(j).value <= displacement(pass_, foot.item, foot.sample) &&
+           hangs_on(pass_, of(j), hip) &&
+           displacement_around(pass_, windows_[i]).contains(windows_[j]);
+  }
+
   void posture(Kind kind) {
     for (int i = 0; i < count(); ++i) {
       if (of(i).kind != kind || !open(i)) continue;
@@ -211,6 +218,7 @@ class Causes {
         if (limit && v.kind == Kind::self_collision)
           return touches_by_limits(pass_, v) ||
                  (hangs_on(pass_, v, of(i).item) && wrong_angle(i).contains(windows_[j]));
+        if (is_foot(kind) && v.kind == Kind::self_collision) return touches_by_foot(i, j);
         if (!joint || !is_rate(v.kind) || v.item != of(i).item) return false;
         return !limit || !jumps(v) || comes_back(v.item, around(wrong_angle(i), kStencil));
       });

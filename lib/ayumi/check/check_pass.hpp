@@ -39,9 +39,9 @@ struct CheckPass {
 
   FindingWindows windows;
   CheckSummary summary;
-  Eigen::MatrixXd square_sum;                  ///< of torques before a sample, dof x (samples + 1)
-  std::vector<Eigen::Vector3d> flight_moment;  ///< about the COG, by sample; 0 on the ground [N m]
-  std::vector<double> cog_deviation;           ///< of the posture from the command, by sample [m]
+  Eigen::MatrixXd square_sum;                   ///< of torques before a sample, dof x (samples + 1)
+  std::vector<Eigen::Vector3d> flight_moment;   ///< about the COG, by sample; 0 on the ground [N m]
+  std::vector<double> cog_deviation;            ///< of the posture from the command, by sample [m]
   std::array<std::vector<SoleError>, 2> soles;  ///< by Side and sample; of a swing the depth only
   std::vector<char> rough;  ///< a joint accelerates beyond the tolerance, by sample
 };

@@ -16,6 +16,7 @@ constexpr double kSlowest = 0.05;  // pace down to which haste is looked for
 constexpr double kStep = 0.97;     // from pace to pace: commands tell their own pace within 6 %
 constexpr double kCoarseStep = 0.85;
 constexpr int kStencil = 3;         // samples that one jump spoils by differences
+constexpr int kFlightLooks = 5;     // at other samples of a flight
 constexpr int kThermalLooks = 100;  // of the RMS torque at another pace
 
 }  // namespace
@@ -31,6 +32,24 @@ bool SlowerPace::rms_holds(const Violation& v, double pace) {
     sum += torque * torque;
   }
   return std::sqrt(sum / kThermalLooks) <= v.limit;
+}
+
+// A flight has one pace at which it is free: all of it must be so, for the acceleration of a single
+// sample can be scaled to that of gravity whatever made it.
+bool SlowerPace::flight_is_free(int sample, double pace, double limit) {
+  const auto flies = [&](int k) {
+    return k >= 0 && k < pass_.count() && pass_.series.samples[k].support == Support::none &&
+           !pass_.at_flight_edge(k);
+  };
+  int first = sample, last = sample;
+  while (flies(first - 1)) --first;
+  while (flies(last + 1)) ++last;
+  for (int n = 0; n <= kFlightLooks; ++n) {
+    const int k = n == kFlightLooks ? sample : first + n * (last - first) / (kFlightLooks - 1);
+    const Vector3d ddcog = pass_.dynamics.at(k, pace).ddcog;
+    if ((ddcog + Vector3d(0, 0, kGravity)).norm() > limit) return false;
+  }
+  return true;
 }
 
 // What is asked of the ground, and what commands say of it.
@@ -54,9 +73,10 @@ bool SlowerPace::ground_holds(const Violation& v, double pace) {
              limit * pass_.friction * now.use.normal_force *
                  yaw_lever(pass_.dynamics.plane().polygon, now.use.zmp);
     case Kind::ballistic:
-      return (now.ddcog + Vector3d(0, 0, kGravity)).norm() <= limit;
+      return flight_is_free(v.sample, pace, limit);
     case Kind::angular_momentum:
-      return now.moment.norm() <= limit;
+      return now.moment.norm() <= limit &&
+             flight_is_free(v.sample, pace, pass_.tolerance(Kind::ballistic));
     default:
       return false;
   }
@@ -85,7 +105,8 @@ bool SlowerPace::rough_near(int sample) const {
 }
 
 bool SlowerPace::mends(const Violation& cause, const Violation& v) {
-  if (rough_near(v.sample)) return v.kind != Kind::servo_step;
+  const bool flies = v.kind == Kind::ballistic || v.kind == Kind::angular_momentum;
+  if (!flies && rough_near(v.sample)) return v.kind != Kind::servo_step;
   const double step = v.kind == Kind::continuous_torque ? kCoarseStep : kStep;
   for (double pace = step; pace > kSlowest; pace *= step)
     if (holds(cause, pace) && holds(v, pace)) return true;

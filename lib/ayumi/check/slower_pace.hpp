@@ -17,6 +17,7 @@ class SlowerPace {
  private:
   bool holds(const Violation& v, double pace);
   bool rms_holds(const Violation& v, double pace);
+  bool flight_is_free(int sample, double pace, double limit);
   bool ground_holds(const Violation& v, double pace);
   bool rough_near(int sample) const;
 

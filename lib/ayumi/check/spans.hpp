@@ -16,9 +16,7 @@ struct Span {
 /// The window with `slack` samples on either side.
 Span around(const FindingWindow& window, int slack = 0);
 
-inline Span around(const Span& span, int slack) {
-  return {span.first - slack, span.last + slack};
-}
+inline Span around(const Span& span, int slack) { return {span.first - slack, span.last + slack}; }
 
 /// The window, and what lies around it as far as the posture's COG is off the command.
 Span deviation_around(const CheckPass& pass, const FindingWindow& window);
