@@ -7,6 +7,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/pattern/repair_wishes.hpp"
 #include "ayumi/pattern/sample.hpp"
 
 namespace ayumi::app {
@@ -76,6 +77,19 @@ void read_locks(const std::vector<std::string>& words, const PatternInput& input
   }
 }
 
+RepairOptions wished_options(const Pattern& pattern) {
+  const RepairWishes wishes = without_keyframes(pattern);
+  RepairOptions options;
+  options.locked_joints = wishes.joints;
+  options.locked_feet = wishes.feet;
+  options.locked_windows = wishes.windows;
+  options.joint_weights = wishes.weights;
+  options.trust = wishes.trust.value_or(options.trust);
+  options.zmp_margin = wishes.margin;
+  options.safety = wishes.safety.value_or(options.safety);
+  return options;
+}
+
 RepairResult repair_input(const Context& context, const PatternInput& input,
                           const RepairOptions& options) {
   RepairResult result = repair(input.model, input.series, options, context.progress());
@@ -90,6 +104,7 @@ RepairResult repair_input(const Context& context, const PatternInput& input,
 Pattern dense_pattern(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
                       const std::string& table) {
   Pattern dense = pattern;
+  dense.repair = without_keyframes(pattern);
   dense.keyframes.clear();
   dense.correction.reset();
   DenseTable& rows = dense.table.emplace();

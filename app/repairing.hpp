@@ -10,6 +10,9 @@
 
 namespace ayumi::app {
 
+/// What the pattern itself wishes of its repair.
+RepairOptions wished_options(const Pattern& pattern);
+
 /// Locks in words: a joint ("l_elbow"), a foot ("foot:left"), a keyframe ("keyframe:3", counted
 /// from 0 as in messages) or a time window ("1.2..1.8"). Throws Error(usage) for anything else.
 void read_locks(const std::vector<std::string>& words, const PatternInput& input,

@@ -16,6 +16,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string a, b, plot;
+  std::vector<std::string> weights;
   PatternOptions input;
 };
 
@@ -41,6 +42,14 @@ std::string side_words(const std::string& file, const PatternInput& input,
          text::fixed(input.series.duration(), 2) + " s\n";
 }
 
+// What a repair of A would weigh joints by.
+Eigen::VectorXd factors_of(const Options& options, const PatternInput& a) {
+  std::map<std::string, double> weights = a.pattern.repair.weights;
+  for (const auto& [joint, factor] : read_pairs(options.weights, "--weight"))
+    weights[joint] = factor;
+  return weight_factors(a.model, weights);
+}
+
 void diff(Context& context, const Options& options) {
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
   const PatternInput a = load_pattern(context, options.a, options.input);
@@ -52,6 +61,8 @@ void diff(Context& context, const Options& options) {
   const ConsistencyReport check_a = check_consistency(a.model, a.series, check_options(a));
   const ConsistencyReport check_b = check_consistency(b.model, b.series, check_options(b));
   const MotionChange change = motion_change(a.model, a.series, b.series);
+  const WeightedChange weighted =
+      weighted_change(a.model, a.series, b.series, factors_of(options, a));
   const double contacts = contacts_differ_at(a.series, b.series);
   const bool same_length = a.series.samples.size() == b.series.samples.size();
   const bool same =
@@ -61,7 +72,8 @@ void diff(Context& context, const Options& options) {
   if (same)
     words += "  the same motion and commands\n";
   else
-    words += motion_words(a.model, change, check_a, check_b);
+    words += motion_words(a.model, change, check_a, check_b) + "  weighted change " +
+             text::brief(weighted.total) + "\n";
   if (!same_length)
     words += "  compared over the first " + text::fixed(change.compared, 3) + " s\n";
   if (contacts >= 0) words += "  contacts differ from " + text::fixed(contacts, 3) + " s on\n";
@@ -81,7 +93,8 @@ void diff(Context& context, const Options& options) {
                  {"zmp_m", change.zmp.size},
                  {"fz_N", change.fz.size},
                  {"foot_m", change.foot.size}}},
-               {"moved", Json::parse(motion_change_json(change))}};
+               {"moved", Json::parse(motion_change_json(change))},
+               {"weighted_change", Json::parse(weighted_change_json(weighted))}};
   context.print_json(json.dump(2));
 }
 
@@ -96,6 +109,11 @@ void add_diff(CLI::App& app, Context& context) {
   command->add_option("A", options.a, "pattern file")->required();
   command->add_option("B", options.b, "pattern file, as it became")->required();
   command->add_option("--plot", options.plot, "both against time, .svg or .png")->type_name("F");
+  command
+      ->add_option("--weight", options.weights,
+                   "of a joint in the weighted change, as for repair; left out: the pattern's")
+      ->type_name("JOINT=FACTOR")
+      ->allow_extra_args(false);
   add_pattern_options(*command, options.input);
   command->callback([&context] { diff(context, options); });
 }

@@ -23,11 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string pattern, out, trust = "posture", plot;
+  std::string pattern, out, trust, plot;
   std::vector<std::string> locked, weights, tolerances;
   bool baked = false;
   PatternOptions input;
-  RepairOptions repair;
+  std::optional<double> margin, safety;
+  RepairOptions repair;  // of what only the command line says
 };
 
 constexpr const char* kPartialMark =
@@ -61,24 +62,41 @@ void write_repaired(const Context& context, const Options& options, const Patter
   write_pattern(options.out, corrected);
 }
 
-std::string steering_words(const Options& options) {
+// The pattern's own locks as --lock would name them.
+std::vector<std::string> file_locks(const RepairWishes& wishes) {
+  std::vector<std::string> words = wishes.joints;
+  for (const Side side : {Side::left, Side::right})
+    if (wishes.feet[static_cast<size_t>(side)])
+      words.push_back(std::string("foot:") + name_of(side));
+  for (const int key : wishes.keyframes) words.push_back("keyframe:" + std::to_string(key));
+  for (const auto& [begin, end] : wishes.windows)
+    words.push_back(text::exact(begin) + ".." + text::exact(end));
+  return words;
+}
+
+std::string steering_words(const Options& options, const Pattern& pattern) {
   std::string out;
-  if (!options.locked.empty()) out += "  kept: " + text::join(options.locked, ", ") + "\n";
+  std::vector<std::string> kept = file_locks(pattern.repair);
+  kept.insert(kept.end(), options.locked.begin(), options.locked.end());
+  if (!kept.empty()) out += "  kept: " + text::join(kept, ", ") + "\n";
   if (options.repair.trust != Trust::posture)
     out += std::string("  trusted: ") + name_of(options.repair.trust) + "\n";
   return out;
 }
 
-std::string in_words(const Options& options, const RobotModel& model, const RepairResult& result,
+std::string in_words(const Options& options, const PatternInput& input, const RepairResult& result,
                      double wall) {
+  const RobotModel& model = input.model;
   std::string out = options.pattern + ": " +
                     (result.partial ? "stopped, partial" : name_of(result.status)) + "\n";
   if (result.status == RepairStatus::already_consistent)
     return out + "  nothing changed; " + options.out + " is the pattern as it was\n";
-  out += steering_words(options) + motion_words(model, result.moved, result.before, result.check);
-  out += "  " + std::to_string(result.variables) + " variables, " +
-         std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
-         " iterations, " + text::fixed(wall, 2) + " s\n";
+  out += steering_words(options, input.pattern) +
+         motion_words(model, result.moved, result.before, result.check);
+  out += "  weighted change " + text::brief(result.change.total) + "; " +
+         std::to_string(result.variables) + " variables, " + std::to_string(result.constraints) +
+         " constraints, " + std::to_string(result.iterations) + " iterations, " +
+         text::fixed(wall, 2) + " s\n";
   for (const std::string& reason : result.reasons) out += "  because " + reason + "\n";
   if (result.status == RepairStatus::repaired) out += check_table(result.check);
   return out;
@@ -103,6 +121,22 @@ Trust trust_of(const std::string& word) {
   return word == "cog" ? Trust::cog : word == "zmp" ? Trust::zmp : Trust::posture;
 }
 
+// The pattern's wishes, with the command line's locks beside them and its other words over them.
+RepairOptions repair_options(const Options& options, const PatternInput& input) {
+  RepairOptions repair = wished_options(input.pattern);
+  repair.check = check_options(input, options.tolerances);
+  if (!options.trust.empty()) repair.trust = trust_of(options.trust);
+  if (options.margin) repair.zmp_margin = options.margin;
+  if (options.safety) repair.safety = *options.safety;
+  for (const auto& [joint, factor] : read_pairs(options.weights, "--weight"))
+    repair.joint_weights[joint] = factor;
+  read_locks(options.locked, input, repair);
+  repair.keep_partial = options.repair.keep_partial;
+  repair.knot_spacing = options.repair.knot_spacing;
+  repair.max_iterations = options.repair.max_iterations;
+  return repair;
+}
+
 int exit_code_of(const RepairResult& result) {
   if (result.partial) return 130;
   return result.status == RepairStatus::repaired ||
@@ -118,10 +152,7 @@ void repair_pattern(Context& context, Options options) {
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
   const PatternInput input = load_pattern(context, options.pattern, options.input);
-  options.repair.check = check_options(input, options.tolerances);
-  options.repair.trust = trust_of(options.trust);
-  options.repair.joint_weights = read_pairs(options.weights, "--weight");
-  read_locks(options.locked, input, options.repair);
+  options.repair = repair_options(options, input);
   const auto begin = std::chrono::steady_clock::now();
   const RepairResult result = repair_input(context, input, options.repair);
   const double wall =
@@ -135,7 +166,7 @@ void repair_pattern(Context& context, Options options) {
   if (!options.plot.empty() && !result.series.samples.empty())
     plot_motions(input.model, input.series, result.series, fs::path(options.pattern).stem(),
                  options.plot);
-  context.print(in_words(options, input.model, result, wall) + in_words(values) +
+  context.print(in_words(options, input, result, wall) + in_words(values) +
                 (written ? "  written to " + options.out + "\n" : "  nothing written\n"));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(repair_json(result));
   json["parameters"] = in_json(values);
@@ -168,20 +199,26 @@ void add_repair(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--trust", options.trust,
-                   "what the others follow where they disagree: posture, cog or zmp")
+                   "what the others follow where they disagree: posture, cog or zmp; left out: the "
+                   "pattern's, posture")
       ->check(CLI::IsMember({"posture", "cog", "zmp"}))
-      ->type_name("QUANTITY")
-      ->capture_default_str();
+      ->type_name("QUANTITY");
   command->add_flag("--baked", options.baked, "write a dense table, not a correction");
   command->add_flag("--keep-partial", options.repair.keep_partial,
                     "after Ctrl-C or without success, write the motion that violates least");
   command->add_option("--plot", options.plot, "before and after, .svg or .png")->type_name("F");
   command
-      ->add_option("--margin", options.repair.zmp_margin,
+      ->add_option("--margin", options.margin,
                    "of the ZMP inside the support where the motion's own is too "
                    "small [m]; left out: 0.9 of the sole's inner radius")
       ->check(CLI::Range(0.0, 0.1))
       ->type_name("M");
+  command
+      ->add_option("--safety", options.safety,
+                   "what safety is worth beside change; left out: 1, 0: the least change that "
+                   "passes check")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("FACTOR");
   command->add_option("--knots", options.repair.knot_spacing, "spacing of the correction [s]")
       ->check(CLI::Range(0.005, 1.0))
       ->type_name("S")

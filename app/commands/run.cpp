@@ -155,7 +155,7 @@ bool MainJob::check(PatternInput& input) {
 }
 
 void MainJob::repair_pattern(PatternInput& input) {
-  RepairOptions options;
+  RepairOptions options = wished_options(input.pattern);
   options.check = check_options(input);
   const RepairResult result = repair_input(context_, input, options);
   say("repair", std::string(name_of(result.status)) + ": " + std::to_string(result.iterations) +

@@ -91,7 +91,9 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
                                            "the range is empty",
                                            "only a sine",
                                            "'frequency' is missing",
-                                           "'base.y[m]' is missing"};
+                                           "'base.y[m]' is missing",
+                                           "a window ends after",
+                                           "99 is no keyframe"};
   int judged = 0;
   for (const Broken& each : mistakes()) {
     const std::string reason = message(with(each.key, each.value));

@@ -140,6 +140,14 @@ void expect_same(const Pattern& a, const Pattern& b) {
   ASSERT_EQ(a.scenario.size(), b.scenario.size());
   for (size_t i = 0; i < a.scenario.size(); ++i) expect_same(a.scenario[i], b.scenario[i]);
   EXPECT_EQ(a.tolerances, b.tolerances);
+  EXPECT_EQ(a.repair.joints, b.repair.joints);
+  EXPECT_EQ(a.repair.feet, b.repair.feet);
+  EXPECT_EQ(a.repair.keyframes, b.repair.keyframes);
+  EXPECT_EQ(a.repair.windows, b.repair.windows);
+  EXPECT_EQ(a.repair.weights, b.repair.weights);
+  EXPECT_EQ(a.repair.trust, b.repair.trust);
+  EXPECT_EQ(a.repair.margin, b.repair.margin);
+  EXPECT_EQ(a.repair.safety, b.repair.safety);
   ASSERT_EQ(a.correction.has_value(), b.correction.has_value());
   if (!a.correction) return;
   EXPECT_EQ(a.correction->begin, b.correction->begin);

@@ -180,6 +180,16 @@ inline Pattern random_pattern(unsigned seed) {
   for (int i = 0; i < random.pick(3); ++i) p.scenario.push_back(random_disturbance(random));
   if (random.coin()) p.tolerances["foot_slip"] = random.uniform(0, 1);
   if (random.coin()) {
+    p.repair.joints = {"l_knee", "b \"c\""};
+    p.repair.feet[1] = random.coin();
+    p.repair.keyframes = {random.pick(static_cast<int>(p.keyframes.size()))};
+    p.repair.windows = {{0.1, 0.1 + random.uniform(0, 1)}, {0.2, 0.2}};
+    p.repair.weights = {{"r_knee", random.uniform(0.1, 20)}};
+    if (random.coin()) p.repair.trust = static_cast<Trust>(random.pick(3));
+    if (random.coin()) p.repair.margin = random.uniform(0, 0.1);
+    if (random.coin()) p.repair.safety = random.uniform(0, 3);
+  }
+  if (random.coin()) {
     p.correction.emplace();
     p.correction->begin = random.uniform(-1, 1);
     p.correction->spacing = random.uniform(0.01, 0.1);

@@ -149,6 +149,8 @@ void read_rest(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
   if (const auto tolerances = root.find("tolerances"))
     for (const auto& [kind, value] : tolerances->members())
       pattern.tolerances[kind] = read_number(value, scope, 0, kLargestNumber);
+  if (const auto wishes = root.find("repair"))
+    pattern.repair = read_repair(*wishes, static_cast<int>(pattern.keyframes.size()), scope);
 }
 
 }  // namespace

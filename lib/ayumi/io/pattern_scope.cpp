@@ -10,9 +10,9 @@ namespace ayumi {
 const std::map<std::string, std::vector<std::string>>& pattern_keys() {
   static const std::map<std::string, std::vector<std::string>> keys = {
       {"pattern",
-       {"$schema", "format", "name", "robot", "profile", "units", "parameters", "include",
-        "postures", "defaults", "start", "phases", "keyframes", "table", "correction", "world",
-        "controller", "scenario", "tolerances"}},
+       {"$schema",    "format",   "name",       "robot",    "profile",    "units",     "parameters",
+        "include",    "postures", "defaults",   "start",    "phases",     "keyframes", "table",
+        "correction", "world",    "controller", "scenario", "tolerances", "repair"}},
       {"postures_file", {"$schema", "format", "robot", "units", "postures"}},
       {"units", {"angle", "length", "time", "mass", "force"}},
       {"defaults", {"interpolation", "posture", "cog_height", "cog_model"}},
@@ -40,6 +40,8 @@ const std::map<std::string, std::vector<std::string>>& pattern_keys() {
         "friction", "foot",   "position", "radius",  "height",    "latency", "gyro",      "load",
         "joint",    "offset", "coulomb",  "viscous", "share"}},
       {"correction", {"begin", "spacing", "columns", "coefficients"}},
+      {"repair", {"lock", "weights", "trust", "margin", "safety"}},
+      {"lock", {"joints", "feet", "keyframes", "windows"}},
   };
   return keys;
 }

@@ -36,6 +36,7 @@ class Writer {
     add_list(top, "scenario", pattern_.scenario,
              [this](const Disturbance& each) { return disturbance_text(each, pattern_.degrees); });
     add_tolerances(top);
+    add_repair(top);
     if (pattern_.correction) top.add("correction", correction_text(*pattern_.correction));
     return top.lines('{', '}', "") + "\n";
   }
@@ -196,6 +197,29 @@ class Writer {
     Members members;
     for (const auto& [kind, value] : pattern_.tolerances) members.add(kind, number(value));
     if (!members.empty()) top.add("tolerances", members.object());
+  }
+
+  void add_repair(Members& top) const {
+    const RepairWishes& wishes = pattern_.repair;
+    if (wishes.empty()) return;
+    Members lock, joints, feet, keys, windows, weights, members;
+    for (const std::string& joint : wishes.joints) joints.item(quoted(joint));
+    for (const Side side : {Side::left, Side::right})
+      if (wishes.feet[static_cast<size_t>(side)]) feet.item(quoted(name_of(side)));
+    for (const int key : wishes.keyframes) keys.item(std::to_string(key));
+    for (const auto& [begin, end] : wishes.windows)
+      windows.item(Members().item(number(begin)).item(number(end)).array());
+    for (const auto& [joint, weight] : wishes.weights) weights.add(joint, number(weight));
+    if (!joints.empty()) lock.add("joints", joints.array());
+    if (!feet.empty()) lock.add("feet", feet.array());
+    if (!keys.empty()) lock.add("keyframes", keys.array());
+    if (!windows.empty()) lock.add("windows", windows.array());
+    if (!lock.empty()) members.add("lock", lock.object());
+    if (!weights.empty()) members.add("weights", weights.object());
+    if (wishes.trust) members.add("trust", quoted(name_of(*wishes.trust)));
+    if (wishes.margin) members.add("margin", number(*wishes.margin));
+    if (wishes.safety) members.add("safety", number(*wishes.safety));
+    top.add("repair", members.object());
   }
 
   const Pattern& pattern_;

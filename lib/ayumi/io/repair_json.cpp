@@ -53,6 +53,14 @@ std::string motion_change_json(const MotionChange& change) {
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
+std::string weighted_change_json(const WeightedChange& change) {
+  OrderedJson parts = OrderedJson::array();
+  for (const ChangePart& p : change.parts)
+    parts.push_back({{"what", p.what}, {"weight", figure(p.weight)}, {"change", figure(p.change)}});
+  return OrderedJson({{"total", figure(change.total)}, {"parts", parts}})
+      .dump(2, ' ', false, OrderedJson::error_handler_t::replace);
+}
+
 std::string repair_json(const RepairResult& result) {
   OrderedJson moved = {{"max_joint_rad", figure(result.max_joint_change)},
                        {"max_cog_m", figure(result.max_cog_change)},
@@ -63,17 +71,19 @@ std::string repair_json(const RepairResult& result) {
                               {"after_m", figure(result.check.summary.min_zmp_margin)}};
   OrderedJson obstacles = OrderedJson::array();
   for (const Obstacle& o : result.obstacles) obstacles.push_back(obstacle_json(o));
-  const OrderedJson json = {{"status", name_of(result.status)},
-                            {"partial", result.partial},
-                            {"moved", moved},
-                            {"zmp_margin", margin},
-                            {"variables", result.variables},
-                            {"constraints", result.constraints},
-                            {"iterations", result.iterations},
-                            {"constraint_violation", figure(result.constraint_violation)},
-                            {"reasons", result.reasons},
-                            {"obstacles", obstacles},
-                            {"check", OrderedJson::parse(check_json(result.check))}};
+  const OrderedJson json = {
+      {"status", name_of(result.status)},
+      {"partial", result.partial},
+      {"moved", moved},
+      {"weighted_change", OrderedJson::parse(weighted_change_json(result.change))},
+      {"zmp_margin", margin},
+      {"variables", result.variables},
+      {"constraints", result.constraints},
+      {"iterations", result.iterations},
+      {"constraint_violation", figure(result.constraint_violation)},
+      {"reasons", result.reasons},
+      {"obstacles", obstacles},
+      {"check", OrderedJson::parse(check_json(result.check))}};
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace);
 }
 

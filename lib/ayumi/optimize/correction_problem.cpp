@@ -9,6 +9,7 @@
 
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/optimize/weighted_change.hpp"
 
 namespace ayumi {
 
@@ -17,12 +18,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-// One radian of a joint moves the robot by about a leg's half length; turning the whole trunk is
-// worth more than a joint.
-constexpr double kPositionWeight =
-    1000.0;  // of base position [1/m^2] against joint weight 1 [1/rad^2]
-constexpr double kRotationWeight = 4.0;  // of base rotation
-constexpr double kSmoothTime = 0.1;      // tau [s]
 constexpr double kObjectiveScale = 100.0;
 
 constexpr double kValueGram[] = {2416.0 / 5040, 1191.0 / 5040, 120.0 / 5040, 1.0 / 5040};
@@ -165,14 +160,7 @@ void CorrectionProblem::place_jacobian() {
 }
 
 void CorrectionProblem::place_objective() {
-  VectorXd weight(model_.velocity_count());
-  weight.head<3>().setConstant(kPositionWeight);
-  weight.segment<3>(3).setConstant(kRotationWeight);
-  weight.tail(model_.dof_count()) = series_.joint_weight.size() == model_.dof_count()
-                                        ? series_.joint_weight
-                                        : model_.joint_weight();
-  if (spec_.weights.size() == model_.dof_count())
-    weight.tail(model_.dof_count()) = weight.tail(model_.dof_count()).cwiseProduct(spec_.weights);
+  const VectorXd weight = change_weights(model_, series_, spec_.weights);
   const double h = zero_.spacing, smooth = std::pow(kSmoothTime, 4);
   std::vector<double> values;
   for (int point = 0; point < index_.rows(); ++point)

@@ -50,6 +50,9 @@ struct CorrectionSpec {
   /// A limit is constrained where the motion, or `current`, uses more than this share of it; the
   /// rest is looked at by the check of the result.
   double watched_share = 0.7;
+  /// Every limit is where the check has it: of the friction cone planes that touch it from outside,
+  /// where `current` presses against it, in place of a pyramid inside.
+  bool at_limits = false;
   std::vector<double> extra;               ///< more instants, where an earlier result failed [s]
   const CommandSeries* current = nullptr;  ///< an earlier result; null: the motion itself
   Eigen::MatrixXd start;                   ///< its control points, for a start; empty: zero
@@ -84,6 +87,7 @@ class CorrectionProblem {
   void place_constraints();
   void place_margins();
   void place_ground_blocks(int instant);
+  Eigen::MatrixXd cone_rows(const Eigen::Vector2d& force) const;
   void place_flight_block(int instant);
   Vector6d own_wrench(int sample) const;
   void place_foot_blocks(int instant);

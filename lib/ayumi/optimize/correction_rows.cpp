@@ -134,6 +134,24 @@ void CorrectionProblem::place_flight_block(int instant) {
   upper_.tail<6>() = offset + slack.cwiseMax(kept);
 }
 
+// A pyramid inside the friction cone; at limits planes that touch the cone, close to each other
+// about the direction of the force as it is.
+MatrixXd CorrectionProblem::cone_rows(const Eigen::Vector2d& force) const {
+  std::vector<double> directions;
+  for (int i = 0; i < kConeSides; ++i) directions.push_back(2 * i * M_PI / kConeSides);
+  if (spec_.at_limits)
+    for (const double aside : {-0.1, -0.03, 0.0, 0.03, 0.1})
+      directions.push_back(std::atan2(force.y(), force.x()) + aside);
+  const double inside = spec_.at_limits ? 1 : std::cos(M_PI / kConeSides);
+  MatrixXd rows = MatrixXd::Zero(static_cast<Eigen::Index>(directions.size()), 6);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    rows(i, 0) = -std::cos(directions[static_cast<size_t>(i)]);
+    rows(i, 1) = -std::sin(directions[static_cast<size_t>(i)]);
+    rows(i, 2) = spec_.share * tolerance(Kind::friction) * spec_.friction * inside;
+  }
+  return rows;
+}
+
 void CorrectionProblem::place_ground_blocks(int instant) {
   const SupportPlane& plane = instants_[instant].plane;
   const double weight = model_.mass() * kGravity;
@@ -152,11 +170,13 @@ void CorrectionProblem::place_ground_blocks(int instant) {
 
   RobotData data(model_);
   double least_force = weight, most_grip = 0, most_yaw = 0, lever = 0;
+  Eigen::Vector2d pulled = Eigen::Vector2d::Zero();  // in the end that of the current motion
   for (const CommandSample* sample : watched(instant)) {
     const Vector6d wrench =
-        inverse_dynamics(model_, sample->state, sample->acceleration, data).head<6>();
-    const GroundUse use =
-        ground_use(plane, plane_wrench(plane, sample->state.base.position, wrench), 0.02 * weight);
+        plane_wrench(plane, sample->state.base.position,
+                     inverse_dynamics(model_, sample->state, sample->acceleration, data).head<6>());
+    pulled = wrench.head<2>();
+    const GroundUse use = ground_use(plane, wrench, 0.02 * weight);
     least_force = std::min(least_force, use.normal_force);
     if (!use.has_zmp) continue;
     const double grip = spec_.friction * use.normal_force;
@@ -170,16 +190,8 @@ void CorrectionProblem::place_ground_blocks(int instant) {
     rows(0, 2) = 1;
     add(ConstraintGroup::unilateral, rows, spec_.force_share, kNoBound);
   }
-  if (most_grip > spec_.watched_share * tolerance(Kind::friction)) {
-    const double most_used = spec_.share * tolerance(Kind::friction) * spec_.friction;
-    rows.setZero(kConeSides, 6);
-    for (int i = 0; i < kConeSides; ++i) {
-      rows(i, 0) = -std::cos(2 * i * M_PI / kConeSides);
-      rows(i, 1) = -std::sin(2 * i * M_PI / kConeSides);
-      rows(i, 2) = most_used * std::cos(M_PI / kConeSides);
-    }
-    add(ConstraintGroup::friction, rows, 0, kNoBound);
-  }
+  if (most_grip > spec_.watched_share * tolerance(Kind::friction))
+    add(ConstraintGroup::friction, cone_rows(pulled), 0, kNoBound);
   if (lever > 0 && most_yaw > spec_.watched_share * tolerance(Kind::yaw_moment)) {
     ConstraintBlock block = block_of(ConstraintGroup::yaw, instant, 0, 2, 1 / weight);
     block.factor = spec_.share * tolerance(Kind::yaw_moment) * lever;

@@ -16,6 +16,7 @@
 #include "ayumi/optimize/correction_problem.hpp"
 #include "ayumi/optimize/elastic.hpp"
 #include "ayumi/optimize/obstacles.hpp"
+#include "ayumi/optimize/polish.hpp"
 #include "ayumi/optimize/repair_spec.hpp"
 
 namespace ayumi {
@@ -26,11 +27,6 @@ const char* name_of(RepairStatus status) {
   constexpr const char* kNames[] = {"already_consistent", "repaired", "infeasible",
                                     "not_converged"};
   return kNames[static_cast<int>(status)];
-}
-
-const char* name_of(Trust trust) {
-  constexpr const char* kNames[] = {"posture", "cog", "zmp"};
-  return kNames[static_cast<int>(trust)];
 }
 
 namespace {
@@ -45,59 +41,16 @@ constexpr double kNearlyMet = 1e-3;          // an unsolved program's violation,
 constexpr double kFarOff = 1e-3;             // barrier would only lead away from it
 constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
 constexpr double kRoundMargin = 0.001;       // more ZMP margin each round [m]
-
-std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
-                                                      double pad) {
-  std::vector<std::pair<double, double>> windows;
-  for (const Finding& f : findings)
-    if (f.severity == Severity::error || f.kind == "support_margin")
-      windows.emplace_back(f.begin - pad, f.end + pad);
-  std::sort(windows.begin(), windows.end());
-  std::vector<std::pair<double, double>> merged;
-  for (const auto& w : windows) {
-    if (!merged.empty() && w.first <= merged.back().second)
-      merged.back().second = std::max(merged.back().second, w.second);
-    else
-      merged.push_back(w);
-  }
-  return merged;
-}
-
-// What is written to a file: numbers of nine decimals, and only the control points and joints that
-// move, with the three zero points before and after that a cubic spline needs to begin at rest.
-CorrectionTrack trimmed(const CorrectionTrack& track) {
-  const Eigen::MatrixXd c = (track.coefficients * 1e9).array().round() / 1e9;
-  Eigen::Index first = c.rows(), last = -1;
-  for (Eigen::Index i = 0; i < c.rows(); ++i) {
-    if (c.row(i).isZero(0)) continue;
-    first = std::min(first, i);
-    last = i;
-  }
-  CorrectionTrack result;
-  result.spacing = track.spacing;
-  if (last < 0) {
-    result.coefficients.setZero(4, 6);
-    return result;
-  }
-  first = std::max<Eigen::Index>(0, first - 3);
-  last = std::min(c.rows() - 1, last + 3);
-  result.begin = track.begin + track.spacing * static_cast<double>(first);
-  std::vector<Eigen::Index> columns = {0, 1, 2, 3, 4, 5};
-  for (Eigen::Index j = 6; j < c.cols(); ++j) {
-    if (c.col(j).isZero(0)) continue;
-    columns.push_back(j);
-    result.joints.push_back(track.joints[j - 6]);
-  }
-  result.coefficients = c(Eigen::seq(first, last), columns);
-  return result;
-}
+constexpr int kPolishRounds = 4;             // at the limits of the check itself
+constexpr double kLittle = 1e-4;             // of the way back, rather than another round
+constexpr double kPolishTolerance = 1e-7;    // of optimality, over what the change costs
 
 class Repair {
  public:
   Repair(const RobotModel& model, const CommandSeries& series, const RepairOptions& options,
          const Progress& progress)
       : model_(model), series_(series), options_(options), progress_(progress), collisions_(model) {
-    spec_ = repair_spec(model, series, options);
+    spec_ = asked_ = repair_spec(model, series, options);
     spec_.collisions = &collisions_;
   }
 
@@ -110,9 +63,11 @@ class Repair {
     }
     // COG, ZMP and f_z of the full model: what is left is wrong with the motion itself.
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
-    if (flight_is_at_fault())
+    const bool flight = flight_is_at_fault();
+    if (flight)
       spec_.spacing = std::min(spec_.spacing, shortest_flight(series_) / kKnotsOfFaultyFlight);
     if (!locked_out()) solve_rounds();
+    if (done() && result_.work.rounds > 0 && !flight) polish();
     conclude();
     return result_;
   }
@@ -125,10 +80,10 @@ class Repair {
     // Wider windows help once against a program without a solution; twice was never seen to.
     for (int round = 0; round < kRounds && unsolved < 2; ++round) {
       if (round == 0 ? sound() : done()) break;
-      if (result_.check.consistent) passing_ = result_;
+      if (result_.check.consistent) passing_ = track_;
       choose_windows(round, pad);
       try {
-        solve_round(round);
+        solve_round("repair round " + std::to_string(round + 1), NlpOptions().tolerance);
       } catch (const Interrupted&) {
         if (!options_.keep_partial) throw;
         keep_partial();
@@ -147,10 +102,56 @@ class Repair {
       if (round + 2 == kRounds) spec_.spacing /= 2;
     }
     if (!result_.check.consistent && passing_) {
-      result_ = *passing_;
+      take(*passing_);
       return;
     }
     if (!result_.check.consistent && last_status_ != NlpStatus::solved) solve_elastic();
+  }
+
+  // The least correction that passes, from one that does: limits where the check has them.
+  // The programs of flights have fine knots, and their rows are what they are: that is left out.
+  void polish() {
+    const RepairResult found = result_;
+    const CorrectionTrack passing = track_;
+    const double tolerance = std::clamp(kPolishTolerance * objective_, 1e-9, 1e-6);
+    set_limits_of_the_check();
+    try {
+      for (int round = 0; round < kPolishRounds; ++round) {
+        solve_round("repair, least change", tolerance);
+        if (last_status_ != NlpStatus::solved || result_.check.consistent) break;
+        if (round + 1 < kPolishRounds && take_between(passing, kLittle)) break;
+        add_instants(result_.check, series_.dt, spec_.extra);
+      }
+    } catch (const Interrupted&) {
+      if (!options_.keep_partial) throw;
+      result_ = found;
+      result_.partial = true;
+      return;
+    }
+    if (last_status_ == NlpStatus::solved && (result_.check.consistent || take_between(passing, 1)))
+      return;
+    take(passing);
+    result_.constraint_violation = found.constraint_violation;
+    last_status_ = NlpStatus::solved;
+  }
+
+  // The first that passes between the result and `passing`, at most a share of the way.
+  bool take_between(const CorrectionTrack& passing, double most) {
+    const CorrectionTrack wanted = track_;
+    for (double share = 1e-6; share <= most; share *= 10) {
+      take(between(wanted, passing, share));
+      if (result_.check.consistent) return true;
+    }
+    take(wanted);
+    return false;
+  }
+
+  void set_limits_of_the_check() {
+    const bool safe = spec_.safe_margin > spec_.zmp_margin;
+    spec_.zmp_margin = asked_.zmp_margin;
+    spec_ = at_limits(spec_, options_.safety);
+    spec_.safe_margin = safe ? std::max(asked_.safe_margin, spec_.zmp_margin) : spec_.zmp_margin;
+    spec_.start = track_.coefficients;
   }
 
   // What is to be mended anyhow also gets the margin that the check asks for.
@@ -227,6 +228,7 @@ class Repair {
   }
 
   void take(const CorrectionTrack& track) {
+    track_ = track;
     result_.correction = trimmed(track);
     result_.series = apply_correction(model_, series_, result_.correction);
     judge();
@@ -277,17 +279,19 @@ class Repair {
     result_.constraint_violation = solution.violation;
   }
 
-  void solve_round(int round) {
+  void solve_round(const std::string& stage, double tolerance) {
     const CommandSeries current = result_.series;
     spec_.current = &current;
     problem_.emplace(model_, series_, spec_);
     const Nlp hard = problem_->nlp();
     const bool warm = spec_.start.size() > 0 && violation_at_start(hard) < kFarOff;
     const Nlp nlp = with_soft_safety(*problem_, hard, series_.dt);
-    const NlpSolution solution =
-        solve(nlp, nlp_options(warm), progress_, "repair round " + std::to_string(round + 1));
+    NlpOptions options = nlp_options(warm);
+    options.tolerance = tolerance;
+    const NlpSolution solution = solve(nlp, options, progress_, stage);
     note_work(nlp, solution);
     last_status_ = solution.status;
+    objective_ = solution.objective;
     const CorrectionTrack track = problem_->track(solution.x.head(problem_->variable_count()));
     take(track);
     // Bodies that have met are hard to part again: then from the start.
@@ -345,6 +349,7 @@ class Repair {
             "what was left, no proof that nothing passes");
     }
     result_.moved = motion_change(model_, series_, result_.series);
+    result_.change = weighted_change(model_, series_, result_.series, spec_.weights);
     result_.max_joint_change = result_.moved.joint.size;
     result_.max_cog_change = result_.moved.cog.size;
     result_.at = result_.moved.joint.at;
@@ -356,13 +361,15 @@ class Repair {
   const RepairOptions& options_;
   const Progress& progress_;
   const CollisionModel collisions_;
-  CorrectionSpec spec_;
+  CorrectionSpec spec_, asked_;               // now and of the first round
   std::optional<CorrectionProblem> problem_;  // of the last round
   Eigen::VectorXd least_violating_;
   RepairResult result_;
-  std::optional<RepairResult> passing_;  // an earlier one, where the last does not pass
+  CorrectionTrack track_;                   // of the result, every control point
+  std::optional<CorrectionTrack> passing_;  // an earlier one, where the last does not pass
   std::vector<Finding> findings_;
   NlpStatus last_status_ = NlpStatus::failed;
+  double objective_ = 0;    // of the last program
   bool cut_short_ = false;  // the program of what is in the way, by its limit of iterations
 };
 

@@ -13,14 +13,10 @@
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/optimize/motion_change.hpp"
+#include "ayumi/optimize/weighted_change.hpp"
 #include "ayumi/pattern/command_series.hpp"
 
 namespace ayumi {
-
-/// Which commanded quantity the others have to follow. What is trusted stays; COG, ZMP and f_z that
-/// are not trusted are those of the full model in the end.
-enum class Trust { posture, cog, zmp };
-const char* name_of(Trust trust);
 
 struct RepairOptions {
   CheckOptions check;
@@ -29,6 +25,8 @@ struct RepairOptions {
   std::vector<std::pair<double, double>> locked_windows;  ///< nothing changes there, to the bit [s]
   std::map<std::string, double> joint_weights;            ///< factors on the cost of a joint
   Trust trust = Trust::posture;
+  /// Factor on the price of safety; 0: none is bought, the least change that passes the check.
+  double safety = 1;
   bool keep_partial = false;   ///< stopped: conclude with the least violating point seen
   double knot_spacing = 0.05;  ///< of the B-splines [s]
   /// To keep the ZMP inside the support polygon where the motion's own is too near its edge [m];
@@ -66,6 +64,7 @@ struct RepairResult {
   ConsistencyReport before;     ///< of the series as given
   ConsistencyReport check;      ///< of `series`
   MotionChange moved;           ///< from the series as given to `series`
+  WeightedChange change;        ///< the same weighted: what was made small
   double max_joint_change = 0;  ///< [rad]
   double max_cog_change = 0;    ///< [m]
   std::string where;            ///< joint that moved most

@@ -4,40 +4,25 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/optimize/weighted_change.hpp"
 
 namespace ayumi {
-
-using Eigen::VectorXd;
 
 namespace {
 
 constexpr double kMarginBetween = 5e-4;  // of the ZMP, for what happens between constraints [m]
 constexpr double kKnotsOfFlight = 8;
 
-int find_joint(const RobotModel& model, const std::string& name, const char* use) {
-  const int dof = model.find_dof(name);
-  if (dof < 0)
-    fail(ErrorCode::usage, std::string(use) + " joint '" + name + "': the robot '" + model.name() +
-                               "' has no such joint" + text::suggestion(name, model.dof_names()));
-  return dof;
-}
-
 std::vector<bool> locked_dofs(const RobotModel& model, const std::vector<std::string>& names) {
   std::vector<bool> locked(model.dof_count(), false);
-  for (const std::string& name : names) locked[find_joint(model, name, "locked")] = true;
-  return locked;
-}
-
-VectorXd weight_factors(const RobotModel& model, const std::map<std::string, double>& weights) {
-  VectorXd factors = VectorXd::Ones(model.dof_count());
-  for (const auto& [joint, factor] : weights) {
-    const int dof = find_joint(model, joint, "weighted");
-    if (!(factor > 0) || !std::isfinite(factor))
-      fail(ErrorCode::usage, "weight of joint '" + joint + "': " + text::exact(factor) +
-                                 " must be above 0 (lock the joint to keep it still)");
-    factors[dof] = factor;
+  for (const std::string& name : names) {
+    const int dof = model.find_dof(name);
+    if (dof < 0)
+      fail(ErrorCode::usage, "locked joint '" + name + "': the robot '" + model.name() +
+                                 "' has no such joint" + text::suggestion(name, model.dof_names()));
+    locked[dof] = true;
   }
-  return factors;
+  return locked;
 }
 
 void require_windows(const std::vector<std::pair<double, double>>& windows) {
@@ -67,6 +52,50 @@ double shortest_flight(const CommandSeries& series) {
     first = k + 1;
   }
   return shortest;
+}
+
+std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
+                                                      double pad) {
+  std::vector<std::pair<double, double>> windows;
+  for (const Finding& f : findings)
+    if (f.severity == Severity::error || f.kind == "support_margin")
+      windows.emplace_back(f.begin - pad, f.end + pad);
+  std::sort(windows.begin(), windows.end());
+  std::vector<std::pair<double, double>> merged;
+  for (const auto& w : windows) {
+    if (!merged.empty() && w.first <= merged.back().second)
+      merged.back().second = std::max(merged.back().second, w.second);
+    else
+      merged.push_back(w);
+  }
+  return merged;
+}
+
+CorrectionTrack trimmed(const CorrectionTrack& track) {
+  const Eigen::MatrixXd c = (track.coefficients * 1e9).array().round() / 1e9;
+  Eigen::Index first = c.rows(), last = -1;
+  for (Eigen::Index i = 0; i < c.rows(); ++i) {
+    if (c.row(i).isZero(0)) continue;
+    first = std::min(first, i);
+    last = i;
+  }
+  CorrectionTrack result;
+  result.spacing = track.spacing;
+  if (last < 0) {
+    result.coefficients.setZero(4, 6);
+    return result;
+  }
+  first = std::max<Eigen::Index>(0, first - 3);
+  last = std::min(c.rows() - 1, last + 3);
+  result.begin = track.begin + track.spacing * static_cast<double>(first);
+  std::vector<Eigen::Index> columns = {0, 1, 2, 3, 4, 5};
+  for (Eigen::Index j = 6; j < c.cols(); ++j) {
+    if (c.col(j).isZero(0)) continue;
+    columns.push_back(j);
+    result.joints.push_back(track.joints[j - 6]);
+  }
+  result.coefficients = c(Eigen::seq(first, last), columns);
+  return result;
 }
 
 CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,

@@ -11,6 +11,14 @@ namespace ayumi {
 CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
                            const RepairOptions& options);
 
+/// Around errors and ZMP margins that are too small, `pad` [s] wider; those that overlap are one.
+std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
+                                                      double pad);
+
+/// What is written to a file: numbers of nine decimals, and only the control points and joints that
+/// move, with the three zero points before and after that a cubic spline needs to begin at rest.
+CorrectionTrack trimmed(const CorrectionTrack& track);
+
 /// [s]; without a flight no bound.
 double shortest_flight(const CommandSeries& series);
 

@@ -1,6 +1,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/postures.hpp"
+#include "ayumi/pattern/repair_wishes.hpp"
 #include "ayumi/pattern/viip_phases.hpp"
 
 namespace ayumi {
@@ -29,6 +30,7 @@ Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeri
               const std::string& table) {
   refuse_viip_phases(pattern, "baked");
   Pattern result = pattern;
+  result.repair = without_keyframes(pattern);
   result.keyframes = kept_keys(pattern);
   result.correction.reset();
   result.parameters.clear();

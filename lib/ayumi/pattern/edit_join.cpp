@@ -139,6 +139,7 @@ std::vector<RobotState> transition(const RobotModel& model, const RobotState& fr
 Pattern plain(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
               const std::string& table, size_t rows) {
   Pattern result = baked(model, pattern, series, table);
+  result.repair = {};  // of joints and times that were another motion's
   DenseTable& dense = *result.table;
   dense.cog.clear();
   dense.zmp.clear();

@@ -110,6 +110,7 @@ class Mirror {
     for (Keyframe& key : result.keyframes) mirror(key);
     if (result.table) mirror(*result.table);
     if (result.correction) mirror(*result.correction);
+    result.repair = of(pattern_.repair);
     result.world.slope.x() *= -1;
     for (Disturbance& push : result.scenario) mirror(push);
     return result;
@@ -129,6 +130,15 @@ class Mirror {
       const double sign = with_sign ? map_.sign[dof] : 1;
       result[model_.dofs()[map_.dof[dof]].name] = value == 0 ? 0 : sign * value;
     }
+    return result;
+  }
+
+  RepairWishes of(const RepairWishes& wishes) const {
+    RepairWishes result = wishes;
+    std::swap(result.feet[0], result.feet[1]);
+    for (std::string& joint : result.joints)
+      joint = model_.dofs()[map_.dof[dof_of(joint, "repair/lock/joints")]].name;
+    result.weights = of(wishes.weights, "repair/weights", false);
     return result;
   }
 

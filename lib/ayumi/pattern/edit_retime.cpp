@@ -25,6 +25,10 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
     if (key.fz) *key.fz = weight + (*key.fz - weight) / (scale * scale);
   }
   for (Disturbance& push : result.scenario) push.at *= scale;
+  for (auto& [begin, end] : result.repair.windows) {
+    begin *= scale;
+    end *= scale;
+  }
   if (result.table) {
     *result.table = postures_of(model, *result.table);  // the lead is a time of the robot's
     result.table->dt *= scale;

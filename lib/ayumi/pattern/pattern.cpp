@@ -34,6 +34,16 @@ const char* name_of(Interpolation interpolation) {
   return "?";
 }
 
+const char* name_of(Trust trust) {
+  constexpr const char* kNames[] = {"posture", "cog", "zmp"};
+  return kNames[static_cast<int>(trust)];
+}
+
+bool RepairWishes::empty() const {
+  return joints.empty() && !feet[0] && !feet[1] && keyframes.empty() && windows.empty() &&
+         weights.empty() && !trust && !margin && !safety;
+}
+
 double Pattern::duration() const {
   double end = 0;
   if (!phases.empty()) end = std::max(end, phases.back().until);

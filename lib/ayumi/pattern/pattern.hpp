@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ayumi/math/track.hpp"
@@ -91,6 +92,25 @@ struct CorrectionTrack {
   Eigen::MatrixXd coefficients;     ///< control points x (6 + joints)
 };
 
+/// Which commanded quantity the others have to follow in a repair. What is trusted stays; COG, ZMP
+/// and f_z that are not trusted are those of the full model in the end.
+enum class Trust { posture, cog, zmp };
+const char* name_of(Trust trust);
+
+/// How the author wants the pattern repaired; what is left out is up to who repairs it.
+struct RepairWishes {
+  std::vector<std::string> joints;                 ///< locked: they do not change, to the bit
+  std::array<bool, 2> feet = {};                   ///< locked, by Side: they keep their way
+  std::vector<int> keyframes;                      ///< locked: nothing changes at their times
+  std::vector<std::pair<double, double>> windows;  ///< locked: nothing changes there [s]
+  std::map<std::string, double> weights;           ///< factors on the cost of a joint
+  std::optional<Trust> trust;
+  std::optional<double> margin;  ///< of the ZMP inside the support where its own is too small [m]
+  std::optional<double> safety;  ///< factor on the price of safety; 0: the least change alone
+
+  bool empty() const;
+};
+
 struct Pattern {
   std::string name;
   std::string file;     ///< where it came from, for messages
@@ -114,7 +134,8 @@ struct Pattern {
   std::optional<CorrectionTrack> correction;
   std::map<std::string, double> parameters;  ///< declared ${names} with their values
   std::map<std::string, double> tolerances;  ///< of the check, by finding kind
-  World world;                               ///< that the robot meets
+  RepairWishes repair;
+  World world;  ///< that the robot meets
   ControllerSpec controller;
   std::vector<Disturbance> scenario;
 

@@ -6,6 +6,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/pattern/correction.hpp"
 #include "ayumi/pattern/postures.hpp"
+#include "ayumi/pattern/repair_wishes.hpp"
 #include "ayumi/pattern/sample_job.hpp"
 #include "ayumi/pattern/viip_phases.hpp"
 
@@ -52,6 +53,7 @@ CommandSeries sample(const RobotModel& model, const Pattern& pattern, const Samp
                      const Progress& progress) {
   if (!model.has_soles())
     fail(ErrorCode::bad_model, model.name() + ": the robot has no soles; name both in its sidecar");
+  require_repair_wishes(model, pattern);
   CommandSeries series;
   if (has_viip_phases(pattern)) {
     series = sample_keys(model, without_viip_phases(pattern), options, progress);

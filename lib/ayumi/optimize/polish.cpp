@@ -1,0 +1,46 @@
+#include "ayumi/optimize/polish.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kHair = 1e-6;  // of a limit, for rounding
+
+}  // namespace
+
+CorrectionSpec at_limits(const CorrectionSpec& spec, double safety) {
+  auto tolerance = [&](Kind kind) { return spec.tolerance[static_cast<int>(kind)]; };
+  CorrectionSpec limits = spec;
+  limits.at_limits = true;
+  limits.joint_margin = kHair;
+  limits.share = 1 - kHair;
+  limits.force_share = tolerance(Kind::unilateral);
+  if (safety > 0) return limits;
+  limits.joint_margin = kHair - tolerance(Kind::joint_position);
+  limits.force_share = kHair;
+  limits.clearance = kHair;
+  limits.zmp_margin = limits.safe_margin = kHair * 1e-3;
+  return limits;
+}
+
+void add_instants(const ConsistencyReport& report, double dt, std::vector<double>& instants) {
+  constexpr int kMost = 12;  // of one window
+  for (const Finding& f : report.findings) {
+    if (f.severity != Severity::error) continue;
+    const double length = f.end - f.begin;
+    const int steps = std::clamp(static_cast<int>(std::lround(length / dt)), 1, kMost);
+    for (int i = 0; i <= steps; ++i) instants.push_back(f.begin + length * i / steps);
+    instants.push_back(f.at);
+  }
+}
+
+CorrectionTrack between(const CorrectionTrack& a, const CorrectionTrack& b, double share) {
+  CorrectionTrack track = a;
+  track.coefficients += share * (b.coefficients - a.coefficients);
+  return track;
+}
+
+}  // namespace ayumi
