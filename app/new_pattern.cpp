@@ -3,10 +3,38 @@
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/profiles.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/pattern/sample.hpp"
 
 namespace ayumi::app {
+
+namespace {
+
+// The first profile whose actuators are enough where the robot's first one is not; what else the
+// check finds is told.
+void choose_profile(const Context& context, const RobotModel& model, Pattern& pattern,
+                    const CommandSeries& series) {
+  CheckOptions options;
+  options.profile = pattern.profile;
+  options.friction = pattern.world.friction;
+  options.tolerances = pattern.tolerances;
+  ConsistencyReport report = check_consistency(model, series, options);
+  const ActuatorNeed need = actuator_need(model, series, options, report);
+  if (pattern.profile.empty() && !need.sufficient.empty()) {
+    options.profile = pattern.profile = need.sufficient.front();
+    report = check_consistency(model, series, options);
+    context.print("profile " + pattern.profile + " is written: " + need.text + "\n");
+  } else if (!need.text.empty()) {
+    context.print(need.text + "\n");
+  }
+  if (report.consistent) return;
+  const Finding& first = report.findings.front();
+  context.print("`ayumi check` finds it inconsistent: " + first.kind + " " + first.where + " at " +
+                text::fixed(first.at, 3) + " s: " + first.hint + "\n");
+}
+
+}  // namespace
 
 void write_new_pattern(const Context& context, const RobotModel& model, Pattern pattern,
                        const std::string& robot, const std::string& out,
@@ -16,6 +44,7 @@ void write_new_pattern(const Context& context, const RobotModel& model, Pattern 
   pattern.name = std::filesystem::path(out).stem().string();
   pattern.file = out;
   const CommandSeries series = sample(model, pattern, {}, context.progress());
+  if (series.viip.empty() && model.has_soles()) choose_profile(context, model, pattern, series);
   pattern.file = "new";  // relative names hold from the working folder
   write_pattern(out, pattern, comments);
   context.print(out + ": " + text::fixed(series.duration(), 2) + " s, " +

@@ -38,6 +38,7 @@ struct CheckPass {
   const double weight;  ///< [N]
 
   FindingWindows windows;
+  FindingWindows targets;  ///< steps of what servos receive: told, no cause of anything
   CheckSummary summary;
   Eigen::MatrixXd square_sum;                   ///< of torques before a sample, dof x (samples + 1)
   std::vector<Eigen::Vector3d> flight_moment;   ///< about the COG, by sample; 0 on the ground [N m]
@@ -56,6 +57,8 @@ void check_servo_steps(CheckPass& pass);
 /// Mean moment over a few samples of a flight: momentum must not change, while the rate of a single
 /// sample holds the rounding of differences.
 void check_angular_momentum(CheckPass& pass);
+/// Steps of what servos receive: the posture led by kd/kp times its rate. Warnings.
+void check_servo_targets(CheckPass& pass);
 /// RMS torque in the thermal window.
 void check_continuous_torque(CheckPass& pass);
 /// Bodies against each other: every 20 ms, then every sample around the places where they are near.

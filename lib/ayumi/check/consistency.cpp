@@ -26,6 +26,7 @@ CheckPass::CheckPass(const RobotModel& model, const CommandSeries& series,
       dynamics(model, series, plan),
       weight(model.mass() * kGravity),
       windows(static_cast<int>(std::lround(kWindowGap / series.dt))),
+      targets(static_cast<int>(std::lround(kWindowGap / series.dt))),
       square_sum(Eigen::MatrixXd::Zero(model.dof_count(), count() + 1)),
       flight_moment(count(), Eigen::Vector3d::Zero()),
       cog_deviation(count(), 0.0),
@@ -106,6 +107,8 @@ ConsistencyReport report_of(CheckPass& pass) {
   std::vector<FindingWindow> windows = pass.windows.finish();
   excuse_spikes(pass, windows);
   explain(pass, windows);
+  const std::vector<FindingWindow> targets = pass.targets.finish();
+  windows.insert(windows.end(), targets.begin(), targets.end());
   ConsistencyReport report;
   report.profile = pass.limits.name;
   report.summary = pass.summary;
@@ -138,6 +141,7 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
   check_feet(pass);
   check_angular_momentum(pass);
   check_servo_steps(pass);
+  check_servo_targets(pass);
   check_continuous_torque(pass);
   check_self_collision(pass);
   return report_of(pass);

@@ -58,8 +58,9 @@ const std::vector<FindingKind>& finding_kinds() {
        "the motion is shorter than the window",
        1},
       {"servo_step", "1",
-       "change of the joint target per servo period over what the speed limit allows, where the "
-       "joint speed itself does not tell it",
+       "change of the joint angle per servo period over what the speed limit allows, where the "
+       "joint speed itself does not tell it; a warning where only the servo's target, which leads "
+       "the angle, steps by more",
        1},
       {"self_collision", "m",
        "clearance between bodies: an error when they meet, a warning below the tolerance", 0.002},

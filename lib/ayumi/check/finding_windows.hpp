@@ -20,6 +20,9 @@ struct Violation {
   int detail = 0;               ///< carried along from the worst sample
 };
 
+/// Detail of a servo step that is one of the target with its lead, not of the posture.
+inline constexpr int kServoTarget = 1;
+
 struct FindingWindow {
   Violation worst;
   int first = 0, last = 0;  ///< samples

@@ -18,6 +18,15 @@ std::string slow_down(double factor) {
 
 const char* axis_name(int axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
 
+std::string servo_target_hint(const RobotModel& model, const Violation& v) {
+  const Dof& dof = model.dofs()[v.item];
+  return "the target of " + dof.name + "'s servo, which leads the posture by kd/kp = " +
+         text::brief(1e3 * dof.servo.kd / dof.servo.kp, 3) + " ms, steps by " +
+         text::brief(std::abs(v.value / v.limit), 3) +
+         " of what the speed limit allows, so that `export` refuses the table: accelerate " +
+         dof.name + " less here";
+}
+
 std::string joint_hint(const RobotModel& model, const Violation& v) {
   const std::string joint = model.dofs()[v.item].name;
   const double ratio = std::abs(v.value / v.limit);
@@ -35,6 +44,7 @@ std::string joint_hint(const RobotModel& model, const Violation& v) {
     case Kind::continuous_torque:
       return joint + " gets too hot when this goes on: rest it, or straighten the leg";
     default:
+      if (v.detail == kServoTarget) return servo_target_hint(model, v);
       return joint + " jumps by " + text::brief(v.value, 3) +
              " rad in one servo period: spread the step over " + text::fixed(std::ceil(ratio), 0) +
              " periods";

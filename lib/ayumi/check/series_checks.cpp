@@ -4,6 +4,7 @@
 
 #include "ayumi/check/check_pass.hpp"
 #include "ayumi/check/collision_scan.hpp"
+#include "ayumi/pattern/servo_lead.hpp"
 
 namespace ayumi {
 
@@ -62,6 +63,30 @@ void check_servo_steps(CheckPass& pass) {
       // Half a percent: the mean speed of a tick is not the speed at its ends.
       if (ratio > 1.005 * most && planned <= limit)
         pass.add(Kind::servo_step, i, k, step, most * allowed, ratio);
+    }
+  }
+}
+
+void check_servo_targets(CheckPass& pass) {
+  const double period = pass.model.description().servo_period, dt = pass.series.dt;
+  const int ticks = std::max(1, static_cast<int>(std::lround(period / dt)));
+  const Eigen::VectorXd lead = servo_lead(pass.model);
+  const double most = pass.tolerance(Kind::servo_step);
+  const auto target = [&](int k, int i) {
+    const RobotState& s = pass.series.samples[k].state;
+    return s.theta[i] + lead[i] * s.dtheta[i];
+  };
+  for (int k = ticks; k < pass.count(); ++k) {
+    for (int i = 0; i < pass.model.dof_count(); ++i) {
+      const double limit = pass.limits.speed[i], allowed = most * limit * ticks * dt;
+      // A joint that is itself too fast is told as such.
+      if (!std::isfinite(allowed) ||
+          std::abs(pass.series.samples[k].state.dtheta[i]) > most * limit)
+        continue;
+      const double step = target(k, i) - target(k - ticks, i), ratio = std::abs(step) / allowed;
+      if (ratio > 1.005)
+        pass.targets.add(
+            {Kind::servo_step, i, k, Severity::warning, step, allowed, ratio, kServoTarget});
     }
   }
 }
