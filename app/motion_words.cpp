@@ -75,6 +75,12 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
          " after\n";
 }
 
+std::string cost_words(const WeightedChange& cost) {
+  const std::string missing =
+      cost.safety > 0 ? " and " + text::brief(cost.safety) + " for the safety that is missing" : "";
+  return "  weighted change " + text::brief(cost.change) + missing;
+}
+
 void plot_motions(const RobotModel& model, const CommandSeries& before, const CommandSeries& after,
                   const std::string& title, const std::filesystem::path& path) {
   const SimulationLog a = plan_log(model, before, before, title);

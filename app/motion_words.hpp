@@ -6,6 +6,7 @@
 
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/optimize/motion_change.hpp"
+#include "ayumi/optimize/weighted_change.hpp"
 #include "commands.hpp"
 
 namespace ayumi::app {
@@ -14,6 +15,9 @@ namespace ayumi::app {
 /// after.
 std::string motion_words(const RobotModel& model, const MotionChange& change,
                          const ConsistencyReport& before, const ConsistencyReport& after);
+
+/// "  weighted change 0.17 and 0.003 for the safety that is missing".
+std::string cost_words(const WeightedChange& cost);
 
 /// COG, ZMP and f_z of both motions against time, with what the first one commands, as .svg or
 /// .png.

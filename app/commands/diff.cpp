@@ -5,8 +5,10 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/results_json.hpp"
+#include "ayumi/optimize/safety_price.hpp"
 #include "motion_words.hpp"
 #include "pattern_input.hpp"
+#include "repairing.hpp"
 
 namespace ayumi::app {
 
@@ -17,6 +19,7 @@ using Json = nlohmann::ordered_json;
 struct Options {
   std::string a, b, plot;
   std::vector<std::string> weights;
+  std::optional<double> safety;
   PatternOptions input;
 };
 
@@ -42,12 +45,17 @@ std::string side_words(const std::string& file, const PatternInput& input,
          text::fixed(input.series.duration(), 2) + " s\n";
 }
 
-// What a repair of A would weigh joints by.
-Eigen::VectorXd factors_of(const Options& options, const PatternInput& a) {
-  std::map<std::string, double> weights = a.pattern.repair.weights;
+// Weighed as a repair of A would.
+WeightedChange weighted(const Options& options, const PatternInput& a, const PatternInput& b) {
+  RepairOptions repair = wished_options(a.pattern);
+  repair.check = check_options(a);
   for (const auto& [joint, factor] : read_pairs(options.weights, "--weight"))
-    weights[joint] = factor;
-  return weight_factors(a.model, weights);
+    repair.joint_weights[joint] = factor;
+  if (options.safety) repair.safety = *options.safety;
+  WeightedChange change =
+      weighted_change(a.model, a.series, b.series, weight_factors(a.model, repair.joint_weights));
+  change.safety = safety_price(a.model, a.series, b.series, repair);
+  return change;
 }
 
 void diff(Context& context, const Options& options) {
@@ -61,8 +69,7 @@ void diff(Context& context, const Options& options) {
   const ConsistencyReport check_a = check_consistency(a.model, a.series, check_options(a));
   const ConsistencyReport check_b = check_consistency(b.model, b.series, check_options(b));
   const MotionChange change = motion_change(a.model, a.series, b.series);
-  const WeightedChange weighted =
-      weighted_change(a.model, a.series, b.series, factors_of(options, a));
+  const WeightedChange cost = weighted(options, a, b);
   const double contacts = contacts_differ_at(a.series, b.series);
   const bool same_length = a.series.samples.size() == b.series.samples.size();
   const bool same =
@@ -72,8 +79,7 @@ void diff(Context& context, const Options& options) {
   if (same)
     words += "  the same motion and commands\n";
   else
-    words += motion_words(a.model, change, check_a, check_b) + "  weighted change " +
-             text::brief(weighted.total) + "\n";
+    words += motion_words(a.model, change, check_a, check_b) + cost_words(cost) + "\n";
   if (!same_length)
     words += "  compared over the first " + text::fixed(change.compared, 3) + " s\n";
   if (contacts >= 0) words += "  contacts differ from " + text::fixed(contacts, 3) + " s on\n";
@@ -94,7 +100,7 @@ void diff(Context& context, const Options& options) {
                  {"fz_N", change.fz.size},
                  {"foot_m", change.foot.size}}},
                {"moved", Json::parse(motion_change_json(change))},
-               {"weighted_change", Json::parse(weighted_change_json(weighted))}};
+               {"weighted_change", Json::parse(weighted_change_json(cost))}};
   context.print_json(json.dump(2));
 }
 
@@ -114,6 +120,11 @@ void add_diff(CLI::App& app, Context& context) {
                    "of a joint in the weighted change, as for repair; left out: the pattern's")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
+  command
+      ->add_option("--safety", options.safety,
+                   "factor on the price of safety in it, as for repair; left out: the pattern's, 1")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("FACTOR");
   add_pattern_options(*command, options.input);
   command->callback([&context] { diff(context, options); });
 }

@@ -93,10 +93,9 @@ std::string in_words(const Options& options, const PatternInput& input, const Re
     return out + "  nothing changed; " + options.out + " is the pattern as it was\n";
   out += steering_words(options, input.pattern) +
          motion_words(model, result.moved, result.before, result.check);
-  out += "  weighted change " + text::brief(result.change.total) + "; " +
-         std::to_string(result.variables) + " variables, " + std::to_string(result.constraints) +
-         " constraints, " + std::to_string(result.iterations) + " iterations, " +
-         text::fixed(wall, 2) + " s\n";
+  out += cost_words(result.change) + "; " + std::to_string(result.variables) + " variables, " +
+         std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
+         " iterations, " + text::fixed(wall, 2) + " s\n";
   for (const std::string& reason : result.reasons) out += "  because " + reason + "\n";
   if (result.status == RepairStatus::repaired) out += check_table(result.check);
   return out;

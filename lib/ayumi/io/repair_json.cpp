@@ -57,7 +57,10 @@ std::string weighted_change_json(const WeightedChange& change) {
   OrderedJson parts = OrderedJson::array();
   for (const ChangePart& p : change.parts)
     parts.push_back({{"what", p.what}, {"weight", figure(p.weight)}, {"change", figure(p.change)}});
-  return OrderedJson({{"total", figure(change.total)}, {"parts", parts}})
+  return OrderedJson({{"total", figure(change.total())},
+                      {"change", figure(change.change)},
+                      {"safety", figure(change.safety)},
+                      {"parts", parts}})
       .dump(2, ' ', false, OrderedJson::error_handler_t::replace);
 }
 

@@ -17,7 +17,7 @@ std::string check_json(const ConsistencyReport& report);
 /// joints[], cog{}, foot{}, zmp{}, fz{}
 std::string motion_change_json(const MotionChange& change);
 
-/// {"total", "parts": [{"what", "weight", "change"}]}.
+/// {"total", "change", "safety", "parts": [{"what", "weight", "change"}]}.
 std::string weighted_change_json(const WeightedChange& change);
 
 /// status, moved{}, iterations, constraint_violation, reasons[], check{}

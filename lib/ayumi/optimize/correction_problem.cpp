@@ -18,8 +18,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kObjectiveScale = 100.0;
-
 constexpr double kValueGram[] = {2416.0 / 5040, 1191.0 / 5040, 120.0 / 5040, 1.0 / 5040};
 constexpr double kCurvatureGram[] = {8.0 / 3, -1.5, 0, 1.0 / 6};
 
@@ -178,7 +176,14 @@ void CorrectionProblem::place_objective() {
 }
 
 VectorXd CorrectionProblem::constraints(const VectorXd& x) const {
-  const MatrixXd c = coefficients(index_, x);
+  return constraints(series_, coefficients(index_, x));
+}
+
+VectorXd CorrectionProblem::constraints_of(const CommandSeries& motion) const {
+  return constraints(motion, zero_.coefficients);
+}
+
+VectorXd CorrectionProblem::constraints(const CommandSeries& motion, const MatrixXd& c) const {
   VectorXd g(constraint_count());
   RobotData data(model_);
   InstantState state;
@@ -186,7 +191,7 @@ VectorXd CorrectionProblem::constraints(const VectorXd& x) const {
   for (const ConstraintBlock& block : blocks_) {
     const Instant& instant = instants_[block.instant];
     if (block.instant != at)
-      state = instant_state(model_, series_.samples[instant.sample], instant, c, nullptr, data);
+      state = instant_state(model_, motion.samples[instant.sample], instant, c, nullptr, data);
     at = block.instant;
     g.segment(block.row, block.rows) = block_values(model_, block, instant, state);
   }

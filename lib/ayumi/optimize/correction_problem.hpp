@@ -22,6 +22,8 @@
 
 namespace ayumi {
 
+inline constexpr double kObjectiveScale = 100.0;  ///< of 1/2 of the weighted change
+
 /// What may move and what must hold.
 struct CorrectionSpec {
   double spacing = 0.05;                                  ///< of the knots [s]
@@ -73,6 +75,8 @@ class CorrectionProblem {
   double safety(int instant) const { return margin_[instant] - spec_.zmp_margin; }
 
   Eigen::VectorXd constraints(const Eigen::VectorXd& x) const;
+  /// Of another motion over the same plan, sampled alike.
+  Eigen::VectorXd constraints_of(const CommandSeries& motion) const;
 
   /// The program; it refers to this object, which must outlive it.
   Nlp nlp() const;
@@ -81,6 +85,7 @@ class CorrectionProblem {
   CorrectionTrack track(const Eigen::VectorXd& x) const;
 
  private:
+  Eigen::VectorXd constraints(const CommandSeries& motion, const Eigen::MatrixXd& c) const;
   void place_variables();
   void place_end(int first, double time);
   void place_instants();

@@ -140,7 +140,14 @@ Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
   return soft;
 }
 
-Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt) {
+Price price_of(ConstraintGroup group) {
+  constexpr double kChange = 2 / kObjectiveScale;  // of one of the objective
+  if (group == ConstraintGroup::support)
+    return {kMillimetre, kChange * kSafetyPrice, kSafetyWindow};
+  return {unit_of(group), kChange * kPrice, kWindow};
+}
+
+Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt, double factor) {
   Slacks slacks;
   slacks.group.assign(static_cast<size_t>(problem.constraint_count()), -1);
   std::map<long, int> index;
@@ -159,7 +166,7 @@ Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt
   if (most.empty()) return nlp;
   slacks.most = Eigen::Map<VectorXd>(most.data(), static_cast<Eigen::Index>(most.size()));
   slacks.unit = VectorXd::Constant(slacks.most.size(), kMillimetre);
-  slacks.price = VectorXd::Constant(slacks.most.size(), kSafetyPrice);
+  slacks.price = VectorXd::Constant(slacks.most.size(), factor * kSafetyPrice);
   return elastic(nlp, slacks);
 }
 

@@ -18,12 +18,21 @@ struct Slacks {
 /// appear twice. Refers to `nlp`, which must outlive it.
 Nlp elastic(const Nlp& nlp, const Slacks& slacks);
 
+/// What a lack of one kind costs: `change`, in the measure of weighted_change() [s], for every
+/// `unit` in the row that the largest lack of one limit has in a window of time [s].
+struct Price {
+  double unit = 0, change = 0, window = 0;
+};
+Price price_of(ConstraintGroup group);
+
 /// The program of `problem` with every limit soft, per limit and tenth of a second. Feet on the
 /// ground and flight are the last to give way.
 Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt);
 
 /// The program of `problem` with the ZMP's safety to be had at a price: where it costs more change
 /// than it is worth, or is not to be had, it gives way as far as to the least margin asked for.
-Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt);
+/// `factor` on the price.
+Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt,
+                     double factor = 1);
 
 }  // namespace ayumi

@@ -18,6 +18,7 @@
 #include "ayumi/optimize/obstacles.hpp"
 #include "ayumi/optimize/polish.hpp"
 #include "ayumi/optimize/repair_spec.hpp"
+#include "ayumi/optimize/safety_price.hpp"
 
 namespace ayumi {
 
@@ -147,10 +148,10 @@ class Repair {
   }
 
   void set_limits_of_the_check() {
-    const bool safe = spec_.safe_margin > spec_.zmp_margin;
+    const bool safe = spec_.safe_margin > spec_.zmp_margin;  // was to be had
     spec_.zmp_margin = asked_.zmp_margin;
+    spec_.safe_margin = safe ? asked_.safe_margin : asked_.zmp_margin;
     spec_ = at_limits(spec_, options_.safety);
-    spec_.safe_margin = safe ? std::max(asked_.safe_margin, spec_.zmp_margin) : spec_.zmp_margin;
     spec_.start = track_.coefficients;
   }
 
@@ -285,7 +286,7 @@ class Repair {
     problem_.emplace(model_, series_, spec_);
     const Nlp hard = problem_->nlp();
     const bool warm = spec_.start.size() > 0 && violation_at_start(hard) < kFarOff;
-    const Nlp nlp = with_soft_safety(*problem_, hard, series_.dt);
+    const Nlp nlp = with_soft_safety(*problem_, hard, series_.dt, options_.safety);
     NlpOptions options = nlp_options(warm);
     options.tolerance = tolerance;
     const NlpSolution solution = solve(nlp, options, progress_, stage);
@@ -350,6 +351,7 @@ class Repair {
     }
     result_.moved = motion_change(model_, series_, result_.series);
     result_.change = weighted_change(model_, series_, result_.series, spec_.weights);
+    result_.change.safety = safety_price(model_, series_, result_.series, options_);
     result_.max_joint_change = result_.moved.joint.size;
     result_.max_cog_change = result_.moved.cog.size;
     result_.at = result_.moved.joint.at;

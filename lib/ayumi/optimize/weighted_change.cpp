@@ -86,7 +86,7 @@ WeightedChange weighted_change(const RobotModel& model, const CommandSeries& bef
   sum = sum.cwiseProduct(weight);
   WeightedChange change;
   auto add = [&](const std::string& what, double part, double each) {
-    change.total += part;
+    change.change += part;
     if (part > kNothing) change.parts.push_back({what, each, part});
   };
   add("base position", sum.head<3>().sum(), kPositionWeight);

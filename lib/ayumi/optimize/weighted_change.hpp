@@ -22,8 +22,10 @@ struct ChangePart {
 };
 
 struct WeightedChange {
-  double total = 0;               ///< [s]
+  double change = 0;              ///< the sum above [s]
+  double safety = 0;              ///< price of the safety that is lacking (safety_price.hpp) [s]
   std::vector<ChangePart> parts;  ///< those that are not 0, the largest first
+  double total() const { return change + safety; }
 };
 
 /// w by column (base position, base rotation, joints): 1000 per m^2, 4, and W of the motion (of the
@@ -36,7 +38,7 @@ Eigen::VectorXd change_weights(const RobotModel& model, const CommandSeries& ser
 Eigen::VectorXd weight_factors(const RobotModel& model,
                                const std::map<std::string, double>& weights);
 
-/// Over the time that both have. Throws Error(usage) when their rates differ.
+/// Without safety, over the time that both have. Throws Error(usage) when their rates differ.
 WeightedChange weighted_change(const RobotModel& model, const CommandSeries& before,
                                const CommandSeries& after, const Eigen::VectorXd& factors = {});
 

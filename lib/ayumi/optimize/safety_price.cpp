@@ -1,0 +1,109 @@
+#include "ayumi/optimize/safety_price.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "ayumi/check/collision_scan.hpp"
+#include "ayumi/optimize/elastic.hpp"
+#include "ayumi/optimize/repair_spec.hpp"
+
+namespace ayumi {
+
+using Eigen::VectorXd;
+
+namespace {
+
+bool differ(const RobotState& a, const RobotState& b) {
+  return a.theta != b.theta || a.base.position != b.base.position ||
+         a.base.attitude.coeffs() != b.base.attitude.coeffs();
+}
+
+// Where `after` is another motion, wide enough for the control points that act there.
+std::vector<std::pair<double, double>> windows_of(const CommandSeries& before,
+                                                  const CommandSeries& after, double spacing) {
+  const double pad = 4 * spacing;
+  std::vector<std::pair<double, double>> windows;
+  for (size_t k = 0; k < before.samples.size(); ++k) {
+    if (!differ(before.samples[k].state, after.samples[k].state)) continue;
+    const double t = before.dt * static_cast<double>(k);
+    if (!windows.empty() && t - pad <= windows.back().second)
+      windows.back().second = t + pad;
+    else
+      windows.emplace_back(t - pad, t + pad);
+  }
+  return windows;
+}
+
+std::vector<int> near_pairs(const RobotModel& model, const CollisionModel& collisions,
+                            const CommandSeries& before, const CommandSeries& after) {
+  constexpr double kNear = 0.005;  // [m]
+  std::set<int> near;
+  for (const CommandSeries* series : {&before, &after})
+    scan_clearance(model, *series, collisions, kNear, [&](int pair, int, double clearance) {
+      if (clearance < kNear) near.insert(pair);
+    });
+  return {near.begin(), near.end()};
+}
+
+// What the check asks for as well is no matter of safety: a motion that breaks it does not pass.
+bool is_bought(ConstraintGroup group) {
+  switch (group) {
+    case ConstraintGroup::support:
+    case ConstraintGroup::unilateral:
+    case ConstraintGroup::stance:
+    case ConstraintGroup::swing:
+    case ConstraintGroup::position:
+    case ConstraintGroup::clearance:
+      return true;
+    default:
+      return false;
+  }
+}
+
+double lack(const CorrectionProblem& problem, const ConstraintBlock& block, const VectorXd& g) {
+  constexpr double kMet = 1e-6;  // of its unit: the solver's tolerance
+  double most = 0;
+  for (int i = block.row; i < block.row + block.rows; ++i)
+    most = std::max({most, problem.lower()[i] - g[i], g[i] - problem.upper()[i]});
+  most /= price_of(block.group).unit;
+  return most > kMet ? most : 0;
+}
+
+}  // namespace
+
+double safety_price(const RobotModel& model, const CommandSeries& before,
+                    const CommandSeries& after, const RepairOptions& options) {
+  if (!(options.safety > 0) || before.samples.size() != after.samples.size()) return 0;
+  CorrectionSpec spec = repair_spec(model, before, options);
+  spec.windows = windows_of(before, after, spec.spacing);
+  if (spec.windows.empty()) return 0;
+  const CollisionModel collisions(model);
+  spec.collisions = &collisions;
+  spec.near_pairs = near_pairs(model, collisions, before, after);
+  spec.current = &after;
+  spec.joint_margin = 0;
+  const CorrectionProblem problem(model, before, spec);
+  const VectorXd g = problem.constraints_of(after);
+  std::map<std::tuple<int, int, long>, double> lacks;  // by limit and window
+  double sum = 0;
+  for (const ConstraintBlock& block : problem.blocks()) {
+    const int k = problem.instants()[static_cast<size_t>(block.instant)].sample;
+    const auto sample = static_cast<size_t>(k);
+    if (!is_bought(block.group) ||
+        !differ(before.samples[sample].state, after.samples[sample].state))
+      continue;
+    const Price price = price_of(block.group);
+    const std::tuple key(static_cast<int>(block.group), block.item,
+                         std::lround(k * before.dt / price.window));
+    double& most = lacks[key];
+    const double here = lack(problem, block, g);
+    sum += std::max(0.0, here - most) * price.change;
+    most = std::max(most, here);
+  }
+  return options.safety * sum;
+}
+
+}  // namespace ayumi

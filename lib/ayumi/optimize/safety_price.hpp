@@ -1,0 +1,16 @@
+#pragma once
+// What a motion lacks of the safety that a repair of another one buys: the ZMP as far inside as it
+// is wanted, soles in their places closer than the check asks for, feet off the ground, bodies
+// apart, joints within their limits. By the rows of the repair's own program at its instants, each
+// limit's largest lack in a short window at its price.
+
+#include "ayumi/optimize/repair.hpp"
+
+namespace ayumi {
+
+/// In the measure of weighted_change() [s], where `after` differs from `before`; 0 where
+/// options.safety is 0 and for motions of different length.
+double safety_price(const RobotModel& model, const CommandSeries& before,
+                    const CommandSeries& after, const RepairOptions& options);
+
+}  // namespace ayumi
