@@ -105,6 +105,11 @@ void wait_or_stop() {
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
+// Editors that replace a file take it away for a moment.
+void await_return(const std::string& file) {
+  for (int i = 0; i < 5 && !fs::exists(file); ++i) wait_or_stop();
+}
+
 // Until Ctrl-C.
 void watch(Context& context, const Options& options) {
   if (options.patterns.size() != 1) fail(ErrorCode::usage, "check --watch: name one PATTERN");
@@ -114,6 +119,7 @@ void watch(Context& context, const Options& options) {
     seen = stamps_of(watched_files(file, seen));
     check_once(context, options, file);
     while (stamps_of(watched_files(file, seen)) == seen) wait_or_stop();
+    await_return(file);
     context.print("\n");
   }
 }

@@ -43,9 +43,10 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
 /// Whether a row is one without interval and command: 21 motors, then two more numbers.
 bool is_bare_hoap_row(std::string_view line);
 
-/// A head row and numbers: t[s] (or t, time, time_s), joints as theta.<joint>[rad] or by their bare
-/// names, and whole groups of cog, zmp, fz, base, contact columns as in Ayumi's tables. Rows that
-/// are not evenly spaced are interpolated. Throws Error(bad_file) naming the column or row.
+/// A head row and numbers: t[s] (or t, time, time_ms), joints as theta.<joint>[rad] or by their
+/// names, bare or with a unit as in r_knee[deg], and whole groups of cog, zmp, fz, base, contact
+/// columns as in Ayumi's tables. Rows that are not evenly spaced are interpolated. Throws
+/// Error(bad_file) naming the column or row.
 ImportedMotion read_table_motion(const std::string& bytes, const std::string& file,
                                  const RobotModel& model, const ImportOptions& options = {});
 

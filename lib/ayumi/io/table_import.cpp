@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/comma_cells.hpp"
+#include "ayumi/io/foreign_text.hpp"
 #include "ayumi/io/motion_import.hpp"
 #include "ayumi/io/table_columns.hpp"
 #include "ayumi/math/smoothing.hpp"
@@ -14,23 +16,68 @@ namespace ayumi {
 namespace {
 
 constexpr double kRadiansPerDegree = EIGEN_PI / 180;
-const std::vector<std::string> kTimeColumns = {"t[s]", "t", "time", "time_s", "time[s]"};
 
 [[noreturn]] void stop(const std::string& file, const std::string& reason) {
   fail(ErrorCode::bad_file, file + ": " + reason);
 }
 
-// Bare joint names become theta columns, and a time column of any name t[s].
+// "r_knee[deg]" and "r_knee (deg)" are a name and its unit; so are "time_s" and "time_ms".
+struct ColumnName {
+  std::string name, unit;
+};
+
+ColumnName column_name(const std::string& column) {
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+    const size_t at = column.find(open);
+    if (at == std::string::npos || column.back() != close) continue;
+    return {std::string(trimmed(std::string_view(column).substr(0, at))),
+            std::string(trimmed(std::string_view(column).substr(at + 1, column.size() - at - 2)))};
+  }
+  for (const std::string unit : {"s", "ms"})
+    if (column.ends_with("_" + unit))
+      return {column.substr(0, column.size() - unit.size() - 1), unit};
+  return {column, ""};
+}
+
+bool is_time(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name == "t" || name == "time";
+}
+
+constexpr double kNoAngle = 10;  // of a joint with limits [rad]: more are degrees
+
+// Joint columns by bare name or with a unit become theta columns, and a time column of any name
+// t[s].
+void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
+                   const ImportOptions& options, const std::string& file) {
+  std::string& column = table.columns[static_cast<size_t>(i)];
+  const ColumnName named = column_name(column);
+  if (is_time(named.name) && (named.unit.empty() || named.unit == "s" || named.unit == "ms")) {
+    if (named.unit == "ms") table.values.col(i) *= 1e-3;
+    column = "t[s]";
+    return;
+  }
+  const bool whole = model.find_dof(column) >= 0;  // a name may end like a unit
+  std::string joint = whole ? column : named.name;
+  if (joint.starts_with("theta.") && !named.unit.empty()) joint = joint.substr(6);
+  const int dof = model.find_dof(joint);
+  const std::string unit = whole ? "" : named.unit;
+  if (dof < 0 || !(unit.empty() || unit == "deg" || unit == "rad")) return;
+  const bool degrees = unit.empty() ? options.degrees : unit == "deg";
+  const Dof& made = model.dofs()[static_cast<size_t>(dof)];
+  const double most = table.values.col(i).cwiseAbs().maxCoeff();
+  if (degrees && !made.prismatic) table.values.col(i) *= kRadiansPerDegree;
+  if (!degrees && !made.prismatic && made.limited && most > kNoAngle)
+    stop(file, "column '" + column + "' reaches " + text::brief(most) +
+                   " rad, which no joint does: give --unit deg where angles are in degrees");
+  column = theta_column(joint);
+}
+
 void rename_columns(NumberTable& table, const RobotModel& model, const ImportOptions& options,
                     const std::string& file) {
-  for (size_t i = 0; i < table.columns.size(); ++i) {
-    std::string& column = table.columns[i];
-    if (std::find(kTimeColumns.begin(), kTimeColumns.end(), column) != kTimeColumns.end())
-      column = "t[s]";
-    if (model.find_dof(column) < 0) continue;
-    if (options.degrees) table.values.col(static_cast<Eigen::Index>(i)) *= kRadiansPerDegree;
-    column = theta_column(column);
-  }
+  for (Eigen::Index i = 0; i < table.values.cols(); ++i)
+    rename_column(table, i, model, options, file);
   for (size_t i = 0; i < table.columns.size(); ++i)
     if (std::find(table.columns.begin() + static_cast<std::ptrdiff_t>(i) + 1, table.columns.end(),
                   table.columns[i]) != table.columns.end())
@@ -60,7 +107,9 @@ void even_out(NumberTable& table, std::vector<std::string>& filled, const std::s
   for (Eigen::Index k = 1; k < rows; ++k) {
     steps.push_back(t[k] - t[k - 1]);
     if (!(steps.back() > 0))
-      stop(file, "data row " + std::to_string(k + 1) + ": time does not increase");
+      stop(file, "data row " + std::to_string(k + 1) + ": time " + text::brief(t[k]) +
+                     " s does not come after " + text::brief(t[k - 1]) +
+                     " s of the row before; times must increase");
   }
   if (steps.empty()) stop(file, "one row is no motion");
   std::nth_element(steps.begin(), steps.begin() + static_cast<long>(steps.size() / 2), steps.end());
@@ -233,8 +282,9 @@ ImportedMotion read_table_motion(const std::string& bytes, const std::string& fi
   return result;
 }
 
-ImportedMotion read_motion(const std::string& bytes, const std::string& file,
+ImportedMotion read_motion(const std::string& given, const std::string& file,
                            const RobotModel& model, const ImportOptions& options) {
+  const std::string bytes = plain_table_text(given, file);
   const bool hoap = options.format == "hoap" || (options.format.empty() && looks_like_hoap(bytes));
   ImportedMotion result = hoap ? read_hoap_motion(bytes, file, model, options.rate)
                                : read_table_motion(bytes, file, model, options);

@@ -1,0 +1,94 @@
+// Tables as spreadsheets and other programs write them, and one clear line for those that cannot be
+// read.
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/io/motion_import.hpp"
+#include "tests/support/hoap1.hpp"
+
+namespace ayumi::test {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+ImportedMotion read(const std::string& text, ImportOptions options = {}) {
+  return read_motion(text, "a.csv", hoap1(), options);
+}
+
+std::string refusal(const std::string& text, ImportOptions options = {}) {
+  try {
+    read(text, options);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_file);
+    return error.what();
+  }
+  return "read";
+}
+
+// Two joints turn evenly, 20 rows in 0.19 s.
+std::string table(const std::string& head, char separator, char point, double time, double angle,
+                  const std::string& end = "\n") {
+  const auto number = [&](double value) {
+    std::string text = std::to_string(value);
+    std::replace(text.begin(), text.end(), '.', point);
+    return text;
+  };
+  std::string text = head + end;
+  for (int k = 0; k < 20; ++k)
+    text += number(0.01 * k * time) + separator + number(-k * angle) + separator +
+            number(2 * k * angle) + end;
+  return text;
+}
+
+void expect_the_motion(const ImportedMotion& motion, const std::string& what) {
+  ASSERT_EQ(motion.motion.theta.rows(), 20) << what;
+  EXPECT_NEAR(motion.motion.dt, 0.01, 1e-12) << what;
+  for (int k = 0; k < 20; ++k) {
+    EXPECT_NEAR(motion.motion.theta(k, hoap1().find_dof("l_elbow")), -k * kDegree, 2e-6) << what;
+    EXPECT_NEAR(motion.motion.theta(k, hoap1().find_dof("r_knee")), 2 * k * kDegree, 2e-6) << what;
+  }
+}
+
+TEST(ForeignTable, IsReadWithTheMarksOfOtherPrograms) {
+  const ImportOptions degrees{.degrees = true};
+  expect_the_motion(read("\xEF\xBB\xBF" + table("t,l_elbow,r_knee", ',', '.', 1, 1), degrees),
+                    "mark of UTF-8");
+  expect_the_motion(read(table("t;l_elbow;r_knee", ';', '.', 1, 1, "\r\n"), degrees), "semicolons");
+  expect_the_motion(read(table("t;l_elbow;r_knee", ';', ',', 1, 1), degrees), "decimal commas");
+  expect_the_motion(read(table("t\tl_elbow\tr_knee", '\t', '.', 1, 1), degrees), "tabs");
+  expect_the_motion(read(table("\"t\",\"l_elbow\",\"r_knee\"", ',', '.', 1, 1), degrees), "quotes");
+  expect_the_motion(read("# left; right\n" + table("Time,l_elbow,r_knee", ',', '.', 1, 1), degrees),
+                    "a comment, another case");
+}
+
+TEST(ForeignTable, UnitsMayStandInTheHeadRow) {
+  expect_the_motion(read(table("t[s],l_elbow[deg],theta.r_knee[deg]", ',', '.', 1, 1)), "brackets");
+  expect_the_motion(read(table("time (ms);l_elbow (deg);r_knee (deg)", ';', ',', 1e3, 1)),
+                    "milliseconds");
+  expect_the_motion(
+      read(table("time_ms,l_elbow [rad],r_knee[rad]", ',', '.', 1e3, kDegree), {.degrees = true}),
+      "what the column says goes before the option");
+}
+
+TEST(ForeignTable, MistakesAreOneLine) {
+  const std::string good = table("t,l_elbow,r_knee", ',', '.', 1, 1);
+  EXPECT_EQ(refusal(good),
+            "a.csv: column 'l_elbow' reaches 19 rad, which no joint does: give "
+            "--unit deg where angles are in degrees");
+  EXPECT_EQ(refusal("\xFF\xFEt\0,\0"), "a.csv: is UTF-16 text; save it as UTF-8");
+  EXPECT_EQ(refusal("t l_elbow r_knee\n0 0 0\n1 0 0\n"),
+            "a.csv: only blanks stand between the columns; put commas, semicolons or tabs there");
+  EXPECT_EQ(refusal("t,l_elbow\n0,0\n0.2,0\n0.1,0\n"),
+            "a.csv: data row 3: time 0.1 s does not come after 0.2 s of the row before; times must "
+            "increase");
+  EXPECT_EQ(refusal("t;l_elbow\n0;0\n0,1;nan\n"),
+            "a.csv:3: column 'l_elbow': 'nan' is not a finite number");
+  EXPECT_EQ(refusal("t;l_elbow\n0;0\n0,1;0;0\n"),
+            "a.csv:3: 3 values where the head row names 2 columns");
+  EXPECT_NE(refusal("t,l_elbow[turns]\n0,0\n1,0\n").find("unknown column 'l_elbow[turns]'"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ayumi::test
