@@ -27,9 +27,9 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 const char* name_of(ConstraintGroup group) {
-  constexpr const char* kNames[] = {"support", "unilateral",   "friction", "flight",    "zmp",
-                                    "yaw",     "stance",       "path",     "swing",     "position",
-                                    "speed",   "acceleration", "torque",   "clearance", "cog"};
+  constexpr const char* kNames[] = {
+      "support", "unilateral", "friction", "flight", "zmp",          "yaw",    "stance",    "path",
+      "swing",   "landing",    "position", "speed",  "acceleration", "torque", "clearance", "cog"};
   return kNames[static_cast<int>(group)];
 }
 
@@ -129,7 +129,7 @@ InstantState instant_state(const RobotModel& model, const CommandSample& sample,
 namespace {
 
 bool of_foot(ConstraintGroup group) {
-  return group >= ConstraintGroup::stance && group <= ConstraintGroup::swing;
+  return group >= ConstraintGroup::stance && group <= ConstraintGroup::landing;
 }
 
 // Where the block's joint moves alone: value, rate or acceleration of its own column.
@@ -146,10 +146,28 @@ const Isometry3d& reference(const ConstraintBlock& block, const Instant& instant
                                               : instant.ground[block.item];
 }
 
+// From the deviation of a sole to landing_way().
+Eigen::Matrix<double, 5, 6> landing_rows(const RobotModel& model, Side side,
+                                         const Isometry3d& place) {
+  double reach = 0;
+  for (const Eigen::Vector2d& v : model.sole(side).polygon) reach = std::max(reach, v.norm());
+  Eigen::Matrix<double, 5, 6> rows = Eigen::Matrix<double, 5, 6>::Zero();
+  rows.topLeftCorner<2, 3>() = place.linear().leftCols<2>().transpose();
+  rows.bottomRightCorner<3, 3>() = reach * place.linear().transpose();
+  return rows;
+}
+
 VectorXd foot_values(const RobotModel& model, const ConstraintBlock& block, const Instant& instant,
                      const InstantState& state) {
   const Isometry3d &sole = state.soles[block.item], &ground = reference(block, instant);
   VectorXd values(block.rows);
+  if (block.group == ConstraintGroup::landing) {
+    const Isometry3d& place = instant.place[block.item];
+    const auto way = landing_way(model, static_cast<Side>(block.item), sole, place);
+    const double height = place.linear().col(2).dot(sole.translation() - place.translation());
+    values << way, -way;
+    return (block.factor * height * height - values.array()).matrix();
+  }
   if (block.group != ConstraintGroup::swing) return sole_deviation(sole, ground);
   const Vector3d normal = ground.linear().col(2);
   const auto points = corners(model, static_cast<Side>(block.item), sole);
@@ -157,17 +175,30 @@ VectorXd foot_values(const RobotModel& model, const ConstraintBlock& block, cons
   return values;
 }
 
+// Of sole_deviation(), by what moves the sole as J.
+MatrixXd deviation_by(const Isometry3d& sole, const Isometry3d& planned, const MatrixXd& J) {
+  const Matrix3d E = rotation_error(sole, planned);
+  MatrixXd by(6, J.cols());
+  by << J.topRows<3>(), 0.5 * (E.trace() * Matrix3d::Identity() - E) * J.bottomRows<3>();
+  return by;
+}
+
 MatrixXd foot_derivatives(const RobotModel& model, const ConstraintBlock& block,
                           const Instant& instant, const InstantState& state) {
   const Isometry3d &sole = state.soles[block.item], &ground = reference(block, instant);
   const MatrixXd& J = state.sole_by[block.item];
   MatrixXd by(block.rows, model.velocity_count());
-  if (block.group != ConstraintGroup::swing) {
-    const Matrix3d E = rotation_error(sole, ground);
-    by.topRows<3>() = J.topRows<3>();
-    by.bottomRows<3>() = 0.5 * (E.trace() * Matrix3d::Identity() - E) * J.bottomRows<3>();
+  if (block.group == ConstraintGroup::landing) {
+    const Isometry3d& place = instant.place[block.item];
+    const Vector3d normal = place.linear().col(2);
+    const double height = normal.dot(sole.translation() - place.translation());
+    const MatrixXd way =
+        landing_rows(model, static_cast<Side>(block.item), place) * deviation_by(sole, place, J);
+    by << -way, way;
+    by.rowwise() += 2 * block.factor * height * normal.transpose() * J.topRows<3>();
     return by;
   }
+  if (block.group != ConstraintGroup::swing) return deviation_by(sole, ground, J);
   const Vector3d normal = ground.linear().col(2);
   const auto points = corners(model, static_cast<Side>(block.item), sole);
   for (int i = 0; i < block.rows; ++i) {
@@ -220,6 +251,11 @@ void add_path(const RobotModel& model, int body, std::vector<int>& columns) {
 }
 
 }  // namespace
+
+Eigen::Matrix<double, 5, 1> landing_way(const RobotModel& model, Side side,
+                                        const Isometry3d& actual, const Isometry3d& place) {
+  return landing_rows(model, side, place) * sole_deviation(actual, place);
+}
 
 std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block,
                                const Instant& instant) {

@@ -20,9 +20,11 @@ namespace ayumi {
 /// the planned COG; zmp: f_n (ZMP - commanded ZMP) / (m g) [m]; yaw: (lever f_n -+ yaw moment about
 /// the ZMP) / (m g) [m], the lever held as it is in the motion; stance: sole from its place,
 /// position [m] and rotation [rad]; path: the same from where the motion has it; swing: corner
-/// heights [m]; position: joint angle [rad]; speed: joint speed / limit; acceleration: joint
-/// acceleration / limit; torque: motor torque / limit; clearance: clearance_rows.hpp [m]; cog: from
-/// the commanded COG [m].
+/// heights [m]; landing: factor h^2 less the way of a
+/// sole from its place, along it or, times half its size, around three axes, either way, h its
+/// height [m]; position: joint angle [rad]; speed: joint speed /
+/// limit; acceleration: joint acceleration / limit; torque: motor torque / limit; clearance:
+/// clearance_rows.hpp [m]; cog: from the commanded COG [m].
 enum class ConstraintGroup {
   support,
   unilateral,
@@ -33,6 +35,7 @@ enum class ConstraintGroup {
   stance,
   path,
   swing,
+  landing,
   position,
   speed,
   acceleration,
@@ -52,6 +55,7 @@ struct Instant {
   std::array<bool, 2> contact = {};         ///< by Side
   std::array<Eigen::Isometry3d, 2> ground;  ///< by Side: where the foot stands, or the ground below
   std::array<Eigen::Isometry3d, 2> path;    ///< by Side: where the motion has it
+  std::array<Eigen::Isometry3d, 2> place;   ///< by Side: where a swing leaves or lands, the nearer
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< commanded [m]
   bool torques = false;                           ///< some block asks for them
   const CollisionModel* collisions = nullptr;     ///< of clearance blocks
@@ -64,7 +68,7 @@ struct ConstraintBlock {
   int item = 0;           ///< foot (by Side), dof, or pair of bodies
   int row = 0, rows = 0;  ///< first and number
   double scale = 1;       ///< of yaw rows: 1 / (m g); of joint rows: 1 / limit
-  double factor = 0;      ///< of yaw rows: friction times lever [m]
+  double factor = 0;      ///< of yaw rows: friction times lever [m]; of landing rows [1/m]
   Eigen::Matrix<double, Eigen::Dynamic, 6> wrench_rows;  ///< of linear ground groups
 };
 
@@ -88,6 +92,12 @@ InstantState instant_state(const RobotModel& model, const CommandSample& sample,
 
 /// Position [m] and rotation [rad], world axes, of a sole from where it should be: a stance row.
 Vector6d sole_deviation(const Eigen::Isometry3d& actual, const Eigen::Isometry3d& planned);
+
+/// How a sole is off its place but for its height over it, the rows of a landing with factor 0:
+/// along the ground and, times half the sole's size, around three axes [m].
+Eigen::Matrix<double, 5, 1> landing_way(const RobotModel& model, Side side,
+                                        const Eigen::Isometry3d& actual,
+                                        const Eigen::Isometry3d& place);
 
 /// Columns of the correction that a block depends on.
 std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block,

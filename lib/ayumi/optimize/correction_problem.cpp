@@ -131,6 +131,8 @@ void CorrectionProblem::place_instants() {
       instant.ground[s] = instant.contact[s] ? plan_.intervals[s][i].sole
                           : lower            ? before.sole
                                              : after.sole;
+      const ContactInterval& swing = plan_.intervals[s][i];
+      instant.place[s] = k - swing.first < swing.last - k ? before.sole : after.sole;
     }
     instant.plane = support_plane(model_, plan_.support(k), instant.ground);
     RobotData data(model_);

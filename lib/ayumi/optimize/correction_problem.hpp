@@ -97,6 +97,8 @@ class CorrectionProblem {
   Vector6d own_wrench(int sample) const;
   void place_foot_blocks(int instant);
   void soften_landing(int instant, Side side);
+  double own_landing_factor() const;
+  void place_landing(int instant, Side side);
   void place_joint_blocks(int instant);
   void place_torque_blocks(int instant);
   void place_clearance_blocks(int instant);
@@ -119,6 +121,7 @@ class CorrectionProblem {
   Eigen::MatrixXi index_;  ///< variable of control point and column, or -1
   int variable_count_ = 0;
   std::vector<Instant> instants_;
+  double landing_factor_ = 0;              ///< of landing rows [1/m]
   std::vector<double> margin_;             ///< wanted of the ZMP, by instant [m]
   std::vector<ConstraintBlock> blocks_;    ///< in order of their instants
   std::vector<std::vector<int>> columns_;  ///< by block

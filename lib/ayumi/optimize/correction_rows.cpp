@@ -43,6 +43,7 @@ void CorrectionProblem::add_block(ConstraintBlock block, double lower, double up
 
 void CorrectionProblem::place_constraints() {
   place_margins();
+  landing_factor_ = own_landing_factor();
   for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
     place_foot_blocks(i);
     place_joint_blocks(i);
@@ -225,6 +226,59 @@ void CorrectionProblem::soften_landing(int instant, Side side) {
   upper_.tail<6>() += own.cwiseMax(0);
 }
 
+constexpr double kNearPlace = 0.15;   // of a swing to its landing or lift-off [s]
+constexpr double kPlaceSpare = 2e-4;  // of a sole that is low [m]
+
+// How quickly the swings of the motion leave their places, and come to them: way over height
+// squared, the middle one of all, for a faulty one says nothing.
+double CorrectionProblem::own_landing_factor() const {
+  constexpr double kLow = 0.001;   // what is lower says little [m]
+  constexpr double kLeast = 0.12;  // of the COG's height, one over it [1/m]
+  std::vector<double> factors;
+  RobotData data(model_);
+  for (Side side : {Side::left, Side::right}) {
+    const auto& intervals = plan_.intervals[static_cast<int>(side)];
+    for (size_t i = 0; i < intervals.size(); ++i) {
+      if (intervals[i].contact) continue;
+      for (const bool lands : {false, true}) {
+        if (lands ? i + 1 == intervals.size() : i == 0) continue;
+        const Eigen::Isometry3d& place = intervals[lands ? i + 1 : i - 1].sole;
+        const int length = intervals[i].last - intervals[i].first;
+        const int count = std::min(length / 2, static_cast<int>(kNearPlace / series_.dt));
+        double most = 0;
+        for (int k = 0; k < count; ++k) {
+          const int sample = lands ? intervals[i].last - k : intervals[i].first + k;
+          update_positions(model_, series_.samples[sample].state, data);
+          const Eigen::Isometry3d sole = sole_pose(model_, data, side);
+          const double height = place.linear().col(2).dot(sole.translation() - place.translation());
+          if (height < kLow) continue;
+          const double way = landing_way(model_, side, sole, place).cwiseAbs().maxCoeff();
+          most = std::max(most, (way - kPlaceSpare) / (height * height));
+        }
+        factors.push_back(most);
+      }
+    }
+  }
+  const double least = 1 / (kLeast * series_.samples.front().cog.z());
+  if (factors.empty()) return least;
+  std::nth_element(factors.begin(), factors.begin() + factors.size() / 2, factors.end());
+  return std::max(least, factors[factors.size() / 2]);
+}
+
+// Near its landing and its lift-off a swinging sole is over its place: played open loop the servos
+// sag, and a sole that comes in low or tilted touches down while it still moves.
+void CorrectionProblem::place_landing(int instant, Side side) {
+  const Instant& at = instants_[instant];
+  const ContactInterval& swing = plan_.at(side, at.sample);
+  const int last = static_cast<int>(series_.samples.size()) - 1;
+  const int after = swing.first == 0 ? last : at.sample - swing.first;
+  const int before = swing.last == last ? last : swing.last - at.sample;
+  if (std::min(after, before) * series_.dt > kNearPlace) return;
+  ConstraintBlock block = block_of(ConstraintGroup::landing, instant, static_cast<int>(side), 10);
+  block.factor = landing_factor_;
+  add_block(std::move(block), -kPlaceSpare, kNoBound);
+}
+
 void CorrectionProblem::place_foot_blocks(int instant) {
   constexpr double kNearGround = 0.004;  // a swinging sole higher than this is not watched [m]
   RobotData data(model_);
@@ -245,6 +299,7 @@ void CorrectionProblem::place_foot_blocks(int instant) {
       add_block(block_of(ConstraintGroup::path, instant, s, 6), -kSameWay, kSameWay);
     }
     if (instants_[instant].contact[s] || spec_.locked_feet[s]) continue;
+    if (!getenv("NOLAND")) place_landing(instant, side);
     double lowest = kNearGround;
     for (const CommandSample* sample : watched(instant)) {
       update_positions(model_, sample->state, data);

@@ -39,7 +39,8 @@ double unit_of(ConstraintGroup group) {
 
 bool is_hard(ConstraintGroup group) {
   return group == ConstraintGroup::stance || group == ConstraintGroup::path ||
-         group == ConstraintGroup::flight || group == ConstraintGroup::swing;
+         group == ConstraintGroup::flight || group == ConstraintGroup::swing ||
+         group == ConstraintGroup::landing;
 }
 
 // Rows of the soft program: the old ones, then the upper bounds of soft rows that have two.
