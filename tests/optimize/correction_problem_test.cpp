@@ -131,9 +131,10 @@ TEST(CorrectionProblem, JacobianAgainstDifferences) {
   spec.watched_share = 0;
   spec.friction = 0.1;
   const CorrectionProblem problem(limited_biped(), series, spec);
-  for (const auto group : {ConstraintGroup::support, ConstraintGroup::friction,
-                           ConstraintGroup::yaw, ConstraintGroup::stance, ConstraintGroup::swing,
-                           ConstraintGroup::position, ConstraintGroup::speed})
+  for (const auto group :
+       {ConstraintGroup::support, ConstraintGroup::friction, ConstraintGroup::yaw,
+        ConstraintGroup::stance, ConstraintGroup::swing, ConstraintGroup::landing,
+        ConstraintGroup::position, ConstraintGroup::speed})
     EXPECT_TRUE(std::any_of(problem.blocks().begin(), problem.blocks().end(),
                             [&](const ConstraintBlock& b) { return b.group == group; }))
         << name_of(group);

@@ -44,6 +44,7 @@ struct CorrectionSpec {
   double safe_margin = 0;       ///< the same where the motion's own is less than the least [m]
   double joint_margin = 1e-4;   ///< inside the position limits [rad]
   double share = 0.998;         ///< of speed limits and friction that may be used
+  bool gentle_landings = true;  ///< a low sole is wanted level and over its place
   double force_share = 0.1;     ///< least normal force in contact over the weight
   double sole_position = 2e-4;  ///< band a supporting sole stays in [m]
   double sole_angle = 2e-3;     ///< [rad]
@@ -98,6 +99,8 @@ class CorrectionProblem {
   void place_foot_blocks(int instant);
   void soften_landing(int instant, Side side);
   double own_landing_factor() const;
+  double landing_factor(Side side, const ContactInterval& swing, const Eigen::Isometry3d& place,
+                        bool lands) const;
   void place_landing(int instant, Side side);
   void place_joint_blocks(int instant);
   void place_torque_blocks(int instant);

@@ -19,6 +19,9 @@ namespace {
 
 constexpr int kConeSides = 16;  // of the pyramid inside the friction cone
 
+constexpr double kNearPlace = 0.15;   // of a swing to its landing or lift-off [s]
+constexpr double kPlaceSpare = 2e-4;  // that a low sole may be off its place [m]
+
 ConstraintBlock block_of(ConstraintGroup group, int instant, int item, int rows, double scale = 1) {
   ConstraintBlock block;
   block.group = group;
@@ -226,43 +229,47 @@ void CorrectionProblem::soften_landing(int instant, Side side) {
   upper_.tail<6>() += own.cwiseMax(0);
 }
 
-constexpr double kNearPlace = 0.15;   // of a swing to its landing or lift-off [s]
-constexpr double kPlaceSpare = 2e-4;  // of a sole that is low [m]
-
-// How quickly the swings of the motion leave their places, and come to them: way over height
-// squared, the middle one of all, for a faulty one says nothing.
+// How far off its place the swings of the motion are while they are low: way over height squared,
+// of the middle one of all, for a faulty one says nothing, and half as much again.
 double CorrectionProblem::own_landing_factor() const {
-  constexpr double kLow = 0.001;   // what is lower says little [m]
   constexpr double kLeast = 0.12;  // of the COG's height, one over it [1/m]
+  constexpr double kSpare = 1.5;
   std::vector<double> factors;
-  RobotData data(model_);
   for (Side side : {Side::left, Side::right}) {
     const auto& intervals = plan_.intervals[static_cast<int>(side)];
     for (size_t i = 0; i < intervals.size(); ++i) {
       if (intervals[i].contact) continue;
-      for (const bool lands : {false, true}) {
-        if (lands ? i + 1 == intervals.size() : i == 0) continue;
-        const Eigen::Isometry3d& place = intervals[lands ? i + 1 : i - 1].sole;
-        const int length = intervals[i].last - intervals[i].first;
-        const int count = std::min(length / 2, static_cast<int>(kNearPlace / series_.dt));
-        double most = 0;
-        for (int k = 0; k < count; ++k) {
-          const int sample = lands ? intervals[i].last - k : intervals[i].first + k;
-          update_positions(model_, series_.samples[sample].state, data);
-          const Eigen::Isometry3d sole = sole_pose(model_, data, side);
-          const double height = place.linear().col(2).dot(sole.translation() - place.translation());
-          if (height < kLow) continue;
-          const double way = landing_way(model_, side, sole, place).cwiseAbs().maxCoeff();
-          most = std::max(most, (way - kPlaceSpare) / (height * height));
-        }
-        factors.push_back(most);
-      }
+      if (i > 0)
+        factors.push_back(landing_factor(side, intervals[i], intervals[i - 1].sole, false));
+      if (i + 1 < intervals.size())
+        factors.push_back(landing_factor(side, intervals[i], intervals[i + 1].sole, true));
     }
   }
   const double least = 1 / (kLeast * series_.samples.front().cog.z());
   if (factors.empty()) return least;
-  std::nth_element(factors.begin(), factors.begin() + factors.size() / 2, factors.end());
-  return std::max(least, factors[factors.size() / 2]);
+  const auto middle = factors.begin() + static_cast<std::ptrdiff_t>(factors.size() / 2);
+  std::nth_element(factors.begin(), middle, factors.end());
+  return std::max(least, kSpare * *middle);
+}
+
+double CorrectionProblem::landing_factor(Side side, const ContactInterval& swing,
+                                         const Eigen::Isometry3d& place, bool lands) const {
+  constexpr double kLow = 0.001;    // what is lower says little [m]
+  constexpr double kEvery = 0.005;  // [s]
+  const int every = std::max(1, static_cast<int>(kEvery / series_.dt));
+  const int count =
+      std::min((swing.last - swing.first) / 2, static_cast<int>(kNearPlace / series_.dt));
+  RobotData data(model_);
+  double most = 0;
+  for (int k = 0; k < count; k += every) {
+    update_positions(model_, series_.samples[lands ? swing.last - k : swing.first + k].state, data);
+    const Eigen::Isometry3d sole = sole_pose(model_, data, side);
+    const double height = place.linear().col(2).dot(sole.translation() - place.translation());
+    if (height < kLow) continue;
+    const double way = landing_way(model_, side, sole, place).cwiseAbs().maxCoeff();
+    most = std::max(most, (way - kPlaceSpare) / (height * height));
+  }
+  return most;
 }
 
 // Near its landing and its lift-off a swinging sole is over its place: played open loop the servos
@@ -299,7 +306,7 @@ void CorrectionProblem::place_foot_blocks(int instant) {
       add_block(block_of(ConstraintGroup::path, instant, s, 6), -kSameWay, kSameWay);
     }
     if (instants_[instant].contact[s] || spec_.locked_feet[s]) continue;
-    if (!getenv("NOLAND")) place_landing(instant, side);
+    if (spec_.gentle_landings) place_landing(instant, side);
     double lowest = kNearGround;
     for (const CommandSample* sample : watched(instant)) {
       update_positions(model_, sample->state, data);

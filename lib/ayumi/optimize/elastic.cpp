@@ -18,6 +18,7 @@ constexpr double kHardFactor = 100;  // feet and flight against the rest
 // With a tenth of it walks at 0.65 of their time fall when played open loop, with three times of it
 // their repair takes twice the iterations and stands no better.
 constexpr double kSafetyPrice = 0.1;    // of a millimetre of the ZMP's safety in one window
+constexpr double kLandingPrice = 1;     // of a millimetre that a low sole is off its place
 constexpr double kSafetyWindow = 0.05;  // [s]
 constexpr double kMillimetre = 1e-3;
 
@@ -39,8 +40,7 @@ double unit_of(ConstraintGroup group) {
 
 bool is_hard(ConstraintGroup group) {
   return group == ConstraintGroup::stance || group == ConstraintGroup::path ||
-         group == ConstraintGroup::flight || group == ConstraintGroup::swing ||
-         group == ConstraintGroup::landing;
+         group == ConstraintGroup::flight || group == ConstraintGroup::swing;
 }
 
 // Rows of the soft program: the old ones, then the upper bounds of soft rows that have two.
@@ -145,21 +145,27 @@ Price price_of(ConstraintGroup group) {
   constexpr double kChange = 2 / kObjectiveScale;  // of one of the objective
   if (group == ConstraintGroup::support)
     return {kMillimetre, kChange * kSafetyPrice, kSafetyWindow};
+  if (group == ConstraintGroup::landing)
+    return {kMillimetre, kChange * kLandingPrice, kSafetyWindow};
   return {unit_of(group), kChange * kPrice, kWindow};
 }
 
 Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt, double factor) {
   Slacks slacks;
   slacks.group.assign(static_cast<size_t>(problem.constraint_count()), -1);
-  std::map<long, int> index;
-  std::vector<double> most;
+  std::map<std::tuple<int, int, long>, int> index;
+  std::vector<double> most, price;
   for (const ConstraintBlock& block : problem.blocks()) {
-    const double spare = problem.safety(block.instant) / kMillimetre;
-    if (block.group != ConstraintGroup::support || spare <= 0) continue;
+    const bool landing = block.group == ConstraintGroup::landing;
+    const double spare = landing ? kNoBound : problem.safety(block.instant) / kMillimetre;
+    if ((!landing && block.group != ConstraintGroup::support) || spare <= 0) continue;
     const double t = problem.instants()[block.instant].sample * dt;
-    const auto found =
-        index.try_emplace(std::lround(t / kSafetyWindow), static_cast<int>(most.size()));
-    if (found.second) most.push_back(spare);
+    const std::tuple key(static_cast<int>(block.group), block.item, std::lround(t / kSafetyWindow));
+    const auto found = index.try_emplace(key, static_cast<int>(most.size()));
+    if (found.second) {
+      most.push_back(spare);
+      price.push_back(factor * (landing ? kLandingPrice : kSafetyPrice));
+    }
     double& all = most[static_cast<size_t>(found.first->second)];
     all = std::min(all, spare);
     for (int i = 0; i < block.rows; ++i) slacks.group[block.row + i] = found.first->second;
@@ -167,7 +173,7 @@ Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt
   if (most.empty()) return nlp;
   slacks.most = Eigen::Map<VectorXd>(most.data(), static_cast<Eigen::Index>(most.size()));
   slacks.unit = VectorXd::Constant(slacks.most.size(), kMillimetre);
-  slacks.price = VectorXd::Constant(slacks.most.size(), factor * kSafetyPrice);
+  slacks.price = Eigen::Map<VectorXd>(price.data(), static_cast<Eigen::Index>(price.size()));
   return elastic(nlp, slacks);
 }
 
@@ -182,7 +188,9 @@ Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt) {
     const auto found = index.try_emplace(key, static_cast<int>(unit.size()));
     if (found.second) {
       unit.push_back(unit_of(block.group));
-      price.push_back(kPrice * (is_hard(block.group) ? kHardFactor : 1));
+      price.push_back(block.group == ConstraintGroup::landing ? kLandingPrice
+                      : is_hard(block.group)                  ? kPrice * kHardFactor
+                                                              : kPrice);
     }
     for (int i = 0; i < block.rows; ++i) slacks.group[block.row + i] = found.first->second;
   }

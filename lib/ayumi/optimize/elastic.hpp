@@ -29,9 +29,9 @@ Price price_of(ConstraintGroup group);
 /// ground and flight are the last to give way.
 Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt);
 
-/// The program of `problem` with the ZMP's safety to be had at a price: where it costs more change
-/// than it is worth, or is not to be had, it gives way as far as to the least margin asked for.
-/// `factor` on the price.
+/// The program of `problem` with what no check asks for to be had at a price, and to give way where
+/// it costs more change than it is worth or is not to be had: the ZMP's safety, as far as to the
+/// least margin asked for, and landings over their places. `factor` on the prices.
 Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt,
                      double factor = 1);
 

@@ -98,6 +98,7 @@ class Repair {
         spec_.safe_margin = spec_.zmp_margin;  // safety gives way before the repair does
         spec_.sole_at_knots = 1;
       }
+      if (2 * (round + 1) >= kRounds) spec_.gentle_landings = false;
       spec_.joint_margin += kRoundJointMargin;
       spec_.share -= kRoundShare;
       if (round + 2 == kRounds) spec_.spacing /= 2;

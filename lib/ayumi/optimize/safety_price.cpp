@@ -55,6 +55,7 @@ bool is_bought(ConstraintGroup group) {
     case ConstraintGroup::unilateral:
     case ConstraintGroup::stance:
     case ConstraintGroup::swing:
+    case ConstraintGroup::landing:
     case ConstraintGroup::position:
     case ConstraintGroup::clearance:
       return true;

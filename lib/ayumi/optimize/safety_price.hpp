@@ -1,8 +1,8 @@
 #pragma once
 // What a motion lacks of the safety that a repair of another one buys: the ZMP as far inside as it
-// is wanted, soles in their places closer than the check asks for, feet off the ground, bodies
-// apart, joints within their limits. By the rows of the repair's own program at its instants, each
-// limit's largest lack in a short window at its price.
+// is wanted, soles in their places closer than the check asks for, feet off the ground and low
+// only over their places, bodies apart, joints within their limits. By the rows of the repair's own
+// program at its instants, each limit's largest lack in a short window at its price.
 
 #include "ayumi/optimize/repair.hpp"
 
