@@ -96,6 +96,7 @@ class Repair {
         ++unsolved;
         pad *= 2;
         spec_.safe_margin = spec_.zmp_margin;  // safety gives way before the repair does
+        spec_.gentle_landings = false;
         spec_.sole_at_knots = 1;
       }
       if (2 * (round + 1) >= kRounds) spec_.gentle_landings = false;
