@@ -224,6 +224,17 @@ TEST(Consequence, OfAPhaseThatHasMovedOnStairs) {
   }
 }
 
+// The trunk sways out, and the ZMP commanded for it stays where it was.
+TEST(Consequence, OfAMotionWhoseZmpLeavesTheSupportIsItsDistance) {
+  Pattern p = table_of(sway_pattern(hoap1(), {.side = 0.02, .period = 2, .cycles = 2}));
+  const double at = 0.5 * p.phases.back().until;
+  sway_base(hoap1(), *p.table, {0, 0.02, 0}, at, 0.5);
+  p.table->cog.clear();
+  const Errors e = errors_of(p);
+  EXPECT_EQ(e.kinds, (Kinds{"support_margin"})) << e.told;
+  EXPECT_NE(e.told.find("warning zmp_residual"), std::string::npos) << e.told;
+}
+
 TEST(Consequence, NeverOfAFaultElsewhere) {
   Pattern p = walk();
   const double slips = middle_of(p, 1), other = middle_of(p, 3);

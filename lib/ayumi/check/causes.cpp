@@ -16,7 +16,8 @@
 //   support   a ZMP outside the sole  ->  leg torques, which no sole could bear
 //   ground    too little friction  ->  too little resistance to turning
 //   command   a COG that is not the posture's  ->  ZMP and f_z off theirs, and its own free fall; a
-//             commanded ZMP outside the support, where the motion's is inside  ->  their distance
+//             ZMP outside the support, where the commanded one or the motion's is inside  ->  their
+//             distance
 #include "ayumi/check/causes.hpp"
 
 #include <algorithm>
@@ -360,8 +361,7 @@ class Causes {
         return of(j).kind == Kind::zmp_residual || of(j).kind == Kind::fz_residual;
       });
     for (const int i : by_excess(Kind::support_margin))
-      if (of(i).item == 1)
-        blame(i, around(windows_[i]), [&](int j) { return of(j).kind == Kind::zmp_residual; });
+      blame(i, around(windows_[i]), [&](int j) { return of(j).kind == Kind::zmp_residual; });
   }
 
   CheckPass& pass_;
