@@ -101,28 +101,6 @@ RepairResult repair_input(const Context& context, const PatternInput& input,
   return repair(input.model, series, options, context.progress());
 }
 
-Pattern dense_pattern(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
-                      const std::string& table) {
-  Pattern dense = pattern;
-  dense.repair = without_keyframes(pattern);
-  dense.keyframes.clear();
-  dense.correction.reset();
-  DenseTable& rows = dense.table.emplace();
-  rows.file = table;
-  rows.dt = series.dt;
-  rows.joints = model.dof_names();
-  rows.theta.resize(static_cast<Eigen::Index>(series.samples.size()), model.dof_count());
-  for (size_t k = 0; k < series.samples.size(); ++k) {
-    const CommandSample& s = series.samples[k];
-    rows.theta.row(static_cast<Eigen::Index>(k)) = s.state.theta.transpose();
-    rows.base.push_back(s.state.base);
-    rows.cog.push_back(s.cog);
-    rows.zmp.push_back(s.zmp);
-    rows.fz.push_back(s.fz);
-  }
-  return dense;
-}
-
 bool write_with_companions(const Context& context, const std::string& from, const std::string& to,
                            const std::string& text) {
   if (same_folder(from, to)) {

@@ -23,10 +23,6 @@ void read_locks(const std::vector<std::string>& words, const PatternInput& input
 RepairResult repair_input(const Context& context, const PatternInput& input,
                           const RepairOptions& options);
 
-/// The motion as a table under the file name `table`, in place of keys and correction.
-Pattern dense_pattern(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
-                      const std::string& table);
-
 /// Writes `text`, a pattern read from `from`, as `to`: byte for byte, with the table and the
 /// posture libraries it names beside it when that is another folder. False, and nothing written,
 /// where they cannot go along: paths that leave the folder, or a robot by a relative path.

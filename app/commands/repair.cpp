@@ -9,8 +9,9 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/pattern_table.hpp"
 #include "ayumi/io/results_json.hpp"
-#include "ayumi/io/table.hpp"
+#include "ayumi/pattern/edit.hpp"
 #include "check_table.hpp"
 #include "motion_words.hpp"
 #include "parameter_search.hpp"
@@ -32,10 +33,14 @@ struct Options {
 };
 
 constexpr const char* kPartialMark =
-    "// PARTIAL: the repair of this pattern did not come to its end; it is not consistent.\n";
+    "PARTIAL: the repair of this pattern did not come to its end; it is not consistent.";
+constexpr const char* kStoppedMark =
+    "PARTIAL: the repair of this pattern passes, but did not come to its end; it may change less.";
 
-fs::path table_beside(const fs::path& pattern) {
-  return fs::path(pattern).replace_extension(".csv");
+std::vector<std::string> marks(const RepairResult& result) {
+  if (!result.check.consistent) return {kPartialMark};
+  if (result.partial) return {kStoppedMark};
+  return {};
 }
 
 // The author's text as it is but for the correction; parameters given on the command line, or
@@ -46,20 +51,21 @@ void write_repaired(const Context& context, const Options& options, const Patter
   const bool unchanged = result.status == RepairStatus::already_consistent;
   if (!unchanged) corrected.correction = result.correction;
   if (options.baked) {
-    const Pattern dense =
-        dense_pattern(input.model, corrected, result.series, table_beside(options.out).string());
-    refuse_overwriting(context, table_beside(options.out));
-    write_file(table_beside(options.out), dense_table_csv(*dense.table));
-    write_pattern(options.out, dense);
+    const fs::path table = table_beside(options.out);
+    refuse_overwriting(context, table);
+    write_pattern_and_table(options.out,
+                            baked(input.model, corrected, result.series, table.filename().string()),
+                            marks(result));
     return;
   }
   const std::string text = read_file(options.pattern);
-  const std::string mark = result.partial || !result.check.consistent ? kPartialMark : "";
+  std::string mark;
+  for (const std::string& each : marks(result)) mark += "// " + each + "\n";
   const std::string changed = unchanged ? text : mark + with_correction(text, result.correction);
   if (options.input.set.empty() &&
       write_with_companions(context, options.pattern, options.out, changed))
     return;
-  write_pattern(options.out, corrected);
+  write_pattern(options.out, corrected, marks(result));
 }
 
 // The pattern's own locks as --lock would name them.

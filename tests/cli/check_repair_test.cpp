@@ -185,6 +185,50 @@ TEST_F(CheckRepair, BakedAndTakenToAnotherFolder) {
   EXPECT_EQ(ayumi({"check", "away/copy.json"}).exit_code, 0);
 }
 
+// What the file wishes is kept, in the correction and in the table of another folder; the command
+// line adds to it.
+TEST_F(CheckRepair, WishesOfTheFile) {
+  plant_zmp_outside("plain.json");
+  std::string text = contents(folder / "plain.json");
+  const size_t end = text.rfind('}');
+  auto with_wishes = [&](const std::string& wishes) {
+    std::string changed = text;
+    const size_t last = text.find_last_not_of(" \n", end - 1);
+    write(folder / "outside.json",
+          changed.replace(last + 1, end - last - 1, ",\n  \"repair\": " + wishes + "\n"));
+  };
+  with_wishes(R"({ "lock": { "joints": ["l_shoulder_roll"], "windows": [[0.5, 1.2]] } })");
+  std::filesystem::create_directory(folder / "away");
+  for (const std::vector<std::string>& form :
+       {std::vector<std::string>{}, std::vector<std::string>{"--baked"}}) {
+    std::vector<std::string> call = {"repair", "outside.json", "-o",      "away/r.json",
+                                     "--lock", "r_elbow",      "--force", "--json"};
+    call.insert(call.end(), form.begin(), form.end());
+    const Output repaired = ayumi(call);
+    ASSERT_EQ(repaired.exit_code, 0) << repaired.err;
+    const Json cost = Json::parse(repaired.out)["weighted_change"];
+    EXPECT_GT(cost["change"], 0);
+    EXPECT_EQ(ayumi({"check", "away/r.json"}).exit_code, 0);
+    const Json diff = Json::parse(ayumi({"diff", "outside.json", "away/r.json", "--json"}).out);
+    EXPECT_NEAR(diff["weighted_change"]["change"], cost["change"], 1e-3 * double(cost["change"]));
+    EXPECT_GT(diff["moved"]["joints"].size(), 5u);
+    for (const Json& joint : diff["moved"]["joints"]) {
+      EXPECT_NE(joint["joint"], "l_shoulder_roll");
+      EXPECT_NE(joint["joint"], "r_elbow");
+    }
+  }
+  for (const auto& [wishes, message] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"lock": {"joints": ["l_kne"]}})", "repair/lock/joints/0: the robot 'hoap1'"},
+           {R"({"lock": {"windows": [[90, 91]]}})", "after the motion's end at"},
+           {R"({"lock": {"keyframes": [21]}})", "21 is no keyframe; they are numbered 0 to 20"},
+           {R"({"weights": {"l_kne": 2}})", "repair/weights/l_kne: the robot"}}) {
+    with_wishes(wishes);
+    const Output wrong = ayumi({"repair", "outside.json", "-o", "out.json"});
+    EXPECT_EQ(wrong.exit_code, 3) << wishes;
+    EXPECT_NE(wrong.err.find(message), std::string::npos) << wrong.err;
+  }
+}
+
 TEST_F(CheckRepair, LocksInWords) {
   plant_zmp_outside("outside.json");
   for (const auto& [lock, message] :

@@ -19,6 +19,7 @@
 #include "ayumi/optimize/polish.hpp"
 #include "ayumi/optimize/repair_spec.hpp"
 #include "ayumi/optimize/safety_price.hpp"
+#include "ayumi/pattern/differentiate.hpp"
 
 namespace ayumi {
 
@@ -116,13 +117,14 @@ class Repair {
   void polish() {
     const RepairResult found = result_;
     const CorrectionTrack passing = track_;
+    const bool as_table = table_passes();
     const double tolerance = std::clamp(kPolishTolerance * objective_, 1e-9, 1e-6);
     set_limits_of_the_check();
     try {
       for (int round = 0; round < kPolishRounds; ++round) {
         solve_round("repair, least change", tolerance);
         if (last_status_ != NlpStatus::solved || result_.check.consistent) break;
-        if (round + 1 < kPolishRounds && take_between(passing, kLittle)) break;
+        if (round + 1 < kPolishRounds && take_between(passing, kLittle, as_table)) break;
         add_instants(result_.check, series_.dt, spec_.extra);
       }
     } catch (const Interrupted&) {
@@ -131,22 +133,30 @@ class Repair {
       result_.partial = true;
       return;
     }
-    if (last_status_ == NlpStatus::solved && (result_.check.consistent || take_between(passing, 1)))
-      return;
+    if (last_status_ == NlpStatus::solved && take_between(passing, 1, as_table)) return;
     take(passing);
     result_.constraint_violation = found.constraint_violation;
     last_status_ = NlpStatus::solved;
   }
 
-  // The first that passes between the result and `passing`, at most a share of the way.
-  bool take_between(const CorrectionTrack& passing, double most) {
+  // The result, or the first that passes between it and `passing`, at most a share of the way.
+  bool take_between(const CorrectionTrack& passing, double most, bool as_table) {
     const CorrectionTrack wanted = track_;
+    auto passes = [&] { return result_.check.consistent && (!as_table || table_passes()); };
+    if (passes()) return true;
     for (double share = 1e-6; share <= most; share *= 10) {
       take(between(wanted, passing, share));
-      if (result_.check.consistent) return true;
+      if (passes()) return true;
     }
     take(wanted);
     return false;
+  }
+
+  // A table of the result, whose rates are differences of its rows.
+  bool table_passes() const {
+    CommandSeries table = result_.series;
+    fill_rates(table.samples, table.dt, false);
+    return report_of(table).consistent;
   }
 
   void set_limits_of_the_check() {
@@ -234,21 +244,18 @@ class Repair {
     track_ = track;
     result_.correction = trimmed(track);
     result_.series = apply_correction(model_, series_, result_.correction);
-    judge();
+    result_.check = report_of(result_.series);
   }
 
   // A trusted quantity is judged as it was commanded, not as the corrected motion has it.
-  void judge() {
-    if (options_.trust == Trust::posture) {
-      result_.check = check_consistency(model_, result_.series, options_.check);
-      return;
-    }
-    CommandSeries judged = result_.series;
+  ConsistencyReport report_of(const CommandSeries& series) const {
+    if (options_.trust == Trust::posture) return check_consistency(model_, series, options_.check);
+    CommandSeries judged = series;
     for (size_t k = 0; k < judged.samples.size(); ++k) {
       if (options_.trust == Trust::cog) judged.samples[k].cog = series_.samples[k].cog;
       if (options_.trust == Trust::zmp) judged.samples[k].zmp = series_.samples[k].zmp;
     }
-    result_.check = check_consistency(model_, judged, options_.check);
+    return check_consistency(model_, judged, options_.check);
   }
 
   // How much the start of a program violates it.

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "ayumi/base/error.hpp"
 #include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/postures.hpp"
@@ -34,6 +36,9 @@ Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeri
   result.keyframes = kept_keys(pattern);
   result.correction.reset();
   result.parameters.clear();
+  // The last tick may lie a little after the end.
+  if (!result.phases.empty())
+    result.phases.back().until = std::max(result.phases.back().until, series.duration());
   result.table.emplace();
   DenseTable& dense = *result.table;
   dense.file = table;
