@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <variant>
+#include <string>
 #include <vector>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "tests/support/biped.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/random_robot.hpp"
 
@@ -18,14 +19,15 @@ using Eigen::Vector3d;
 
 namespace {
 
-int pair_of(const CollisionModel& collisions, const char* one, const char* other) {
+// With their edges.
+ShapePair pair_of(const CollisionModel& collisions, const char* one, const char* other) {
   const int a = hoap1().links()[hoap1().find_link(one)].body;
   const int b = hoap1().links()[hoap1().find_link(other)].body;
   for (size_t i = 0; i < collisions.pairs().size(); ++i)
     if (collisions.pairs()[i].a == std::min(a, b) && collisions.pairs()[i].b == std::max(a, b))
-      return static_cast<int>(i);
+      return {.pair = static_cast<int>(i), .edges = true};
   ADD_FAILURE() << one << " and " << other << " are not watched";
-  return 0;
+  return {};
 }
 
 // Legs of a walk anywhere near each other.
@@ -34,6 +36,38 @@ RobotState near_state(Random& random) {
   for (const Side side : {Side::left, Side::right})
     for (const int i : hoap1().leg(side)) state.theta[i] += random.uniform(-0.25, 0.25);
   return state;
+}
+
+// Two arms of three joints each on a base, of every kind of shape.
+RobotModel shapely_arms() {
+  RobotDescription d;
+  d.name = "arms";
+  d.links.push_back(box_link("base", 1, {0, 0, 0}, {0.02, 0.02, 0.02}));
+  for (const bool left : {true, false}) {
+    const std::string s = left ? "l_" : "r_";
+    const double y = left ? 0.13 : -0.13;
+    std::string parent = "base";
+    for (const char* axis : {"x", "y", "z"}) {
+      d.links.push_back(box_link(s + axis, 0.2, {0, 0, -0.05}, {0.02, 0.02, 0.1}));
+      const Vector3d along(axis[0] == 'x', axis[0] == 'y', axis[0] == 'z');
+      const Vector3d at = parent == "base" ? Vector3d(0, y, 0) : Vector3d(0, 0, -0.02);
+      d.joints.push_back(hinge(s + "to_" + axis, parent, s + axis, at, along, -2, 2));
+      parent = s + axis;
+    }
+    auto add = [&](const Shape& shape, const Vector3d& place) {
+      PlacedShape placed;
+      placed.shape = shape;
+      placed.pose.translation() = place;
+      placed.pose.linear() =
+          Eigen::AngleAxisd(left ? 0.7 : -0.5, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+      d.links.back().collisions.push_back(placed);
+    };
+    add(Box{{0.12, 0.02, 0.03}}, {0.01, left ? -0.05 : 0.05, -0.05});
+    if (!left) add(Cylinder{0.015, 0.06}, {0.02, 0.06, -0.10});
+    add(Capsule{0.012, 0.05}, {-0.02, left ? -0.06 : 0.06, -0.10});
+    add(Sphere{0.02}, {0, left ? -0.02 : 0.02, -0.16});
+  }
+  return RobotModel(d);
 }
 
 }  // namespace
@@ -65,7 +99,7 @@ TEST(ClearanceRows, PointFromBoxIsThatOfASmallBall) {
 
 TEST(ClearanceRows, FeetHaveTheirCornersTooAndNoneIsNearerThanTheFeet) {
   const CollisionModel collisions(hoap1());
-  const int feet = pair_of(collisions, "l_foot", "r_foot");
+  const ShapePair feet = pair_of(collisions, "l_foot", "r_foot");
   ASSERT_EQ(clearance_rows(collisions, feet), 17);
   Random random(5);
   RobotData data(hoap1());
@@ -91,7 +125,7 @@ TEST(ClearanceRows, FeetHaveTheirCornersTooAndNoneIsNearerThanTheFeet) {
 
 TEST(ClearanceRows, GradientAgainstDifferences) {
   const CollisionModel collisions(hoap1());
-  const int feet = pair_of(collisions, "l_foot", "r_foot");
+  const ShapePair feet = pair_of(collisions, "l_foot", "r_foot");
   Random random(7);
   RobotData data(hoap1());
   for (int i = 0; i < 20; ++i) {
@@ -118,23 +152,84 @@ TEST(ClearanceRows, GradientAgainstDifferences) {
   }
 }
 
-// A body of several shapes, or of another than a box, has the one row.
-TEST(ClearanceRows, OthersHaveTheirDistanceAlone) {
-  const CollisionModel collisions(hoap1());
-  std::vector<int> shapes(hoap1().bodies().size()), boxes = shapes;
-  for (const Link& link : hoap1().links())
-    for (const PlacedShape& shape : link.collisions) {
-      ++shapes[static_cast<size_t>(link.body)];
-      boxes[static_cast<size_t>(link.body)] += std::holds_alternative<Box>(shape.shape);
+// Ends of capsules and cylinders, against boxes and each other.
+TEST(ClearanceRows, GradientOfEveryShapeAgainstDifferences) {
+  const RobotModel model = shapely_arms();
+  const CollisionModel collisions(model);
+  ASSERT_EQ(collisions.pairs().size(), 1u);
+  std::vector<ShapePair> shapes = shape_pairs(collisions, 0);
+  ASSERT_EQ(shapes.size(), 12u);
+  Random random(9);
+  RobotData data(model);
+  int near = 0;
+  for (int i = 0; i < 40; ++i) {
+    RobotState state = model.rest_state();
+    for (double& angle : state.theta) angle = random.uniform(-0.8, 0.8);
+    for (const ShapePair& each : shapes) {
+      update_positions(model, state, data);
+      const auto points = clearance_points(collisions, each, data);
+      ASSERT_EQ(static_cast<int>(points.size()), clearance_rows(collisions, each));
+      const double least = shape_clearance(collisions, each, data, 1);
+      const Eigen::MatrixXd by = clearance_gradient(model, collisions, each, data);
+      for (size_t row = 0; row < points.size(); ++row) {
+        if (least < 1e-3) continue;  // cores that meet have no gradient at their surface
+        ++near;
+        EXPECT_GE(points[row].clearance, least - 1e-7);
+        for (int joint = 0; joint < model.dof_count(); ++joint) {
+          constexpr double h = 1e-6;
+          double moved[2];
+          for (const int k : {0, 1}) {
+            RobotState other = state;
+            other.theta[joint] += k == 0 ? -h : h;
+            update_positions(model, other, data);
+            moved[k] = clearance_points(collisions, each, data)[row].clearance;
+          }
+          EXPECT_NEAR(by(static_cast<Eigen::Index>(row), 6 + joint),
+                      (moved[1] - moved[0]) / (2 * h), 2e-5)
+              << each.a << " " << each.b << " " << row;
+        }
+      }
     }
-  auto one_box = [&](int body) {
-    return shapes[static_cast<size_t>(body)] == 1 && boxes[static_cast<size_t>(body)] == 1;
-  };
-  int single = 0;
-  for (int i = 0; i < static_cast<int>(collisions.pairs().size()); ++i) {
-    const CollisionModel::Pair& p = collisions.pairs()[i];
-    EXPECT_EQ(clearance_rows(collisions, i), one_box(p.a) && one_box(p.b) ? 17 : 1) << i;
-    single += clearance_rows(collisions, i) == 1;
   }
-  EXPECT_GT(single, 0);
+  EXPECT_GT(near, 500);
+}
+
+// Two long boxes crossed on edge: no corner tells how near they are.
+TEST(ClearanceRows, EdgesAreARowWhereNoCornerIsNearer) {
+  const RobotModel model = shapely_arms();
+  const CollisionModel collisions(model);
+  RobotData data(model);
+  int edges = 0, corners = 0;
+  Random random(4);
+  for (int i = 0; i < 200; ++i) {
+    RobotState state = model.rest_state();
+    for (double& angle : state.theta) angle = random.uniform(-0.8, 0.8);
+    update_positions(model, state, data);
+    ShapePair boxes;  // the first shape of either
+    EXPECT_EQ(clearance_rows(collisions, boxes), 16);
+    const bool meet = edges_meet(collisions, boxes, data);
+    double least = 1;
+    for (const Closest& c : clearance_points(collisions, boxes, data))
+      least = std::min(least, c.clearance);
+    const double all = shape_clearance(collisions, boxes, data, 1);
+    if (least > 0) {
+      EXPECT_EQ(meet, least > all + 1e-6) << least << " " << all;
+    }
+    (meet ? edges : corners) += 1;
+  }
+  EXPECT_GT(edges, 5);
+  EXPECT_GT(corners, 5);
+}
+
+TEST(ClearanceRows, RowsByWhatShapesEndIn) {
+  const RobotModel model = shapely_arms();
+  const CollisionModel collisions(model);
+  // One has a box, a capsule, a sphere; the other a box, a cylinder, a capsule, a sphere.
+  const int ends_a[] = {8, 2, 0}, ends_b[] = {8, 2, 2, 0};
+  for (ShapePair each : shape_pairs(collisions, 0)) {
+    const int count = ends_a[each.a] + ends_b[each.b];
+    EXPECT_EQ(clearance_rows(collisions, each), std::max(1, count));
+    each.edges = true;
+    EXPECT_EQ(clearance_rows(collisions, each), 1 + count);
+  }
 }

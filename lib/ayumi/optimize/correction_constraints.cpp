@@ -9,13 +9,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/optimize/clearance_rows.hpp"
 #include "ayumi/optimize/motor_torque.hpp"
 
 namespace ayumi {
@@ -211,22 +209,16 @@ MatrixXd foot_derivatives(const RobotModel& model, const ConstraintBlock& block,
 
 MatrixXd clearance_derivatives(const RobotModel& model, const ConstraintBlock& block,
                                const Instant& instant, const InstantState& state) {
-  MatrixXd by = clearance_gradient(model, *instant.collisions, block.item, *state.data);
+  MatrixXd by = clearance_gradient(model, *instant.collisions, block.shapes, *state.data);
   by.middleCols<3>(3) = (by.middleCols<3>(3) * state.motion.tangent).eval();
   return by;
 }
 
-// The distance itself as the check has it, not as the nearest points do.
 VectorXd clearance_values(const ConstraintBlock& block, const Instant& instant,
                           const InstantState& state) {
-  const CollisionModel& collisions = *instant.collisions;
+  const auto points = clearance_points(*instant.collisions, block.shapes, *state.data);
   VectorXd values(block.rows);
-  if (block.rows > 1) {
-    const auto points = clearance_points(collisions, block.item, *state.data);
-    for (int i = 0; i < block.rows; ++i) values[i] = points[static_cast<size_t>(i)].clearance;
-  }
-  values[0] = collisions.clearance(collisions.pairs()[block.item], *state.data,
-                                   std::numeric_limits<double>::infinity());
+  for (int i = 0; i < block.rows; ++i) values[i] = points[static_cast<size_t>(i)].clearance;
   return values;
 }
 

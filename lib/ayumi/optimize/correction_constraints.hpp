@@ -9,6 +9,7 @@
 #include "ayumi/check/residuals.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"
+#include "ayumi/optimize/clearance_rows.hpp"
 #include "ayumi/optimize/corrected_motion.hpp"
 #include "ayumi/pattern/correction.hpp"
 
@@ -66,6 +67,7 @@ struct ConstraintBlock {
   ConstraintGroup group = ConstraintGroup::support;
   int instant = 0;        ///< index of its Instant
   int item = 0;           ///< foot (by Side), dof, or pair of bodies
+  ShapePair shapes;       ///< of clearance blocks
   int row = 0, rows = 0;  ///< first and number
   double scale = 1;       ///< of yaw rows: 1 / (m g); of joint rows: 1 / limit
   double factor = 0;      ///< of yaw rows: friction times lever [m]; of landing rows [1/m]

@@ -231,11 +231,8 @@ void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) con
 
 Nlp CorrectionProblem::nlp() const {
   Nlp nlp;
-  nlp.start = VectorXd::Zero(variable_count());
-  if (spec_.start.rows() == zero_.coefficients.rows())
-    for (Eigen::Index i = 0; i < index_.rows(); ++i)
-      for (Eigen::Index j = 0; j < index_.cols(); ++j)
-        if (index_(i, j) >= 0) nlp.start[index_(i, j)] = spec_.start(i, j);
+  nlp.start = spec_.start.rows() == zero_.coefficients.rows() ? point(spec_.start)
+                                                              : VectorXd::Zero(variable_count());
   nlp.lower = VectorXd::Constant(variable_count(), -kNoBound);
   nlp.upper = VectorXd::Constant(variable_count(), kNoBound);
   nlp.constraint_lower = lower_;
@@ -262,6 +259,14 @@ Nlp CorrectionProblem::nlp() const {
     values = scale * hessian_values_;
   };
   return nlp;
+}
+
+VectorXd CorrectionProblem::point(const MatrixXd& coefficients) const {
+  VectorXd x = VectorXd::Zero(variable_count());
+  for (Eigen::Index i = 0; i < index_.rows(); ++i)
+    for (Eigen::Index j = 0; j < index_.cols(); ++j)
+      if (index_(i, j) >= 0) x[index_(i, j)] = coefficients(i, j);
+  return x;
 }
 
 CorrectionTrack CorrectionProblem::track(const VectorXd& x) const {

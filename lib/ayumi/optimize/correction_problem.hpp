@@ -49,16 +49,16 @@ struct CorrectionSpec {
   double sole_position = 2e-4;  ///< band a supporting sole stays in [m]
   double sole_angle = 2e-3;     ///< [rad]
   double sole_at_knots = 0.1;   ///< share of that band at the knots
-  double clearance = 2.2e-3;    ///< between bodies that the motion does not bring nearer [m]
-  /// A limit is constrained where the motion, or `current`, uses more than this share of it; the
-  /// rest is looked at by the check of the result.
+  double clearance = 2.4e-3;    ///< between bodies that the motion does not bring nearer [m]
+  /// A limit is constrained where the motion, or one of `seen`, uses more than this share of it;
+  /// the rest is looked at by the check of the result.
   double watched_share = 0.7;
   /// Every limit is where the check has it: of the friction cone planes that touch it from outside,
   /// where `current` presses against it, in place of a pyramid inside.
   bool at_limits = false;
   std::vector<double> extra;               ///< more instants, where an earlier result failed [s]
-  const CommandSeries* current = nullptr;  ///< an earlier result; null: the motion itself
-  Eigen::MatrixXd start;                   ///< its control points, for a start; empty: zero
+  std::vector<const CommandSeries*> seen;  ///< earlier results, the last one last
+  Eigen::MatrixXd start;                   ///< control points of a start; empty: zero
 };
 
 class CorrectionProblem {
@@ -82,8 +82,9 @@ class CorrectionProblem {
   /// The program; it refers to this object, which must outlive it.
   Nlp nlp() const;
 
-  /// The correction a point of the program stands for.
+  /// The correction a point of the program stands for, and the point for control points.
   CorrectionTrack track(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd point(const Eigen::MatrixXd& coefficients) const;
 
  private:
   Eigen::VectorXd constraints(const CommandSeries& motion, const Eigen::MatrixXd& c) const;
@@ -102,12 +103,14 @@ class CorrectionProblem {
   double landing_factor(Side side, const ContactInterval& swing, const Eigen::Isometry3d& place,
                         bool lands) const;
   void place_landing(int instant, Side side);
+  double sole_angle(Side side) const;
   void place_joint_blocks(int instant);
   void place_torque_blocks(int instant);
   void place_clearance_blocks(int instant);
+  void place_clearance_block(int instant, const ShapePair& shapes, double own);
   void place_command_blocks(int instant);
   double tolerance(Kind kind) const { return spec_.tolerance[static_cast<int>(kind)]; }
-  std::array<const CommandSample*, 2> watched(int instant) const;
+  std::vector<const CommandSample*> watched(int instant) const;
   void place_jacobian();
   void place_objective();
   void add_block(ConstraintBlock block, double lower, double upper);

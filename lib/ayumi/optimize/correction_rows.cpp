@@ -6,7 +6,6 @@
 #include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/optimize/clearance_rows.hpp"
 #include "ayumi/optimize/correction_problem.hpp"
 #include "ayumi/optimize/motor_torque.hpp"
 
@@ -59,11 +58,13 @@ void CorrectionProblem::place_constraints() {
   }
 }
 
-// What decides whether a limit is near: the motion, and where it has come to.
-std::array<const CommandSample*, 2> CorrectionProblem::watched(int instant) const {
+// What decides whether a limit is near: the motion, and wherever it has come to. Were it only the
+// last result, a limit that its rows have mended would lose them and be broken again.
+std::vector<const CommandSample*> CorrectionProblem::watched(int instant) const {
   const int k = instants_[instant].sample;
-  const CommandSeries& current = spec_.current ? *spec_.current : series_;
-  return {&series_.samples[k], &current.samples[k]};
+  std::vector<const CommandSample*> samples = {&series_.samples[k]};
+  for (const CommandSeries* seen : spec_.seen) samples.push_back(&seen->samples[k]);
+  return samples;
 }
 
 // Where the motion's ZMP is outside, or too near the edge, it is brought back to where it is safe,
@@ -286,6 +287,15 @@ void CorrectionProblem::place_landing(int instant, Side side) {
   add_block(std::move(block), -kPlaceSpare, kNoBound);
 }
 
+// What a sole may turn in its place: a long one less, for its corners rise and sink.
+double CorrectionProblem::sole_angle(Side side) const {
+  constexpr double kShare = 0.6;  // of what a corner may be off
+  double reach = 0;
+  for (const Eigen::Vector2d& v : model_.sole(side).polygon) reach = std::max(reach, v.lpNorm<1>());
+  const double off = std::min(tolerance(Kind::foot_float), tolerance(Kind::foot_penetration));
+  return std::min(spec_.sole_angle, kShare * off / reach);
+}
+
 void CorrectionProblem::place_foot_blocks(int instant) {
   constexpr double kNearGround = 0.004;  // a swinging sole higher than this is not watched [m]
   RobotData data(model_);
@@ -297,8 +307,9 @@ void CorrectionProblem::place_foot_blocks(int instant) {
                                              0.2 * tolerance(Kind::foot_penetration),
                                              0.2 * tolerance(Kind::foot_float)});
       add_block(block_of(ConstraintGroup::stance, instant, s, 6), -slack, slack);
-      lower_.tail<3>().setConstant(-share * spec_.sole_angle);
-      upper_.tail<3>().setConstant(share * spec_.sole_angle);
+      const double angle = share * sole_angle(side);
+      lower_.tail<3>().setConstant(-angle);
+      upper_.tail<3>().setConstant(angle);
       soften_landing(instant, side);
     }
     if (spec_.locked_feet[s]) {
@@ -370,25 +381,6 @@ void CorrectionProblem::place_torque_blocks(int instant) {
     instants_[instant].torques = true;
     add_block(block_of(ConstraintGroup::torque, instant, i, 1, 1 / most[i]), -spec_.share,
               spec_.share);
-  }
-}
-
-// Not nearer than the margin, or than the motion comes by itself without meeting.
-void CorrectionProblem::place_clearance_blocks(int instant) {
-  constexpr double kNear = 0.005;    // [m]
-  constexpr double kTouch = 0.0005;  // [m]
-  RobotData data(model_);
-  for (const int pair : spec_.near_pairs) {
-    std::array<double, 2> clearance;
-    for (int i = 0; i < 2; ++i) {
-      update_positions(model_, watched(instant)[i]->state, data);
-      clearance[i] = spec_.collisions->clearance(spec_.collisions->pairs()[pair], data, kNear);
-    }
-    if (std::min(clearance[0], clearance[1]) >= kNear) continue;
-    const double least =
-        clearance[0] > kTouch ? std::min(spec_.clearance, clearance[0]) : spec_.clearance;
-    const int rows = clearance_rows(*spec_.collisions, pair);
-    add_block(block_of(ConstraintGroup::clearance, instant, pair, rows), least, kNoBound);
   }
 }
 

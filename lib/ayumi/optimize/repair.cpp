@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
 #include <set>
 
@@ -18,6 +19,7 @@
 #include "ayumi/optimize/obstacles.hpp"
 #include "ayumi/optimize/polish.hpp"
 #include "ayumi/optimize/repair_spec.hpp"
+#include "ayumi/optimize/repair_start.hpp"
 #include "ayumi/optimize/safety_price.hpp"
 #include "ayumi/pattern/differentiate.hpp"
 
@@ -42,6 +44,8 @@ constexpr double kWarmBarrier = 1e-5;        // of a start that violates little,
 constexpr double kNearlyMet = 1e-3;          // an unsolved program's violation, to go on from there
 constexpr double kFarOff = 1e-3;             // barrier would only lead away from it
 constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
+constexpr int kHalvings = 2;                 // of the knots' spacing, at most
+constexpr double kFinest = 8;                // samples between knots that are not halved any more
 constexpr double kRoundMargin = 0.001;       // more ZMP margin each round [m]
 constexpr int kPolishRounds = 4;             // at the limits of the check itself
 constexpr double kLittle = 1e-4;             // of the way back, rather than another round
@@ -68,7 +72,10 @@ class Repair {
     const bool flight = flight_is_at_fault();
     if (flight)
       spec_.spacing = std::min(spec_.spacing, shortest_flight(series_) / kKnotsOfFaultyFlight);
-    if (!locked_out()) solve_rounds();
+    if (locked_out(model_, spec_, result_.check))
+      last_status_ = NlpStatus::infeasible;
+    else
+      solve_rounds();
     if (done() && result_.work.rounds > 0 && !flight) polish();
     conclude();
     return result_;
@@ -103,13 +110,31 @@ class Repair {
       if (2 * (round + 1) >= kRounds) spec_.gentle_landings = false;
       spec_.joint_margin += kRoundJointMargin;
       spec_.share -= kRoundShare;
-      if (round + 2 == kRounds) spec_.spacing /= 2;
+      refine(round);
     }
     if (!result_.check.consistent && passing_) {
       take(*passing_);
       return;
     }
-    if (!result_.check.consistent && last_status_ != NlpStatus::solved) solve_elastic();
+    if (!result_.check.consistent) solve_elastic();
+  }
+
+  // Where an error outlasts the instants that were added for it, the knots are too far apart.
+  void refine(int round) {
+    if (result_.check.consistent) return;
+    std::set<std::string> errors;
+    bool again = round + 2 == kRounds;
+    for (const Finding& f : result_.check.findings) {
+      if (f.severity != Severity::error) continue;
+      errors.insert(f.kind + f.where);
+      again = again || errors_.contains(f.kind + f.where);
+    }
+    errors_ = last_status_ == NlpStatus::solved ? errors : std::set<std::string>();
+    if (!again || halvings_ == kHalvings || track_.spacing < kFinest * series_.dt) return;
+    ++halvings_;
+    errors_.clear();
+    spec_.spacing = track_.spacing / 2;
+    if (spec_.start.size() > 0) spec_.start = with_halved_knots(spec_.start);
   }
 
   // The least correction that passes, from one that does: limits where the check has them.
@@ -164,6 +189,7 @@ class Repair {
     spec_.zmp_margin = asked_.zmp_margin;
     spec_.safe_margin = safe ? asked_.safe_margin : asked_.zmp_margin;
     spec_ = at_limits(spec_, options_.safety);
+    spec_.spacing = track_.spacing;
     spec_.start = track_.coefficients;
   }
 
@@ -209,25 +235,6 @@ class Repair {
                          return f.severity == Severity::error &&
                                 (f.kind == "ballistic" || f.kind == "angular_momentum");
                        });
-  }
-
-  // A joint that may not move and is beyond its limits, or something wrong at a time that may not
-  // change: there is nothing to solve.
-  bool locked_out() {
-    for (const Finding& f : result_.check.findings) {
-      if (f.severity != Severity::error || f.kind == "continuous_torque") continue;
-      const int dof = model_.find_dof(f.where);
-      const bool joint =
-          dof >= 0 && spec_.locked[dof] &&
-          (f.kind == "joint_position" || f.kind == "joint_speed" || f.kind == "servo_step");
-      const bool window =
-          std::any_of(spec_.locked_windows.begin(), spec_.locked_windows.end(),
-                      [&](const auto& w) { return f.at >= w.first && f.at <= w.second; });
-      if (!joint && !window) continue;
-      last_status_ = NlpStatus::infeasible;
-      return true;
-    }
-    return false;
   }
 
   // The first and last posture move only where they are themselves at fault. What the tick of an
@@ -290,10 +297,11 @@ class Repair {
   }
 
   void solve_round(const std::string& stage, double tolerance) {
-    const CommandSeries current = result_.series;
-    spec_.current = &current;
+    if (result_.work.rounds > 0) spec_.seen.push_back(&seen_.emplace_back(result_.series));
     problem_.emplace(model_, series_, spec_);
-    const Nlp hard = problem_->nlp();
+    Nlp hard = problem_->nlp();
+    if (spec_.start.size() == 0)
+      hard.start = start_of(*problem_, hard, model_, series_, result_.before.findings);
     const bool warm = spec_.start.size() > 0 && violation_at_start(hard) < kFarOff;
     const Nlp nlp = with_soft_safety(*problem_, hard, series_.dt, options_.safety);
     NlpOptions options = nlp_options(warm);
@@ -302,16 +310,14 @@ class Repair {
     note_work(nlp, solution);
     last_status_ = solution.status;
     objective_ = solution.objective;
-    const CorrectionTrack track = problem_->track(solution.x.head(problem_->variable_count()));
-    take(track);
+    take(problem_->track(solution.x.head(problem_->variable_count())));
     // Bodies that have met are hard to part again: then from the start.
     const bool on_its_way =
         last_status_ == NlpStatus::iteration_limit && result_.check.summary.min_self_clearance > 0;
     spec_.start =
         last_status_ == NlpStatus::solved || (on_its_way && solution.violation < kNearlyMet)
-            ? track.coefficients
+            ? track_.coefficients
             : Eigen::MatrixXd();
-    spec_.current = nullptr;
   }
 
   // The motion that violates least, in the order of what is worth most, tells what is in the way.
@@ -337,7 +343,6 @@ class Repair {
     last_status_ = NlpStatus::iteration_limit;
     if (problem_ && least_violating_.size() >= problem_->variable_count())
       take(problem_->track(least_violating_.head(problem_->variable_count())));
-    spec_.current = nullptr;
   }
 
   void conclude() {
@@ -374,6 +379,9 @@ class Repair {
   const CollisionModel collisions_;
   CorrectionSpec spec_, asked_;               // now and of the first round
   std::optional<CorrectionProblem> problem_;  // of the last round
+  std::deque<CommandSeries> seen_;            // results of earlier rounds
+  std::set<std::string> errors_;              // left over by the last round, where it was solved
+  int halvings_ = 0;                          // of the knots' spacing
   Eigen::VectorXd least_violating_;
   RepairResult result_;
   CorrectionTrack track_;                   // of the result, every control point

@@ -58,7 +58,7 @@ std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>
                                                       double pad) {
   std::vector<std::pair<double, double>> windows;
   for (const Finding& f : findings)
-    if (f.severity == Severity::error || f.kind == "support_margin")
+    if (f.severity == Severity::error || f.kind == "support_margin" || !f.follows_from.empty())
       windows.emplace_back(f.begin - pad, f.end + pad);
   std::sort(windows.begin(), windows.end());
   std::vector<std::pair<double, double>> merged;
@@ -116,6 +116,22 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   spec.safe_margin = options.zmp_margin.value_or(safe) + kMarginBetween;
   spec.zmp_margin = std::min(spec.safe_margin, least + kMarginBetween);
   return spec;
+}
+
+bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
+                const ConsistencyReport& report) {
+  for (const Finding& f : report.findings) {
+    if (f.severity != Severity::error || f.kind == "continuous_torque") continue;
+    const int dof = model.find_dof(f.where);
+    const bool joint =
+        dof >= 0 && spec.locked[dof] &&
+        (f.kind == "joint_position" || f.kind == "joint_speed" || f.kind == "servo_step");
+    const bool window =
+        std::any_of(spec.locked_windows.begin(), spec.locked_windows.end(),
+                    [&](const auto& w) { return f.at >= w.first && f.at <= w.second; });
+    if (joint || window) return true;
+  }
+  return false;
 }
 
 }  // namespace ayumi

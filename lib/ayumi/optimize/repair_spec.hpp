@@ -22,4 +22,9 @@ CorrectionTrack trimmed(const CorrectionTrack& track);
 /// [s]; without a flight no bound.
 double shortest_flight(const CommandSeries& series);
 
+/// Whether a joint that may not move is beyond its limits, or something is wrong at a time that may
+/// not change: then there is nothing to solve.
+bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
+                const ConsistencyReport& report);
+
 }  // namespace ayumi
