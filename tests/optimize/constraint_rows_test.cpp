@@ -287,7 +287,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
           raise("torque", std::abs(rows[0]));
           break;
         case ConstraintGroup::clearance:
-          raise("overlap", -rows[0]);
+          raise("overlap", -rows.minCoeff());
           break;
         case ConstraintGroup::cog:
           raise("cog", rows.norm());
@@ -315,6 +315,11 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
           {"overlap", -summary.min_self_clearance},
           {"cog", summary.max_cog_residual}};
   if (jumps) told["ballistic"] = summary.max_ballistic_residual;
+  if (summary.min_self_clearance < 0) {  // ends are less deep inside than shapes have to be parted
+    EXPECT_GT(most["overlap"], 0);
+    EXPECT_LE(most["overlap"], told["overlap"] + 1e-9);
+    told.erase("overlap");
+  }
   for (const auto& [name, value] : told)
     EXPECT_NEAR(most[name], value, 1e-9 * std::max(1.0, std::abs(value))) << name;
   if (!jumps) return;
