@@ -84,7 +84,7 @@ double safety_price(const RobotModel& model, const CommandSeries& before,
   const CollisionModel collisions(model);
   spec.collisions = &collisions;
   spec.near_pairs = near_pairs(model, collisions, before, after);
-  spec.current = &after;
+  spec.seen = {&after};
   spec.joint_margin = 0;
   const CorrectionProblem problem(model, before, spec);
   const VectorXd g = problem.constraints_of(after);
