@@ -146,6 +146,15 @@ void CorrectionProblem::place_instants() {
   }
 }
 
+// What decides whether a limit is near: the motion, and wherever it has come to. Were it only the
+// last result, a limit that its rows have mended would lose them and be broken again.
+std::vector<const CommandSample*> CorrectionProblem::watched(int instant) const {
+  const int k = instants_[instant].sample;
+  std::vector<const CommandSample*> samples = {&series_.samples[k]};
+  for (const CommandSeries* seen : spec_.seen) samples.push_back(&seen->samples[k]);
+  return samples;
+}
+
 void CorrectionProblem::place_jacobian() {
   for (size_t b = 0; b < blocks_.size(); ++b) {
     const ConstraintBlock& block = blocks_[b];

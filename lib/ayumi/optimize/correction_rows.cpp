@@ -58,15 +58,6 @@ void CorrectionProblem::place_constraints() {
   }
 }
 
-// What decides whether a limit is near: the motion, and wherever it has come to. Were it only the
-// last result, a limit that its rows have mended would lose them and be broken again.
-std::vector<const CommandSample*> CorrectionProblem::watched(int instant) const {
-  const int k = instants_[instant].sample;
-  std::vector<const CommandSample*> samples = {&series_.samples[k]};
-  for (const CommandSeries* seen : spec_.seen) samples.push_back(&seen->samples[k]);
-  return samples;
-}
-
 // Where the motion's ZMP is outside, or too near the edge, it is brought back to where it is safe,
 // and so around that: a step that begins badly is not safe when its end is. Where it is inside
 // anyhow it stays as far inside as it is, or safe is.
