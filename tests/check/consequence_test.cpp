@@ -173,6 +173,22 @@ TEST(Consequence, OfAFlightThatIsNotFreeAreTorques) {
   }
 }
 
+// A flight at another scale ends with a jump to the ground: soles and forces there are not the
+// cause.
+TEST(Consequence, OfAFlightThatIsTooLowAreItsEdges) {
+  for (const double scale : {0.5, 1.3}) {
+    Pattern p = hops();
+    const double from = begin_of(p, 1), to = p.phases[1].until;
+    const double ground = p.table->base[std::lround(from / p.table->dt)].position.z();
+    for_rows(*p.table, [&](double t, size_t k) {
+      double& z = p.table->base[k].position.z();
+      if (t >= from && t < to) z = ground + scale * (z - ground);
+    });
+    const Errors e = errors_of(p);
+    EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << scale << "\n" << e.told;
+  }
+}
+
 // A commanded COG that is bent in the flight only is a flight that is not free; beyond it, a key.
 TEST(Consequence, OfACommandedCogDependsOnWhereItEnds) {
   const double at = middle_of(hops(), 1), length = hops().phases[1].until - begin_of(hops(), 1);

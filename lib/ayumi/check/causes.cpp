@@ -37,6 +37,7 @@ namespace {
 constexpr double kReach = 0.5;   // an outer force acts within this part of the height
 constexpr double kTwist = 2;     // what holds a turn is reckoned low by no more than this
 constexpr double kReturn = 0.1;  // of a displacement, as good as back in its place
+constexpr int kEdge = 5;         // around lift-off and landing, a jump of the path shows
 constexpr int kStencil = 3;      // samples that one jump spoils by differences
 
 bool is_foot(Kind k) {
@@ -58,6 +59,8 @@ bool is_need(const Violation& v) {
       return v.kind == Kind::support_margin && v.item == 0;  // of the motion, not the command
   }
 }
+
+bool is_flight(Kind k) { return k == Kind::ballistic || k == Kind::angular_momentum; }
 
 bool is_rate(Kind k) { return k == Kind::joint_speed || k == Kind::servo_step; }
 
@@ -196,6 +199,13 @@ class Causes {
     return contact.contact && stands(w.first - kStencil) && stands(w.last + kStencil);
   }
 
+  // A foot that is off its place on the ground makes no flight unfree, but differences over a jump
+  // into it reach a few samples back.
+  bool near_displacement(int i, int sample) const {
+    const Span off = displacement_around(pass_, windows_[i]);
+    return off.first <= sample + kStencil && sample - kStencil <= off.last;
+  }
+
   // Something of that leg overlaps by less than its foot is displaced, and only as long.
   bool touches_by_foot(int i, int j) const {
     const Violation& foot = of(i);
@@ -214,6 +224,7 @@ class Causes {
       blame(i, limit ? episode_of_joint(i) : episode(i), [&](int j) {
         const Violation& v = of(j);
         if (is_asked_for(v)) return false;
+        if (is_foot(kind) && is_flight(v.kind)) return near_displacement(i, v.sample);
         if (is_need(v) || is_residual(v.kind)) return true;
         if (places_feet && is_foot(v.kind)) return true;
         if (limit && v.kind == Kind::self_collision)
@@ -306,6 +317,12 @@ class Causes {
         if (of(j).kind == Kind::joint_torque) return holds_falling(pass_, of(j));
         return of(j).kind == Kind::ballistic || of(j).kind == Kind::foot_penetration;
       });
+      for (const int edge : {whole.first, whole.last}) {
+        const Span beside = {edge - kEdge, edge + kEdge};
+        blame(i, beside, [&](int j) {
+          return beside.contains(windows_[j]) && (is_need(of(j)) || is_residual(of(j).kind));
+        });
+      }
       blame(i, around(windows_[i], kStencil), [&](int j) {
         const Violation& v = of(j);
         if (v.kind == Kind::angular_momentum) return v.value <= moment;

@@ -28,7 +28,12 @@ bool touches_by_limits(const CheckPass& pass, const Violation& v) {
 bool hangs_on(const CheckPass& pass, const Violation& v, int dof) {
   const CollisionModel::Pair& pair = pass.collisions.pairs()[v.item];
   const int trunk = pass.model.trunk_body();
-  if (pair.a == trunk || pair.b == trunk) return false;
+  const auto in_leg = [&](Side side) {
+    const std::vector<int>& leg = pass.model.leg(side);
+    return std::find(leg.begin(), leg.end(), dof) != leg.end();
+  };
+  const bool leg = in_leg(Side::left) || in_leg(Side::right);
+  if (!leg && (pair.a == trunk || pair.b == trunk)) return false;
   const auto beyond = [&](int body) {
     while (body > 0 && pass.model.bodies()[body].dof != dof)
       body = pass.model.bodies()[body].parent;

@@ -9,8 +9,7 @@ namespace ayumi {
 /// Bodies that meet by no more than 15 mm and would not with every joint within its limits.
 bool touches_by_limits(const CheckPass& pass, const Violation& collision);
 
-/// Bodies whose distance this joint sets, and neither is the trunk: an arm in it is a fact of its
-/// own.
+/// Bodies whose distance this joint sets. Not an arm and the trunk: that is a fact of its own.
 bool hangs_on(const CheckPass& pass, const Violation& collision, int dof);
 
 /// The torque of a flight is within its limit when the COG falls freely.
