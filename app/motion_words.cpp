@@ -76,8 +76,11 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
 }
 
 std::string cost_words(const WeightedChange& cost) {
+  constexpr double kTold = 1e-3;  // of the change; less is rounding
   const std::string missing =
-      cost.safety > 0 ? " and " + text::brief(cost.safety) + " for the safety that is missing" : "";
+      cost.safety > kTold * cost.change
+          ? " and " + text::brief(cost.safety) + " for the safety that is missing"
+          : "";
   return "  weighted change " + text::brief(cost.change) + missing;
 }
 

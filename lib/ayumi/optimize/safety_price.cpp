@@ -64,6 +64,12 @@ bool is_bought(ConstraintGroup group) {
   }
 }
 
+// Feet stay in their places whatever safety is worth.
+double factor_of(ConstraintGroup group, double safety) {
+  const bool foot = group == ConstraintGroup::stance || group == ConstraintGroup::swing;
+  return foot ? 1 : safety;
+}
+
 double lack(const CorrectionProblem& problem, const ConstraintBlock& block, const VectorXd& g) {
   constexpr double kMet = 1e-6;  // of its unit: the solver's tolerance
   double most = 0;
@@ -77,7 +83,7 @@ double lack(const CorrectionProblem& problem, const ConstraintBlock& block, cons
 
 double safety_price(const RobotModel& model, const CommandSeries& before,
                     const CommandSeries& after, const RepairOptions& options) {
-  if (!(options.safety > 0) || before.samples.size() != after.samples.size()) return 0;
+  if (before.samples.size() != after.samples.size()) return 0;
   CorrectionSpec spec = repair_spec(model, before, options);
   spec.windows = windows_of(before, after, spec.spacing);
   if (spec.windows.empty()) return 0;
@@ -101,10 +107,10 @@ double safety_price(const RobotModel& model, const CommandSeries& before,
                          std::lround(k * before.dt / price.window));
     double& most = lacks[key];
     const double here = lack(problem, block, g);
-    sum += std::max(0.0, here - most) * price.change;
+    sum += factor_of(block.group, options.safety) * std::max(0.0, here - most) * price.change;
     most = std::max(most, here);
   }
-  return options.safety * sum;
+  return sum;
 }
 
 }  // namespace ayumi

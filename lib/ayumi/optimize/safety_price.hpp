@@ -8,8 +8,8 @@
 
 namespace ayumi {
 
-/// In the measure of weighted_change() [s], where `after` differs from `before`; 0 where
-/// options.safety is 0 and for motions of different length.
+/// In the measure of weighted_change() [s], where `after` differs from `before`; 0 for motions of
+/// different length. options.safety is a factor on all but the places of the feet.
 double safety_price(const RobotModel& model, const CommandSeries& before,
                     const CommandSeries& after, const RepairOptions& options);
 
