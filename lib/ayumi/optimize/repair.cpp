@@ -69,7 +69,7 @@ class Repair {
     }
     // COG, ZMP and f_z of the full model: what is left is wrong with the motion itself.
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
-    const bool flight = flight_is_at_fault();
+    const bool flight = flight_is_at_fault(result_.check);
     if (flight)
       spec_.spacing = std::min(spec_.spacing, shortest_flight(series_) / kKnotsOfFaultyFlight);
     if (locked_out(model_, spec_, result_.check))
@@ -227,14 +227,6 @@ class Repair {
                      if (clearance < kNear) near.insert(pair);
                    });
     spec_.near_pairs.assign(near.begin(), near.end());
-  }
-
-  bool flight_is_at_fault() const {
-    return std::any_of(result_.check.findings.begin(), result_.check.findings.end(),
-                       [](const Finding& f) {
-                         return f.severity == Severity::error &&
-                                (f.kind == "ballistic" || f.kind == "angular_momentum");
-                       });
   }
 
   // The first and last posture move only where they are themselves at fault. What the tick of an

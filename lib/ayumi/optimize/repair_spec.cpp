@@ -43,6 +43,12 @@ double safe_margin(const RobotModel& model) {
   return 0.9 * least;
 }
 
+bool flight_is_at_fault(const ConsistencyReport& report) {
+  return std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
+    return f.severity == Severity::error && (f.kind == "ballistic" || f.kind == "angular_momentum");
+  });
+}
+
 double shortest_flight(const CommandSeries& series) {
   double shortest = kNoBound;
   size_t first = 0;

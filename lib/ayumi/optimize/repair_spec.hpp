@@ -19,6 +19,9 @@ std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>
 /// move, with the three zero points before and after that a cubic spline needs to begin at rest.
 CorrectionTrack trimmed(const CorrectionTrack& track);
 
+/// An error of its free fall or its angular momentum.
+bool flight_is_at_fault(const ConsistencyReport& report);
+
 /// [s]; without a flight no bound.
 double shortest_flight(const CommandSeries& series);
 
