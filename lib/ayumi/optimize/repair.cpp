@@ -119,11 +119,12 @@ class Repair {
     if (!result_.check.consistent) solve_elastic();
   }
 
-  // Where an error outlasts the instants that were added for it, the knots are too far apart.
+  // Where an error outlasts the instants that were added for it, or no solution is found, the knots
+  // are too far apart: soles in their places ask for more than a coarse spline can follow.
   void refine(int round) {
     if (result_.check.consistent) return;
     std::set<std::string> errors;
-    bool again = round + 2 == kRounds;
+    bool again = round + 2 == kRounds || last_status_ != NlpStatus::solved;
     for (const Finding& f : result_.check.findings) {
       if (f.severity != Severity::error) continue;
       errors.insert(f.kind + f.where);
