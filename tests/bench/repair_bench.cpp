@@ -1,8 +1,8 @@
 // Repairs of HOAP-1 walks with faults in every step, measured: size of the program, iterations,
 // seconds in functions and in the linear algebra of Ipopt, peak memory of the process. The same
-// repair by MUMPS follows at once (processor time), and what an iteration's
-// linear algebra takes with it over what it takes without; the lower of as many rounds as the first
-// argument says (2). Last the check of a walk of 10 s at 1 kHz by parts.
+// repair by MUMPS follows at once (processor time), and what an iteration's linear algebra takes
+// with it over what it takes without; the lower of as many rounds as the first argument says (2).
+// Last, or alone where that argument is "check", the check of a walk of 10 s at 1 kHz by parts.
 
 #include <sys/resource.h>
 
@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <string>
 #include <utility>
 
 #include "ayumi/check/collision_scan.hpp"
@@ -132,6 +133,10 @@ CommandSeries walk_of(const RobotModel& model, int steps) {
 int main(int count, char** arguments) {
   const RobotDescription robot = load_robot_description(AYUMI_SOURCE_DIR "/robots/hoap1");
   const RobotModel model(robot);
+  if (count > 1 && std::string(arguments[1]) == "check") {
+    measure_check(model);
+    return 0;
+  }
   const int rounds = count > 1 ? std::max(1, std::atoi(arguments[1])) : 2;
   for (const int steps : {3, 8, 13}) {
     const CommandSeries series = walk_of(model, steps);
