@@ -1,16 +1,18 @@
 #include "motion_words.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/pattern/differentiate.hpp"
 #include "ayumi/preview/loci.hpp"
+#include "plan_log.hpp"
 
 namespace ayumi::app {
 
 namespace {
 
-constexpr size_t kJointsTold = 8;
+constexpr size_t kJointsTold = 8, kJointsDrawn = 4, kSpeedsDrawn = 2;
+constexpr double kTold = 0.005 * EIGEN_PI / 180;  // what would be 0.00 deg is no move for people
 
 std::string mm(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 std::string seconds(double t) { return text::fixed(t, 3) + " s"; }
@@ -28,49 +30,33 @@ std::string largest(const std::string& what, const LargestChange& change,
   return what + " by up to " + amount + " at " + seconds(change.at);
 }
 
-// A plan as a log: what the full model says of the motion, and what is commanded beside it.
-SimulationLog plan_log(const RobotModel& model, const CommandSeries& motion,
-                       const CommandSeries& command, const std::string& title) {
-  SimulationLog log;
-  log.dt = motion.dt;
-  log.provenance.pattern = title;
-  RobotData data(model);
-  for (size_t k = 0; k < motion.samples.size(); ++k) {
-    const CommandSample& s = motion.samples[k];
-    const CommandSample& c = command.samples[std::min(k, command.samples.size() - 1)];
-    SimulationSample sample;
-    const GroundReaction full = full_model_reaction(model, s, data);
-    sample.state = s.state;
-    sample.cog = data.cog;
-    sample.zmp = full.zmp;
-    sample.fz = full.force.z();
-    sample.command_cog = c.cog;
-    sample.command_zmp = sample.reference_zmp = c.zmp;
-    sample.command_fz = c.fz;
-    sample.planned_contact = {supports(s.support, Side::left), supports(s.support, Side::right)};
-    log.samples.push_back(std::move(sample));
-  }
-  return log;
-}
-
 }  // namespace
+
+std::string margin_words(double margin) {
+  return mm(std::abs(margin)) + (margin < 0 ? " outside" : " inside") + " the support";
+}
 
 std::string motion_words(const RobotModel& model, const MotionChange& change,
                          const ConsistencyReport& before, const ConsistencyReport& after) {
   std::string out;
-  if (change.joints.empty()) out += "  no joint moved\n";
-  for (size_t i = 0; i < std::min(kJointsTold, change.joints.size()); ++i)
+  size_t told = 0;
+  while (told < std::min(kJointsTold, change.joints.size()) &&
+         std::abs(change.joints[told].most) >= kTold)
+    ++told;
+  if (told == 0) out += "  no joint moved\n";
+  for (size_t i = 0; i < told; ++i)
     out += (i == 0 ? "  moved " : "        ") + joint_words(model, change.joints[i]) + "\n";
-  if (change.joints.size() > kJointsTold)
-    out += "        and " + std::to_string(change.joints.size() - kJointsTold) + " joints less\n";
-  if (change.cog.size > 1e-6)
+  const size_t rest = change.joints.size() - told;
+  if (told == kJointsTold && rest > 0)
+    out += "        and " + std::to_string(rest) + " joints by less\n";
+  if (change.cog.size > 5e-5 || change.foot.size > 5e-5)
     out += "  " + largest("COG", change.cog, mm(change.cog.size)) + "; " +
            largest("a foot", change.foot, mm(change.foot.size)) + "\n";
-  if (change.zmp.size > 1e-6 || change.fz.size > 1e-3)
+  if (change.zmp.size > 5e-5 || change.fz.size > 0.05)
     out += "  " + largest("commanded ZMP", change.zmp, mm(change.zmp.size)) + "; " +
            largest("f_z", change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
-  return out + "  ZMP " + mm(before.summary.min_zmp_margin) + " inside the support before, " +
-         mm(after.summary.min_zmp_margin) + " after; COG off its command by " +
+  return out + "  ZMP " + margin_words(before.summary.min_zmp_margin) + " before, " +
+         margin_words(after.summary.min_zmp_margin) + " after; COG off its command by " +
          mm(before.summary.max_cog_residual) + " before, " + mm(after.summary.max_cog_residual) +
          " after\n";
 }
@@ -84,14 +70,49 @@ std::string cost_words(const WeightedChange& cost) {
   return "  weighted change " + text::brief(cost.change) + missing;
 }
 
+namespace {
+
+// Whether what is commanded is another thing than what the motion does.
+bool disagrees(const SimulationLog& log) {
+  return std::any_of(log.samples.begin(), log.samples.end(), [](const SimulationSample& s) {
+    return (s.cog - s.command_cog).norm() > 5e-4 || (s.zmp - s.command_zmp).norm() > 3e-3 ||
+           std::abs(s.fz - s.command_fz) > 1;
+  });
+}
+
+}  // namespace
+
 void plot_motions(const RobotModel& model, const CommandSeries& before, const CommandSeries& after,
-                  const std::string& title, const std::filesystem::path& path) {
-  const SimulationLog a = plan_log(model, before, before, title);
-  const SimulationLog b = plan_log(model, after, before, title);
+                  const MotionPlot& plot, const std::filesystem::path& path) {
+  constexpr double kAround = 0.4;  // [s]
+  const SimulationLog a = plan_log(model, before, before);
+  const SimulationLog b = plan_log(model, after, before);
+  const MotionChange change = motion_change(model, before, after);
   LociOptions options;
-  options.title = title;
+  options.title = plot.title;
   options.model = &model;
-  write_loci({{"before", &a}, {"after", &b}}, path, options);
+  options.profile = plot.profile;
+  options.command = disagrees(a);
+  options.reference = false;
+  options.only_differences = true;
+  const Eigen::VectorXd& speed = model.limits(plot.profile).speed;
+  double begin = change.compared, end = 0;
+  for (const JointChange& joint : change.joints) {
+    if (std::abs(joint.most) < kTold) continue;
+    begin = std::min(begin, joint.begin);
+    end = std::max(end, joint.end);
+    const int dof = model.find_dof(joint.joint);
+    if (options.joints.size() < kJointsDrawn) options.joints.push_back(dof);
+    const bool fast = std::any_of(a.samples.begin(), a.samples.end(), [&](const auto& s) {
+      return std::abs(s.state.dtheta[dof]) > speed[dof];
+    });
+    if (fast && options.speeds.size() < kSpeedsDrawn) options.speeds.push_back(dof);
+  }
+  if (end > begin) {
+    options.begin = std::max(0.0, begin - kAround);
+    options.end = end + kAround;
+  }
+  write_loci({{plot.before, &a}, {plot.after, &b}}, path, options);
 }
 
 }  // namespace ayumi::app

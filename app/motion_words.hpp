@@ -11,6 +11,9 @@
 
 namespace ayumi::app {
 
+/// "7.1 mm inside the support", "10.0 mm outside the support"
+std::string margin_words(double margin);
+
 /// A few indented lines: joints, how much and when; COG, feet, ZMP, f_z; the ZMP margin before and
 /// after.
 std::string motion_words(const RobotModel& model, const MotionChange& change,
@@ -19,9 +22,15 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
 /// "  weighted change 0.17 and 0.003 for the safety that is missing".
 std::string cost_words(const WeightedChange& cost);
 
-/// COG, ZMP and f_z of both motions against time, with what the first one commands, as .svg or
-/// .png.
+struct MotionPlot {
+  std::string title, profile;
+  std::string before = "before", after = "after";
+};
+
+/// Both motions against time, where they differ: the joints that moved most with their limits, the
+/// speed of those that were too fast, COG, ZMP, its margin and f_z; what is commanded before, where
+/// that is another thing than the motion. As .svg or .png.
 void plot_motions(const RobotModel& model, const CommandSeries& before, const CommandSeries& after,
-                  const std::string& title, const std::filesystem::path& path);
+                  const MotionPlot& plot, const std::filesystem::path& path);
 
 }  // namespace ayumi::app

@@ -1,14 +1,41 @@
 #include "parameter_search.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <set>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern_file.hpp"
+#include "ayumi/optimize/obstacles.hpp"
+#include "ayumi/pattern/edit.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/study/retime.hpp"
 
 namespace ayumi::app {
 
 namespace {
+
+using Values = std::map<std::string, double>;
+
+constexpr int kMostTrials = 60;     // of several parameters together
+constexpr double kUnsampled = 1e6;  // worse than any motion
+constexpr double kSlowest = 5;      // more is not called a matter of time
+constexpr double kPaceStep = 1.15, kPaceResolution = 0.02;
+constexpr double kPart = 0.8;  // what is more of a pattern is all of it
+
+bool whole(double value) { return value == std::round(value) && std::abs(value) >= 1; }
+
+// Three digits for people, on the far side of `given`.
+double rounded_away(double value, double given) {
+  if (value == 0) return 0;
+  const double digits = std::pow(10, 2 - std::floor(std::log10(std::abs(value))));
+  const double count =
+      value > given ? std::ceil(value * digits - 1e-9) : std::floor(value * digits + 1e-9);
+  return digits >= 1 ? count / std::round(digits) : count * std::round(1 / digits);
+}
 
 class Search {
  public:
@@ -16,36 +43,48 @@ class Search {
          const std::vector<std::string>& tolerances)
       : context_(context), pattern_(pattern), options_(options), tolerances_(tolerances) {}
 
-  bool passes(const std::string& parameter, double value) {
-    report(context_.progress(), {"parameters", -1, parameter + " = " + text::brief(value)});
+  // How much is wrong with the pattern; 0 when it passes.
+  double excess(const Values& values) {
+    std::string words;
     PatternOptions options = options_;
-    options.set.push_back(parameter + "=" + text::exact(value));
+    for (const auto& [name, value] : values) {
+      words += (words.empty() ? "" : ", ") + name + " = " + text::brief(value);
+      options.set.push_back(name + "=" + text::exact(value));
+    }
+    report(context_.progress(), {"parameters", -1, words});
     Context silent = context_;
     silent.quiet = true;
     try {
       const PatternInput input = load_pattern(silent, pattern_, options);
-      return check_consistency(input.model, input.series, check_options(input, tolerances_))
-          .consistent;
+      return total_excess(
+          check_consistency(input.model, input.series, check_options(input, tolerances_)));
     } catch (const Interrupted&) {
       throw;
     } catch (const Error&) {
-      return false;
+      return kUnsampled;
     }
+  }
+
+  bool passes(const std::string& parameter, double value) {
+    return excess({{parameter, value}}) == 0;
   }
 
   // Steps to both sides, wider and wider, then the gap before the first that passes in halves.
   bool nearest(const std::string& parameter, double given, double& passing) {
+    if (whole(given) && nearest_whole(parameter, given, passing)) return true;
     double tried = 0;
-    for (const double share : {0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0}) {
+    for (const double share :
+         {0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.95, 1.0, 1.5, 2.0, 3.0}) {
       for (const double sign : {-1.0, 1.0}) {
-        if (sign < 0 && share >= 1) continue;
+        if (sign < 0 && share > 1) continue;
         double good = given * (1 + sign * share), bad = given * (1 + sign * tried);
         if (!passes(parameter, good)) continue;
         for (int i = 0; i < 4; ++i) {
           const double middle = 0.5 * (good + bad);
           (passes(parameter, middle) ? good : bad) = middle;
         }
-        passing = good;
+        const double told = rounded_away(good, given);
+        passing = told != good && passes(parameter, told) ? told : good;
         return true;
       }
       tried = share;
@@ -53,27 +92,174 @@ class Search {
     return false;
   }
 
+  // Several parameters, step by step the one that helps most; then each as near to what is given as
+  // the others let it.
+  PassingValues together(const Values& given) {
+    Values now = given;
+    double wrong = excess(now);
+    for (double step = 0.5; step > 0.1 && wrong > 0;) {
+      Values best;
+      double least = wrong;
+      for (const auto& [name, value] : given)
+        for (const double sign : {-1.0, 1.0}) {
+          if (value == 0 || ++trials_ > kMostTrials) continue;
+          Values other = now;
+          other[name] += sign * step * value;
+          if (whole(value)) other[name] = now[name] + sign * std::ceil(step * std::abs(value));
+          if (other[name] / value < 0.04) other[name] = 0;
+          if (other[name] == now[name] || other[name] / value > 4) continue;
+          const double e = excess(other);
+          if (e >= least) continue;
+          least = e;
+          best = other;
+        }
+      if (trials_ > kMostTrials) return {};
+      if (best.empty() || wrong - least < 1e-6) {
+        step /= 2;
+        continue;
+      }
+      now = best;
+      wrong = least;
+    }
+    if (wrong > 0) return {};
+    PassingValues result;
+    for (const auto& [name, value] : given) {
+      Values back = now;
+      for (const double share : {1.0, 0.5}) {
+        back[name] = now[name] + share * (value - now[name]);
+        if (whole(value)) back[name] = std::round(back[name]);
+        const double told = share < 1 ? rounded_away(back[name], value) : back[name];
+        back[name] = whole(value) ? back[name] : told;
+        if (back[name] == now[name] || excess(back) > 0) continue;
+        now = back;
+        break;
+      }
+    }
+    for (const auto& [name, value] : given)
+      if (now[name] != value) result.push_back({name, value, now[name]});
+    return result;
+  }
+
  private:
+  bool nearest_whole(const std::string& parameter, double given, double& passing) {
+    for (int step = 1; step <= std::min(12.0, 3 * std::abs(given)); ++step)
+      for (const double sign : {-1.0, 1.0}) {
+        const double value = given + sign * step;
+        if (value * given <= 0 || !passes(parameter, value)) continue;
+        passing = value;
+        return true;
+      }
+    return false;
+  }
+
   const Context& context_;
   const std::string& pattern_;
   const PatternOptions& options_;
   const std::vector<std::string>& tolerances_;
+  int trials_ = 0;
 };
+
+// From the last key or phase before what is wrong to the first one after it.
+std::vector<std::pair<double, double>> segments_around(const Pattern& pattern,
+                                                       const ConsistencyReport& check) {
+  std::set<double> marks = {0, pattern.duration()};
+  for (const Phase& phase : pattern.phases) marks.insert(phase.until);
+  for (const Keyframe& key : pattern.keyframes) marks.insert(key.t);
+  std::vector<std::pair<double, double>> all, merged;
+  for (const Finding& f : check.findings) {
+    if (f.severity != Severity::error) continue;
+    constexpr double kSlack = 0.002;  // a finding may touch the next segment by a sample [s]
+    const auto end = marks.lower_bound(std::max(f.end - kSlack, f.at));
+    auto begin = marks.upper_bound(std::min(f.begin + kSlack, f.at));
+    if (begin != marks.begin()) --begin;
+    const double to = end == marks.end() ? pattern.duration() : *end;
+    if (*begin < to) all.emplace_back(*begin, to);
+  }
+  std::sort(all.begin(), all.end());
+  for (const auto& w : all) {
+    if (!merged.empty() && w.first <= merged.back().second)
+      merged.back().second = std::max(merged.back().second, w.second);
+    else
+      merged.push_back(w);
+  }
+  return merged;
+}
+
+bool stretched_passes(const Context& context, const PatternInput& input, const CheckOptions& check,
+                      const std::vector<std::pair<double, double>>& windows, double factor) {
+  report(context.progress(), {"slower", -1, "times " + text::brief(factor)});
+  try {
+    Pattern pattern = input.pattern;
+    for (auto w = windows.rbegin(); w != windows.rend(); ++w)
+      pattern = stretched(input.model, pattern, w->first, w->second, factor);
+    const CommandSeries series = sample(input.model, pattern, {.dt = input.series.dt});
+    return check_consistency(input.model, series, check).consistent;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+double passing_stretch(const Context& context, const PatternInput& input, const CheckOptions& check,
+                       const std::vector<std::pair<double, double>>& windows) {
+  double low = 1, high = kPaceStep;
+  while (high < kSlowest && !stretched_passes(context, input, check, windows, high)) {
+    low = high;
+    high *= kPaceStep;
+  }
+  if (high >= kSlowest) return 0;
+  while (high - low > kPaceResolution) {
+    const double middle = 0.5 * (low + high);
+    (stretched_passes(context, input, check, windows, middle) ? high : low) = middle;
+  }
+  const double told = std::ceil(100 * high - 1e-9) / 100;
+  return told == high || stretched_passes(context, input, check, windows, told) ? told : high;
+}
 
 }  // namespace
 
-std::vector<PassingValue> passing_parameters(const Context& context, const std::string& pattern,
-                                             const PatternOptions& options,
-                                             const std::vector<std::string>& tolerances) {
-  std::vector<PassingValue> result;
+std::vector<PassingValues> passing_parameters(const Context& context, const std::string& pattern,
+                                              const PatternOptions& options,
+                                              const std::vector<std::string>& tolerances) {
+  std::vector<PassingValues> result;
   Search search(context, pattern, options, tolerances);
   const Pattern given = read_pattern(pattern, read_pairs(options.set, "--set"));
   for (const auto& [name, value] : given.parameters) {
     double passing = 0;
     if (value != 0 && search.nearest(name, value, passing))
-      result.push_back({name, value, passing});
+      result.push_back({{name, value, passing}});
   }
+  if (!result.empty() || given.parameters.size() < 2) return result;
+  PassingValues values = search.together(given.parameters);
+  if (!values.empty()) result.push_back(std::move(values));
   return result;
+}
+
+PassingPace passing_pace(const Context& context, const PatternInput& input,
+                         const ConsistencyReport& check,
+                         const std::vector<std::string>& tolerances) {
+  PassingPace pace;
+  if (!input.series.viip.empty()) return pace;
+  for (const Finding& f : check.findings)
+    if (f.severity == Severity::error && !is_matter_of_time(f)) return pace;
+  const CheckOptions judged = check_options(input, tolerances);
+  pace.tried = kSlowest;
+  if (!input.pattern.table && !input.pattern.correction) {
+    pace.windows = segments_around(input.pattern, check);
+    double length = 0;
+    for (const auto& [begin, end] : pace.windows) length += end - begin;
+    if (length < kPart * input.pattern.duration())
+      pace.factor = passing_stretch(context, input, judged, pace.windows);
+  }
+  RetimeOptions retime;
+  retime.check = judged;
+  retime.dt = input.series.dt;
+  retime.slowest = kSlowest;
+  retime.resolution = kPaceResolution;
+  const FastestPace found = fastest_pace(input.model, input.pattern, retime, context.progress());
+  if (found.found) pace.whole = found.scale;
+  return pace;
 }
 
 }  // namespace ayumi::app

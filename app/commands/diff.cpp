@@ -58,6 +58,10 @@ WeightedChange weighted(const Options& options, const PatternInput& a, const Pat
   return change;
 }
 
+std::string label_of(const std::string& file) {
+  return std::filesystem::path(file).stem().string();
+}
+
 void diff(Context& context, const Options& options) {
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
   const PatternInput a = load_pattern(context, options.a, options.input);
@@ -84,7 +88,10 @@ void diff(Context& context, const Options& options) {
     words += "  compared over the first " + text::fixed(change.compared, 3) + " s\n";
   if (contacts >= 0) words += "  contacts differ from " + text::fixed(contacts, 3) + " s on\n";
   if (!options.plot.empty()) {
-    plot_motions(a.model, a.series, b.series, "before and after", options.plot);
+    plot_motions(a.model, a.series, b.series,
+                 {label_of(options.a) + " and " + label_of(options.b), a.profile,
+                  label_of(options.a), label_of(options.b)},
+                 options.plot);
     words += "  drawn in " + options.plot + "\n";
   }
   context.print(words);

@@ -11,10 +11,10 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/run_folder.hpp"
 #include "ayumi/preview/gltf.hpp"
 #include "ayumi/preview/log_reading.hpp"
 #include "ayumi/preview/strip.hpp"
+#include "plan_log.hpp"
 #include "preview_batch.hpp"
 #include "run_robot.hpp"
 
@@ -116,7 +116,7 @@ ClipSummary write_glb(const RobotModel& model, const SimulationLog& log, const f
     motions.push_back(motion_of(log, MotionSource::command, clip.fps, clip.begin, clip.end));
   if (ghost) {
     motions.push_back(motion_of(*ghost, MotionSource::run, clip.fps, clip.begin, clip.end));
-    motions.back().name = "other run";
+    motions.back().name = clip.ghost.name;
   }
   write_file(path, glb_bytes(model, motions, {.max_triangles = clip.max_triangles}));
   return {static_cast<int>(motions.front().times.size()), 0, 0, clip.fps, {}};
@@ -125,7 +125,7 @@ ClipSummary write_glb(const RobotModel& model, const SimulationLog& log, const f
 /// One run to one file. `clip` as settled, but for its number of threads.
 ClipSummary draw_run(const PreviewOptions& options, const std::string& input, const fs::path& path,
                      int threads, const Context& context, const Progress& progress) {
-  const SimulationLog log = read_run_log(input, options.log);
+  const SimulationLog log = log_of(context, input, options.log);
   const RobotModel model =
       robot_of_run(context, options.robot, log.provenance.robot, {.meshes = true});
   PreviewOptions own = options;
@@ -136,8 +136,13 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
   else if (!options.ghost.empty()) {
     const bool elsewhere =
         fs::exists(options.ghost) || options.ghost.find('/') != std::string::npos;
-    ghost =
-        elsewhere ? read_run_log(options.ghost, options.log) : read_run_log(input, options.ghost);
+    if (!elsewhere && names_pattern(input))
+      fail(ErrorCode::usage, "--ghost " + options.ghost + ": a pattern has no logs; " +
+                                 "give another pattern, a RUN, or 'command'");
+    ghost = elsewhere ? log_of(context, options.ghost, options.log)
+                      : log_of(context, input, options.ghost);
+    own.clip.ghost.name =
+        elsewhere ? fs::path(options.ghost).lexically_normal().stem().string() : options.ghost;
   }
   if (ghost) own.clip.ghost.log = &*ghost;
   if (path.extension() == ".glb")
@@ -183,7 +188,7 @@ void preview_one(const PreviewOptions& options, Context& context) {
 
 /// A tile of the contact sheet: the instant worth showing, named after its run.
 Image sheet_tile(const PreviewOptions& options, const std::string& input, const Context& context) {
-  const SimulationLog log = read_run_log(input, options.log);
+  const SimulationLog log = log_of(context, input, options.log);
   const RobotModel model =
       robot_of_run(context, options.robot, log.provenance.robot, {.meshes = true});
   ClipOptions clip = options.clip;
@@ -243,7 +248,8 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
   command.add_option("--zoom", clip.camera.zoom, "2: twice as large")->capture_default_str();
   command
       .add_option("--ghost", options.ghost,
-                  "'command', a log of the RUN, e.g. open_loop, or another RUN of the same robot")
+                  "'command', a log of the RUN, e.g. open_loop, or another RUN or pattern of the "
+                  "same robot")
       ->type_name("RUN");
   for (const auto& [name, list, what] :
        {std::tuple{"--hide", &options.hide,
@@ -259,8 +265,9 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
 
 void add_preview(CLI::App& app, Context& context) {
   auto options = std::make_shared<PreviewOptions>();
-  CLI::App* command = app.add_subcommand("preview", "clip, picture or glTF of runs, off-screen");
-  command->add_option("run", options->inputs, "RUN folders or log files")
+  CLI::App* command =
+      app.add_subcommand("preview", "clip, picture or glTF of runs and patterns, off-screen");
+  command->add_option("run", options->inputs, "RUN folders, log files, or patterns (as planned)")
       ->required()
       ->type_name("RUN");
   command
@@ -286,6 +293,7 @@ void add_preview(CLI::App& app, Context& context) {
       "  ayumi preview out/ --ghost open_loop -o both.mp4\n"
       "  ayumi preview out/ --exposures 6 --view side -o walk.png\n"
       "  ayumi preview out/ -o walk.glb\n"
+      "  ayumi preview repaired.json --ghost walk.json -o moved.mp4\n"
       "  ayumi preview runs/* -o clips/ --sheet clips/all.png");
   command->callback([options, &context] { preview(*options, context); });
 }

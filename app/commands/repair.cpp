@@ -97,8 +97,11 @@ std::string in_words(const Options& options, const PatternInput& input, const Re
                     (result.partial ? "stopped, partial" : name_of(result.status)) + "\n";
   if (result.status == RepairStatus::already_consistent)
     return out + "  nothing changed; " + options.out + " is the pattern as it was\n";
-  out += steering_words(options, input.pattern) +
-         motion_words(model, result.moved, result.before, result.check);
+  out += steering_words(options, input.pattern);
+  const bool moves = result.moved.joint.size > 1e-4;
+  if (result.status != RepairStatus::repaired && !options.repair.keep_partial && moves)
+    out += "  the least violating motion found (not written) would have\n";
+  out += motion_words(model, result.moved, result.before, result.check);
   out += cost_words(result.change) + "; " + std::to_string(result.variables) + " variables, " +
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
          " iterations, " + text::fixed(wall, 2) + " s\n";
@@ -107,19 +110,78 @@ std::string in_words(const Options& options, const PatternInput& input, const Re
   return out;
 }
 
-std::string in_words(const std::vector<PassingValue>& values) {
+std::string in_words(const std::vector<PassingValues>& all) {
   std::string out;
-  for (const PassingValue& v : values)
-    out += "  with " + v.parameter + " = " + text::brief(v.passing) + " instead of " +
-           text::brief(v.given) + " the pattern passes as it is\n";
+  for (const PassingValues& values : all) {
+    std::vector<std::string> words;
+    for (const PassingValue& v : values)
+      words.push_back(v.parameter + " = " + text::exact(v.passing) + " instead of " +
+                      text::exact(v.given));
+    out += "  with " + text::join(words, " and ") + " the pattern passes as it is\n";
+  }
   return out;
 }
 
-nlohmann::ordered_json in_json(const std::vector<PassingValue>& values) {
+std::string in_words(const PassingPace& pace) {
+  std::string out;
+  if (pace.factor > 0) {
+    std::vector<std::string> windows;
+    for (const auto& [begin, end] : pace.windows)
+      windows.push_back(text::fixed(begin, 3) + "-" + text::fixed(end, 3) + " s");
+    out += "  with " + text::join(windows, ", ") + " taking " + text::exact(pace.factor) +
+           " times as long the pattern passes as it is\n";
+  }
+  if (pace.tried > 0 && pace.factor == 0 && pace.whole == 0)
+    out += "  its keys played more slowly, up to " + text::brief(pace.tried) +
+           " times, do not pass either: time alone does not mend it\n";
+  if (pace.whole > 0)
+    out += "  played " + text::exact(pace.whole) +
+           " times as slowly from end to end it passes as it is (edit retime --scale " +
+           text::exact(pace.whole) + ")\n";
+  return out;
+}
+
+nlohmann::ordered_json in_json(const PassingValues& values) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const PassingValue& v : values)
     json.push_back({{"name", v.parameter}, {"given", v.given}, {"passes", v.passing}});
   return json;
+}
+
+nlohmann::ordered_json in_json(const PassingPace& pace) {
+  nlohmann::ordered_json json, windows = nlohmann::ordered_json::array();
+  for (const auto& [begin, end] : pace.windows)
+    if (pace.factor > 0) windows.push_back({begin, end});
+  json["windows_s"] = windows;
+  json["factor"] = pace.factor > 0 ? nlohmann::ordered_json(pace.factor) : nullptr;
+  json["whole"] = pace.whole > 0 ? nlohmann::ordered_json(pace.whole) : nullptr;
+  return json;
+}
+
+// Where to see what moved.
+std::string see_words(const Options& options, const RepairResult& result) {
+  if (result.status == RepairStatus::already_consistent || options.baked) return "";
+  return "  see it: ayumi diff " + options.pattern + " " + options.out +
+         " --plot moved.svg; ayumi preview " + options.out + " --ghost " + options.pattern +
+         " -o moved.mp4\n";
+}
+
+// A pattern that cannot even be sampled may pass with other values of its parameters.
+PatternInput load(const Context& context, const Options& options) {
+  try {
+    return load_pattern(context, options.pattern, options.input);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_pattern) throw;
+    std::vector<PassingValues> values;
+    try {
+      values = passing_parameters(context, options.pattern, options.input, options.tolerances);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error&) {  // the file itself is at fault, which the first error tells
+    }
+    if (values.empty()) throw;
+    fail(error.code(), std::string(error.what()) + "\n" + in_words(values));
+  }
 }
 
 Trust trust_of(const std::string& word) {
@@ -156,7 +218,7 @@ void repair_pattern(Context& context, Options options) {
          "repair writes the author's text with a correction over it: give the pattern as a file");
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
-  const PatternInput input = load_pattern(context, options.pattern, options.input);
+  const PatternInput input = load(context, options);
   options.repair = repair_options(options, input);
   const auto begin = std::chrono::steady_clock::now();
   const RepairResult result = repair_input(context, input, options.repair);
@@ -165,16 +227,28 @@ void repair_pattern(Context& context, Options options) {
   context.exit_code = exit_code_of(result);
   const bool written = context.exit_code == 0 || options.repair.keep_partial;
   if (written) write_repaired(context, options, input, result);
-  std::vector<PassingValue> values;
+  std::vector<PassingValues> values;
   if (context.exit_code == 4 && !input.pattern.parameters.empty())
     values = passing_parameters(context, options.pattern, options.input, options.tolerances);
+  PassingPace pace;
+  if (context.exit_code == 4)
+    pace = passing_pace(context, input, result.before, options.tolerances);
   if (!options.plot.empty() && !result.series.samples.empty())
-    plot_motions(input.model, input.series, result.series, fs::path(options.pattern).stem(),
+    plot_motions(input.model, input.series, result.series,
+                 {fs::path(options.pattern).stem().string() + ", before and after its repair",
+                  input.profile},
                  options.plot);
-  context.print(in_words(options, input, result, wall) + in_words(values) +
-                (written ? "  written to " + options.out + "\n" : "  nothing written\n"));
+  context.print(in_words(options, input, result, wall) + in_words(values) + in_words(pace) +
+                (written ? "  written to " + options.out + "\n" + see_words(options, result)
+                         : "  nothing written\n"));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(repair_json(result));
-  json["parameters"] = in_json(values);
+  const bool alone = values.empty() || values.front().size() == 1;
+  PassingValues singles;
+  for (const PassingValues& one : values)
+    if (alone) singles.insert(singles.end(), one.begin(), one.end());
+  json["parameters"] = in_json(singles);
+  json["parameters_together"] = in_json(alone ? PassingValues() : values.front());
+  json["slower"] = in_json(pace);
   json["wall_s"] = wall;
   json["output"] = written ? nlohmann::ordered_json(options.out) : nullptr;
   context.print_json(json.dump(2));
@@ -189,7 +263,10 @@ void add_repair(CLI::App& app, Context& context) {
       "Examples:\n  ayumi repair walk.json -o repaired.json\n"
       "  ayumi repair walk.json -o repaired.json --lock l_elbow --lock foot:left --lock 1.2..1.8\n"
       "  ayumi repair walk.json -o repaired.json --weight r_hip_roll=10 --plot moved.svg\n"
-      "  ayumi repair dense.json -o repaired.json --trust cog --baked");
+      "  ayumi repair dense.json -o repaired.json --trust cog --baked\n"
+      "What moved, afterwards:\n"
+      "  ayumi diff walk.json repaired.json --plot moved.svg\n"
+      "  ayumi preview repaired.json --ghost walk.json -o moved.mp4");
   static Options options;
   command->add_option("PATTERN", options.pattern, "pattern file")->required();
   command->add_option("-o,--out", options.out, "pattern file to write")->required()->type_name("F");
@@ -211,7 +288,8 @@ void add_repair(CLI::App& app, Context& context) {
   command->add_flag("--baked", options.baked, "write a dense table, not a correction");
   command->add_flag("--keep-partial", options.repair.keep_partial,
                     "after Ctrl-C or without success, write the motion that violates least");
-  command->add_option("--plot", options.plot, "before and after, .svg or .png")->type_name("F");
+  command->add_option("--plot", options.plot, "before and after: joints, COG, ZMP, .svg or .png")
+      ->type_name("F");
   command
       ->add_option("--margin", options.margin,
                    "of the ZMP inside the support where the motion's own is too "

@@ -63,11 +63,18 @@ ConsistencyReport check_of(const JsonNode& node) {
 
 RepairNote repair_of(const JsonNode& node) {
   const JsonNode moved = node.at("moved");
+  std::vector<RepairNote::Moved> joints;
+  for (const JsonNode& j : moved.at("joints").items())
+    joints.push_back({j.at("joint").string(), figure(j.at("most_rad")), figure(j.at("at_s")),
+                      figure(j.at("begin_s")), figure(j.at("end_s"))});
   return {.status = node.at("status").string(),
           .max_joint_change = figure(moved.at("max_joint_rad")),
           .max_cog_change = figure(moved.at("max_cog_m")),
           .iterations = node.at("iterations").integer(),
-          .reasons = node.at("reasons").strings()};
+          .reasons = node.at("reasons").strings(),
+          .joints = joints,
+          .margin_before = figure(node.at("zmp_margin").at("before_m")),
+          .margin_after = figure(node.at("zmp_margin").at("after_m"))};
 }
 
 ExportNote export_of(const JsonNode& node) {

@@ -19,6 +19,12 @@ struct RepairNote {
   double max_cog_change = 0;    ///< [m]
   int iterations = 0;
   std::vector<std::string> reasons;
+  struct Moved {
+    std::string joint;
+    double most = 0, at = 0, begin = 0, end = 0;  ///< [rad], sliding joints [m]; [s]
+  };
+  std::vector<Moved> joints = {};              ///< the most first
+  double margin_before = 0, margin_after = 0;  ///< least, of the ZMP [m]
 };
 
 /// Whether the joint table may go to a robot.

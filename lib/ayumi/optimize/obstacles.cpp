@@ -107,8 +107,9 @@ std::string what(const Finding& f, double excess) {
          text::brief(f.limit) + " " + f.unit;
 }
 
-// Whether playing it slower could change anything.
-bool of_time(const Finding& f) {
+}  // namespace
+
+bool is_matter_of_time(const Finding& f) {
   const bool of_command = f.kind.ends_with("_residual");
   const bool of_place =
       f.kind.starts_with("foot_") || f.kind == "joint_position" || f.kind == "self_collision";
@@ -116,11 +117,30 @@ bool of_time(const Finding& f) {
   return !of_command && !of_place && !of_mean;
 }
 
+double total_excess(const ConsistencyReport& report) {
+  std::map<std::pair<std::string, std::string>, double> worst;
+  for (const Finding& f : report.findings) {
+    if (f.severity != Severity::error) continue;
+    Obstacle o;
+    o.finding = f;
+    o.excess = excess_of(f);
+    o.is_ratio = told_as_ratio(f);
+    double& w = worst[{f.kind, f.where}];
+    w = std::max(w, rank(o));
+  }
+  double sum = 0;
+  for (const auto& entry : worst) sum += entry.second;
+  return sum;
+}
+
+namespace {
+
 std::string remedy(const Obstacle& o) {
   if (o.time_factor > 1)
     return "that window needs to be " + text::fixed(std::ceil(10 * o.time_factor - 1e-9) / 10, 1) +
            " times longer";
-  return (of_time(o.finding) ? "slowing that window down does not help: " : "") + o.finding.hint;
+  return (is_matter_of_time(o.finding) ? "slowing that window down does not help: " : "") +
+         o.finding.hint.substr(0, o.finding.hint.find(", or repair"));
 }
 
 bool within_lock(const Finding& f, const RepairOptions& options) {
@@ -137,7 +157,7 @@ bool at_locked_joint(const Finding& f, const RepairOptions& options) {
 
 double time_factor(const RobotModel& model, const CommandSeries& series, const Finding& finding,
                    const CheckOptions& options) {
-  if (!of_time(finding) || !passes(model, series, finding, kSlowest, options)) return 0;
+  if (!is_matter_of_time(finding) || !passes(model, series, finding, kSlowest, options)) return 0;
   double low = 1, high = kSlowest;
   while (high - low > 0.01) {
     const double middle = 0.5 * (low + high);

@@ -19,4 +19,12 @@ std::vector<Obstacle> obstacles(const RobotModel& model, const CommandSeries& se
 double time_factor(const RobotModel& model, const CommandSeries& series, const Finding& finding,
                    const CheckOptions& options);
 
+/// Whether playing it slower could mend a finding: of what is asked of motors and ground, not of
+/// places.
+bool is_matter_of_time(const Finding& finding);
+
+/// How much is wrong with a motion: over its errors, shares of a limit, centimetres, tenths of a
+/// radian, the worst of each kind and place counted once. 0 when it passes.
+double total_excess(const ConsistencyReport& report);
+
 }  // namespace ayumi

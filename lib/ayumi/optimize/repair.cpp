@@ -69,6 +69,7 @@ class Repair {
     }
     // COG, ZMP and f_z of the full model: what is left is wrong with the motion itself.
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
+    as_given_ = result_;
     const bool flight = flight_is_at_fault(result_.check);
     if (flight)
       spec_.spacing = std::min(spec_.spacing, shortest_flight(series_) / kKnotsOfFaultyFlight);
@@ -329,6 +330,11 @@ class Repair {
     if (solution.status != NlpStatus::failed) last_status_ = NlpStatus::infeasible;
     cut_short_ = solution.status == NlpStatus::iteration_limit;
     take(problem_->track(solution.x.head(problem_->variable_count())));
+    // Stopped on its way it has errors of its own making: then those of the motion itself tell.
+    if (!cut_short_ && total_excess(result_.check) < total_excess(as_given_.check)) return;
+    result_.correction = as_given_.correction;
+    result_.series = as_given_.series;
+    result_.check = as_given_.check;
   }
 
   void keep_partial() {
@@ -353,8 +359,8 @@ class Repair {
       }
       if (cut_short_)
         result_.reasons.push_back(
-            "the search for the least violating motion stopped at its limit of iterations: this is "
-            "what was left, no proof that nothing passes");
+            "the search for a nearer motion stopped at its limit of iterations: these are the "
+            "motion's own errors, no proof that nothing passes");
     }
     result_.moved = motion_change(model_, series_, result_.series);
     result_.change = weighted_change(model_, series_, result_.series, spec_.weights);
@@ -380,6 +386,7 @@ class Repair {
   CorrectionTrack track_;                   // of the result, every control point
   std::optional<CorrectionTrack> passing_;  // an earlier one, where the last does not pass
   std::vector<Finding> findings_;
+  RepairResult as_given_;  // the motion itself; COG, ZMP and f_z those of its posture
   NlpStatus last_status_ = NlpStatus::failed;
   double objective_ = 0;    // of the last program
   bool cut_short_ = false;  // the program of what is in the way, by its limit of iterations

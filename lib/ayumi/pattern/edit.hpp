@@ -35,6 +35,12 @@ Pattern mirrored(const RobotModel& model, const Pattern& pattern);
 /// keeps its duration. Throws Error(usage) unless 0.01 <= scale <= 100, and as baked().
 Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 
+/// The time from `begin` to `end` [s] takes `factor` times as long, what follows is that much
+/// later; keys, phases and f_z keys as in retimed(). Throws Error(usage) for a factor or window out
+/// of range, Error(bad_pattern) for a table or a correction, and as retimed().
+Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
+                  double factor);
+
 /// A pattern and its samples.
 struct MotionPart {
   const Pattern& pattern;

@@ -42,4 +42,33 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
   return result;
 }
 
+Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
+                  double factor) {
+  if (!(factor >= 0.01 && factor <= 100) || !(begin < end))
+    fail(ErrorCode::usage, "from " + text::exact(begin) + " to " + text::exact(end) + " s in " +
+                               text::exact(factor) +
+                               " of the time: the end must come later, the factor be 0.01 to 100");
+  refuse_viip_phases(pattern, "stretched");
+  if (pattern.table || pattern.correction)
+    fail(ErrorCode::bad_pattern,
+         pattern.file + ": a part of a table or of a correction cannot be stretched alone");
+  constexpr double kSame = 1e-9;  // [s]
+  const double weight = model.mass() * kGravity;
+  const auto later = [&](double t) {
+    return t <= begin ? t
+           : t < end  ? begin + factor * (t - begin)
+                      : t + (factor - 1) * (end - begin);
+  };
+  Pattern result = pattern;
+  for (Phase& phase : result.phases) phase.until = later(phase.until);
+  for (Keyframe& key : result.keyframes) {
+    if (key.fz && key.t > begin - kSame && key.t < end + kSame)
+      *key.fz = weight + (*key.fz - weight) / (factor * factor);
+    key.t = later(key.t);
+  }
+  for (Disturbance& push : result.scenario) push.at = later(push.at);
+  for (auto& window : result.repair.windows) window = {later(window.first), later(window.second)};
+  return result;
+}
+
 }  // namespace ayumi

@@ -13,7 +13,8 @@ using Eigen::Vector4f;
 
 const Vector4f kGrid = {0.5f, 0.5f, 0.55f, 0.28f};
 const Vector4f kFrame = {0.25f, 0.25f, 0.28f, 1};
-constexpr double kNumbers = 11;  // font size [pixel]
+constexpr double kNumbers = 11;                  // font size [pixel]
+constexpr double kName = 13, kNameOverhang = 8;  // of the name of y
 
 /// First, lowest, highest and last point of every stretch of a quarter pixel.
 std::vector<Vector2d> thinned(const std::vector<Vector2d>& points) {
@@ -152,9 +153,12 @@ void draw_axes(Drawing& drawing, const Axes& axes, const std::string& y_name, bo
       .points = {{axes.left, axes.top}, {right, axes.top}, {right, bottom}, {axes.left, bottom}},
       .closed = true,
       .stroke = kFrame});
+  // A long name in smaller letters: it must not reach into the next panel.
+  const double wide = text_width(y_name, kName);
+  const double size = kName * std::min(1.0, (axes.height + kNameOverhang) / std::max(1.0, wide));
   drawing.items.push_back(DrawnText{.position = {axes.left - 58, axes.top + axes.height / 2},
                                     .text = y_name,
-                                    .size = 13,
+                                    .size = size,
                                     .anchor = TextAnchor::center,
                                     .upwards = true});
 }

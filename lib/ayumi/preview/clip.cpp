@@ -315,10 +315,11 @@ void ClipRenderer::write_caption(Image& image, double t) const {
   verdict.anchor = TextAnchor::right;
   verdict.color = log_.result.outcome == Outcome::stands ? Eigen::Vector4f(0.02f, 0.40f, 0.25f, 1)
                                                          : Eigen::Vector4f(0.70f, 0.08f, 0.08f, 1);
-  draw_text(image, image.width - margin, top, verdict_text(log_.result), verdict);
+  if (!log_.controller.empty())  // a plan neither stands nor falls
+    draw_text(image, image.width - margin, top, verdict_text(log_.result), verdict);
   struct Entry {
     bool shown;
-    const char* text;
+    std::string text;
     Eigen::Vector4f color;
   };
   using namespace overlay_color;
@@ -332,7 +333,7 @@ void ClipRenderer::write_caption(Image& image, double t) const {
        {on.forces, "↑ foot force", kForce},
        {on.push && !pushes_.empty(), "→ push", kPush},
        {on.heat, "■ joint near a limit", {1, 0.2f, 0, 1}},
-       {ghost, options_.ghost.command ? "▒ command" : "▒ other run", kSupport}}};
+       {ghost, "▒ " + (options_.ghost.command ? "command" : options_.ghost.name), kSupport}}};
   x = margin;
   for (const Entry& entry : entries) {
     if (!entry.shown) continue;

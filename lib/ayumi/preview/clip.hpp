@@ -19,6 +19,7 @@ namespace ayumi {
 struct GhostOptions {
   bool command = false;                ///< the commanded posture of the same log
   const SimulationLog* log = nullptr;  ///< or another run of the same robot; must outlive the clip
+  std::string name = "other run";      ///< of that one, in the legend
 };
 
 struct ClipOptions {

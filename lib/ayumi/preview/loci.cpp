@@ -28,7 +28,35 @@ struct PanelPlan {
   Value reference;      ///< of the last run; empty: none
   double least = 0;     ///< span of the axis at least
   bool spikes = false;  ///< landings may exceed the range
+  double seen = 0;      ///< runs that differ by less differ in nothing that matters
+  std::vector<double> limits = {};  ///< drawn where they are within the range
 };
+
+constexpr double kDegree = M_PI / 180;
+
+/// Angle or way of a joint, with its limits.
+PanelPlan joint_panel(const RobotModel& model, int dof) {
+  const Dof& d = model.dofs()[static_cast<size_t>(dof)];
+  const double unit = d.prismatic ? 1e-3 : kDegree;
+  PanelPlan panel;
+  panel.name = d.name + (d.prismatic ? " [mm]" : " [deg]");
+  panel.run = [dof, unit](const SimulationSample& s) { return s.state.theta[dof] / unit; };
+  panel.least = d.prismatic ? 2 : 1;
+  const double soft = model.description().soft_limit_margin;
+  if (d.limited) panel.limits = {(d.lower + soft) / unit, (d.upper - soft) / unit};
+  return panel;
+}
+
+PanelPlan speed_panel(const RobotModel& model, const std::string& profile, int dof) {
+  const Dof& d = model.dofs()[static_cast<size_t>(dof)];
+  const double limit = model.limits(profile).speed[dof];
+  PanelPlan panel;
+  panel.name = d.name + (d.prismatic ? " [m/s]" : " [rad/s]");
+  panel.run = [dof](const SimulationSample& s) { return s.state.dtheta[dof]; };
+  panel.least = d.prismatic ? 0.02 : 0.2;
+  if (std::isfinite(limit)) panel.limits = {-limit, limit};
+  return panel;
+}
 
 Value component(Eigen::Vector3d SimulationSample::*quantity, int index) {
   return [quantity, index](const SimulationSample& s) { return (s.*quantity)[index]; };
@@ -51,6 +79,11 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
   std::vector<PanelPlan> panels;
   using S = SimulationSample;
   const char* axis[] = {"x", "y", "z"};
+  if (options.model) {
+    for (const int dof : options.joints) panels.push_back(joint_panel(*options.model, dof));
+    for (const int dof : options.speeds)
+      panels.push_back(speed_panel(*options.model, options.profile, dof));
+  }
   if (options.cog)
     for (int i = 0; i < 3; ++i)
       panels.push_back({std::string("COG ") + axis[i] + " [m]",
@@ -58,12 +91,13 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
                         component(&S::command_cog, i),
                         {},
                         0.01,
-                        false});
+                        false,
+                        2e-4});
   if (options.zmp)
     for (int i = 0; i < 2; ++i)
       panels.push_back({std::string("ZMP ") + axis[i] + " [m]", component(&S::zmp, i),
-                        component(&S::command_zmp, i), component(&S::reference_zmp, i), 0.02,
-                        false});
+                        component(&S::command_zmp, i), component(&S::reference_zmp, i), 0.02, false,
+                        5e-4});
   if (options.zmp && options.model && options.model->has_soles())
     panels.push_back({"margin [m]", zmp_margin(*options.model), {}, {}, 0.02, false});
   if (options.fz)
@@ -72,7 +106,12 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
                       [](const S& s) { return s.command_fz; },
                       {},
                       10,
-                      true});
+                      true,
+                      0.1});
+  for (PanelPlan& panel : panels) {
+    if (!options.command) panel.command = {};
+    if (!options.reference) panel.reference = {};
+  }
   return panels;
 }
 
@@ -195,6 +234,9 @@ void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
   const SimulationLog& last = *runs.back().log;
   if (panel.reference)
     draw_line(drawing, axes, series(last, panel.reference, axes.x), kReferenceStyle);
+  for (const double limit : panel.limits)
+    if (limit > axes.y.low && limit < axes.y.high)
+      draw_line(drawing, axes, {{axes.x.low, limit}, {axes.x.high, limit}}, kLimitStyle);
   for (size_t i = 0; i < runs.size(); ++i) {
     const LineStyle style = run_style(i, runs.size());
     draw_line(drawing, axes, series(*runs[i].log, panel.run, axes.x), style);
@@ -206,16 +248,52 @@ void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
   draw_line(drawing, axes, series(last, panel.command, axes.x), kCommandStyle);
 }
 
+double largest_difference(const PanelPlan& panel, const std::vector<LociRun>& runs,
+                          const Interval& time) {
+  double most = 0;
+  const std::vector<Vector2d> last = series(*runs.back().log, panel.run, time);
+  std::vector<std::vector<Vector2d>> all = {series(*runs.back().log, panel.command, time)};
+  for (const LociRun& run : runs) all.push_back(series(*run.log, panel.run, time));
+  for (const std::vector<Vector2d>& points : all) {
+    for (size_t k = 0; k < std::min(points.size(), last.size()); ++k)
+      if (std::isfinite(points[k].y()) && std::isfinite(last[k].y()))
+        most = std::max(most, std::abs(points[k].y() - last[k].y()));
+  }
+  return most;
+}
+
+/// Keeps the panels that tell something; a sentence with the names of the others. All are kept
+/// where none would be left.
+std::string leave_out_equal(std::vector<PanelPlan>& panels, const std::vector<LociRun>& runs,
+                            const Interval& time) {
+  std::vector<PanelPlan> kept;
+  std::vector<std::string> names;
+  for (const PanelPlan& panel : panels) {
+    if (panel.seen <= 0 || largest_difference(panel, runs, time) > panel.seen)
+      kept.push_back(panel);
+    else
+      names.push_back(panel.name.substr(0, panel.name.find(" [")));
+  }
+  if (names.empty() || kept.empty()) return "";
+  panels = std::move(kept);
+  return "The same in all: " + text::join(names, ", ") + ". ";
+}
+
 }  // namespace
 
 Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) {
   const Interval time = time_range(runs, options);
-  const std::vector<PanelPlan> panels = plan_panels(options);
+  std::vector<PanelPlan> panels = plan_panels(options);
   if (panels.empty()) fail(ErrorCode::usage, "plot: every panel is switched off");
+  const std::string same =
+      options.only_differences ? leave_out_equal(panels, runs, time) : std::string();
   Drawing drawing = start_drawing(runs, options, "Loci against time");
   const std::vector<PushRecord> pushed = all_pushes(runs, time);
   const std::vector<Phase> supports = phases(*runs.back().log, time);
-  double top = draw_legend(drawing, legend(runs, options.zmp), 44) + (pushed.empty() ? 20 : 38);
+  Legend entries = legend(runs, options.zmp && options.reference, options.command);
+  if (std::any_of(panels.begin(), panels.end(), [](const auto& p) { return !p.limits.empty(); }))
+    entries.emplace_back("limit of a joint", kLimitStyle);
+  double top = draw_legend(drawing, entries, 44) + (pushed.empty() ? 20 : 38);
   for (size_t i = 0; i < panels.size(); ++i) {
     const Axes axes = {kLeft,         top,  drawing.width - kLeft - kRight,
                        options.panel, time, value_range(panels[i], runs, time)};
@@ -229,7 +307,7 @@ Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) 
                                     .text = "time [s]",
                                     .size = 13,
                                     .anchor = TextAnchor::center});
-  const std::string note = range_note(runs);
+  const std::string note = same + range_note(runs);
   if (!note.empty())
     drawing.items.push_back(DrawnText{.position = {kLeft, top + 44},
                                       .text = note,

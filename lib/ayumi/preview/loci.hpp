@@ -22,11 +22,17 @@ struct LociOptions {
   std::string title = {};                  ///< empty: the pattern's name
   bool cog = true, zmp = true, fz = true;  ///< panels
   const RobotModel* model = nullptr;       ///< of the runs; with it a panel of the ZMP margin
-  double width = 1000;                     ///< [pixel]
-  double panel = 132;                      ///< height of one panel [pixel]
-  double begin = 0;                        ///< first time shown [s]
-  double end = -1;                         ///< last; negative: of the longest run [s]
-  double png_scale = 1.5;                  ///< picture pixels per pixel of the drawing
+  std::vector<int> joints = {};            ///< dofs with a panel of their angle; needs the model
+  std::vector<int> speeds = {};            ///< dofs with a panel of their speed; needs the model
+  std::string profile = {};                ///< whose speed limits are drawn; empty: the default
+  bool command = true, reference = true;   ///< what is commanded; the reference ZMP
+  /// Leave out panels in which the runs differ by less than can be seen, and name them below.
+  bool only_differences = false;
+  double width = 1000;     ///< [pixel]
+  double panel = 132;      ///< height of one panel [pixel]
+  double begin = 0;        ///< first time shown [s]
+  double end = -1;         ///< last; negative: of the longest run [s]
+  double png_scale = 1.5;  ///< picture pixels per pixel of the drawing
 };
 
 /// Stacked panels against time. Support phases shaded after the plan of the last run, pushes

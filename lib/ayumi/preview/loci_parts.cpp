@@ -88,8 +88,9 @@ double draw_legend(Drawing& drawing, const Legend& entries, double top) {
   return y + 0.8 * kLegend;
 }
 
-Legend legend(const std::vector<LociRun>& runs, bool with_reference) {
-  Legend entries = {{"command", kCommandStyle}};
+Legend legend(const std::vector<LociRun>& runs, bool with_reference, bool with_command) {
+  Legend entries;
+  if (with_command) entries.emplace_back("command", kCommandStyle);
   for (size_t i = 0; i < runs.size(); ++i)
     entries.emplace_back(legend_name(runs[i]), run_style(i, runs.size()));
   if (with_reference)

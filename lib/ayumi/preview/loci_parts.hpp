@@ -18,6 +18,9 @@ inline const LineStyle kCommandStyle = {
 inline const LineStyle kReferenceStyle = {
     .color = {0.42f, 0.42f, 0.46f, 1}, .width = 1.1, .dashes = {1.5, 2}};
 
+inline const LineStyle kLimitStyle = {
+    .color = {0.70f, 0.08f, 0.08f, 1}, .width = 1.1, .dashes = {8, 3, 2, 3}};
+
 /// Style of a run. A single run is drawn in the colour that a closed loop has beside an open one.
 LineStyle run_style(size_t index, size_t count);
 
@@ -33,8 +36,8 @@ std::vector<PushRecord> all_pushes(const std::vector<LociRun>& runs, const Inter
 std::string legend_name(const LociRun& run);
 
 using Legend = std::vector<std::pair<std::string, LineStyle>>;
-/// Command, runs, and the reference ZMP when `with_reference`.
-Legend legend(const std::vector<LociRun>& runs, bool with_reference);
+/// Command where asked for, runs, and the reference ZMP when `with_reference`.
+Legend legend(const std::vector<LociRun>& runs, bool with_reference, bool with_command = true);
 
 /// Entries from left to right, broken where the line ends; returns the bottom [pixel].
 double draw_legend(Drawing& drawing, const Legend& entries, double top);

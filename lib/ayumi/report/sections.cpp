@@ -67,11 +67,29 @@ std::string export_words(const ExportNote& note) {
   return words + "</ul>\n";
 }
 
+std::string margin(double metres) {
+  return millimetres(std::abs(metres)) + (metres < 0 ? " mm outside" : " mm inside");
+}
+
+Table moved_table(const RepairNote& note) {
+  constexpr size_t kTold = 8;
+  constexpr double kLeast = 0.005 * M_PI / 180;  // what would be 0.00 deg is no move
+  Table table = {
+      "What the repair moved", {"joint", "by [deg]", "at [s]", "from [s]", "to [s]"}, {}};
+  for (const RepairNote::Moved& j : note.joints)
+    if (table.rows.size() < kTold && std::abs(j.most) >= kLeast)
+      table.rows.push_back({escaped(j.joint), text::fixed(j.most * 180 / M_PI, 2),
+                            text::fixed(j.at, 3), text::fixed(j.begin, 2), text::fixed(j.end, 2)});
+  return table;
+}
+
 std::string repair_words(const RepairNote& note) {
-  std::string words = "<p>Repair: " + escaped(note.status) + " after " +
-                      std::to_string(note.iterations) + " iterations; joints moved by at most " +
-                      text::fixed(note.max_joint_change * 180 / M_PI, 2) + " deg, the COG by " +
-                      millimetres(note.max_cog_change) + " mm.</p>\n";
+  std::string words =
+      "<p>Repair: " + escaped(note.status) + " after " + std::to_string(note.iterations) +
+      " iterations; joints moved by at most " + text::fixed(note.max_joint_change * 180 / M_PI, 2) +
+      " deg, the COG by " + millimetres(note.max_cog_change) + " mm; the ZMP is " +
+      margin(note.margin_before) + " before, " + margin(note.margin_after) + " after.</p>\n";
+  if (!note.joints.empty() && note.status == "repaired") words += table(moved_table(note));
   if (note.reasons.empty()) return words;
   words += "<ul>";
   for (const std::string& reason : note.reasons) words += "<li>" + escaped(reason) + "</li>";

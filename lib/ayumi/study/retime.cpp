@@ -12,8 +12,8 @@ namespace ayumi {
 namespace {
 
 constexpr double kStep = 1.25;
-constexpr double kLook = 1.01;  // from scale to scale beyond an edge
-constexpr int kLooks = 12;
+constexpr double kLook = 1.005;  // from scale to scale beyond an edge
+constexpr int kLooks = 40;
 
 struct Trial {
   bool passes = false;
@@ -83,20 +83,18 @@ class Search {
   double beyond(double passing) {
     const std::string reason = reason_;
     double found = 0, scale = passing;
-    bool before = false;
     for (int i = 0; i < kLooks && scale / kLook > options_.fastest; ++i) {
       scale /= kLook;
-      const bool passes = trial(scale).passes;
-      if (passes && before) found = scale;
-      before = passes;
+      if (trial(scale).passes) found = scale;
     }
     reason_ = reason;
     return found;
   }
 
-  // Three decimals for people, where they pass too.
+  // Three decimals for people, four of short times, where they pass too.
   double rounded(double scale) {
-    const double up = std::ceil(1000 * scale) / 1000;
+    const double digits = scale < 0.5 ? 1e4 : 1e3;
+    const double up = std::ceil(digits * scale) / digits;
     return up != scale && trial(up).passes ? up : scale;
   }
 

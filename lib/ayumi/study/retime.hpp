@@ -23,8 +23,9 @@ struct FastestPace {
 };
 
 /// Bisection between a scale that passes check and one that does not, from 1 on: by quarters
-/// faster while it passes, else slower; beyond the edge it goes on where one of the next twelve
-/// hundredths passes. A scale that cannot be sampled does not pass.
+/// faster while it passes, else slower; beyond the edge, down to 0.82 of it, every half percent is
+/// tried too, and the search goes on from the fastest that passes. A scale that cannot be sampled
+/// does not pass.
 FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
                          const RetimeOptions& options, const Progress& progress = {});
 
