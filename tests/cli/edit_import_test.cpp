@@ -59,7 +59,7 @@ TEST_F(Edit, RetimeToLimitsIsTheFastestThatPasses) {
   EXPECT_NEAR(double(json["fz_N"]["after"][1]), double(json["fz_N"]["before"][1]), 1e-6);
   EXPECT_LT(double(json["zmp_margin_m"]["after"]), double(json["zmp_margin_m"]["before"]));
   EXPECT_EQ(ayumi({"check", "fast.json"}).exit_code, 0);
-  const std::string faster = std::to_string(scale * 0.98);
+  const std::string faster = std::to_string(scale * 0.995);
   const Output broken = ayumi({"edit", "retime", kWalk, "--scale", faster, "-o", "b.json"});
   EXPECT_NE(broken.exit_code, 0);
 }

@@ -117,6 +117,25 @@ TEST(Retime, ForceKeysKeepTheAccelerationOfTheNewTime) {
   EXPECT_NEAR(*retimed(hoap1(), p, 0.5).keyframes[2].fz, weight + 20, 1e-9);
 }
 
+// A part takes longer, what follows is that much later; a part that is all is the whole retimed.
+TEST(Retime, APartIsStretchedAlone) {
+  Pattern p = walk_pattern(hoap1(), {.steps = 2});
+  const double begin = p.phases[0].until, end = p.phases[1].until, whole = p.duration();
+  const Pattern slow = stretched(hoap1(), p, begin, end, 1.5);
+  EXPECT_NEAR(slow.duration(), whole + 0.5 * (end - begin), 1e-12);
+  EXPECT_EQ(slow.phases[0].until, begin);
+  EXPECT_NEAR(slow.phases[1].until - begin, 1.5 * (end - begin), 1e-12);
+  for (size_t i = 0; i < p.keyframes.size(); ++i) {
+    const double t = p.keyframes[i].t, moved = slow.keyframes[i].t - t;
+    EXPECT_NEAR(moved, 0.5 * (std::clamp(t, begin, end) - begin), 1e-12) << t;
+  }
+  const Pattern all = stretched(hoap1(), p, 0, whole, 1.25);
+  EXPECT_NEAR(all.duration(), retimed(hoap1(), p, 1.25).duration(), 1e-12);
+  EXPECT_THROW(stretched(hoap1(), p, end, begin, 2), Error);
+  p = baked(hoap1(), p, sample(hoap1(), p), "t.csv");
+  EXPECT_THROW(stretched(hoap1(), p, begin, end, 2), Error);
+}
+
 // A table's path stays, its forces are those of the new time.
 TEST(Retime, TableKeepsItsPath) {
   Pattern p = walk_pattern(hoap1(), {.steps = 2});

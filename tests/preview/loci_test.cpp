@@ -58,6 +58,32 @@ TEST(Loci, NamesWhatItShows) {
   EXPECT_EQ(loci_series({.cog = false}).size(), 3u);
 }
 
+// A change is drawn by what it changed; the rest is named.
+TEST(Loci, OnlyWhatDiffersIsDrawnWithJointsAndLimits) {
+  TwoRuns runs;
+  SimulationLog moved = runs.standing;
+  for (SimulationSample& s : moved.samples) {
+    s.state.theta[0] += 0.1;
+    s.cog.x() += 0.002;
+  }
+  LociOptions options;
+  options.model = &runs.model;
+  options.joints = {0};
+  options.command = options.reference = false;
+  options.only_differences = true;
+  const Drawing drawing = draw_loci({{"before", &runs.standing}, {"after", &moved}}, options);
+  EXPECT_TRUE(has(drawing, runs.model.dofs()[0].name + " [deg]") ||
+              has(drawing, runs.model.dofs()[0].name + " [mm]"));
+  EXPECT_TRUE(has(drawing, "COG x [m]"));
+  EXPECT_FALSE(has(drawing, "COG y [m]"));
+  EXPECT_FALSE(has(drawing, "command"));
+  EXPECT_TRUE(has(drawing, "The same in all: COG y, COG z, ZMP x, ZMP y, f_z. ")) << [&] {
+    std::string all;
+    for (const std::string& t : texts(drawing)) all += t + " | ";
+    return all;
+  }();
+}
+
 TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
   const TwoRuns runs;
   const Drawing drawing = draw_loci(runs.both(), {});

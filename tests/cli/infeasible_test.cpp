@@ -1,0 +1,79 @@
+// What stands in the way of a repair, and what would pass: every value told has to be true.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class Infeasible : public testing::Test {
+ protected:
+  Output ayumi(const std::vector<std::string>& arguments) {
+    return run_program(arguments, folder.path());
+  }
+
+  Folder folder;
+};
+
+// Two arms, each too quick by its own parameter: neither alone is enough.
+TEST_F(Infeasible, ValuesAndPacesToldPass) {
+  write(folder / "two.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
+    "units": { "angle": "deg" }, "parameters": { "left": 0.2, "right": 0.2 },
+    "phases": [{ "until": "0.9 + ${left} + ${right}", "support": "both" }],
+    "keyframes": [
+      { "t": 0, "zmp": "center", "posture": "home" },
+      { "t": 0.4, "posture": "home" },
+      { "t": "0.4 + ${left}", "posture": { "l_shoulder_pitch": 10 } },
+      { "t": "0.5 + ${left}", "posture": { "r_shoulder_pitch": 68 } },
+      { "t": "0.5 + ${left} + ${right}", "posture": { "r_shoulder_pitch": 10 } },
+      { "t": "0.9 + ${left} + ${right}", "zmp": "center" }] })");
+  const Output failed =
+      ayumi({"repair", "two.json", "-o", "out.json", "--lock", "0.4..0.95", "--json"});
+  EXPECT_EQ(failed.exit_code, 4) << failed.err;
+  const Json json = Json::parse(failed.out);
+  EXPECT_EQ(json["status"], "infeasible");
+  EXPECT_TRUE(json["parameters"].empty());
+  ASSERT_EQ(json["parameters_together"].size(), 2u);
+  std::vector<std::string> both = {"check", "two.json"};
+  for (const Json& value : json["parameters_together"])
+    both.insert(both.end(), {"--set", std::string(value["name"]) + "=" + value["passes"].dump()});
+  EXPECT_EQ(ayumi(both).exit_code, 0);
+  EXPECT_EQ(ayumi({both.begin(), both.begin() + 4}).exit_code, 1) << "one of them alone";
+  const Json slower = json["slower"];
+  EXPECT_EQ(slower["windows_s"].size(), 2u);
+  EXPECT_GT(slower["factor"], 2);
+  const std::string whole = slower["whole"].dump();
+  EXPECT_EQ(ayumi({"edit", "retime", "two.json", "--scale", whole, "-o", "slow.json"}).exit_code,
+            0);
+  EXPECT_EQ(ayumi({"edit", "retime", "two.json", "--scale",
+                   std::to_string(0.95 * double(slower["whole"])), "-o", "quick.json"})
+                .exit_code,
+            1);
+}
+
+// A foot out of reach cannot even be sampled; the error names the stride that would do.
+TEST_F(Infeasible, AFootOutOfReachNamesTheStrideThatPasses) {
+  write(folder / "step.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
+    "units": { "angle": "deg" }, "parameters": { "stride": 0.2 },
+    "phases": [
+      { "until": 1.2, "support": "both" },
+      { "until": 1.8, "support": "left",
+        "swing": { "foot": "right", "to": ["${stride}", -0.039], "lift": 0.015 } },
+      { "until": 3.2, "support": "both" }],
+    "keyframes": [
+      { "t": 0, "zmp": "center" }, { "t": 0.7, "zmp": "center" }, { "t": 1.2, "zmp": "left" },
+      { "t": 1.8, "zmp": "left" }, { "t": 2.4, "zmp": "center" }] })");
+  const Output failed = ayumi({"repair", "step.json", "-o", "out.json"});
+  EXPECT_EQ(failed.exit_code, 3);
+  EXPECT_NE(failed.err.find("out of reach"), std::string::npos) << failed.err;
+  const size_t at = failed.err.find("with stride = ");
+  ASSERT_NE(at, std::string::npos) << failed.err;
+  const std::string value = failed.err.substr(at + 14, failed.err.find(' ', at + 14) - at - 14);
+  EXPECT_EQ(ayumi({"check", "step.json", "--set", "stride=" + value}).exit_code, 0) << value;
+}
+
+}  // namespace
+}  // namespace ayumi::test
