@@ -142,10 +142,4 @@ bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
   return false;
 }
 
-bool flight_is_at_fault(const ConsistencyReport& report) {
-  return std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
-    return f.severity == Severity::error && (f.kind == "ballistic" || f.kind == "angular_momentum");
-  });
-}
-
 }  // namespace ayumi

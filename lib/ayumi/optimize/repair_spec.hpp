@@ -30,7 +30,4 @@ double shortest_flight(const CommandSeries& series);
 bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
                 const ConsistencyReport& report);
 
-/// Whether it is a flight itself that is wrong.
-bool flight_is_at_fault(const ConsistencyReport& report);
-
 }  // namespace ayumi
