@@ -270,6 +270,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
           raise("penetration", -rows.minCoeff());
           break;
         case ConstraintGroup::landing:  // of no figure of the check
+        case ConstraintGroup::foot_clearance:
           break;
         case ConstraintGroup::position: {
           const Dof& dof = model.dofs()[static_cast<size_t>(b.item)];

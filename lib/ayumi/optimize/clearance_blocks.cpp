@@ -35,11 +35,7 @@ void CorrectionProblem::place_clearance_block(int instant, const ShapePair& shap
   constexpr double kTouch = 0.0005;  // [m]
   const double least = own > kTouch ? std::min(spec_.clearance, own) : spec_.clearance;
   const int rows = clearance_rows(*spec_.collisions, shapes);
-  ConstraintBlock block;
-  block.group = ConstraintGroup::clearance;
-  block.instant = instant;
-  block.item = shapes.pair;
-  block.rows = rows;
+  ConstraintBlock block = block_of(ConstraintGroup::clearance, instant, shapes.pair, rows);
   block.shapes = shapes;
   add_block(std::move(block), least, kNoBound);
   if (shapes.edges) lower_[lower_.size() - rows] -= std::min(kEdgeAllowance, 0.5 * least);

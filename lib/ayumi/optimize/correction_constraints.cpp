@@ -26,8 +26,9 @@ using Eigen::VectorXd;
 
 const char* name_of(ConstraintGroup group) {
   constexpr const char* kNames[] = {
-      "support", "unilateral", "friction", "flight", "zmp",          "yaw",    "stance",    "path",
-      "swing",   "landing",    "position", "speed",  "acceleration", "torque", "clearance", "cog"};
+      "support", "unilateral", "friction", "flight",         "zmp",      "yaw",   "stance",
+      "path",    "swing",      "landing",  "foot_clearance", "position", "speed", "acceleration",
+      "torque",  "clearance",  "cog"};
   return kNames[static_cast<int>(group)];
 }
 
@@ -126,8 +127,12 @@ InstantState instant_state(const RobotModel& model, const CommandSample& sample,
 
 namespace {
 
+bool of_heights(ConstraintGroup group) {
+  return group == ConstraintGroup::swing || group == ConstraintGroup::foot_clearance;
+}
+
 bool of_foot(ConstraintGroup group) {
-  return group >= ConstraintGroup::stance && group <= ConstraintGroup::landing;
+  return group >= ConstraintGroup::stance && group <= ConstraintGroup::foot_clearance;
 }
 
 // Where the block's joint moves alone: value, rate or acceleration of its own column.
@@ -166,7 +171,7 @@ VectorXd foot_values(const RobotModel& model, const ConstraintBlock& block, cons
     values << way, -way;
     return (block.factor * height * height - values.array()).matrix();
   }
-  if (block.group != ConstraintGroup::swing) return sole_deviation(sole, ground);
+  if (!of_heights(block.group)) return sole_deviation(sole, ground);
   const Vector3d normal = ground.linear().col(2);
   const auto points = corners(model, static_cast<Side>(block.item), sole);
   for (int i = 0; i < block.rows; ++i) values[i] = normal.dot(points[i] - ground.translation());
@@ -196,7 +201,7 @@ MatrixXd foot_derivatives(const RobotModel& model, const ConstraintBlock& block,
     by.rowwise() += 2 * block.factor * height * normal.transpose() * J.topRows<3>();
     return by;
   }
-  if (block.group != ConstraintGroup::swing) return deviation_by(sole, ground, J);
+  if (!of_heights(block.group)) return deviation_by(sole, ground, J);
   const Vector3d normal = ground.linear().col(2);
   const auto points = corners(model, static_cast<Side>(block.item), sole);
   for (int i = 0; i < block.rows; ++i) {
@@ -247,6 +252,16 @@ void add_path(const RobotModel& model, int body, std::vector<int>& columns) {
 Eigen::Matrix<double, 5, 1> landing_way(const RobotModel& model, Side side,
                                         const Isometry3d& actual, const Isometry3d& place) {
   return landing_rows(model, side, place) * sole_deviation(actual, place);
+}
+
+ConstraintBlock block_of(ConstraintGroup group, int instant, int item, int rows, double scale) {
+  ConstraintBlock block;
+  block.group = group;
+  block.instant = instant;
+  block.item = item;
+  block.rows = rows;
+  block.scale = scale;
+  return block;
 }
 
 std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block,

@@ -21,7 +21,7 @@ namespace ayumi {
 /// the planned COG; zmp: f_n (ZMP - commanded ZMP) / (m g) [m]; yaw: (lever f_n -+ yaw moment about
 /// the ZMP) / (m g) [m], the lever held as it is in the motion; stance: sole from its place,
 /// position [m] and rotation [rad]; path: the same from where the motion has it; swing: corner
-/// heights [m]; landing: factor h^2 less the way of a
+/// heights [m]; foot_clearance: the same; landing: factor h^2 less the way of a
 /// sole from its place, along it or, times half its size, around three axes, either way, h its
 /// height [m]; position: joint angle [rad]; speed: joint speed /
 /// limit; acceleration: joint acceleration / limit; torque: motor torque / limit; clearance:
@@ -37,6 +37,7 @@ enum class ConstraintGroup {
   path,
   swing,
   landing,
+  foot_clearance,
   position,
   speed,
   acceleration,
@@ -73,6 +74,9 @@ struct ConstraintBlock {
   double factor = 0;      ///< of yaw rows: friction times lever [m]; of landing rows [1/m]
   Eigen::Matrix<double, Eigen::Dynamic, 6> wrench_rows;  ///< of linear ground groups
 };
+
+/// Without what only some groups have.
+ConstraintBlock block_of(ConstraintGroup group, int instant, int item, int rows, double scale = 1);
 
 /// What the blocks of one instant share.
 struct InstantState {

@@ -44,7 +44,7 @@ struct CorrectionSpec {
   double safe_margin = 0;       ///< the same where the motion's own is less than the least [m]
   double joint_margin = 1e-4;   ///< inside the position limits [rad]
   double share = 0.998;         ///< of speed limits and friction that may be used
-  bool gentle_landings = true;  ///< a low sole is wanted level and over its place
+  bool gentle_swings = true;    ///< a low sole is wanted level and over its place, others not low
   double force_share = 0.1;     ///< least normal force in contact over the weight
   double sole_position = 2e-4;  ///< band a supporting sole stays in [m]
   double sole_angle = 2e-3;     ///< [rad]
@@ -102,7 +102,10 @@ class CorrectionProblem {
   double own_landing_factor() const;
   double landing_factor(Side side, const ContactInterval& swing, const Eigen::Isometry3d& place,
                         bool lands) const;
+  double own_foot_clearance() const;
+  void measure_swings();
   void place_landing(int instant, Side side);
+  void place_swing(int instant, Side side);
   double sole_angle(Side side) const;
   void place_joint_blocks(int instant);
   void place_torque_blocks(int instant);
@@ -128,6 +131,7 @@ class CorrectionProblem {
   int variable_count_ = 0;
   std::vector<Instant> instants_;
   double landing_factor_ = 0;              ///< of landing rows [1/m]
+  double foot_clearance_ = 0;              ///< wanted in the middle half of a swing [m]
   std::vector<double> margin_;             ///< wanted of the ZMP, by instant [m]
   std::vector<ConstraintBlock> blocks_;    ///< in order of their instants
   std::vector<std::vector<int>> columns_;  ///< by block

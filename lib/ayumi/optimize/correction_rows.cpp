@@ -18,19 +18,6 @@ namespace {
 
 constexpr int kConeSides = 16;  // of the pyramid inside the friction cone
 
-constexpr double kNearPlace = 0.15;   // of a swing to its landing or lift-off [s]
-constexpr double kPlaceSpare = 2e-4;  // that a low sole may be off its place [m]
-
-ConstraintBlock block_of(ConstraintGroup group, int instant, int item, int rows, double scale = 1) {
-  ConstraintBlock block;
-  block.group = group;
-  block.instant = instant;
-  block.item = item;
-  block.rows = rows;
-  block.scale = scale;
-  return block;
-}
-
 }  // namespace
 
 void CorrectionProblem::add_block(ConstraintBlock block, double lower, double upper) {
@@ -45,7 +32,7 @@ void CorrectionProblem::add_block(ConstraintBlock block, double lower, double up
 
 void CorrectionProblem::place_constraints() {
   place_margins();
-  landing_factor_ = own_landing_factor();
+  measure_swings();
   for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
     place_foot_blocks(i);
     place_joint_blocks(i);
@@ -221,63 +208,6 @@ void CorrectionProblem::soften_landing(int instant, Side side) {
   upper_.tail<6>() += own.cwiseMax(0);
 }
 
-// How far off its place the swings of the motion are while they are low: way over height squared,
-// of the middle one of all, for a faulty one says nothing, and half as much again.
-double CorrectionProblem::own_landing_factor() const {
-  constexpr double kLeast = 0.12;  // of the COG's height, one over it [1/m]
-  constexpr double kSpare = 1.5;
-  std::vector<double> factors;
-  for (Side side : {Side::left, Side::right}) {
-    const auto& intervals = plan_.intervals[static_cast<int>(side)];
-    for (size_t i = 0; i < intervals.size(); ++i) {
-      if (intervals[i].contact) continue;
-      if (i > 0)
-        factors.push_back(landing_factor(side, intervals[i], intervals[i - 1].sole, false));
-      if (i + 1 < intervals.size())
-        factors.push_back(landing_factor(side, intervals[i], intervals[i + 1].sole, true));
-    }
-  }
-  const double least = 1 / (kLeast * series_.samples.front().cog.z());
-  if (factors.empty()) return least;
-  const auto middle = factors.begin() + static_cast<std::ptrdiff_t>(factors.size() / 2);
-  std::nth_element(factors.begin(), middle, factors.end());
-  return std::max(least, kSpare * *middle);
-}
-
-double CorrectionProblem::landing_factor(Side side, const ContactInterval& swing,
-                                         const Eigen::Isometry3d& place, bool lands) const {
-  constexpr double kLow = 0.001;    // what is lower says little [m]
-  constexpr double kEvery = 0.005;  // [s]
-  const int every = std::max(1, static_cast<int>(kEvery / series_.dt));
-  const int count =
-      std::min((swing.last - swing.first) / 2, static_cast<int>(kNearPlace / series_.dt));
-  RobotData data(model_);
-  double most = 0;
-  for (int k = 0; k < count; k += every) {
-    update_positions(model_, series_.samples[lands ? swing.last - k : swing.first + k].state, data);
-    const Eigen::Isometry3d sole = sole_pose(model_, data, side);
-    const double height = place.linear().col(2).dot(sole.translation() - place.translation());
-    if (height < kLow) continue;
-    const double way = landing_way(model_, side, sole, place).cwiseAbs().maxCoeff();
-    most = std::max(most, (way - kPlaceSpare) / (height * height));
-  }
-  return most;
-}
-
-// Near its landing and its lift-off a swinging sole is over its place: played open loop the servos
-// sag, and a sole that comes in low or tilted touches down while it still moves.
-void CorrectionProblem::place_landing(int instant, Side side) {
-  const Instant& at = instants_[instant];
-  const ContactInterval& swing = plan_.at(side, at.sample);
-  const int last = static_cast<int>(series_.samples.size()) - 1;
-  const int after = swing.first == 0 ? last : at.sample - swing.first;
-  const int before = swing.last == last ? last : swing.last - at.sample;
-  if (std::min(after, before) * series_.dt > kNearPlace) return;
-  ConstraintBlock block = block_of(ConstraintGroup::landing, instant, static_cast<int>(side), 10);
-  block.factor = landing_factor_;
-  add_block(std::move(block), -kPlaceSpare, kNoBound);
-}
-
 // What a sole may turn in its place: a long one less, for its corners rise and sink.
 double CorrectionProblem::sole_angle(Side side) const {
   constexpr double kShare = 0.6;  // of what a corner may be off
@@ -288,7 +218,6 @@ double CorrectionProblem::sole_angle(Side side) const {
 }
 
 void CorrectionProblem::place_foot_blocks(int instant) {
-  constexpr double kNearGround = 0.004;  // a swinging sole higher than this is not watched [m]
   RobotData data(model_);
   for (Side side : {Side::left, Side::right}) {
     const int s = static_cast<int>(side);
@@ -308,18 +237,8 @@ void CorrectionProblem::place_foot_blocks(int instant) {
       add_block(block_of(ConstraintGroup::path, instant, s, 6), -kSameWay, kSameWay);
     }
     if (instants_[instant].contact[s] || spec_.locked_feet[s]) continue;
-    if (spec_.gentle_landings) place_landing(instant, side);
-    double lowest = kNearGround;
-    for (const CommandSample* sample : watched(instant)) {
-      update_positions(model_, sample->state, data);
-      const SoleError error = sole_error(model_.sole(side), sole_pose(model_, data, side),
-                                         instants_[instant].ground[s]);
-      lowest = std::min(lowest, error.lowest);
-    }
-    const int corners = static_cast<int>(model_.sole(side).polygon.size());
-    if (lowest < kNearGround)
-      add_block(block_of(ConstraintGroup::swing, instant, s, corners), -spec_.sole_position,
-                kNoBound);
+    if (spec_.gentle_swings) place_landing(instant, side);
+    place_swing(instant, side);
   }
 }
 

@@ -18,9 +18,10 @@ constexpr double kHardFactor = 100;  // feet and flight against the rest
 // With a tenth of it walks at 0.65 of their time fall when played open loop, with three times of it
 // their repair takes twice the iterations and stands no better.
 constexpr double kSafetyPrice = 0.1;    // of a millimetre of the ZMP's safety in one window
-constexpr double kLandingPrice = 1;     // of a millimetre that a low sole is off its place
+constexpr double kLandingPrice = 1;     // of a millimetre a low sole is off its place, or too low
 constexpr double kSafetyWindow = 0.05;  // [s]
 constexpr double kMillimetre = 1e-3;
+constexpr double kStart = 0.01;  // of slacks, more than is needed
 
 // What is as bad as a millimetre.
 double unit_of(ConstraintGroup group) {
@@ -36,6 +37,11 @@ double unit_of(ConstraintGroup group) {
     default:
       return 1e-3;  // [m]
   }
+}
+
+// Wanted of swings beyond what the check asks for.
+bool of_swing(ConstraintGroup group) {
+  return group == ConstraintGroup::landing || group == ConstraintGroup::foot_clearance;
 }
 
 bool is_hard(ConstraintGroup group) {
@@ -56,6 +62,19 @@ Layout layout_of(const Nlp& nlp, const std::vector<int>& group) {
   return layout;
 }
 
+// What the start is short of each group, in its unit.
+VectorXd lacks(const Nlp& nlp, const Slacks& soft_rows) {
+  VectorXd g(nlp.constraint_lower.size()), lack = VectorXd::Zero(soft_rows.price.size());
+  nlp.constraints(nlp.start, g);
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    const int k = soft_rows.group[static_cast<size_t>(i)];
+    if (k < 0) continue;
+    const double off = std::max(nlp.constraint_lower[i] - g[i], g[i] - nlp.constraint_upper[i]);
+    lack[k] = std::max(lack[k], off / soft_rows.unit[k]);
+  }
+  return lack;
+}
+
 }  // namespace
 
 Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
@@ -67,7 +86,7 @@ Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
   const auto extra = static_cast<Eigen::Index>(layout->twice.size());
   Nlp soft;
   soft.start.resize(n + slacks);
-  soft.start << nlp.start, VectorXd::Ones(slacks);
+  soft.start << nlp.start, lacks(nlp, soft_rows).array() + kStart;
   soft.lower.resize(n + slacks);
   soft.lower << nlp.lower, VectorXd::Zero(slacks);
   soft.upper.resize(n + slacks);
@@ -145,8 +164,7 @@ Price price_of(ConstraintGroup group) {
   constexpr double kChange = 2 / kObjectiveScale;  // of one of the objective
   if (group == ConstraintGroup::support)
     return {kMillimetre, kChange * kSafetyPrice, kSafetyWindow};
-  if (group == ConstraintGroup::landing)
-    return {kMillimetre, kChange * kLandingPrice, kSafetyWindow};
+  if (of_swing(group)) return {kMillimetre, kChange * kLandingPrice, kSafetyWindow};
   return {unit_of(group), kChange * kPrice, kWindow};
 }
 
@@ -156,7 +174,7 @@ Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt
   std::map<std::tuple<int, int, long>, int> index;
   std::vector<double> most, price;
   for (const ConstraintBlock& block : problem.blocks()) {
-    const bool landing = block.group == ConstraintGroup::landing;
+    const bool landing = of_swing(block.group);
     const double spare = landing ? kNoBound : problem.safety(block.instant) / kMillimetre;
     if ((!landing && block.group != ConstraintGroup::support) || spare <= 0) continue;
     const double t = problem.instants()[block.instant].sample * dt;
@@ -188,9 +206,9 @@ Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt) {
     const auto found = index.try_emplace(key, static_cast<int>(unit.size()));
     if (found.second) {
       unit.push_back(unit_of(block.group));
-      price.push_back(block.group == ConstraintGroup::landing ? kLandingPrice
-                      : is_hard(block.group)                  ? kPrice * kHardFactor
-                                                              : kPrice);
+      price.push_back(of_swing(block.group)  ? kLandingPrice
+                      : is_hard(block.group) ? kPrice * kHardFactor
+                                             : kPrice);
     }
     for (int i = 0; i < block.rows; ++i) slacks.group[block.row + i] = found.first->second;
   }

@@ -187,6 +187,8 @@ void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
   list.SetStringValue("nlp_scaling_method", "none");  // the problems come scaled
   list.SetStringValue("mu_strategy", "monotone");
   list.SetNumericValue("mu_init", options.start_barrier);
+  for (const char* name : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"})
+    list.SetNumericValue(name, options.start_push);
   list.SetNumericValue("tol", options.tolerance);
   list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
   list.SetIntegerValue("max_iter", options.max_iterations);

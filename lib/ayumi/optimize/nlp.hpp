@@ -47,6 +47,7 @@ struct NlpOptions {
   int max_iterations = 100;
   double tolerance = 1e-6;             ///< of the optimality conditions
   double start_barrier = 1e-3;         ///< smaller from a start that is nearly right
+  double start_push = 1e-2;            ///< of a start off its bounds; likewise
   double constraint_tolerance = 1e-7;  ///< of g, unscaled
   bool mumps = false;                  ///< for the linear systems of any program
   /// Kept up to date with the point of least violation seen, for work that is stopped.

@@ -22,7 +22,7 @@ CorrectionSpec at_limits(const CorrectionSpec& spec, double safety) {
   limits.joint_margin = kHair - tolerance(Kind::joint_position);
   limits.force_share = kHair;
   limits.clearance = kHair;
-  limits.gentle_landings = false;
+  limits.gentle_swings = false;
   limits.zmp_margin = limits.safe_margin = kHair * 1e-3;
   return limits;
 }

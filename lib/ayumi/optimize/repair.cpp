@@ -38,12 +38,14 @@ namespace {
 constexpr int kRounds = 8;
 constexpr size_t kReasons = 6;  // told at most
 constexpr double kPad = 0.5;    // free time around a finding, doubled when it is not enough [s]
-constexpr double kRoundJointMargin = 5e-4;   // [rad]
-constexpr double kRoundShare = 0.004;        // of speed limits and friction
+constexpr double kRoundJointMargin = 5e-4;  // [rad]
+constexpr double kRoundShare = 0.004;       // of speed limits and friction
 constexpr double kWarmBarrier = 1e-5;        // of a start that violates little, where the first
 constexpr double kNearlyMet = 1e-3;          // an unsolved program's violation, to go on from there
 constexpr double kFarOff = 1e-3;             // barrier would only lead away from it
+constexpr double kWarmPush = 1e-6;           // of that start off its bounds, likewise
 constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
+constexpr int kUnsolved = 3;                 // rounds without a solution
 constexpr int kHalvings = 2;                 // of the knots' spacing, at most
 constexpr double kFinest = 8;                // samples between knots that are not halved any more
 constexpr double kRoundMargin = 0.001;       // more ZMP margin each round [m]
@@ -87,8 +89,7 @@ class Repair {
     free_ends();
     double pad = kPad;
     int unsolved = 0;
-    // Wider windows help once against a program without a solution; twice was never seen to.
-    for (int round = 0; round < kRounds && unsolved < 2; ++round) {
+    for (int round = 0; round < kRounds && unsolved < kUnsolved; ++round) {
       if (round == 0 ? sound() : done()) break;
       if (result_.check.consistent) passing_ = track_;
       choose_windows(round, pad);
@@ -104,11 +105,14 @@ class Repair {
       if (last_status_ != NlpStatus::solved) {
         ++unsolved;
         pad *= 2;
-        spec_.safe_margin = spec_.zmp_margin;  // safety gives way before the repair does
-        spec_.gentle_landings = false;
-        spec_.sole_at_knots = 1;
+        // Finer knots first; then safety gives way before the repair does.
+        if (unsolved > 1 || last_status_ == NlpStatus::infeasible) {
+          spec_.safe_margin = spec_.zmp_margin;
+          spec_.gentle_swings = false;
+          spec_.sole_at_knots = 1;
+        }
       }
-      if (2 * (round + 1) >= kRounds) spec_.gentle_landings = false;
+      if (2 * (round + 1) >= kRounds) spec_.gentle_swings = false;
       spec_.joint_margin += kRoundJointMargin;
       spec_.share -= kRoundShare;
       refine(round);
@@ -153,6 +157,7 @@ class Repair {
         if (last_status_ != NlpStatus::solved || result_.check.consistent) break;
         if (round + 1 < kPolishRounds && take_between(passing, kLittle, as_table)) break;
         add_instants(result_.check, series_.dt, spec_.extra);
+        spec_.start = passing.coefficients;  // inside all limits, where the result is not
       }
     } catch (const Interrupted&) {
       if (!options_.keep_partial) throw;
@@ -270,7 +275,9 @@ class Repair {
     options.max_iterations = options_.max_iterations;
     options.mumps = options_.mumps;
     options.least_violating = &least_violating_;
-    if (warm) options.start_barrier = kWarmBarrier;
+    if (!warm) return options;
+    options.start_barrier = kWarmBarrier;
+    options.start_push = kWarmPush;
     return options;
   }
 

@@ -121,8 +121,8 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   const double safe = options.trust == Trust::zmp ? least : safe_margin(model);
   spec.safe_margin = options.zmp_margin.value_or(safe) + kMarginBetween;
   spec.zmp_margin = std::min(spec.safe_margin, least + kMarginBetween);
-  spec.gentle_landings = options.safety > 0;
-  if (!spec.gentle_landings) spec.safe_margin = spec.zmp_margin;
+  spec.gentle_swings = options.safety > 0;
+  if (!spec.gentle_swings) spec.safe_margin = spec.zmp_margin;
   return spec;
 }
 

@@ -56,6 +56,7 @@ bool is_bought(ConstraintGroup group) {
     case ConstraintGroup::stance:
     case ConstraintGroup::swing:
     case ConstraintGroup::landing:
+    case ConstraintGroup::foot_clearance:
     case ConstraintGroup::position:
     case ConstraintGroup::clearance:
       return true;
