@@ -212,6 +212,12 @@ NlpStatus status_of(Ipopt::ApplicationReturnStatus status) {
 
 }  // namespace
 
+double violation_at_start(const Nlp& nlp) {
+  VectorXd g(nlp.constraint_lower.size());
+  nlp.constraints(nlp.start, g);
+  return std::max((nlp.constraint_lower - g).maxCoeff(), (g - nlp.constraint_upper).maxCoeff());
+}
+
 NlpSolution solve(const Nlp& nlp, const NlpOptions& options, const Progress& progress,
                   const std::string& stage) {
   Ipopt::SmartPtr<Adapter> adapter = new Adapter(nlp, options, progress, stage);

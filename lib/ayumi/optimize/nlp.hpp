@@ -43,6 +43,9 @@ struct Nlp {
       hessian_values;
 };
 
+/// The most by which the start breaks a constraint; negative inside all.
+double violation_at_start(const Nlp& nlp);
+
 struct NlpOptions {
   int max_iterations = 100;
   double tolerance = 1e-6;             ///< of the optimality conditions

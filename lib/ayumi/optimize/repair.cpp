@@ -13,7 +13,6 @@
 #include <set>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/collision_scan.hpp"
 #include "ayumi/optimize/correction_problem.hpp"
 #include "ayumi/optimize/elastic.hpp"
 #include "ayumi/optimize/obstacles.hpp"
@@ -38,8 +37,8 @@ namespace {
 constexpr int kRounds = 8;
 constexpr size_t kReasons = 6;  // told at most
 constexpr double kPad = 0.5;    // free time around a finding, doubled when it is not enough [s]
-constexpr double kRoundJointMargin = 5e-4;  // [rad]
-constexpr double kRoundShare = 0.004;       // of speed limits and friction
+constexpr double kRoundJointMargin = 5e-4;   // [rad]
+constexpr double kRoundShare = 0.004;        // of speed limits and friction
 constexpr double kWarmBarrier = 1e-5;        // of a start that violates little, where the first
 constexpr double kNearlyMet = 1e-3;          // an unsolved program's violation, to go on from there
 constexpr double kFarOff = 1e-3;             // barrier would only lead away from it
@@ -222,18 +221,7 @@ class Repair {
       if (f.severity == Severity::error && round > 0)
         spec_.extra.insert(spec_.extra.end(), {f.begin, f.at, f.end});
     spec_.windows = windows_around(findings_, pad);
-    watch_clearances();
-  }
-
-  // Pairs of bodies that come near in the motion or in what it has become.
-  void watch_clearances() {
-    constexpr double kNear = 0.005;  // [m]
-    std::set<int> near(spec_.near_pairs.begin(), spec_.near_pairs.end());
-    scan_clearance(model_, result_.series, collisions_, kNear,
-                   [&](int pair, int, double clearance) {
-                     if (clearance < kNear) near.insert(pair);
-                   });
-    spec_.near_pairs.assign(near.begin(), near.end());
+    add_near_pairs(model_, result_.series, collisions_, spec_.near_pairs);
   }
 
   // The first and last posture move only where they are themselves at fault. What the tick of an
@@ -262,12 +250,6 @@ class Repair {
       if (options_.trust == Trust::zmp) judged.samples[k].zmp = series_.samples[k].zmp;
     }
     return check_consistency(model_, judged, options_.check);
-  }
-
-  // How much the start of a program violates it.
-  double violation_at_start(const Nlp& nlp) const {
-    const VectorXd g = problem_->constraints(nlp.start);
-    return std::max((nlp.constraint_lower - g).maxCoeff(), (g - nlp.constraint_upper).maxCoeff());
   }
 
   NlpOptions nlp_options(bool warm) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/collision_scan.hpp"
 #include "ayumi/optimize/weighted_change.hpp"
 
 namespace ayumi {
@@ -124,6 +126,16 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   spec.gentle_swings = options.safety > 0;
   if (!spec.gentle_swings) spec.safe_margin = spec.zmp_margin;
   return spec;
+}
+
+void add_near_pairs(const RobotModel& model, const CommandSeries& series,
+                    const CollisionModel& collisions, std::vector<int>& pairs) {
+  constexpr double kNear = 0.005;  // [m]
+  std::set<int> near(pairs.begin(), pairs.end());
+  scan_clearance(model, series, collisions, kNear, [&](int pair, int, double clearance) {
+    if (clearance < kNear) near.insert(pair);
+  });
+  pairs.assign(near.begin(), near.end());
 }
 
 bool locked_out(const RobotModel& model, const CorrectionSpec& spec,

@@ -11,6 +11,10 @@ namespace ayumi {
 CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
                            const RepairOptions& options);
 
+/// Pairs of bodies that come within 5 mm of each other in the motion, put to those there are.
+void add_near_pairs(const RobotModel& model, const CommandSeries& series,
+                    const CollisionModel& collisions, std::vector<int>& pairs);
+
 /// Around errors and ZMP margins that are too small, `pad` [s] wider; those that overlap are one.
 std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
                                                       double pad);

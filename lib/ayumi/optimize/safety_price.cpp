@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <tuple>
 
-#include "ayumi/check/collision_scan.hpp"
 #include "ayumi/optimize/elastic.hpp"
 #include "ayumi/optimize/repair_spec.hpp"
 
@@ -35,17 +33,6 @@ std::vector<std::pair<double, double>> windows_of(const CommandSeries& before,
       windows.emplace_back(t - pad, t + pad);
   }
   return windows;
-}
-
-std::vector<int> near_pairs(const RobotModel& model, const CollisionModel& collisions,
-                            const CommandSeries& before, const CommandSeries& after) {
-  constexpr double kNear = 0.005;  // [m]
-  std::set<int> near;
-  for (const CommandSeries* series : {&before, &after})
-    scan_clearance(model, *series, collisions, kNear, [&](int pair, int, double clearance) {
-      if (clearance < kNear) near.insert(pair);
-    });
-  return {near.begin(), near.end()};
 }
 
 // What the check asks for as well is no matter of safety: a motion that breaks it does not pass.
@@ -90,7 +77,8 @@ double safety_price(const RobotModel& model, const CommandSeries& before,
   if (spec.windows.empty()) return 0;
   const CollisionModel collisions(model);
   spec.collisions = &collisions;
-  spec.near_pairs = near_pairs(model, collisions, before, after);
+  for (const CommandSeries* series : {&before, &after})
+    add_near_pairs(model, *series, collisions, spec.near_pairs);
   spec.seen = {&after};
   spec.joint_margin = 0;
   const CorrectionProblem problem(model, before, spec);
