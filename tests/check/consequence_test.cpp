@@ -273,10 +273,10 @@ TEST(Consequence, OfAFlightWithFootKeysThatEndsEarly) {
   Pattern p = baked(hoap1(), authored);
   p.keyframes.clear();
   for (const Keyframe& key : authored.keyframes) {
-    Keyframe feet;
-    feet.t = key.t;
-    feet.feet = key.feet;
-    if (key.feet[0] || key.feet[1]) p.keyframes.push_back(feet);
+    if (!key.feet[0] && !key.feet[1]) continue;
+    p.keyframes.emplace_back();
+    p.keyframes.back().t = key.t;
+    p.keyframes.back().feet = key.feet;
   }
   ASSERT_FALSE(p.keyframes.empty());
   ASSERT_TRUE(errors_of(p).kinds.empty()) << errors_of(p).told;

@@ -5,19 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/contacts.hpp"
 #include "ayumi/check/motion_dynamics.hpp"
 #include "ayumi/check/residuals.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/pattern/differentiate.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
 #include "tests/support/plain_motion.hpp"
 #include "tests/support/random_robot.hpp"
+#include "tests/support/robot_motions.hpp"
 
 using namespace ayumi;
 using namespace ayumi::test;
@@ -28,13 +25,6 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kFriction = 0.3;
-
-const RobotModel& robot(const std::string& name) {
-  static std::map<std::string, RobotModel> robots;
-  const auto found = robots.find(name);
-  if (found != robots.end()) return found->second;
-  return robots.emplace(name, load_robot(AYUMI_SOURCE_DIR "/robots/" + name)).first->second;
-}
 
 // Smooth waves in every joint and in the base, from rest to rest, and commands that are off.
 void disturb(const RobotModel& model, CommandSeries& series, double size, unsigned seed) {
@@ -57,20 +47,11 @@ void disturb(const RobotModel& model, CommandSeries& series, double size, unsign
   fill_rates(series.samples, series.dt, true);
 }
 
-struct Case {
-  std::string robot, motion;
-};
-
-class SecondRoute : public testing::TestWithParam<Case> {
+class SecondRoute : public testing::TestWithParam<RobotMotion> {
  protected:
-  const RobotModel& model = robot(GetParam().robot);
+  const RobotModel& model = bundled_robot(GetParam().robot);
   CommandSeries series = [this] {
-    const bool jumps = GetParam().motion == "jump";
-    WalkParameters steps = walk_defaults(model);
-    steps.steps = 2;
-    const Pattern pattern =
-        jumps ? jump_pattern(model, jump_defaults(model)) : walk_pattern(model, steps);
-    CommandSeries result = sample(model, pattern);
+    CommandSeries result = sample(model, pattern_of(GetParam()));
     disturb(model, result, 0.004, 3);
     return result;
   }();
@@ -96,10 +77,6 @@ class SecondRoute : public testing::TestWithParam<Case> {
   }
   double weight() const { return model.mass() * kGravity; }
 };
-
-std::string name_of_case(const testing::TestParamInfo<Case>& info) {
-  return info.param.robot + "_" + info.param.motion;
-}
 
 }  // namespace
 
@@ -345,7 +322,4 @@ TEST_P(SecondRoute, TorqueFiguresByLoops) {
   EXPECT_NEAR(report.summary.max_continuous_torque_ratio, lasting, 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Motions, SecondRoute,
-                         testing::Values(Case{"hoap1", "walk"}, Case{"humanoid30", "walk"},
-                                         Case{"hoap1", "jump"}, Case{"humanoid30", "jump"}),
-                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Motions, SecondRoute, robot_motions(), name_of_case);

@@ -67,8 +67,9 @@ TEST(ServoTarget, OfAJointThatIsTooFastIsNotToldTwice) {
   const ConsistencyReport r = report_of(hoap1(), pattern);
   for (const Finding& speed : r.findings)
     for (const Finding& step : r.findings)
-      if (speed.kind == "joint_speed" && step.kind == "servo_step" && speed.where == step.where)
+      if (speed.kind == "joint_speed" && step.kind == "servo_step" && speed.where == step.where) {
         EXPECT_TRUE(step.at < speed.begin || step.at > speed.end) << step.at;
+      }
   EXPECT_FALSE(r.consistent);
 }
 

@@ -11,12 +11,10 @@
 #include "ayumi/check/motion_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
-#include "ayumi/io/robot_file.hpp"
 #include "ayumi/optimize/correction_problem.hpp"
 #include "ayumi/pattern/differentiate.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
 #include "tests/support/random_robot.hpp"
+#include "tests/support/robot_motions.hpp"
 
 using namespace ayumi;
 using namespace ayumi::test;
@@ -25,13 +23,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-
-const RobotModel& robot(const std::string& name) {
-  static std::map<std::string, RobotModel> robots;
-  const auto found = robots.find(name);
-  if (found != robots.end()) return found->second;
-  return robots.emplace(name, load_robot(AYUMI_SOURCE_DIR "/robots/" + name)).first->second;
-}
 
 // Turns an arm until two bodies are only 2.5 to 4.5 mm apart, in all samples.
 void bring_near(const RobotModel& model, const CollisionModel& collisions, CommandSeries& series) {
@@ -70,21 +61,13 @@ void disturb(const RobotModel& model, CommandSeries& series) {
   fill_rates(series.samples, series.dt, true);
 }
 
-struct Case {
-  std::string robot, motion;
-};
-
-class ConstraintRows : public testing::TestWithParam<Case> {
+class ConstraintRows : public testing::TestWithParam<RobotMotion> {
  protected:
-  const RobotModel& model = robot(GetParam().robot);
+  const RobotModel& model = bundled_robot(GetParam().robot);
   const bool jumps = GetParam().motion == "jump";
   const CollisionModel collisions = CollisionModel(model);
   CommandSeries series = [this] {
-    WalkParameters steps = walk_defaults(model);
-    steps.steps = 2;
-    CommandSeries result = sample(
-        model, jumps ? jump_pattern(model, jump_defaults(model)) : walk_pattern(model, steps),
-        {.dt = jumps ? 0.001 : 0.004});
+    CommandSeries result = sample(model, pattern_of(GetParam()), {.dt = jumps ? 0.001 : 0.004});
     bring_near(model, collisions, result);
     disturb(model, result);
     return result;
@@ -104,10 +87,6 @@ class ConstraintRows : public testing::TestWithParam<Case> {
     return s;
   }
 };
-
-std::string name_of_case(const testing::TestParamInfo<Case>& info) {
-  return info.param.robot + "_" + info.param.motion;
-}
 
 struct Tally {
   int rows = 0, kinks = 0;
@@ -329,7 +308,4 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
               0.0025 * model.mass() * most["ballistic"] + 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Motions, ConstraintRows,
-                         testing::Values(Case{"hoap1", "walk"}, Case{"humanoid30", "walk"},
-                                         Case{"hoap1", "jump"}, Case{"humanoid30", "jump"}),
-                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Motions, ConstraintRows, robot_motions(), name_of_case);
