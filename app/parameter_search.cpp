@@ -9,6 +9,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern_file.hpp"
+#include "ayumi/math/windows.hpp"
 #include "ayumi/optimize/obstacles.hpp"
 #include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/sample.hpp"
@@ -165,7 +166,7 @@ std::vector<std::pair<double, double>> segments_around(const Pattern& pattern,
   std::set<double> marks = {0, pattern.duration()};
   for (const Phase& phase : pattern.phases) marks.insert(phase.until);
   for (const Keyframe& key : pattern.keyframes) marks.insert(key.t);
-  std::vector<std::pair<double, double>> all, merged;
+  std::vector<std::pair<double, double>> all;
   for (const Finding& f : check.findings) {
     if (f.severity != Severity::error) continue;
     constexpr double kSlack = 0.002;  // a finding may touch the next segment by a sample [s]
@@ -175,14 +176,7 @@ std::vector<std::pair<double, double>> segments_around(const Pattern& pattern,
     const double to = end == marks.end() ? pattern.duration() : *end;
     if (*begin < to) all.emplace_back(*begin, to);
   }
-  std::sort(all.begin(), all.end());
-  for (const auto& w : all) {
-    if (!merged.empty() && w.first <= merged.back().second)
-      merged.back().second = std::max(merged.back().second, w.second);
-    else
-      merged.push_back(w);
-  }
-  return merged;
+  return merged(std::move(all));
 }
 
 bool stretched_passes(const Context& context, const PatternInput& input, const CheckOptions& check,

@@ -127,8 +127,7 @@ class Causes {
   }
 
   bool in_leg_of(int foot, int dof) const {
-    const std::vector<int>& leg = pass_.model.leg(static_cast<Side>(foot));
-    return std::find(leg.begin(), leg.end(), dof) != leg.end();
+    return in_leg(pass_.model, static_cast<Side>(foot), dof);
   }
 
   bool in_a_leg(int dof) const { return in_leg_of(0, dof) || in_leg_of(1, dof); }

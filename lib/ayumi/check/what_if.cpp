@@ -25,14 +25,15 @@ bool touches_by_limits(const CheckPass& pass, const Violation& v) {
   return pass.collisions.clearance(pass.collisions.pairs()[v.item], data, kTouch) >= 0;
 }
 
+bool in_leg(const RobotModel& model, Side side, int dof) {
+  const std::vector<int>& leg = model.leg(side);
+  return std::find(leg.begin(), leg.end(), dof) != leg.end();
+}
+
 bool hangs_on(const CheckPass& pass, const Violation& v, int dof) {
   const CollisionModel::Pair& pair = pass.collisions.pairs()[v.item];
   const int trunk = pass.model.trunk_body();
-  const auto in_leg = [&](Side side) {
-    const std::vector<int>& leg = pass.model.leg(side);
-    return std::find(leg.begin(), leg.end(), dof) != leg.end();
-  };
-  const bool leg = in_leg(Side::left) || in_leg(Side::right);
+  const bool leg = in_leg(pass.model, Side::left, dof) || in_leg(pass.model, Side::right, dof);
   if (!leg && (pair.a == trunk || pair.b == trunk)) return false;
   const auto beyond = [&](int body) {
     while (body > 0 && pass.model.bodies()[body].dof != dof)

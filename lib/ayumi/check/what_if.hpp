@@ -9,6 +9,8 @@ namespace ayumi {
 /// Bodies that meet by no more than 15 mm and would not with every joint within its limits.
 bool touches_by_limits(const CheckPass& pass, const Violation& collision);
 
+bool in_leg(const RobotModel& model, Side side, int dof);
+
 /// Bodies whose distance this joint sets. Not an arm and the trunk: that is a fact of its own.
 bool hangs_on(const CheckPass& pass, const Violation& collision, int dof);
 

@@ -11,16 +11,17 @@ namespace ayumi {
 void CorrectionProblem::place_clearance_blocks(int instant) {
   constexpr double kNear = 0.005, kNearShapes = 0.010;  // [m]
   RobotData data(model_);
+  const std::vector<const CommandSample*> samples = watched(instant);
   for (const int pair : spec_.near_pairs) {
     std::vector<ShapePair> shapes = shape_pairs(*spec_.collisions, pair);
     std::vector<double> least(shapes.size(), kNoBound);
     double own = kNoBound;
-    for (const CommandSample* sample : watched(instant)) {
+    for (const CommandSample* sample : samples) {
       update_positions(model_, sample->state, data);
       for (size_t i = 0; i < shapes.size(); ++i) {
         const double here = shape_clearance(*spec_.collisions, shapes[i], data, kNearShapes);
         least[i] = std::min(least[i], here);
-        if (sample == watched(instant).front()) own = std::min(own, here);
+        if (sample == samples.front()) own = std::min(own, here);
         shapes[i].edges = shapes[i].edges ||
                           (here < kNearShapes && edges_meet(*spec_.collisions, shapes[i], data));
       }

@@ -218,7 +218,6 @@ double CorrectionProblem::sole_angle(Side side) const {
 }
 
 void CorrectionProblem::place_foot_blocks(int instant) {
-  RobotData data(model_);
   for (Side side : {Side::left, Side::right}) {
     const int s = static_cast<int>(side);
     if (instants_[instant].contact[s]) {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/collision_scan.hpp"
+#include "ayumi/math/windows.hpp"
 #include "ayumi/optimize/weighted_change.hpp"
 
 namespace ayumi {
@@ -68,15 +70,7 @@ std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>
   for (const Finding& f : findings)
     if (f.severity == Severity::error || f.kind == "support_margin" || !f.follows_from.empty())
       windows.emplace_back(f.begin - pad, f.end + pad);
-  std::sort(windows.begin(), windows.end());
-  std::vector<std::pair<double, double>> merged;
-  for (const auto& w : windows) {
-    if (!merged.empty() && w.first <= merged.back().second)
-      merged.back().second = std::max(merged.back().second, w.second);
-    else
-      merged.push_back(w);
-  }
-  return merged;
+  return merged(std::move(windows));
 }
 
 CorrectionTrack trimmed(const CorrectionTrack& track) {

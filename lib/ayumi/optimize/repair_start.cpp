@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
+#include <vector>
+
+#include "ayumi/math/windows.hpp"
 
 namespace ayumi {
 
@@ -12,8 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-using Windows = std::vector<std::pair<double, double>>;
 
 int body_of(const RobotModel& model, const std::string& name) {
   const int link = model.find_link(name);
@@ -40,22 +40,10 @@ std::vector<int> joints_of(const RobotModel& model, const Finding& f) {
   return a < 0 || b < 0 ? std::vector<int>() : joints_between(model, a, b);
 }
 
-void add_window(Windows& windows, std::pair<double, double> w) {
-  Windows apart;
-  for (const auto& other : windows) {
-    if (other.second < w.first || other.first > w.second)
-      apart.push_back(other);
-    else
-      w = {std::min(w.first, other.first), std::max(w.second, other.second)};
-  }
-  apart.push_back(w);
-  windows = apart;
-}
-
 // What leads the joint from one end of a window to the other as a cubic, less where it is.
 class Bridge {
  public:
-  Bridge(const CommandSeries& series, int dof, std::pair<double, double> window)
+  Bridge(const CommandSeries& series, int dof, const TimeWindow& window)
       : series_(series), dof_(dof) {
     const double last = series.duration();
     begin_ = std::lround(std::clamp(window.first, 0.0, last) / series.dt);
@@ -120,15 +108,15 @@ MatrixXd with_halved_knots(const MatrixXd& c) {
 
 MatrixXd bridge(const RobotModel& model, const CommandSeries& series,
                 const std::vector<Finding>& findings, double reach, double spacing, Index rows) {
-  std::map<int, Windows> windows;
+  std::map<int, std::vector<TimeWindow>> windows;
   for (const Finding& f : findings) {
     if (f.severity != Severity::error) continue;
     for (const int dof : joints_of(model, f))
-      add_window(windows[dof], {f.begin - reach, f.end + reach});
+      windows[dof].emplace_back(f.begin - reach, f.end + reach);
   }
   MatrixXd result = MatrixXd::Zero(rows, model.velocity_count());
   for (const auto& [dof, of_joint] : windows)
-    for (const auto& window : of_joint) {
+    for (const TimeWindow& window : merged(of_joint)) {
       const Bridge over(series, dof, window);
       for (Index i = 0; i < rows; ++i) {  // as near as control points come by their neighbours
         const double t = static_cast<double>(i - 1) * spacing;

@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "ayumi/math/windows.hpp"
 #include "ayumi/optimize/elastic.hpp"
 #include "ayumi/optimize/repair_spec.hpp"
 
@@ -27,12 +28,9 @@ std::vector<std::pair<double, double>> windows_of(const CommandSeries& before,
   for (size_t k = 0; k < before.samples.size(); ++k) {
     if (!differ(before.samples[k].state, after.samples[k].state)) continue;
     const double t = before.dt * static_cast<double>(k);
-    if (!windows.empty() && t - pad <= windows.back().second)
-      windows.back().second = t + pad;
-    else
-      windows.emplace_back(t - pad, t + pad);
+    windows.emplace_back(t - pad, t + pad);
   }
-  return windows;
+  return merged(std::move(windows));
 }
 
 // What the check asks for as well is no matter of safety: a motion that breaks it does not pass.

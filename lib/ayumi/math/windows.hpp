@@ -1,0 +1,14 @@
+#pragma once
+// Windows of time that belong together.
+
+#include <utility>
+#include <vector>
+
+namespace ayumi {
+
+using TimeWindow = std::pair<double, double>;  ///< begin and end [s]
+
+/// In order of time; those that overlap or touch are one.
+std::vector<TimeWindow> merged(std::vector<TimeWindow> windows);
+
+}  // namespace ayumi
