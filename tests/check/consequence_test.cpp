@@ -189,6 +189,39 @@ TEST(Consequence, OfAFlightThatIsTooLowAreItsEdges) {
   }
 }
 
+// Parallel to the true flight, but nothing throws a robot there.
+TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
+  const double dt = hops().table->dt, from = begin_of(hops(), 1), to = hops().phases[1].until;
+  for (const Vector3d& way : {Vector3d(0.005, 0, 0), Vector3d(0, -0.003, 0), Vector3d(0, 0, 0.02),
+                              Vector3d(0, 0, -0.01)}) {
+    for (const bool command : {false, true}) {
+      for (const double less : {0.0, 1.0}) {  // sample before the end
+        Pattern p = hops();
+        for_rows(*p.table, [&](double t, size_t k) {
+          if (t < from - 0.5 * dt || t > to + (0.5 - less) * dt) return;
+          p.table->base[k].position += way;
+          if (command) p.table->cog[k] += way;
+        });
+        const Errors e = errors_of(p);
+        EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << way.transpose() << "\n" << e.told;
+        ASSERT_EQ(e.all.size(), 1u) << e.told;
+        EXPECT_EQ(e.all[0].where, way.z() != 0 ? "z" : way.x() != 0 ? "x" : "y");
+        EXPECT_TRUE(std::abs(e.all[0].at - from) < 0.0021 || std::abs(e.all[0].at - to) < 0.0021);
+        EXPECT_NE(e.all[0].hint.find("leaps by"), std::string::npos) << e.all[0].hint;
+      }
+    }
+  }
+  // Out of its place for the first part of the next stance, and in it from then on: a foot's.
+  Pattern p = hops();
+  const double begin = to, end = to + 0.4 * (p.phases[2].until - to);
+  for_rows(*p.table, [&](double t, size_t k) {
+    if (t < begin - 0.5 * dt || t > end - 0.5 * dt) return;
+    p.table->base[k].position.x() += 0.005;
+    p.table->cog[k].x() += 0.005;
+  });
+  EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip"})) << errors_of(p).told;
+}
+
 // A commanded COG that is bent in the flight only is a flight that is not free; beyond it, a key.
 TEST(Consequence, OfACommandedCogDependsOnWhereItEnds) {
   const double at = middle_of(hops(), 1), length = hops().phases[1].until - begin_of(hops(), 1);
@@ -221,6 +254,58 @@ TEST(Consequence, OfAPhaseThatHasMoved) {
   p.phases[1].until -= 0.060;
   const Errors e = errors_of(p);
   EXPECT_EQ(e.kinds, (Kinds{"foot_float", "ballistic"})) << e.told;
+}
+
+// The foot that is let go stands still meanwhile: silent in forces where the ZMP is already over
+// the other one.
+TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
+  for (const size_t both : {0, 2, 4}) {
+    Pattern p = walk();
+    ASSERT_EQ(p.phases[both].support, Support::both);
+    const double lifts = p.phases[both].until -= 0.060;
+    Errors e = errors_of(p);
+    EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << both << "\n" << e.told;
+    ASSERT_EQ(e.all.size(), 1u) << e.told;
+    EXPECT_EQ(e.all[0].where, name_of(p.phases[both + 1].swing->foot)) << e.told;
+    EXPECT_NEAR(e.all[0].at, lifts, 0.002);
+    EXPECT_EQ(e.all[0].unit, "s");
+    EXPECT_NEAR(e.all[0].worst, 0.060, 0.005);
+    EXPECT_NE(e.all[0].hint.find("stands still"), std::string::npos) << e.all[0].hint;
+    // Its swing moved as a whole: told where the foot lands.
+    p.phases[both + 1].until -= 0.060;
+    e = errors_of(p);
+    EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << both << "\n" << e.told;
+    ASSERT_EQ(e.all.size(), 1u) << e.told;
+    EXPECT_NEAR(e.all[0].at, p.phases[both + 1].until, 0.002);
+    // Another fault at that time stays one.
+    const double at = lifts + 0.03;
+    for_rows(*p.table,
+             [&](double t, size_t k) { p.table->cog[k].x() += 0.015 * bump(t, at, 0.3); });
+    EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_float", "cog_residual"})) << errors_of(p).told;
+  }
+  // Both feet, before a flight: what pushes there is no flight that is not free.
+  Pattern p = hops();
+  p.phases[0].until -= 0.060;
+  const Errors e = errors_of(p);
+  EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << e.told;
+  EXPECT_EQ(e.all.size(), 2u) << e.told;
+}
+
+// A foot that stays on the ground without bearing, the whole phase long, is no matter of timing.
+TEST(Consequence, OfAFootThatOnlyBearsNothingIsNone) {
+  Pattern p = table_of(sway_pattern(hoap1(), {.side = 0.039, .period = 3, .cycles = 1}));
+  const CommandSeries series = sample(hoap1(), p);
+  double from = 0, to = 0;  // while the ZMP is well inside the left sole
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const Vector3d zmp = series.samples[k].feet[0].inverse() * series.samples[k].zmp;
+    if (std::abs(zmp.y()) > 0.02) continue;
+    to = p.table->dt * static_cast<double>(k);
+    if (from == 0) from = to;
+  }
+  ASSERT_GT(to, from + 0.1);
+  const double end = p.phases.back().until;
+  p.phases = {{from, Support::both, {}}, {to, Support::left, {}}, {end, Support::both, {}}};
+  EXPECT_TRUE(errors_of(p).kinds.empty()) << errors_of(p).told;
 }
 
 TEST(Consequence, OfAPhaseThatHasMovedOnStairs) {

@@ -44,6 +44,8 @@ bool is_foot(Kind k) {
   return k == Kind::foot_slip || k == Kind::foot_penetration || k == Kind::foot_float;
 }
 
+bool is_displaced(const Violation& v) { return is_foot(v.kind) && !still_stands(v); }
+
 // What the motion asks of ground and motors: all of it comes from accelerations.
 bool is_need(const Violation& v) {
   switch (v.kind) {
@@ -76,10 +78,11 @@ class Causes {
   void run() {
     one_foot();
     posture(Kind::joint_position);
+    leaps();
     edges(Kind::foot_slip);
     edges(Kind::foot_float);
     edges(Kind::foot_penetration);
-    edges(Kind::self_collision);
+    held_joints();
     posture(Kind::foot_float);
     posture(Kind::foot_slip);
     moved_command_in_flight();
@@ -118,9 +121,9 @@ class Causes {
                  : i < j;
     };
     for (int i = 0; i < count(); ++i) {
-      if (!is_foot(of(i).kind) || !open(i)) continue;
+      if (!is_displaced(of(i)) || !open(i)) continue;
       for (int j = 0; j < count() && open(i); ++j)
-        if (j != i && is_foot(of(j).kind) && of(j).item == of(i).item && open(j) &&
+        if (j != i && is_displaced(of(j)) && of(j).item == of(i).item && open(j) &&
             around(windows_[i], slack()).touches(windows_[j]) && larger(j, i))
           windows_[i].cause = j;
     }
@@ -131,17 +134,6 @@ class Causes {
   }
 
   bool in_a_leg(int dof) const { return in_leg_of(0, dof) || in_leg_of(1, dof); }
-
-  // A ZMP outside the support because the command wants it there: no posture is to blame.
-  bool is_asked_for(const Violation& v) {
-    if (v.kind != Kind::support_margin) return false;
-    const Vector3d zmp = pass_.dynamics.at(v.sample, 1).use.zmp_world;
-    const Vector3d& command = pass_.series.samples[v.sample].zmp;
-    const SupportPlane& plane = pass_.dynamics.plane();
-    const Vector3d inside = plane.frame.inverse() * command;
-    return (zmp - command).norm() <= pass_.tolerance(Kind::zmp_residual) &&
-           plane.polygon.margin(inside.head<2>()) < -kRounding;
-  }
 
   // Forces answer 50 ms around.
   Span episode(int i) const {
@@ -174,18 +166,6 @@ class Causes {
                        [](char rough) { return rough; });
   }
 
-  // The joint's largest step is undone by another one in the same span.
-  bool comes_back(int dof, const Span& span) const {
-    double up = 0, down = 0;
-    for (int k = std::max(1, span.first); k <= std::min(pass_.count() - 1, span.last); ++k) {
-      const double step =
-          pass_.series.samples[k].state.theta[dof] - pass_.series.samples[k - 1].state.theta[dof];
-      up = std::max(up, step);
-      down = std::min(down, step);
-    }
-    return up > 0 && up > -0.5 * down && -down > 0.5 * up;
-  }
-
   // A sole that is out of its place all at once, and back in it all at once or at the end of its
   // contact: the leg jumps with it, each joint as its geometry asks.
   bool stands_before_and_after(const FindingWindow& w) const {
@@ -216,13 +196,13 @@ class Causes {
 
   void posture(Kind kind) {
     for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != kind || !open(i)) continue;
+      if (of(i).kind != kind || !open(i) || still_stands(of(i))) continue;
       const bool limit = kind == Kind::joint_position;
       const bool joint = limit || kind == Kind::servo_step;
       const bool places_feet = joint && in_a_leg(of(i).item);
       blame(i, limit ? episode_of_joint(i) : episode(i), [&](int j) {
         const Violation& v = of(j);
-        if (is_asked_for(v)) return false;
+        if (is_asked_for(pass_, v)) return false;
         if (is_foot(kind) && is_flight(v.kind)) return near_displacement(i, v.sample);
         if (is_need(v) || is_residual(v.kind)) return true;
         if (places_feet && is_foot(v.kind)) return true;
@@ -231,53 +211,69 @@ class Causes {
                  (hangs_on(pass_, v, of(i).item) && wrong_angle(i).contains(windows_[j]));
         if (is_foot(kind) && v.kind == Kind::self_collision) return touches_by_foot(i, j);
         if (!joint || !is_rate(v.kind) || v.item != of(i).item) return false;
-        return !limit || !jumps(v) || comes_back(v.item, around(wrong_angle(i), kStencil));
+        return !limit || !jumps(v) || comes_back(pass_, v.item, around(wrong_angle(i), kStencil));
       });
     }
   }
 
-  // A key in a wrong place, held between two jumps of the same joint, there and back.
+  // Bodies meet while a joint that sets their distance is in a wrong place, held between two jumps
+  // there and back.
+  void held_joints() {
+    for (int i = 0; i < count(); ++i) {
+      if (of(i).kind != Kind::self_collision || !open(i)) continue;
+      for (int dof = 0; dof < pass_.model.dof_count(); ++dof) {
+        if (!sets_distance(pass_, of(i), dof)) continue;
+        const Span held = held_around(windows_[i], dof);
+        if (!comes_back(pass_, dof, held)) continue;
+        blame(i, held, [&](int j) {
+          return of(j).item == dof && (is_jump(j, held.first) || is_jump(j, held.last));
+        });
+      }
+    }
+  }
+
+  // From the last jump of the joint before this window to the first one after it.
+  Span held_around(const FindingWindow& w, int dof) const {
+    Span held = {0, pass_.count() - 1};
+    for (const FindingWindow& jump : windows_) {
+      const Violation& v = jump.worst;
+      if (v.item != dof || !is_rate(v.kind)) continue;
+      if (jump.first <= w.first + kStencil) held.first = std::max(held.first, jump.first);
+      if (jump.last >= w.last + 1 - kStencil) held.last = std::min(held.last, jump.last);
+    }
+    return held;
+  }
+
+  // A foot in a wrong place, held between two jumps of the same joint, there and back.
   void edges(Kind kind) {
     for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != kind || !open(i)) continue;
+      if (of(i).kind != kind || !open(i) || still_stands(of(i))) continue;
       const int there = windows_[i].first, back = windows_[i].last + 1;
-      const bool foot = is_foot(kind) && stands_before_and_after(windows_[i]);
+      const bool foot = stands_before_and_after(windows_[i]);
       const Span edges = {there - kStencil, back + kStencil};
       blame(i, edges, [&](int j) {
         if (!is_jump(j, there) && !is_jump(j, back)) return false;
-        return comes_back(of(j).item, edges) || (foot && in_leg_of(of(i).item, of(j).item));
+        return comes_back(pass_, of(j).item, edges) || (foot && in_leg_of(of(i).item, of(j).item));
       });
     }
   }
 
   // The supporting foot lands too early and the other one is let go just as much too early, or its
-  // own swing or flight began too early: one phase has moved. What is asked of the samples where a
-  // foot that still stands is not counted follows from it.
+  // own swing or flight began too early: one phase has moved. A foot that is let go too early at
+  // its other end follows from it, and what is asked of the samples where a foot that still stands
+  // is not counted.
   void moved_phase() {
-    for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != Kind::foot_float || !open(i)) continue;
-      const Span phase = moved_phases(of(i));
-      blame(i, {phase.first - kStencil, phase.last + kStencil}, [&](int j) {
+    const auto blame_phases = [&](int i, const auto& follows) {
+      if (of(i).kind == Kind::foot_float && open(i))
+        blame(i, around(moved_phases(pass_, of(i)), kStencil), follows);
+    };
+    for (int i = 0; i < count(); ++i)
+      if (!still_stands(of(i))) blame_phases(i, [&](int j) { return still_stands(of(j)); });
+    for (int i = 0; i < count(); ++i)
+      blame_phases(i, [&](int j) {
         const bool asks = is_need(of(j)) || of(j).kind == Kind::support_margin;
         return asks && uncounted_foot_stands(pass_, of(j).sample);
       });
-    }
-  }
-
-  // The phase of this sample, and the time off the ground at that end of the foot's contact.
-  Span moved_phases(const Violation& v) const {
-    const Support here = pass_.series.samples[v.sample].support;
-    Span phase = {v.sample, v.sample};
-    const auto same = [&](int k) { return pass_.series.samples[k].support == here; };
-    while (phase.first > 0 && same(phase.first - 1)) --phase.first;
-    while (phase.last + 1 < pass_.count() && same(phase.last + 1)) ++phase.last;
-    const auto& intervals = pass_.plan.intervals[v.item];
-    const int n = pass_.plan.index[v.item][v.sample];
-    const bool lands = v.sample - intervals[n].first < intervals[n].last - v.sample;
-    if (lands && n > 0) phase.first = std::min(phase.first, intervals[n - 1].first);
-    if (!lands && n + 1 < static_cast<int>(intervals.size()))
-      phase.last = std::max(phase.last, intervals[n + 1].last);
-    return phase;
   }
 
   // No sole can give the moment of a ZMP outside it: the leg torques found for it are no fact.
@@ -299,7 +295,17 @@ class Causes {
       if (of(i).kind != Kind::cog_residual || !open(i)) continue;
       const Span off = deviation_around(pass_, windows_[i]);
       if (flies(off.first + kStencil) && flies(off.last - kStencil)) continue;
-      blame(i, off, [&](int j) { return of(j).kind == Kind::ballistic && of(j).item == 1; });
+      blame(i, off,
+            [&](int j) { return of(j).kind == Kind::ballistic && of(j).item == kCommandFalls; });
+    }
+  }
+
+  // Soles that are off their place only where the flight leaps out of the ground or into it.
+  void leaps() {
+    for (int i = 0; i < count(); ++i) {
+      if (of(i).kind != Kind::ballistic || of(i).item != kMotionLeaps || !open(i)) continue;
+      const Span beside = around(windows_[i], kEdge);
+      blame(i, beside, [&](int j) { return is_displaced(of(j)) && beside.contains(windows_[j]); });
     }
   }
 

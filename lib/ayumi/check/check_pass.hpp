@@ -42,6 +42,7 @@ struct CheckPass {
   CheckSummary summary;
   Eigen::MatrixXd square_sum;                   ///< of torques before a sample, dof x (samples + 1)
   std::vector<Eigen::Vector3d> flight_moment;   ///< about the COG, by sample; 0 on the ground [N m]
+  std::vector<Eigen::Vector3d> cog;             ///< of the posture, by sample [m]
   std::vector<double> cog_deviation;            ///< of the posture from the command, by sample [m]
   std::array<std::vector<SoleError>, 2> soles;  ///< by Side and sample; of a swing the depth only
   std::vector<char> rough;  ///< a joint accelerates beyond the tolerance, by sample
@@ -52,6 +53,8 @@ void check_samples(CheckPass& pass);
 
 /// The soles, by what check_samples() noted of them.
 void check_feet(CheckPass& pass);
+/// The COG where flights begin and end, of which differences tell nothing else.
+void check_leaps(CheckPass& pass);
 /// Steps between samples that the planned speed does not tell.
 void check_servo_steps(CheckPass& pass);
 /// Mean moment over a few samples of a flight: momentum must not change, while the rate of a single

@@ -29,6 +29,7 @@ CheckPass::CheckPass(const RobotModel& model, const CommandSeries& series,
       targets(static_cast<int>(std::lround(kWindowGap / series.dt))),
       square_sum(Eigen::MatrixXd::Zero(model.dof_count(), count() + 1)),
       flight_moment(count(), Eigen::Vector3d::Zero()),
+      cog(count(), Eigen::Vector3d::Zero()),
       cog_deviation(count(), 0.0),
       soles{std::vector<SoleError>(count()), std::vector<SoleError>(count())},
       rough(count(), 0) {
@@ -48,6 +49,8 @@ std::string unit_of(const RobotModel& model, const Violation& v) {
     case Kind::fz_residual:
     case Kind::unilateral:
       return "N";
+    case Kind::foot_float:
+      return still_stands(v) ? "s" : "m";
     case Kind::joint_position:
     case Kind::servo_step:
       return prismatic ? "m" : "rad";
@@ -140,6 +143,7 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
   check_samples(pass);
   check_feet(pass);
   check_angular_momentum(pass);
+  check_leaps(pass);
   check_servo_steps(pass);
   check_servo_targets(pass);
   check_continuous_torque(pass);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ayumi/check/residuals.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 
 namespace ayumi {
@@ -72,6 +73,21 @@ RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side si
   if (lowest > (1 - kRunOnFall) * at_edge) return {};
   run.height = at_edge;
   return run;
+}
+
+double samples_after_contact(const RobotModel& model, const CommandSeries& series, Side side,
+                             const ContactInterval& contact, const ContactInterval& swing) {
+  constexpr double kOff = 1e-5;  // of a sole in its place [m]
+  RobotData data(model);
+  int off = -1;
+  for (int k = swing.first; k <= swing.last; ++k) {
+    update_positions(model, series.samples[k].state, data);
+    const SoleError e = sole_error(model.sole(side), sole_pose(model, data, side), contact.sole);
+    const double way = std::max({e.slip, e.penetration, e.gap});
+    if (off < 0 && way > kOff) off = k;
+    if (way > 8 * kOff) return 2 * off - k - swing.first;
+  }
+  return 0;
 }
 
 bool at_flight_edge(const CommandSeries& series, int k) {

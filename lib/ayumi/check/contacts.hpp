@@ -52,6 +52,13 @@ RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side si
 /// What a swing may run on, as a share of the height by which a supporting sole may float.
 inline constexpr double kRunOnShare = 0.2;
 
+/// How long a foot stays in the place of `contact` after that is said to end [samples], when the
+/// swing that follows does begin: by the instants when the sole is 0.01 and 0.08 mm off its place,
+/// as if it left it with the cube of time. Slower starts give more, quicker ones less, even below
+/// 0.
+double samples_after_contact(const RobotModel& model, const CommandSeries& series, Side side,
+                             const ContactInterval& contact, const ContactInterval& swing);
+
 /// Whether the differences that make the rates of sample k mix support and flight: acceleration
 /// jumps there, and what it needs of the ground is not known.
 bool at_flight_edge(const CommandSeries& series, int k);

@@ -47,7 +47,10 @@ const std::vector<FindingKind>& finding_kinds() {
       {"angular_momentum", "N m", "rate of the angular momentum about the COG in flight", 0.1},
       {"foot_slip", "m", "horizontal way of a supporting sole from its place", 0.002},
       {"foot_penetration", "m", "depth of a sole below the ground", 0.001},
-      {"foot_float", "m", "height of a supporting sole's highest corner above the ground", 0.0003},
+      {"foot_float", "m",
+       "height of a supporting sole's highest corner above the ground; in s where a foot stands on "
+       "after its contact",
+       0.0003},
       {"joint_position", "rad", "joint angle beyond its limit", 1e-4},
       {"joint_speed", "1", "joint speed over its limit", 1},
       {"joint_acceleration", "rad/s^2", "joint acceleration; a warning, it tells a rough motion",

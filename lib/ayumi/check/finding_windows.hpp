@@ -23,6 +23,18 @@ struct Violation {
 /// Detail of a servo step that is one of the target with its lead, not of the posture.
 inline constexpr int kServoTarget = 1;
 
+/// Added to the foot (item) of a foot_float that is none in space: the sole stands when its contact
+/// has ended. Its numbers are times [s].
+inline constexpr int kStillStands = 2;
+inline bool still_stands(const Violation& v) {
+  return v.kind == Kind::foot_float && v.item >= kStillStands;
+}
+inline Side foot_of(const Violation& v) { return static_cast<Side>(v.item % kStillStands); }
+
+/// Item of a ballistic finding: of the motion, of the command, or of the motion where it leaps as
+/// the flight begins or ends.
+enum Fall { kMotionFalls = 0, kCommandFalls = 1, kMotionLeaps = 2 };
+
 struct FindingWindow {
   Violation worst;
   int first = 0, last = 0;  ///< samples

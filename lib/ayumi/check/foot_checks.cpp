@@ -41,6 +41,17 @@ void check_contact_edge(CheckPass& pass, Side side, const ContactInterval& conta
                    lands ? k : k - run.samples, lands ? k + run.samples : k);
 }
 
+// The other way round: a foot that is said to swing and still stands.
+void check_lift(CheckPass& pass, Side side, const ContactInterval& contact,
+                const ContactInterval& swing) {
+  constexpr double kLate = 0.030;  // [s]
+  const double late =
+      pass.series.dt * samples_after_contact(pass.model, pass.series, side, contact, swing);
+  if (late <= kLate) return;
+  pass.add(Kind::foot_float, static_cast<int>(side) + kStillStands, contact.last, late, kLate,
+           late);
+}
+
 bool in_place(const CheckPass& pass, int foot, int k) {
   const SoleError& e = pass.soles[foot][k];
   return e.gap <= pass.tolerance(Kind::foot_float) && e.slip <= pass.tolerance(Kind::foot_slip);
@@ -80,11 +91,15 @@ void check_feet(CheckPass& pass) {
   for (Side side : {Side::left, Side::right}) {
     const int foot = static_cast<int>(side);
     check_depth(pass, foot);
-    for (const ContactInterval& contact : pass.plan.intervals[foot]) {
+    const std::vector<ContactInterval>& intervals = pass.plan.intervals[foot];
+    for (size_t i = 0; i < intervals.size(); ++i) {
+      const ContactInterval& contact = intervals[i];
       if (!contact.contact) continue;
       if (contact.first > 0) check_landing(pass, side, contact);
       check_supporting_foot(pass, side, contact);
-      if (contact.last + 1 < pass.count()) check_contact_edge(pass, side, contact, false);
+      if (i + 1 == intervals.size()) continue;
+      check_contact_edge(pass, side, contact, false);
+      check_lift(pass, side, contact, intervals[i + 1]);
     }
   }
 }

@@ -60,7 +60,7 @@ std::string contact_edge_hint(const Violation& v, const std::string& foot, doubl
 }
 
 std::string foot_hint(const Violation& v, double dt) {
-  const std::string foot = v.item == 0 ? "left" : "right";
+  const std::string foot = name_of(foot_of(v));
   switch (v.kind) {
     case Kind::foot_slip:
       return "the " + foot + " sole moves " + mm(v.value) +
@@ -68,6 +68,9 @@ std::string foot_hint(const Violation& v, double dt) {
     case Kind::foot_penetration:
       return "raise the " + foot + " sole by " + mm(v.value) + ", or repair";
     case Kind::foot_float:
+      if (still_stands(v))
+        return "the " + foot + " sole stands still for " + text::fixed(v.value, 3) +
+               " s after its contact ends: end it that much later";
       if (v.detail != 0) return contact_edge_hint(v, foot, dt);
       return "the " + foot + " sole is " + mm(v.value) +
              " above the ground while it should support: begin its contact later or end it "
@@ -124,7 +127,7 @@ std::string where_text(const RobotModel& model, const std::vector<CollisionModel
     case Kind::foot_penetration:
     case Kind::foot_float:
     case Kind::landing_speed:
-      return name_of(static_cast<Side>(v.item));
+      return name_of(foot_of(v));
     case Kind::self_collision:
       return model.bodies()[pairs[v.item].a].name + " - " + model.bodies()[pairs[v.item].b].name;
     default:
@@ -152,6 +155,9 @@ std::string hint_text(const RobotModel& model, const FindingWindow& window, doub
     case Kind::point_mass_gap:
       return "the mass-concentrated model is " + mm(v.value) + " off here: judge by the full model";
     case Kind::ballistic:
+      if (v.item == kMotionLeaps)
+        return "the COG leaps by " + mm(v.value * dt * dt) +
+               " where the flight begins or ends: nothing can throw it like that";
       return "the COG must fall freely for the " +
              text::fixed((window.last - window.first) * dt, 3) +
              " s of flight: leave the COG keys of the flight out";

@@ -120,7 +120,7 @@ void check_flight(CheckPass& pass, int k, const SampleDynamics& motion) {
                pass.summary.max_ballistic_residual);
   if (k >= 2 && k + 2 < pass.count())
     check_vector(pass, Kind::ballistic, k, commanded_acceleration(pass.series, k) - gravity,
-                 pass.summary.max_ballistic_residual, Severity::error, 1);
+                 pass.summary.max_ballistic_residual, Severity::error, kCommandFalls);
   pass.flight_moment[k] = motion.moment;
 }
 
@@ -196,7 +196,8 @@ void check_torques(CheckPass& pass, int k, const VectorXd& torque) {
 
 void check_sample(CheckPass& pass, int k) {
   const SampleDynamics& motion = pass.dynamics.at(k);
-  const Vector3d deviation = pass.dynamics.data().cog - pass.series.samples[k].cog;
+  pass.cog[k] = pass.dynamics.data().cog;
+  const Vector3d deviation = pass.cog[k] - pass.series.samples[k].cog;
   pass.cog_deviation[k] = deviation.norm();
   check_vector(pass, Kind::cog_residual, k, deviation, pass.summary.max_cog_residual);
   const bool known = !pass.at_flight_edge(k), flight = pass.dynamics.plane().empty();

@@ -47,6 +47,25 @@ void check_angular_momentum(CheckPass& pass) {
   }
 }
 
+// Speed may change where a flight begins or ends, place may not: what the COG goes between the two
+// samples is the mean of what it goes before and after.
+void check_leaps(CheckPass& pass) {
+  constexpr double kLeap = 1e-3;  // [m]
+  const auto flies = [&](int k) { return pass.series.samples[k].support == Support::none; };
+  const double limit = kLeap / (pass.series.dt * pass.series.dt);
+  for (int k = 2; k + 1 < pass.count(); ++k) {
+    if (flies(k) == flies(k - 1)) continue;
+    const std::vector<Eigen::Vector3d>& c = pass.cog;
+    const Eigen::Vector3d beside = 0.5 * (c[k + 1] - c[k] + c[k - 1] - c[k - 2]);
+    const Eigen::Vector3d leap = c[k] - c[k - 1] - beside;
+    const double size = leap.norm() / (pass.series.dt * pass.series.dt);
+    int axis = 0;
+    leap.cwiseAbs().maxCoeff(&axis);
+    if (size > limit)
+      pass.add(Kind::ballistic, kMotionLeaps, flies(k) ? k : k - 1, size, limit, size, axis);
+  }
+}
+
 void check_servo_steps(CheckPass& pass) {
   const double period = pass.model.description().servo_period, dt = pass.series.dt;
   const int ticks = std::max(1, static_cast<int>(std::lround(period / dt)));

@@ -69,6 +69,33 @@ Span stroke_around(const CheckPass& pass, const FindingWindow& window) {
           turning_point(pass, dof, towards, window.last, 1)};
 }
 
+Span moved_phases(const CheckPass& pass, const Violation& v) {
+  const Support here = pass.series.samples[v.sample].support;
+  Span phase = {v.sample, v.sample};
+  const auto same = [&](int k) { return pass.series.samples[k].support == here; };
+  while (phase.first > 0 && same(phase.first - 1)) --phase.first;
+  while (phase.last + 1 < pass.count() && same(phase.last + 1)) ++phase.last;
+  const int foot = static_cast<int>(foot_of(v));
+  const auto& intervals = pass.plan.intervals[foot];
+  const int n = pass.plan.index[foot][v.sample];
+  const bool lands = v.sample - intervals[n].first < intervals[n].last - v.sample;
+  if (lands && n > 0) phase.first = std::min(phase.first, intervals[n - 1].first);
+  if (!lands && n + 1 < static_cast<int>(intervals.size()))
+    phase.last = std::max(phase.last, intervals[n + 1].last);
+  return phase;
+}
+
+bool comes_back(const CheckPass& pass, int dof, const Span& span) {
+  double up = 0, down = 0;
+  for (int k = std::max(1, span.first); k <= std::min(pass.count() - 1, span.last); ++k) {
+    const double step =
+        pass.series.samples[k].state.theta[dof] - pass.series.samples[k - 1].state.theta[dof];
+    up = std::max(up, step);
+    down = std::min(down, step);
+  }
+  return up > 0 && up > -0.5 * down && -down > 0.5 * up;
+}
+
 Span motion_around(const CheckPass& pass, int sample) {
   const int rest = std::max(1, static_cast<int>(std::lround(kRest / pass.series.dt)));
   const auto moves = [&](int k) {

@@ -35,6 +35,13 @@ Span stroke_around(const CheckPass& pass, const FindingWindow& window);
 /// From rest to rest (20 ms and more), around this sample.
 Span motion_around(const CheckPass& pass, int sample);
 
+/// The phase in which a foot is said to stand too early or let go too early, and its time off the
+/// ground at that end of its contact.
+Span moved_phases(const CheckPass& pass, const Violation& foot);
+
+/// The joint's largest step in this span is undone by another one in it.
+bool comes_back(const CheckPass& pass, int dof, const Span& span);
+
 /// 50 ms: forces answer before and after a displacement does.
 int slack_samples(const CheckPass& pass);
 

@@ -30,21 +30,36 @@ bool in_leg(const RobotModel& model, Side side, int dof) {
   return std::find(leg.begin(), leg.end(), dof) != leg.end();
 }
 
-bool hangs_on(const CheckPass& pass, const Violation& v, int dof) {
-  const CollisionModel::Pair& pair = pass.collisions.pairs()[v.item];
-  const int trunk = pass.model.trunk_body();
-  const bool leg = in_leg(pass.model, Side::left, dof) || in_leg(pass.model, Side::right, dof);
-  if (!leg && (pair.a == trunk || pair.b == trunk)) return false;
+bool sets_distance(const CheckPass& pass, const Violation& v, int dof) {
   const auto beyond = [&](int body) {
     while (body > 0 && pass.model.bodies()[body].dof != dof)
       body = pass.model.bodies()[body].parent;
     return body > 0;
   };
+  const CollisionModel::Pair& pair = pass.collisions.pairs()[v.item];
   return beyond(pair.a) != beyond(pair.b);
+}
+
+bool hangs_on(const CheckPass& pass, const Violation& v, int dof) {
+  const CollisionModel::Pair& pair = pass.collisions.pairs()[v.item];
+  const int trunk = pass.model.trunk_body();
+  const bool leg = in_leg(pass.model, Side::left, dof) || in_leg(pass.model, Side::right, dof);
+  if (!leg && (pair.a == trunk || pair.b == trunk)) return false;
+  return sets_distance(pass, v, dof);
 }
 
 bool holds_falling(CheckPass& pass, const Violation& v) {
   return std::abs(pass.dynamics.falling(v.sample).torque[v.item]) <= std::abs(v.limit);
+}
+
+bool is_asked_for(CheckPass& pass, const Violation& v) {
+  if (v.kind != Kind::support_margin) return false;
+  const Eigen::Vector3d zmp = pass.dynamics.at(v.sample).use.zmp_world;
+  const Eigen::Vector3d& command = pass.series.samples[v.sample].zmp;
+  const SupportPlane& plane = pass.dynamics.plane();
+  const Eigen::Vector3d inside = plane.frame.inverse() * command;
+  return (zmp - command).norm() <= pass.tolerance(Kind::zmp_residual) &&
+         plane.polygon.margin(inside.head<2>()) < -kRounding;
 }
 
 bool uncounted_foot_stands(const CheckPass& pass, int k) {

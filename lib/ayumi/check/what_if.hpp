@@ -11,11 +11,17 @@ bool touches_by_limits(const CheckPass& pass, const Violation& collision);
 
 bool in_leg(const RobotModel& model, Side side, int dof);
 
-/// Bodies whose distance this joint sets. Not an arm and the trunk: that is a fact of its own.
+/// Bodies whose distance this joint sets.
+bool sets_distance(const CheckPass& pass, const Violation& collision, int dof);
+
+/// The same, but not an arm and the trunk: that is a fact of its own.
 bool hangs_on(const CheckPass& pass, const Violation& collision, int dof);
 
 /// The torque of a flight is within its limit when the COG falls freely.
 bool holds_falling(CheckPass& pass, const Violation& torque);
+
+/// A ZMP outside the support because the command wants it there: no posture is to blame.
+bool is_asked_for(CheckPass& pass, const Violation& v);
 
 /// A foot that is not counted at this sample stands where it stood before or will stand after.
 bool uncounted_foot_stands(const CheckPass& pass, int sample);
