@@ -129,6 +129,10 @@ FastestPace limits_of(const Context& context, const Options& options, const Patt
   retime.check = check_options(input, options.tolerances);
   retime.dt = input.series.dt;
   FastestPace pace = fastest_pace(input.model, input.pattern, retime, context.progress());
+  if (pace.by_posture)
+    fail(ErrorCode::solver, options.pattern + ": no pace passes the check: " + pace.limited_by +
+                                "; that is in the posture of the table, which no pace changes; "
+                                "try repair");
   if (!pace.found)
     fail(ErrorCode::solver, options.pattern + ": no uniform scaling up to " +
                                 text::brief(retime.slowest) + " passes the check; last: " +

@@ -132,6 +132,34 @@ TEST_F(Edit, SequencesComeBack) {
   EXPECT_LT(summary["max_foot_penetration_m"], 0.004);
 }
 
+// Recorded sequences begin with a count per row, which is quick for a robot at rest: smoothed, they
+// begin and end at rest, and the ground is not asked for what no robot does there.
+TEST_F(Edit, ImportedSequencesBeginAndEndAtRest) {
+  std::string rows;
+  const int home[20] = {0, 0, 3696,  9537,  -5841, 0, 18810,  -2000, 0, 8800,
+                        0, 0, -3696, -9537, 5841,  0, -18810, 2000,  0, -8800};
+  for (int k = 0; k < 1000; ++k) {
+    rows += "2,2";
+    const int turn = k < 500 ? k : 999 - k;  // a count each row, there and back
+    for (int i = 0; i < 20; ++i)
+      rows += "," + std::to_string(home[i] + (i == 2    ? turn
+                                              : i == 3  ? 2 * turn
+                                              : i == 4  ? -turn
+                                              : i == 12 ? -turn
+                                              : i == 13 ? -2 * turn
+                                              : i == 14 ? turn
+                                                        : 0));
+    rows += ",R,R,R\n";
+  }
+  write(folder / "sent.csv", rows);
+  const Output out = ayumi({"import", "sent.csv", "--robot", "hoap1", "-o", "bow.json"});
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const Json check = Json::parse(ayumi({"check", "bow.json", "--json"}).out);
+  for (const Json& f : check["findings"])
+    EXPECT_TRUE(f["at_s"] > 0.05 && f["at_s"] < 1.95) << f.dump();
+  EXPECT_EQ(check["verdict"], "consistent") << check.dump(1);
+}
+
 TEST_F(Edit, ImportReadsStandardInputAndNamesMistakes) {
   write(folder / "bad.csv", "1,2,0,0\n");
   const Output bad = ayumi({"import", "bad.csv", "--robot", "hoap1", "-o", "a.json"});

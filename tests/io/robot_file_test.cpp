@@ -92,6 +92,17 @@ TEST(RobotFile, AnEarlierFolderHidesALaterOne) {
   EXPECT_THROW(load_robot("hoap2", {{kRobots}}), Error);
 }
 
+// A working folder may well hold a folder of that name with other things in it.
+TEST(RobotFile, AFolderWithoutARobotHidesNone) {
+  const TemporaryFolder folder;
+  folder.write("hoap1/notes.txt", "no robot here");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  EXPECT_EQ(load_robot("hoap1", {{kRobots}}).name(), "hoap1");
+  EXPECT_THROW(load_robot("hoap1", {}), Error);
+  std::filesystem::current_path(before);
+}
+
 TEST(Urdf, TurnsInertiaIntoLinkAxesAndKeepsOrder) {
   const RobotDescription robot = parse_urdf(
       "<robot name=\"r\"><link name=\"z\"><inertial><origin xyz=\"1 2 3\" "

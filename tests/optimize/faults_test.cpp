@@ -176,6 +176,39 @@ TEST_F(Faults, LockedWindowStaysToTheBit) {
   }
 }
 
+// Locked instants: the pose is what it was, a moment before and after it need not be. An arm is
+// too quick from one kept pose to the next, which a straighter way can mend.
+TEST_F(Faults, LockedInstantKeepsItsPoseAndLetsTheMotionThroughItMove) {
+  move_joint(hoap1(), table, "l_shoulder_roll", 22 * M_PI / 180, 3.1, 0.24);
+  options.locked_windows = {{3.1, 3.1}, {3.2404, 3.2404}, {0, 0}, {7, 7}};
+  const RepairResult r = repaired("joint_speed");
+  EXPECT_GT(r.max_joint_change, 0.01);
+  for (const size_t k : {0, 3100, 3240}) {
+    const RobotState &was = series.samples[k].state, &is = r.series.samples[k].state;
+    EXPECT_EQ(is.theta, was.theta) << k;
+    EXPECT_EQ(is.base.position, was.base.position) << k;
+    EXPECT_EQ(is.base.attitude.coeffs(), was.base.attitude.coeffs()) << k;
+  }
+  const int arm = hoap1().find_dof("l_shoulder_roll");
+  for (const size_t k : {3060, 3150, 3190})
+    EXPECT_GT(std::abs(r.series.samples[k].state.theta[arm] - series.samples[k].state.theta[arm]),
+              1e-4)
+        << k;
+}
+
+// A posture that is wrong where it is locked is told as such; a speed there is not.
+TEST_F(Faults, APostureLockedWhereItIsWrongIsNamed) {
+  move_joint(hoap1(), table, "l_elbow", 40 * M_PI / 180, 3, 0.8);
+  options.locked_windows = {{3, 3}};
+  series = sample(hoap1(), pattern);
+  const RepairResult r = repair(hoap1(), series, options);
+  EXPECT_EQ(r.status, RepairStatus::infeasible);
+  EXPECT_EQ(r.work.rounds, 0);
+  ASSERT_EQ(r.reasons.size(), 1u);
+  EXPECT_NE(r.reasons[0].find("the posture at 3 s is locked; unlock it"), std::string::npos)
+      << r.reasons[0];
+}
+
 TEST_F(Faults, LockedFootKeepsItsWayAndWeightsSteer) {
   sway_base(hoap1(), table, Vector3d(0, 0.012, 0), 2.44, 0.5);
   motion_alone(table);

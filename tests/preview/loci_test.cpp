@@ -101,6 +101,32 @@ TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
     EXPECT_EQ(text.find("cut off"), std::string::npos) << "nothing is cut off";
 }
 
+// Nothing stands and the margin has no command: its range is what it was before the fall, and not
+// a metre.
+TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
+  const TwoRuns runs;
+  LociOptions options;
+  options.model = &runs.model;
+  const Drawing drawing = draw_loci({{"open loop", &runs.falling}}, options);
+  const std::vector<std::string> all = texts(drawing);
+  const auto margin = std::find(all.begin(), all.end(), "margin [m]");
+  ASSERT_NE(margin, all.end());
+  // The numbers of an axis come before its name or after it, those of the panel below further on.
+  double most = 0;
+  int numbers = 0;
+  for (auto text = margin - 1; text >= all.begin(); --text, ++numbers) {
+    char* end = nullptr;
+    const double value = std::strtod(text->c_str(), &end);
+    if (end == text->c_str() || *end != 0) break;
+    most = std::max(most, std::abs(value));
+  }
+  EXPECT_GE(numbers, 2) << *(margin - 1);
+  EXPECT_LT(most, 0.2);
+  EXPECT_TRUE(has(drawing,
+                  "Ranges follow the command and what comes before the fall; open loop is cut off "
+                  "where its fall leaves them (cross: the instant of the fall)."));
+}
+
 TEST(Loci, TheLineGoesThroughTheSamples) {
   // COG x of the standing run rises by 0.1 m in 1 s: its line ends at the frame's right edge, as
   // high above its beginning as the command's.

@@ -105,4 +105,9 @@ std::array<double, kKindCount> tolerances(const CheckOptions& options, const Rob
   return result;
 }
 
+bool is_of_posture(const Finding& f) {
+  return f.kind.starts_with("foot_") || f.kind == "joint_position" || f.kind == "self_collision" ||
+         f.kind == "cog_residual";
+}
+
 }  // namespace ayumi

@@ -33,6 +33,10 @@ enum class Kind {
 };
 inline constexpr int kKindCount = 21;
 
+/// Whether it is one of the posture itself, the same at whatever pace; a speed, a torque or a ZMP
+/// can be mended at an instant though the posture there stays.
+bool is_of_posture(const Finding& finding);
+
 /// Tolerances by Kind: the defaults with the overrides. Throws Error(usage) for an unknown name or
 /// a tolerance that is not a finite number.
 std::array<double, kKindCount> tolerances(const CheckOptions& options);

@@ -18,30 +18,34 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSidecarName = "robot.json";
 
-// The robot.json or the only URDF of a folder.
+// The robot.json or the only URDF of a folder; empty: it has neither.
 fs::path file_in_folder(const fs::path& folder) {
   std::error_code ignored;
   if (fs::is_regular_file(folder / kSidecarName, ignored)) return folder / kSidecarName;
   std::vector<fs::path> urdfs;
   for (const auto& entry : fs::directory_iterator(folder, ignored))
     if (entry.path().extension() == ".urdf") urdfs.push_back(entry.path());
-  if (urdfs.size() == 1) return urdfs[0];
-  fail(ErrorCode::bad_file, folder.string() + ": holds neither a " + kSidecarName +
-                                " nor exactly one .urdf; name the robot's file");
+  return urdfs.size() == 1 ? urdfs[0] : fs::path();
 }
 
 fs::path find_file(const std::string& name, const RobotSearch& search) {
   const fs::path path = name;
   const std::string extension = path.extension().string();
   std::error_code ignored;
-  if (fs::is_directory(path, ignored) && extension != ".urdf" && extension != ".json")
-    return file_in_folder(path);
-  if (fs::exists(path, ignored) || extension == ".urdf" || extension == ".json") return path;
+  const bool folder =
+      fs::is_directory(path, ignored) && extension != ".urdf" && extension != ".json";
+  if (folder)
+    if (const fs::path file = file_in_folder(path); !file.empty()) return file;
+  if (!folder && (fs::exists(path, ignored) || extension == ".urdf" || extension == ".json"))
+    return path;
   std::vector<std::string> known;
   for (const RobotEntry& entry : find_robots(search)) {
     if (entry.name == name) return entry.sidecar;
     known.push_back(entry.name);
   }
+  if (folder)
+    fail(ErrorCode::bad_file, name + ": holds neither a " + kSidecarName +
+                                  " nor exactly one .urdf; name the robot's file");
   fail(ErrorCode::bad_file, "robot '" + name + "': no such file, folder or bundled robot" +
                                 (known.empty() ? "" : "; known: " + text::join(known, ", ")) +
                                 text::suggestion(name, known));

@@ -209,6 +209,15 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
       "angles: what servos receive; postures are without their lead of kd/kp");
 }
 
+// A motion begins and ends at rest: as if it came back the way it went.
+Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, double cutoff) {
+  const Eigen::Index n = raw.size();
+  const auto more = std::min<Eigen::Index>(n - 1, static_cast<Eigen::Index>(2 / cutoff));
+  Eigen::VectorXd mirrored(n + 2 * more);
+  mirrored << raw.segment(1, more).reverse(), raw, raw.segment(n - 1 - more, more).reverse();
+  return smoothed_within(mirrored, band, cutoff).segment(more, n);
+}
+
 // Counts are rounded, and straight between the times for which they were made: differences of that
 // are no accelerations of anything. Servos do not follow a tenth of a degree.
 void smooth_angles(const RobotModel& model, const ImportOptions& options,
@@ -222,7 +231,8 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
     const Dof& dof = model.dofs()[i];
     if (dof.prismatic) continue;
     const Eigen::VectorXd raw = theta.col(i);
-    theta.col(i) = smoothed_within(raw, degrees * kRadiansPerDegree, kCutoff * imported.motion.dt);
+    theta.col(i) =
+        smoothed_from_rest(raw, degrees * kRadiansPerDegree, kCutoff * imported.motion.dt);
     if (!dof.limited) continue;
     // Beside a jump it swings over: no limit is to be broken by that.
     const double margin = model.description().soft_limit_margin;

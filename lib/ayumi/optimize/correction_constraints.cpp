@@ -25,10 +25,11 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 const char* name_of(ConstraintGroup group) {
-  constexpr const char* kNames[] = {
-      "support", "unilateral", "friction", "flight",         "zmp",      "yaw",   "stance",
-      "path",    "swing",      "landing",  "foot_clearance", "position", "speed", "acceleration",
-      "torque",  "clearance",  "cog"};
+  constexpr const char* kNames[] = {"support", "unilateral",   "friction",       "flight",
+                                    "zmp",     "yaw",          "stance",         "path",
+                                    "swing",   "landing",      "foot_clearance", "position",
+                                    "speed",   "acceleration", "torque",         "clearance",
+                                    "cog",     "pose"};
   return kNames[static_cast<int>(group)];
 }
 
@@ -98,8 +99,8 @@ InstantState instant_state(const RobotModel& model, const CommandSample& sample,
                            TreeDynamics* derivatives, RobotData& data) {
   InstantState state;
   const auto rows = coefficients.middleRows<4>(instant.weights.first);
-  state.motion = corrected_motion(sample, rows.transpose() * instant.weights.value,
-                                  rows.transpose() * instant.weights.rate,
+  state.change = rows.transpose() * instant.weights.value;
+  state.motion = corrected_motion(sample, state.change, rows.transpose() * instant.weights.rate,
                                   rows.transpose() * instant.weights.acceleration);
   const CorrectedMotion& m = state.motion;
   state.data = &data;
@@ -303,6 +304,8 @@ VectorXd block_values(const RobotModel& model, const ConstraintBlock& block, con
       return VectorXd::Constant(1, block.scale * state.torque[block.item]);
     case ConstraintGroup::clearance:
       return clearance_values(block, instant, state);
+    case ConstraintGroup::pose:
+      return state.change;
     default:
       return state.data->cog - instant.cog;
   }
@@ -322,6 +325,8 @@ std::array<MatrixXd, 3> block_derivatives(const RobotModel& model, const Constra
     for (int k = 0; k < 3; ++k) by[k] = block.scale * state.torque_by[k].row(block.item);
   } else if (block.group == ConstraintGroup::clearance) {
     by[0] = clearance_derivatives(model, block, instant, state);
+  } else if (block.group == ConstraintGroup::pose) {
+    by[0].setIdentity(block.rows, model.velocity_count());
   } else {
     by[0] = state.cog_by;
   }

@@ -25,7 +25,8 @@ namespace ayumi {
 /// sole from its place, along it or, times half its size, around three axes, either way, h its
 /// height [m]; position: joint angle [rad]; speed: joint speed /
 /// limit; acceleration: joint acceleration / limit; torque: motor torque / limit; clearance:
-/// clearance_rows.hpp [m]; cog: from the commanded COG [m].
+/// clearance_rows.hpp [m]; cog: from the commanded COG [m]; pose: the correction itself, base
+/// position [m], base rotation vector and joints [rad].
 enum class ConstraintGroup {
   support,
   unilateral,
@@ -43,7 +44,8 @@ enum class ConstraintGroup {
   acceleration,
   torque,
   clearance,
-  cog
+  cog,
+  pose
 };
 const char* name_of(ConstraintGroup group);
 
@@ -80,6 +82,7 @@ ConstraintBlock block_of(ConstraintGroup group, int instant, int item, int rows,
 
 /// What the blocks of one instant share.
 struct InstantState {
+  Eigen::VectorXd change;  ///< value of the correction (6 + dof)
   CorrectedMotion motion;
   Vector6d wrench = Vector6d::Zero();        ///< of the ground, about the base
   std::array<Eigen::MatrixXd, 3> wrench_by;  ///< 6 x (6+dof) by value, rate, acceleration

@@ -76,6 +76,8 @@ void CorrectionProblem::place_variables() {
 void CorrectionProblem::place_end(int first, double time) {
   const double reach = (time == 0 ? 1 : -1) * zero_.spacing;  // of the three control points
   if (!inside_a_window(time, time) || !spec_.free_ends[first == 0 ? 0 : 1]) return;
+  for (const double kept : spec_.kept_instants)
+    if (std::abs(kept - time) <= zero_.spacing) return;
   if (locked_within(std::min(time, time + 3 * reach), std::max(time, time + 3 * reach))) return;
   for (int j = 0; j < model_.velocity_count(); ++j)
     if (j < 6 || spec_.locked.empty() || !spec_.locked[j - 6])
@@ -100,8 +102,9 @@ void CorrectionProblem::place_instants() {
     samples.insert(sample);
     if (i % spec_.instants_per_knot == 0) knots.insert(sample);
   }
-  for (const double t : spec_.extra)
-    samples.insert(std::clamp(static_cast<int>(std::lround(t / series_.dt)), 0, count - 1));
+  for (const auto* times : {&spec_.extra, &spec_.kept_instants})
+    for (const double t : *times)
+      samples.insert(std::clamp(static_cast<int>(std::lround(t / series_.dt)), 0, count - 1));
   for (const auto& intervals : plan_.intervals)
     for (const ContactInterval& interval : intervals) {
       samples.insert(interval.first);

@@ -32,6 +32,7 @@ struct CorrectionSpec {
   std::array<bool, 2> free_ends = {};                     ///< the first, the last posture may move
   std::vector<bool> locked;                               ///< by dof; empty: none
   std::vector<std::pair<double, double>> locked_windows;  ///< where nothing may move [s]
+  std::vector<double> kept_instants;                      ///< at which no pose may change [s]
   std::array<bool, 2> locked_feet = {};                   ///< by Side: keep their way
   Eigen::VectorXd weights;  ///< factors on those of the joints [dof]; empty: 1
   Trust trust = Trust::posture;
@@ -97,6 +98,7 @@ class CorrectionProblem {
   Eigen::MatrixXd cone_rows(const Eigen::Vector2d& force) const;
   void place_flight_block(int instant);
   Vector6d own_wrench(int sample) const;
+  void place_kept_pose(int instant);
   void place_foot_blocks(int instant);
   void soften_landing(int instant, Side side);
   double own_landing_factor() const;

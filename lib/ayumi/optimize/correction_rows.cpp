@@ -34,6 +34,7 @@ void CorrectionProblem::place_constraints() {
   place_margins();
   measure_swings();
   for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
+    place_kept_pose(i);
     place_foot_blocks(i);
     place_joint_blocks(i);
     if (instants_[i].known) {
@@ -215,6 +216,18 @@ double CorrectionProblem::sole_angle(Side side) const {
   for (const Eigen::Vector2d& v : model_.sole(side).polygon) reach = std::max(reach, v.lpNorm<1>());
   const double off = std::min(tolerance(Kind::foot_float), tolerance(Kind::foot_penetration));
   return std::min(spec_.sole_angle, kShare * off / reach);
+}
+
+// As good as nothing; kept_at() does the rest.
+void CorrectionProblem::place_kept_pose(int instant) {
+  constexpr double kNothing = 1e-7;  // [m], [rad]
+  const int k = instants_[instant].sample;
+  for (const double t : spec_.kept_instants) {
+    if (std::lround(t / series_.dt) != k) continue;
+    add_block(block_of(ConstraintGroup::pose, instant, 0, model_.velocity_count()), -kNothing,
+              kNothing);
+    return;
+  }
 }
 
 void CorrectionProblem::place_foot_blocks(int instant) {

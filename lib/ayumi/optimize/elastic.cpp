@@ -201,6 +201,7 @@ Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt) {
   std::map<std::tuple<int, int, long>, int> index;
   std::vector<double> unit, price;
   for (const ConstraintBlock& block : problem.blocks()) {
+    if (block.group == ConstraintGroup::pose) continue;  // a lock is a lock
     const double t = problem.instants()[block.instant].sample * dt;
     const std::tuple key(static_cast<int>(block.group), block.item, std::lround(t / kWindow));
     const auto found = index.try_emplace(key, static_cast<int>(unit.size()));

@@ -143,9 +143,15 @@ std::string remedy(const Obstacle& o) {
          o.finding.hint.substr(0, o.finding.hint.find(", or repair"));
 }
 
-bool within_lock(const Finding& f, const RepairOptions& options) {
-  return std::any_of(options.locked_windows.begin(), options.locked_windows.end(),
-                     [&](const auto& w) { return f.at >= w.first && f.at <= w.second; });
+// What of its time is locked, in words; empty: nothing.
+std::string time_lock(const Finding& f, const RepairOptions& options) {
+  std::string instant;
+  for (const auto& [begin, end] : options.locked_windows) {
+    if (begin < end && f.at >= begin && f.at <= end) return "that window is locked";
+    if (begin == end && is_of_posture(f) && f.begin <= begin && f.end >= begin)
+      instant = "the posture at " + text::brief(begin) + " s is locked";
+  }
+  return instant;
 }
 
 bool at_locked_joint(const Finding& f, const RepairOptions& options) {
@@ -169,7 +175,7 @@ double time_factor(const RobotModel& model, const CommandSeries& series, const F
 std::vector<Obstacle> obstacles(const RobotModel& model, const CommandSeries& series,
                                 const ConsistencyReport& report, const RepairOptions& options) {
   const auto locked = [&](const Finding& f) {
-    return at_locked_joint(f, options) || within_lock(f, options);
+    return at_locked_joint(f, options) || !time_lock(f, options).empty();
   };
   const auto is_error = [](const Finding& f) { return f.severity == Severity::error; };
   const bool by_lock = std::any_of(report.findings.begin(), report.findings.end(),
@@ -191,8 +197,8 @@ std::vector<Obstacle> obstacles(const RobotModel& model, const CommandSeries& se
     o.text = what(o.finding, o.excess) + " " + window_text(o.finding) + ", ";
     if (at_locked_joint(o.finding, options))
       o.text += o.finding.where + " is locked; unlock it, or else: ";
-    else if (within_lock(o.finding, options))
-      o.text += "that window is locked; unlock it, or else: ";
+    else if (const std::string lock = time_lock(o.finding, options); !lock.empty())
+      o.text += lock + "; unlock it, or else: ";
     o.text += remedy(o);
     result.push_back(std::move(o));
   }

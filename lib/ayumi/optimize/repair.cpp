@@ -236,7 +236,7 @@ class Repair {
 
   void take(const CorrectionTrack& track) {
     track_ = track;
-    result_.correction = trimmed(track);
+    result_.correction = kept_at(trimmed(track), spec_.kept_instants);
     result_.series = apply_correction(model_, series_, result_.correction);
     result_.check = report_of(result_.series);
   }

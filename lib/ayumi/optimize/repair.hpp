@@ -20,10 +20,12 @@ namespace ayumi {
 
 struct RepairOptions {
   CheckOptions check;
-  std::vector<std::string> locked_joints;                 ///< do not change, to the bit
-  std::array<bool, 2> locked_feet = {};                   ///< by Side: keep their way (0.01 mm)
-  std::vector<std::pair<double, double>> locked_windows;  ///< nothing changes there, to the bit [s]
-  std::map<std::string, double> joint_weights;            ///< factors on the cost of a joint
+  std::vector<std::string> locked_joints;  ///< do not change, to the bit
+  std::array<bool, 2> locked_feet = {};    ///< by Side: keep their way (0.01 mm)
+  /// Nothing changes there, to the bit; in one without length the posture of the sample there,
+  /// while the motion through it may [s].
+  std::vector<std::pair<double, double>> locked_windows;
+  std::map<std::string, double> joint_weights;  ///< factors on the cost of a joint
   Trust trust = Trust::posture;
   /// Factor on the price of safety; 0: none is bought, the least change that passes the check.
   double safety = 1;

@@ -9,6 +9,7 @@
 #include "ayumi/check/collision_scan.hpp"
 #include "ayumi/math/windows.hpp"
 #include "ayumi/optimize/weighted_change.hpp"
+#include "ayumi/pattern/correction.hpp"
 
 namespace ayumi {
 
@@ -34,6 +35,19 @@ void require_windows(const std::vector<std::pair<double, double>>& windows) {
     if (!(begin <= end) || !std::isfinite(begin) || !std::isfinite(end))
       fail(ErrorCode::usage, "locked window " + text::exact(begin) + ".." + text::exact(end) +
                                  " s: the end must not come before the beginning");
+}
+
+// Locked windows without length, at the samples nearest to them.
+std::vector<double> kept_instants(const std::vector<std::pair<double, double>>& windows,
+                                  const CommandSeries& series) {
+  std::set<long> samples;
+  for (const auto& [begin, end] : windows)
+    if (begin == end)
+      samples.insert(std::clamp(std::lround(begin / series.dt), 0L,
+                                static_cast<long>(series.samples.size()) - 1));
+  std::vector<double> times;
+  for (const long k : samples) times.push_back(static_cast<double>(k) * series.dt);
+  return times;
 }
 
 }  // namespace
@@ -100,6 +114,28 @@ CorrectionTrack trimmed(const CorrectionTrack& track) {
   return result;
 }
 
+// Only what moves is moved further; the first and last three points are zero or tied to each other.
+// Twice, for the second pass takes back the rounding of the first.
+CorrectionTrack kept_at(CorrectionTrack track, const std::vector<double>& times) {
+  Eigen::MatrixXd& c = track.coefficients;
+  const double end = track.begin + track.spacing * static_cast<double>(c.rows() - 3);
+  std::vector<double> inside;
+  for (const double t : times)
+    if (t > track.begin && t < end) inside.push_back(t);
+  if (inside.empty()) return track;
+  const auto count = static_cast<Eigen::Index>(inside.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count, c.rows()), free = all;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const SplineWeights weights = correction_weights(track, inside[static_cast<size_t>(i)]);
+    all.row(i).segment<4>(weights.first) = weights.value.transpose();
+  }
+  for (Eigen::Index row = 3; row < c.rows() - 3; ++row)
+    if (!c.row(row).isZero(0)) free.col(row) = all.col(row);
+  const auto solver = free.completeOrthogonalDecomposition();
+  for (int pass = 0; pass < 2; ++pass) c -= solver.solve(all * c);
+  return track;
+}
+
 CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
                            const RepairOptions& options) {
   require_windows(options.locked_windows);
@@ -107,7 +143,9 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   spec.spacing = std::min(options.knot_spacing, shortest_flight(series) / kKnotsOfFlight);
   spec.locked = locked_dofs(model, options.locked_joints);
   spec.locked_feet = options.locked_feet;
-  spec.locked_windows = options.locked_windows;
+  for (const auto& window : options.locked_windows)
+    if (window.first < window.second) spec.locked_windows.push_back(window);
+  spec.kept_instants = kept_instants(options.locked_windows, series);
   spec.weights = weight_factors(model, options.joint_weights);
   spec.trust = options.trust;
   spec.tolerance = tolerances(options.check, model, series);
@@ -143,7 +181,10 @@ bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
     const bool window =
         std::any_of(spec.locked_windows.begin(), spec.locked_windows.end(),
                     [&](const auto& w) { return f.at >= w.first && f.at <= w.second; });
-    if (joint || window) return true;
+    const bool instant =
+        is_of_posture(f) && std::any_of(spec.kept_instants.begin(), spec.kept_instants.end(),
+                                        [&](const double t) { return t >= f.begin && t <= f.end; });
+    if (joint || window || instant) return true;
   }
   return false;
 }

@@ -23,6 +23,9 @@ std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>
 /// move, with the three zero points before and after that a cubic spline needs to begin at rest.
 CorrectionTrack trimmed(const CorrectionTrack& track);
 
+/// The control points of a trimmed track, moved as little as lets nothing change at `times`.
+CorrectionTrack kept_at(CorrectionTrack track, const std::vector<double>& times);
+
 /// An error of its free fall or its angular momentum.
 bool flight_is_at_fault(const ConsistencyReport& report);
 
@@ -30,7 +33,7 @@ bool flight_is_at_fault(const ConsistencyReport& report);
 double shortest_flight(const CommandSeries& series);
 
 /// Whether a joint that may not move is beyond its limits, or something is wrong at a time that may
-/// not change: then there is nothing to solve.
+/// not change, with the posture at an instant: then there is nothing to solve.
 bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
                 const ConsistencyReport& report);
 

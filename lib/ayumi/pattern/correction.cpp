@@ -20,6 +20,10 @@ using Eigen::VectorXd;
 
 namespace {
 
+// What control points that cancel each other leave; to the bit where nothing is to change [m],
+// [rad].
+constexpr double kRounded = 1e-13;
+
 struct JacobianFactors {
   double a, b, da, db;  // and their derivatives by f^2
 };
@@ -49,7 +53,7 @@ void rotate_base(const Vector3d& r, const Vector3d& dr, const Vector3d& ddr,
   RobotState& state = sample.state;
   const Vector3d carried = turn * state.base_angular_velocity;
   const Vector3d dcarried = turn * Vector3d(sample.acceleration.segment<3>(3));
-  state.base.attitude = (turn * state.base.attitude).normalized();
+  if (!r.isZero(0)) state.base.attitude = (turn * state.base.attitude).normalized();
   state.base_angular_velocity = w + carried;
   sample.acceleration.segment<3>(3) = dw + w.cross(carried) + dcarried;
 }
@@ -102,7 +106,8 @@ CommandSeries apply_correction(const RobotModel& model, const CommandSeries& ser
     const SplineWeights weights = correction_weights(track, series.dt * static_cast<double>(k));
     if (track.coefficients.rows() >= 4) {
       const auto rows = track.coefficients.middleRows<4>(weights.first);
-      const VectorXd value = rows.transpose() * weights.value;
+      VectorXd value = rows.transpose() * weights.value;
+      value = (value.array().abs() < kRounded).select(0, value);
       const VectorXd rate = rows.transpose() * weights.rate;
       const VectorXd acceleration = rows.transpose() * weights.acceleration;
       sample.state.base.position += value.head<3>();

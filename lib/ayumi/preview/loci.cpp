@@ -19,7 +19,8 @@ using Eigen::Vector2d;
 using Eigen::Vector4f;
 using Value = std::function<double(const SimulationSample&)>;
 
-constexpr double kGap = 12;  // between panels [pixel]
+constexpr double kGap = 12;          // between panels [pixel]
+constexpr double kBeforeFall = 0.5;  // a fall has not shown yet [s]
 
 struct PanelPlan {
   std::string name;     ///< with unit
@@ -131,6 +132,18 @@ void extend(std::vector<double>& values, const std::vector<Vector2d>& points) {
     if (std::isfinite(point.y())) values.push_back(point.y());
 }
 
+/// What runs that fell had before that, where nothing else says how far a panel has to go.
+std::vector<double> values_before_falls(const PanelPlan& panel, const std::vector<LociRun>& runs,
+                                        const Interval& time) {
+  std::vector<double> values;
+  for (const double before : {kBeforeFall, 0.0})
+    for (const LociRun& run : runs)
+      if (values.empty() || before > 0)
+        extend(values, series(*run.log, panel.run,
+                              {time.low, std::min(time.high, run.log->result.fell_at - before)}));
+  return values;
+}
+
 /// Range of the command and the runs that stand, with a margin; a wide one where none stands.
 Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
                      const Interval& time) {
@@ -140,7 +153,8 @@ Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
     if (!has_fallen(*run.log)) extend(values, series(*run.log, panel.run, time));
   if (panel.reference && !has_fallen(*runs.back().log))
     extend(values, series(*runs.back().log, panel.reference, time));
-  if (values.empty()) return {0, 1};
+  if (values.empty()) values = values_before_falls(panel, runs, time);
+  if (values.empty()) return {0, panel.least > 0 ? panel.least : 1};
   std::sort(values.begin(), values.end());
   const size_t skip = panel.spikes ? values.size() / 500 : 0;
   Interval range = {values[skip], values[values.size() - 1 - skip]};
@@ -225,7 +239,10 @@ std::string range_note(const std::vector<LociRun>& runs) {
   for (const LociRun& run : runs)
     if (has_fallen(*run.log)) names += (names.empty() ? "" : ", ") + run.label;
   if (names.empty()) return "";
-  return "Ranges follow the command and the runs that stand; " + names +
+  const bool standing = std::any_of(runs.begin(), runs.end(),
+                                    [](const LociRun& run) { return !has_fallen(*run.log); });
+  return std::string("Ranges follow the command and ") +
+         (standing ? "the runs that stand; " : "what comes before the fall; ") + names +
          " is cut off where its fall leaves them (cross: the instant of the fall).";
 }
 

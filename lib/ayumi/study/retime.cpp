@@ -1,9 +1,11 @@
 #include "ayumi/study/retime.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/pattern/edit.hpp"
 #include "ayumi/pattern/sample.hpp"
 
@@ -11,13 +13,18 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kStep = 1.25;
-constexpr double kLook = 1.005;  // from scale to scale beyond an edge
+constexpr double kStep = 1.25;    // while it gets faster
+constexpr double kSlower = 1.05;  // what passes may end soon: motors warm up where a pose lasts
+constexpr double kMuchSlower = 3;
+constexpr double kOfSpeed = 0.8;  // of the way to where a speed that is too high would do
+constexpr double kLook = 1.005;   // from scale to scale beyond an edge
 constexpr int kLooks = 40;
 
 struct Trial {
   bool passes = false;
-  std::string reason;  // why not
+  std::string reason;    // why not
+  double too_quick = 1;  // largest joint speed over its limit
+  bool of_posture = false;
 };
 
 class Search {
@@ -27,7 +34,7 @@ class Search {
       : model_(model), pattern_(pattern), options_(options), progress_(progress) {}
 
   FastestPace run() {
-    const Trial now = trial(1);
+    Trial now = trial(1);
     double passing = 1, failing = 1;
     FastestPace result;
     if (now.passes) {
@@ -39,11 +46,15 @@ class Search {
       result.bounded = passing > options_.fastest;
     } else {
       reason_ = now.reason;
+      result.by_posture = now.of_posture && pattern_.table;
+      if (result.by_posture) return finish(result);
       do {
         failing = passing;
-        passing *= kStep;
+        passing *=
+            std::max(passing < kMuchSlower ? kSlower : kStep, 1 + kOfSpeed * (now.too_quick - 1));
         if (passing > options_.slowest) return finish(result);
-      } while (!trial(passing).passes);
+        now = trial(passing);
+      } while (!now.passes);
       result.bounded = true;
     }
     result.found = true;
@@ -106,15 +117,29 @@ class Search {
           sample(model_, retimed(model_, pattern_, scale), {.dt = options_.dt});
       const ConsistencyReport check = check_consistency(model_, series, options_.check);
       if (check.consistent) return {true, ""};
-      const Finding& f = check.findings.front();
-      reason_ = f.kind + " " + f.where + " at " + text::fixed(f.at, 3) + " s of " +
-                text::fixed(series.duration(), 3) + " s: " + text::brief(f.worst) + " " + f.unit +
-                ", limit " + text::brief(f.limit);
+      return failed(check, series.duration());
     } catch (const Error& error) {
       if (error.code() != ErrorCode::bad_pattern) throw;
       reason_ = error.what();
     }
-    return {false, reason_};
+    return {.reason = reason_};
+  }
+
+  Trial failed(const ConsistencyReport& check, double duration) {
+    Trial trial;
+    const Finding* told = nullptr;
+    for (const Finding& f : check.findings) {
+      if (f.severity != Severity::error) continue;
+      if (f.kind == "joint_speed")
+        trial.too_quick = std::max(trial.too_quick, std::abs(f.worst) / f.limit);
+      if (!told || (is_of_posture(f) && !trial.of_posture)) told = &f;
+      trial.of_posture = is_of_posture(*told);
+    }
+    reason_ = told->kind + " " + told->where + " at " + text::fixed(told->at, 3) + " s of " +
+              text::fixed(duration, 3) + " s: " + text::brief(told->worst) + " " + told->unit +
+              ", limit " + text::brief(told->limit);
+    trial.reason = reason_;
+    return trial;
   }
 
   const RobotModel& model_;

@@ -1,0 +1,83 @@
+// The fastest uniform scaling that passes, on patterns too quick, warm or wrong in their posture.
+
+#include "ayumi/study/retime.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/pattern/edit.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "tests/support/faults.hpp"
+#include "tests/support/hoap1.hpp"
+
+namespace ayumi::test {
+namespace {
+
+constexpr double kTick = 0.01;
+
+// Motors of a fifth less lasting torque.
+CheckOptions warm() {
+  CheckOptions options;
+  options.tolerances = {{"continuous_torque", 0.83}};
+  return options;
+}
+
+// A walk in which an arm is raised in 0.13 s.
+Pattern walk_with_a_quick_arm() {
+  Pattern walk = walk_pattern(hoap1(), {.steps = 3, .stride = 0.03, .period = 0.62});
+  walk.robot = "hoap1";
+  double angle = 8;
+  for (const double t : {2.5, 2.63, 3.1}) {
+    Keyframe key;
+    key.t = t;
+    key.joints["l_shoulder_roll"] = angle * M_PI / 180;
+    angle = angle < 10 ? 60 : 8;
+    const auto next = std::find_if(walk.keyframes.begin(), walk.keyframes.end(),
+                                   [&](const Keyframe& k) { return k.t > t; });
+    walk.keyframes.insert(next, key);
+  }
+  return walk;
+}
+
+bool passes(const Pattern& pattern, double scale) {
+  return check_consistency(hoap1(),
+                           sample(hoap1(), retimed(hoap1(), pattern, scale), {.dt = kTick}), warm())
+      .consistent;
+}
+
+}  // namespace
+
+// At 2.8 of its time the arm is slow enough; at 3.1 a leg stands alone for so long that its motors
+// grow too warm. What passes is a window between the two.
+TEST(Retime, FindsAPaceBetweenTooQuickAndTooWarm) {
+  const Pattern walk = walk_with_a_quick_arm();
+  const FastestPace pace = fastest_pace(hoap1(), walk, {.check = warm(), .dt = kTick});
+  ASSERT_TRUE(pace.found) << pace.limited_by;
+  EXPECT_GT(pace.scale, 2.5);
+  EXPECT_LT(pace.scale, 2.9);
+  EXPECT_NE(pace.limited_by.find("joint_speed l_shoulder_roll"), std::string::npos)
+      << pace.limited_by;
+  EXPECT_TRUE(passes(walk, pace.scale));
+  EXPECT_FALSE(passes(walk, pace.scale / 1.004));
+  EXPECT_FALSE(passes(walk, 3.1)) << "no window left to find";
+  EXPECT_LT(pace.evaluations, 90);
+}
+
+// No pace mends a posture that is wrong; that is told at once, of a table.
+TEST(Retime, APostureThatIsWrongIsToldAtOnce) {
+  Pattern walk = walk_with_a_quick_arm();
+  walk.keyframes.erase(std::remove_if(walk.keyframes.begin(), walk.keyframes.end(),
+                                      [](const Keyframe& k) { return !k.joints.empty(); }),
+                       walk.keyframes.end());
+  Pattern table = baked(hoap1(), walk, sample(hoap1(), walk), "walk.csv");
+  EXPECT_TRUE(fastest_pace(hoap1(), table, {.dt = kTick}).found);
+  move_joint(hoap1(), *table.table, "l_elbow", 40 * M_PI / 180, 2, 0.8);
+  const FastestPace pace = fastest_pace(hoap1(), table, {.dt = kTick});
+  EXPECT_FALSE(pace.found);
+  EXPECT_TRUE(pace.by_posture);
+  EXPECT_EQ(pace.evaluations, 1);
+  EXPECT_NE(pace.limited_by.find("joint_position l_elbow at 2.0"), std::string::npos)
+      << pace.limited_by;
+}
+
+}  // namespace ayumi::test
