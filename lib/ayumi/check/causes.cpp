@@ -34,7 +34,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kReach = 0.5;   // an outer force acts within this part of the height
 constexpr double kTwist = 2;     // what holds a turn is reckoned low by no more than this
 constexpr double kReturn = 0.1;  // of a displacement, as good as back in its place
 constexpr int kEdge = 5;         // around lift-off and landing, a jump of the path shows
@@ -309,31 +308,33 @@ class Causes {
     }
   }
 
-  // A force in flight, wherever it acts on the robot, turns it too.
+  // Of what makes a flight unfree one finding is told: a force before a moment.
   void flight() {
-    const double arm = kReach * pass_.series.samples.front().cog.z();
-    for (const int i : by_excess(Kind::ballistic)) {
-      if (!open(i)) continue;
-      const double moment = of(i).value * pass_.model.mass() * arm;
-      Span whole = around(windows_[i]);
-      while (flies(whole.first - 1)) --whole.first;
-      while (flies(whole.last + 1)) ++whole.last;
-      blame(i, whole, [&](int j) {
-        if (of(j).kind == Kind::joint_torque) return holds_falling(pass_, of(j));
-        return of(j).kind == Kind::ballistic || of(j).kind == Kind::foot_penetration;
-      });
-      for (const int edge : {whole.first, whole.last}) {
-        const Span beside = {edge - kEdge, edge + kEdge};
-        blame(i, beside, [&](int j) {
-          return beside.contains(windows_[j]) && (is_need(of(j)) || is_residual(of(j).kind));
+    for (const Kind kind : {Kind::ballistic, Kind::angular_momentum}) {
+      for (const int i : by_excess(kind)) {
+        if (!open(i)) continue;
+        Span whole = around(windows_[i]);
+        while (flies(whole.first - 1)) --whole.first;
+        while (flies(whole.last + 1)) ++whole.last;
+        blame(i, whole, [&](int j) {
+          if (of(j).kind == Kind::joint_torque) return holds_in_free_flight(pass_, of(j));
+          return is_flight(of(j).kind) || of(j).kind == Kind::foot_penetration;
         });
+        if (kind == Kind::ballistic) beside_flight(i, whole);
       }
-      blame(i, around(windows_[i], kStencil), [&](int j) {
-        const Violation& v = of(j);
-        if (v.kind == Kind::angular_momentum) return v.value <= moment;
-        return v.kind == Kind::fz_residual || v.kind == Kind::cog_residual;
+    }
+  }
+
+  void beside_flight(int i, const Span& whole) {
+    for (const int edge : {whole.first, whole.last}) {
+      const Span beside = {edge - kEdge, edge + kEdge};
+      blame(i, beside, [&](int j) {
+        return beside.contains(windows_[j]) && (is_need(of(j)) || is_residual(of(j).kind));
       });
     }
+    blame(i, around(windows_[i], kStencil), [&](int j) {
+      return of(j).kind == Kind::fz_residual || of(j).kind == Kind::cog_residual;
+    });
   }
 
   // Errors of one kind, the worst first.

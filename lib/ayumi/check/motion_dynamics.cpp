@@ -37,9 +37,16 @@ const SampleDynamics& MotionDynamics::at(int k, double pace) {
   return now_;
 }
 
-const SampleDynamics& MotionDynamics::falling(int k) {
-  at(k);
-  acceleration_.head<3>() -= now_.ddcog + Vector3d(0, 0, kGravity);
+// The wrench is linear in the base's acceleration.
+const SampleDynamics& MotionDynamics::free_flight(int k) {
+  const Vector6d wrench = at(k).wrench;
+  Eigen::Matrix<double, 6, 6> inertia;
+  for (int i = 0; i < 6; ++i) {
+    acceleration_[i] += 1;
+    inertia.col(i) = inverse_dynamics(model_, state_, acceleration_, data_).head<6>() - wrench;
+    acceleration_[i] -= 1;
+  }
+  acceleration_.head<6>() -= inertia.lu().solve(wrench);
   evaluate(k);
   return now_;
 }

@@ -25,9 +25,9 @@ class MotionDynamics {
   /// the same path, that much slower.
   const SampleDynamics& at(int k, double pace = 1);
 
-  /// Sample k of a flight with the base accelerated so that the COG falls freely: what is left of
-  /// the motors' torques without the force that no ground gives.
-  const SampleDynamics& falling(int k);
+  /// Sample k of a flight with the base accelerated so that it needs no wrench from outside: what
+  /// is left of the motors' torques without the force and moment that no ground gives.
+  const SampleDynamics& free_flight(int k);
 
   const RobotData& data() const { return data_; }       ///< positions and rates of that sample
   const SupportPlane& plane() const { return plane_; }  ///< empty in flight

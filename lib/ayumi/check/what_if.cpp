@@ -48,8 +48,8 @@ bool hangs_on(const CheckPass& pass, const Violation& v, int dof) {
   return sets_distance(pass, v, dof);
 }
 
-bool holds_falling(CheckPass& pass, const Violation& v) {
-  return std::abs(pass.dynamics.falling(v.sample).torque[v.item]) <= std::abs(v.limit);
+bool holds_in_free_flight(CheckPass& pass, const Violation& v) {
+  return std::abs(pass.dynamics.free_flight(v.sample).torque[v.item]) <= std::abs(v.limit);
 }
 
 bool is_asked_for(CheckPass& pass, const Violation& v) {

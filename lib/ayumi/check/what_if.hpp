@@ -17,8 +17,8 @@ bool sets_distance(const CheckPass& pass, const Violation& collision, int dof);
 /// The same, but not an arm and the trunk: that is a fact of its own.
 bool hangs_on(const CheckPass& pass, const Violation& collision, int dof);
 
-/// The torque of a flight is within its limit when the COG falls freely.
-bool holds_falling(CheckPass& pass, const Violation& torque);
+/// The torque of a flight is within its limit when nothing pushes or turns the robot.
+bool holds_in_free_flight(CheckPass& pass, const Violation& torque);
 
 /// A ZMP outside the support because the command wants it there: no posture is to blame.
 bool is_asked_for(CheckPass& pass, const Violation& v);

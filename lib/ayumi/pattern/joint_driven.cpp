@@ -105,6 +105,15 @@ Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last
   return pose;
 }
 
+// A sole that ends its contact where it began stands there, however long it was elsewhere
+// meanwhile.
+Isometry3d place_of(const std::vector<Isometry3d>& soles, int first, int last) {
+  constexpr double kSame = 1e-5;  // [m], and of the entries of the rotation
+  const Eigen::Matrix4d change = soles[last].matrix() - soles[first].matrix();
+  if (change.cwiseAbs().maxCoeff() < kSame) return soles[first];
+  return median_sole(soles, first, last);
+}
+
 void fill_feet_from_joints(CommandSeries& series, const RobotModel& model) {
   const int count = static_cast<int>(series.samples.size());
   RobotData data(model);
@@ -120,7 +129,7 @@ void fill_feet_from_joints(CommandSeries& series, const RobotModel& model) {
     for (int k = 0; k < count;) {
       int last = k;
       while (carries(k) && last + 1 < count && carries(last + 1)) ++last;
-      const Isometry3d pose = carries(k) ? median_sole(own, k, last) : own[k];
+      const Isometry3d pose = carries(k) ? place_of(own, k, last) : own[k];
       for (; k <= last; ++k) series.samples[k].feet[static_cast<int>(side)] = pose;
     }
   }
