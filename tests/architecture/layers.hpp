@@ -32,7 +32,7 @@ inline const std::map<std::string, Room>& rooms() {
       {"dynamics", {3, {}, {}, false}},
       {"pattern", {4, {}, {}, false}},
       {"check", {5, {}, {}, false}},
-      {"control", {5, {}, {}, false}},
+      {"control", {5, {"check"}, {}, false}},
       {"optimize", {6, {}, {"control"}, false}},
       {"sim", {6, {}, {"check"}, false}},
       {"study", {7, {}, {}, false}},

@@ -56,5 +56,12 @@ TEST(RepairedWalk, StandsAfterAThrownKnee) {
   expect_stands_repaired(pattern, "hoap1-strong");
 }
 
+// In place and sideways, the whole motion in 0.62 of its time: a knee is too fast.
+TEST(RepairedWalk, StandsInLessTime) {
+  Pattern pattern = table_of({.steps = 8, .stride = 0.02, .period = 0.7, .side = 0.016});
+  squeeze(pattern, 0.62);
+  expect_stands_repaired(pattern, "hoap1");
+}
+
 }  // namespace
 }  // namespace ayumi::test

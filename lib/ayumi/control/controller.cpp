@@ -6,6 +6,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/control/feedforward.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/track.hpp"
 
@@ -69,7 +70,7 @@ Controller::Controller(const RobotModel& model, const ActuatorLimits& limits,
       limits_(limits),
       series_(&series),
       spec_(spec),
-      law_(OpenLoop{servo_lead(model)}),
+      law_(OpenLoop{}),
       plan_(series.samples.front()),
       target_(series.samples.front().state.theta) {
   check_controller(model, spec);
@@ -78,6 +79,8 @@ Controller::Controller(const RobotModel& model, const ActuatorLimits& limits,
          "controller " + spec.type +
              ": the pattern has no phase with \"viip\" goals; add one or use dtad");
   start_law(nullptr);
+  if (const auto* open = std::get_if<OpenLoop>(&law_); open && open->sag.size() > 0)
+    target_ += open->sag.col(0);
   enter(0);
 }
 
@@ -161,7 +164,9 @@ void Controller::start_law(const ViipSpan* span) {
     if (params.step > 0 && !params.literal && series_->viip.empty())
       footholds_.emplace(*model_, *series_, FootholdParams{params.step, params.hurry});
   } else {
-    law_ = OpenLoop{servo_lead(*model_)};
+    law_ = OpenLoop{servo_lead(*model_), spec_.type == "none"
+                                             ? servo_sag(*model_, limits_, *series_)
+                                             : Eigen::MatrixXd()};
   }
 }
 
@@ -226,8 +231,10 @@ const ControlOutput& Controller::update(const Estimate& estimate) {
       dtad->update(plan_, following, estimate, out);
     } else {
       out.reference = plan_.state;
-      out.target =
-          plan_.state.theta + std::get<OpenLoop>(law_).lead.cwiseProduct(plan_.state.dtheta);
+      const OpenLoop& open = std::get<OpenLoop>(law_);
+      out.target = plan_.state.theta + open.lead.cwiseProduct(plan_.state.dtheta);
+      if (open.sag.size() > 0)
+        out.target += open.sag.col(std::min<Eigen::Index>(tick_, open.sag.cols() - 1));
       out.cog = plan_.cog;
       out.cog_reference = {plan_.zmp, plan_.fz, Vector3d::Zero(), plan_.dcog};
     }

@@ -12,7 +12,8 @@
 
 namespace ayumi {
 
-/// Names known to ControllerSpec::type. "none": open loop, VIIP phases hold their posture;
+/// Names known to ControllerSpec::type. "none": open loop, the command with what the servos lack
+/// (control/feedforward.hpp), VIIP phases hold their posture;
 /// "dtad", "dtad-literal": that law, VIIP in phases that carry goals; "viip": the same, its gains
 /// are those of VIIP; "viip-nofeedback": likewise with nothing measured, feet land by the clock,
 /// the rest open loop; "viip-landings": the same, but the landing of a foot is noticed.
@@ -31,13 +32,17 @@ class Controller {
   /// The plan of the coming tick: the command where the robot's feet are, or VIIP's own.
   const CommandSample& plan() const { return plan_; }
 
+  /// What the servos received last [rad]; before the first tick what they hold the start with.
+  const Eigen::VectorXd& target() const { return target_; }
+
   /// One tick: goes on to the next. The output holds until the next update.
   const ControlOutput& update(const Estimate& estimate);
 
  private:
-  /// The command itself on the servos.
+  /// The command itself on the servos: theta + lead dtheta + sag.
   struct OpenLoop {
     Eigen::VectorXd lead;  ///< of the servo targets [s]
+    Eigen::MatrixXd sag;   ///< dof x samples, made up for [rad]; empty beside VIIP
   };
   /// From the command as sampled to the feet as they are: after steps that VIIP placed.
   struct Placement {
@@ -68,7 +73,7 @@ class Controller {
   Placement placement_;
   CommandSample plan_, following_;  // of the coming tick, and after it where feet have moved
   ControlOutput out_;
-  Eigen::VectorXd target_;  // last one [rad]
+  Eigen::VectorXd target_;
   const ViipSpan* span_ = nullptr;
   long tick_ = 0;  // the coming one
 };

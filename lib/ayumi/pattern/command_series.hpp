@@ -37,6 +37,8 @@ struct CommandSeries {
   std::vector<ViipSpan> viip;                 ///< in time order
   std::map<std::string, std::string> origin;  ///< track -> where it came from, in words
   Eigen::VectorXd joint_weight;               ///< diagonal of W [dof]
+  /// The joints come from a table of what servos received, its lead taken out: played again as is.
+  bool servo_commands = false;
 
   double duration() const { return dt * static_cast<double>(samples.size() - 1); }
 };

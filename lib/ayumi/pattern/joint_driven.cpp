@@ -201,6 +201,7 @@ CommandSeries sample_joint_driven(const SampleJob& job) {
   fill_rates(series.samples, job.dt, job.tracks.rest_ends);
   fill_feet(job, series);
   fill_commands(job, series);
+  series.servo_commands = job.pattern.table && job.pattern.table->commands;
   series.origin["joints"] = job.tracks.driver + ", others from keys and default posture";
   series.origin.try_emplace("cog", "of the posture");
   series.origin.try_emplace("zmp", "of the full model");

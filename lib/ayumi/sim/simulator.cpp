@@ -58,7 +58,7 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
   plant_.set_state(first.state);
   for (long i = -std::lround(kBeforeStart / h_); i < 0; ++i) {
     schedule_.fill(i, plant_.data(), input_);
-    report_ = plant_.step(first.state.theta, input_, h_);
+    report_ = plant_.step(controller_.target(), input_, h_);
   }
 }
 

@@ -1,0 +1,66 @@
+// What servos are told beyond the posture: the torque of the motion, within the motor's, and nothing
+// where it is in the table already. An integrator judges it in scenarios/open_loop_test.
+#include "ayumi/control/feedforward.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/version.hpp"
+#include "ayumi/pattern/generate.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "tests/support/hoap1.hpp"
+
+namespace ayumi {
+namespace {
+
+using test::hoap1;
+
+const CommandSeries& squat() {
+  static const CommandSeries series = [] {
+    Pattern pattern = squat_pattern(hoap1(), squat_defaults(hoap1()));
+    pattern.robot = "hoap1";
+    return sample(hoap1(), pattern);
+  }();
+  return series;
+}
+
+// From rest to the deepest point, where the COG rests again, the motors' work is the weight's.
+TEST(ServoSag, WorksAsTheWeightDoes) {
+  const std::vector<CommandSample>& samples = squat().samples;
+  const Eigen::MatrixXd sag = servo_sag(hoap1(), hoap1().limits("hoap1-strong"), squat());
+  ASSERT_EQ(sag.cols(), static_cast<Eigen::Index>(samples.size()));
+  size_t deepest = 0;
+  for (size_t k = 0; k < samples.size(); ++k)
+    if (samples[k].cog.z() < samples[deepest].cog.z()) deepest = k;
+  double work = 0;
+  for (size_t k = 0; k < deepest; ++k)
+    for (int j = 0; j < hoap1().dof_count(); ++j) {
+      const auto column = static_cast<Eigen::Index>(k);
+      work += hoap1().dofs()[static_cast<size_t>(j)].servo.kp * 0.5 *
+              (sag(j, column) + sag(j, column + 1)) *
+              (samples[k + 1].state.theta[j] - samples[k].state.theta[j]);
+    }
+  const double weight = hoap1().mass() * kGravity;
+  const double drop = samples[deepest].cog.z() - samples[0].cog.z();
+  ASSERT_LT(drop, -0.01);
+  EXPECT_NEAR(work, weight * drop, 1e-4 * std::abs(weight * drop));
+}
+
+TEST(ServoSag, StaysWithinTheMotor) {
+  ActuatorLimits limits = hoap1().limits();
+  limits.peak_torque.setConstant(0.5);
+  const Eigen::MatrixXd sag = servo_sag(hoap1(), limits, squat());
+  double most = 0;
+  for (int j = 0; j < hoap1().dof_count(); ++j)
+    most = std::max(most, hoap1().dofs()[static_cast<size_t>(j)].servo.kp *
+                              sag.row(j).cwiseAbs().maxCoeff());
+  EXPECT_NEAR(most, 0.5, 1e-12);
+}
+
+TEST(ServoSag, NothingIsAddedToWhatServosReceived) {
+  CommandSeries series = squat();
+  series.servo_commands = true;
+  EXPECT_EQ(servo_sag(hoap1(), hoap1().limits(), series).cwiseAbs().maxCoeff(), 0);
+}
+
+}  // namespace
+}  // namespace ayumi

@@ -1,0 +1,50 @@
+// A walk played without anything measured: the servos are told what lag and sag take from them, so
+// that an integrator which knows nothing of the plan moves as planned.
+#include <gtest/gtest.h>
+
+#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/pattern/sample.hpp"
+#include "ayumi/sim/simulate.hpp"
+#include "tests/support/hoap1.hpp"
+
+namespace ayumi {
+namespace {
+
+using test::hoap1;
+
+CommandSeries walk() {
+  return sample(hoap1(), read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json"));
+}
+
+SimulationLog played(const CommandSeries& series) {
+  SimulateOptions options;
+  options.controller.type = "none";
+  return simulate(hoap1(), series, options);
+}
+
+/// Largest distance of the COG from its command [m].
+double cog_off(const SimulationLog& log) {
+  double most = 0;
+  for (const SimulationSample& s : log.samples)
+    most = std::max(most, (s.cog - s.command_cog).norm());
+  return most;
+}
+
+TEST(OpenLoop, TheRobotMovesAsCommanded) {
+  const SimulationLog log = played(walk());
+  ASSERT_EQ(log.result.outcome, Outcome::stands);
+  EXPECT_EQ(log.result.steps, 10);  // no foot bounces
+  EXPECT_LT(cog_off(log), 0.001);
+}
+
+// The same angles taken for what servos received are sent as they are, and the robot gives way.
+TEST(OpenLoop, SentAsTheyAreTheSameAnglesSag) {
+  CommandSeries series = walk();
+  series.servo_commands = true;
+  const SimulationLog log = played(series);
+  EXPECT_GT(log.result.steps, 10);
+  EXPECT_GT(cog_off(log), 4 * cog_off(played(walk())));
+}
+
+}  // namespace
+}  // namespace ayumi
