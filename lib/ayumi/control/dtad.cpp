@@ -110,11 +110,11 @@ double long_term_d(const DtadParams& p) {
 }
 
 Dtad::Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadParams& params,
-           double dt, const CommandSample& first)
+           double dt, const CommandSample& first, const VectorXd& target)
     : model_(&model),
       params_(params),
       dt_(dt),
-      body_(model, limits, dt, first.state),
+      body_(model, limits, dt, first.state, target),
       zmp_filtered_(first.zmp.head<2>()),
       fz_filtered_(first.fz) {
   if (first.support == Support::right) anchor_ = Side::right;
@@ -197,7 +197,7 @@ void Dtad::lean_trunk(double w, double z) {
 }
 
 void Dtad::update(const CommandSample& command, const CommandSample& next, const Estimate& estimate,
-                  ControlOutput& out) {
+                  const Eigen::Ref<const VectorXd>& sag, ControlOutput& out) {
   if (command.support == Support::left) anchor_ = Side::left;
   if (command.support == Support::right) anchor_ = Side::right;
   body_.anchor(anchor_, command.feet[static_cast<int>(anchor_)]);
@@ -206,10 +206,9 @@ void Dtad::update(const CommandSample& command, const CommandSample& next, const
   const double z = command.cog.z() - command.zmp.z();
   const double forget = params_.washout / std::sqrt(kGravity / z);
   const double lie = params_.washout > 0 ? kLieTime / std::sqrt(kGravity / z) : 0;
-  const VectorXd& offsets =
-      body_.ankle_offsets(estimate, {params_.ankle, params_.conform, forget, lie});
+  offsets_ = sag + body_.ankle_offsets(estimate, {params_.ankle, params_.conform, forget, lie});
   if (params_.trunk > 0) lean_trunk(std::sqrt(kGravity / z), z);
-  body_.advance(wanted, z, command, next, offsets, out);
+  body_.advance(wanted, z, command, next, offsets_, out);
 }
 
 }  // namespace ayumi

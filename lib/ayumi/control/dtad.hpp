@@ -47,16 +47,17 @@ double long_term_d(const DtadParams& params);
 
 class Dtad {
  public:
-  /// Starts at rest in the posture of `first`.
+  /// Starts at rest in the posture of `first`, which the servos hold with `target` [rad].
   Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadParams& params, double dt,
-       const CommandSample& first);
+       const CommandSample& first, const Eigen::VectorXd& target);
 
   /// Goes on from what another law left; `plan` is the first command.
   void take_over(const Handover& handover, const CommandSample& plan);
 
-  /// One tick: command now and one tick later, and what is measured.
+  /// One tick: command now and one tick later, what is measured, and by how much the servos would
+  /// sag under the command (servo_sag()).
   void update(const CommandSample& command, const CommandSample& next, const Estimate& estimate,
-              ControlOutput& out);
+              const Eigen::Ref<const Eigen::VectorXd>& sag, ControlOutput& out);
 
   const ReferenceBody& body() const { return body_; }
 
@@ -69,6 +70,7 @@ class Dtad {
   double dt_;
   ReferenceBody body_;
   SupportRegion region_;
+  Eigen::VectorXd offsets_;  // of the servo targets: ankles and sag [rad]
   Side anchor_ = Side::left;
   Eigen::Vector2d zmp_filtered_ = Eigen::Vector2d::Zero();  // z-hat [m]
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();        // washed-out offset z-hat_d [m]

@@ -10,7 +10,6 @@ Eigen::MatrixXd servo_sag(const RobotModel& model, const ActuatorLimits& limits,
                           const CommandSeries& series) {
   const auto samples = static_cast<Eigen::Index>(series.samples.size());
   Eigen::MatrixXd sag = Eigen::MatrixXd::Zero(model.dof_count(), samples);
-  if (series.servo_commands) return sag;
   const ContactPlan contacts = contact_plan(series);
   MotionDynamics dynamics(model, series, contacts);
   for (Eigen::Index k = 0; k < samples; ++k) {

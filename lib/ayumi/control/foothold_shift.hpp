@@ -43,7 +43,8 @@ class FootholdShift {
   /// when a foot has landed before its time: it stays where it is and the plan's feet jump there.
   bool advance(const Estimate& estimate);
 
-  double rate() const { return rate_; }  ///< of the clock
+  double rate() const { return rate_; }    ///< of the clock
+  double place() const { return place_; }  ///< of plan() in the pattern [samples]
   /// Of a foot against the pattern [m].
   const Eigen::Vector2d& shift(Side side) const { return foot_[static_cast<int>(side)]; }
 

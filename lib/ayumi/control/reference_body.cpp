@@ -21,7 +21,8 @@ constexpr char kTooFast = 1, kTooFar = 2;  // what a servo target was held to, a
 }  // namespace
 
 ReferenceBody::ReferenceBody(const RobotModel& model, const ActuatorLimits& limits, double dt,
-                             const RobotState& start, const ResolverOptions& options)
+                             const RobotState& start, const VectorXd& target,
+                             const ResolverOptions& options)
     : model_(&model),
       limits_(limits),
       options_(options),
@@ -29,7 +30,7 @@ ReferenceBody::ReferenceBody(const RobotModel& model, const ActuatorLimits& limi
       data_(model),
       weight_(model.joint_weight()),
       lead_(servo_lead(model)),
-      previous_target_(start.theta),
+      previous_target_(target),
       told_(static_cast<size_t>(model.dof_count())),
       reference_(start) {}
 

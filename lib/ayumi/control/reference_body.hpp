@@ -38,8 +38,10 @@ struct Handover {
 
 class ReferenceBody {
  public:
+  /// At rest in the posture `start`, which the servos hold with `target` [rad].
   ReferenceBody(const RobotModel& model, const ActuatorLimits& limits, double dt,
-                const RobotState& start, const ResolverOptions& options = {});
+                const RobotState& start, const Eigen::VectorXd& target,
+                const ResolverOptions& options = {});
 
   /// Goes on from what another law left.
   void take_over(const Handover& handover);

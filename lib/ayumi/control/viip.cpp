@@ -69,7 +69,7 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
       dt_(dt),
       omega_(std::sqrt(kGravity / (held.cog.z() - ground_of(held.feet)))),
       height_(held.cog.z() - ground_of(held.feet)),
-      body_(model, limits, dt, start.reference, {.in_order = false}),
+      body_(model, limits, dt, start.reference, start.target, {.in_order = false}),
       data_(model),
       held_(held),
       plan_(held),

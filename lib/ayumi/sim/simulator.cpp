@@ -51,11 +51,10 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       controller_(model, limits_, series, options.controller),
       saturated_(static_cast<size_t>(model.dof_count())) {
   model.sole(Side::left);  // says so when the robot has none
-  const CommandSample& first = series.samples.front();
   set_scenario(options.scenario);
   planned_ = end_ =
       static_cast<long>(series.samples.size()) + std::lround(options.settle / series.dt);
-  plant_.set_state(first.state);
+  plant_.set_state(controller_.start());
   for (long i = -std::lround(kBeforeStart / h_); i < 0; ++i) {
     schedule_.fill(i, plant_.data(), input_);
     report_ = plant_.step(controller_.target(), input_, h_);
