@@ -156,6 +156,33 @@ TEST(Consequence, OfAMotionWhoseZmpLeavesTheSupportIsItsDistance) {
   EXPECT_NE(e.told.find("warning zmp_residual"), std::string::npos) << e.told;
 }
 
+// A COG key that is wrong while a foot slips: farther off than the sole, whichever way it slips.
+TEST(Consequence, NeverOfAFaultThatIsLarger) {
+  const double at = middle_of(walk(), 1);
+  for (const bool base : {false, true}) {
+    Pattern p = walk();
+    if (base)
+      for_rows(*p.table, [&](double t, size_t k) {
+        p.table->base[k].position.y() += 0.005 * bump(t, at, 0.4);
+      });
+    else
+      slip_foot(hoap1(), *p.table, Side::left, {0.005, 0, 0}, at, 0.4);
+    EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip"})) << errors_of(p).told;
+    for_rows(*p.table,
+             [&](double t, size_t k) { p.table->cog[k].x() += 0.015 * bump(t, at, 0.4); });
+    EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip", "cog_residual"})) << errors_of(p).told;
+  }
+  // A trunk that turns about the ankle takes the COG farther than the sole: that is one fault.
+  Pattern p = walk();
+  for_rows(*p.table, [&](double t, size_t k) {
+    BasePose& base = p.table->base[k];
+    base.attitude = Eigen::AngleAxisd(0.08 * bump(t, at, 0.4), Vector3d::UnitX()) * base.attitude;
+  });
+  const Errors e = errors_of(p);
+  EXPECT_FALSE(e.kinds.count("cog_residual")) << e.told;
+  EXPECT_NE(e.told.find("warning cog_residual"), std::string::npos) << e.told;
+}
+
 TEST(Consequence, NeverOfAFaultElsewhere) {
   Pattern p = walk();
   const double slips = middle_of(p, 1), other = middle_of(p, 3);

@@ -203,6 +203,7 @@ class Causes {
         const Violation& v = of(j);
         if (is_asked_for(pass_, v)) return false;
         if (is_foot(kind) && is_flight(v.kind)) return near_displacement(i, v.sample);
+        if (is_foot(kind) && v.kind == Kind::cog_residual) return moves_cog(pass_, of(i), v);
         if (is_need(v) || is_residual(v.kind)) return true;
         if (places_feet && is_foot(v.kind)) return true;
         if (limit && v.kind == Kind::self_collision)

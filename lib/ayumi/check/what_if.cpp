@@ -52,6 +52,21 @@ bool holds_in_free_flight(CheckPass& pass, const Violation& v) {
   return std::abs(pass.dynamics.free_flight(v.sample).torque[v.item]) <= std::abs(v.limit);
 }
 
+bool moves_cog(const CheckPass& pass, const Violation& foot, const Violation& cog) {
+  const Side side = foot_of(foot);
+  const CommandSample& s = pass.series.samples[cog.sample];
+  const ContactInterval& contact = pass.plan.at(side, cog.sample);
+  if (!contact.contact) return true;
+  const Eigen::Isometry3d& place = contact.sole;
+  RobotData data(pass.model);
+  update_positions(pass.model, s.state, data);
+  const Eigen::Isometry3d sole = sole_pose(pass.model, data, side);
+  const SoleError e = sole_error(pass.model.sole(side), sole, place);
+  const double way = std::max({e.slip, e.penetration, e.gap});
+  const double left = (place * (sole.inverse() * data.cog) - s.cog).norm();
+  return cog.value <= way || left <= pass.tolerance(Kind::cog_residual);
+}
+
 bool is_asked_for(CheckPass& pass, const Violation& v) {
   if (v.kind != Kind::support_margin) return false;
   const Eigen::Vector3d zmp = pass.dynamics.at(v.sample).use.zmp_world;

@@ -20,6 +20,11 @@ bool hangs_on(const CheckPass& pass, const Violation& collision, int dof);
 /// The torque of a flight is within its limit when nothing pushes or turns the robot.
 bool holds_in_free_flight(CheckPass& pass, const Violation& torque);
 
+/// A sole out of its place accounts for a COG off its command: the COG is no farther off than the
+/// sole, or as good as commanded when the robot is put back with the sole into its place. Swinging
+/// soles account for any.
+bool moves_cog(const CheckPass& pass, const Violation& foot, const Violation& cog);
+
 /// A ZMP outside the support because the command wants it there: no posture is to blame.
 bool is_asked_for(CheckPass& pass, const Violation& v);
 
