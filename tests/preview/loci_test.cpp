@@ -77,7 +77,7 @@ TEST(Loci, OnlyWhatDiffersIsDrawnWithJointsAndLimits) {
   EXPECT_TRUE(has(drawing, "COG x [m]"));
   EXPECT_FALSE(has(drawing, "COG y [m]"));
   EXPECT_FALSE(has(drawing, "command"));
-  EXPECT_TRUE(has(drawing, "The same in all: COG y, COG z, ZMP x, ZMP y, f_z. ")) << [&] {
+  EXPECT_TRUE(has(drawing, "The same in all: COG y, COG z, ZMP x, ZMP y, f_z.")) << [&] {
     std::string all;
     for (const std::string& t : texts(drawing)) all += t + " | ";
     return all;
@@ -87,9 +87,10 @@ TEST(Loci, OnlyWhatDiffersIsDrawnWithJointsAndLimits) {
 TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
   const TwoRuns runs;
   const Drawing drawing = draw_loci(runs.both(), {});
-  EXPECT_TRUE(has(drawing,
-                  "Ranges follow the command and the runs that stand; open loop is cut off where "
-                  "its fall leaves them (cross: the instant of the fall)."));
+  EXPECT_TRUE(
+      has(drawing,
+          "Ranges follow the command and the runs that stand; falls are cut off there (cross: "
+          "the instant of the fall)."));
   for (const auto& item : drawing.items)
     if (const auto* path = std::get_if<DrawnPath>(&item)) {
       for (const Eigen::Vector2d& p : path->points)
@@ -122,9 +123,10 @@ TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   }
   EXPECT_GE(numbers, 2) << *(margin - 1);
   EXPECT_LT(most, 0.2);
-  EXPECT_TRUE(has(drawing,
-                  "Ranges follow the command and what comes before the fall; open loop is cut off "
-                  "where its fall leaves them (cross: the instant of the fall)."));
+  EXPECT_TRUE(
+      has(drawing,
+          "Ranges follow the command and what comes before the fall; falls are cut off there "
+          "(cross: the instant of the fall)."));
 }
 
 TEST(Loci, TheLineGoesThroughTheSamples) {

@@ -233,17 +233,14 @@ void draw_pushes(Drawing& drawing, const Axes& axes, const std::vector<PushRecor
   }
 }
 
-/// A sentence for each thing that the ranges leave out.
+/// What the ranges leave out.
 std::string range_note(const std::vector<LociRun>& runs) {
-  std::string names;
-  for (const LociRun& run : runs)
-    if (has_fallen(*run.log)) names += (names.empty() ? "" : ", ") + run.label;
-  if (names.empty()) return "";
-  const bool standing = std::any_of(runs.begin(), runs.end(),
-                                    [](const LociRun& run) { return !has_fallen(*run.log); });
+  const auto fell = [](const LociRun& run) { return has_fallen(*run.log); };
+  if (std::none_of(runs.begin(), runs.end(), fell)) return "";
   return std::string("Ranges follow the command and ") +
-         (standing ? "the runs that stand; " : "what comes before the fall; ") + names +
-         " is cut off where its fall leaves them (cross: the instant of the fall).";
+         (std::all_of(runs.begin(), runs.end(), fell) ? "what comes before the fall"
+                                                      : "the runs that stand") +
+         "; falls are cut off there (cross: the instant of the fall).";
 }
 
 void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
@@ -293,7 +290,7 @@ std::string leave_out_equal(std::vector<PanelPlan>& panels, const std::vector<Lo
   }
   if (names.empty() || kept.empty()) return "";
   panels = std::move(kept);
-  return "The same in all: " + text::join(names, ", ") + ". ";
+  return "The same in all: " + text::join(names, ", ") + ".";
 }
 
 }  // namespace
@@ -324,13 +321,15 @@ Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) 
                                     .text = "time [s]",
                                     .size = 13,
                                     .anchor = TextAnchor::center});
-  const std::string note = same + range_note(runs);
-  if (!note.empty())
-    drawing.items.push_back(DrawnText{.position = {kLeft, top + 44},
+  drawing.height = top + 34;
+  for (const std::string& note : {same, range_note(runs)}) {
+    if (note.empty()) continue;
+    drawing.items.push_back(DrawnText{.position = {kLeft, drawing.height + 10},
                                       .text = note,
                                       .size = 11,
                                       .color = {0.35f, 0.35f, 0.38f, 1}});
-  drawing.height = top + (note.empty() ? 34 : 56);
+    drawing.height += drawing.height > top + 34 ? 16 : 22;
+  }
   return drawing;
 }
 
