@@ -46,7 +46,8 @@ std::string side_words(const std::string& file, const PatternInput& input,
 }
 
 // Weighed as a repair of A would.
-WeightedChange weighted(const Options& options, const PatternInput& a, const PatternInput& b) {
+WeightedChange weighted(const Options& options, const PatternInput& a, const PatternInput& b,
+                        const ConsistencyReport& check_a) {
   RepairOptions repair = wished_options(a.pattern);
   repair.check = check_options(a);
   for (const auto& [joint, factor] : read_pairs(options.weights, "--weight"))
@@ -54,7 +55,7 @@ WeightedChange weighted(const Options& options, const PatternInput& a, const Pat
   if (options.safety) repair.safety = *options.safety;
   WeightedChange change =
       weighted_change(a.model, a.series, b.series, weight_factors(a.model, repair.joint_weights));
-  change.safety = safety_price(a.model, a.series, b.series, repair);
+  change.safety = safety_price(a.model, a.series, b.series, repair, check_a);
   return change;
 }
 
@@ -73,7 +74,7 @@ void diff(Context& context, const Options& options) {
   const ConsistencyReport check_a = check_consistency(a.model, a.series, check_options(a));
   const ConsistencyReport check_b = check_consistency(b.model, b.series, check_options(b));
   const MotionChange change = motion_change(a.model, a.series, b.series);
-  const WeightedChange cost = weighted(options, a, b);
+  const WeightedChange cost = weighted(options, a, b, check_a);
   const double contacts = contacts_differ_at(a.series, b.series);
   const bool same_length = a.series.samples.size() == b.series.samples.size();
   const bool same =

@@ -133,7 +133,7 @@ void compare(const CorrectionProblem& problem, const VectorXd& x, const VectorXd
 TEST_P(ConstraintRows, DerivativesAgainstCentralDifferences) {
   std::map<ConstraintGroup, Tally> tallies;
   Random random(11);
-  for (const Trust trust : {Trust::cog, Trust::zmp}) {
+  for (const Trust trust : {Trust::cog, Trust::zmp, Trust::posture}) {
     const CorrectionProblem problem(model, series, spec(trust));
     for (const double size : {0.0005, 0.002})
       for (int way = 0; way < 3; ++way)
@@ -141,7 +141,7 @@ TEST_P(ConstraintRows, DerivativesAgainstCentralDifferences) {
                 random.vector(problem.variable_count(), 1), tallies);
   }
   std::set<ConstraintGroup> all;
-  for (int i = 0; i <= static_cast<int>(ConstraintGroup::pose); ++i)
+  for (int i = 0; i <= static_cast<int>(ConstraintGroup::capture); ++i)
     all.insert(static_cast<ConstraintGroup>(i));
   if (!jumps) {
     all.erase(ConstraintGroup::flight);
@@ -176,7 +176,9 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
       if (collisions.clearance(collisions.pairs()[static_cast<size_t>(i)], data, 0.1) < 0.006)
         near.insert(i);
   }
-  for (const Trust trust : {Trust::cog, Trust::zmp}) {
+  std::vector<Trust> trusts = {Trust::cog, Trust::zmp};
+  if (!jumps) trusts.push_back(Trust::posture);  // for its capture rows
+  for (const Trust trust : trusts) {
     CorrectionSpec all = spec(trust);
     all.near_pairs.assign(near.begin(), near.end());
     all.free_ends = {true, true};
@@ -276,6 +278,17 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
         case ConstraintGroup::cog:
           raise("cog", rows.norm());
           break;
+        case ConstraintGroup::capture: {
+          // By the momentum of the links; the command is a plain shift aside.
+          const CommandSample& s = series.samples[static_cast<size_t>(k)];
+          const double omega = std::sqrt(kGravity / (s.cog.z() - s.zmp.z()));
+          update_positions(model, s.state, data);
+          update_velocities(model, s.state, data);
+          const Vector3d off = data.cog - s.cog + (data.dcog - s.dcog) / omega;
+          EXPECT_NEAR((off.head<2>() - rows.head<2>()).norm(), 0, 1e-12) << k;
+          if (use.has_zmp) raise("zmp", (rows.tail<2>() / light).norm());
+          break;
+        }
       }
     }
     for (size_t k = 2; k + 2 < turning.size(); ++k) {  // the check takes a mean of five

@@ -66,6 +66,7 @@ class LeastChange : public testing::Test {
   RepairOptions options;
   int others = 0;
   CommandSeries series;
+  ConsistencyReport before;
   WeightedChange least;
 
   double duration() const { return pattern.phases.back().until; }
@@ -88,7 +89,8 @@ class LeastChange : public testing::Test {
     ++others;
     constexpr double kRounding = 2e-5;  // of limits, and what the solver leaves
     WeightedChange cost = weighted_change(hoap1(), series, other);
-    if (cost.change < least.total()) cost.safety = safety_price(hoap1(), series, other, options);
+    if (cost.change < least.total())
+      cost.safety = safety_price(hoap1(), series, other, options, before);
     EXPECT_GE(cost.total(), (1 - kRounding) * least.total()) << how << ", change " << cost.change;
   }
 
@@ -109,6 +111,7 @@ class LeastChange : public testing::Test {
   void expect_least(const RepairOptions* stricter = nullptr) {
     series = sample(hoap1(), pattern);
     const RepairResult repaired = repair(hoap1(), series, options);
+    before = repaired.before;
     ASSERT_EQ(repaired.status, RepairStatus::repaired);
     EXPECT_LE(repaired.constraint_violation, 1e-6);
     least = repaired.change;

@@ -4,7 +4,8 @@
 //   rate         D_v diag(1, dw/dr', 1) + D_a [d(dw)/dr']
 //   acceleration D_a diag(1, d(dw)/dr'', 1)
 // [.] acting on the three rotation columns. Rotation error of a sole: e = vee(E - E')/2,
-// E = R R_planned', de = (tr(E) 1 - E) w / 2.
+// E = R R_planned', de = (tr(E) 1 - E) w / 2. COG rate: of a function c(x, t) d(c')/dx is half of
+// d(c'')/dx', and that is the ground force by the rate, over the mass.
 #include "ayumi/optimize/correction_constraints.hpp"
 
 #include <algorithm>
@@ -25,11 +26,10 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 const char* name_of(ConstraintGroup group) {
-  constexpr const char* kNames[] = {"support", "unilateral",   "friction",       "flight",
-                                    "zmp",     "yaw",          "stance",         "path",
-                                    "swing",   "landing",      "foot_clearance", "position",
-                                    "speed",   "acceleration", "torque",         "clearance",
-                                    "cog",     "pose"};
+  constexpr const char* kNames[] = {
+      "support", "unilateral", "friction", "flight",         "zmp",      "yaw",   "stance",
+      "path",    "swing",      "landing",  "foot_clearance", "position", "speed", "acceleration",
+      "torque",  "clearance",  "cog",      "pose",           "capture"};
   return kNames[static_cast<int>(group)];
 }
 
@@ -243,6 +243,31 @@ std::array<MatrixXd, 3> ground_derivatives(const ConstraintBlock& block, const I
   return by;
 }
 
+VectorXd capture_values(const RobotModel& model, const ConstraintBlock& block,
+                        const Instant& instant, const InstantState& state) {
+  const CorrectedMotion& m = state.motion;
+  const Vector3d rate = cog_jacobian_floating(model, *state.data) * m.state.velocity();
+  const Vector3d xi = state.data->cog + block.factor * rate;
+  const Vector6d w = plane_wrench(instant.plane, m.state.base.position, state.wrench);
+  VectorXd values(4);
+  values << xi.head<2>() - instant.xi, ground_values(block, w);
+  return values;
+}
+
+std::array<MatrixXd, 3> capture_derivatives(const RobotModel& model, const ConstraintBlock& block,
+                                            const Instant& instant, const InstantState& state) {
+  const auto zmp = ground_derivatives(block, instant, state);
+  const MatrixXd cog = state.cog_by.topRows<2>();
+  const MatrixXd rate = 0.5 / model.mass() * state.wrench_by[1].topRows<2>();
+  const MatrixXd xi[] = {cog + block.factor * rate, block.factor * cog, 0 * cog};
+  std::array<MatrixXd, 3> by;
+  for (int k = 0; k < 3; ++k) {
+    by[k].resize(4, cog.cols());
+    by[k] << xi[k], zmp[k];
+  }
+  return by;
+}
+
 void add_path(const RobotModel& model, int body, std::vector<int>& columns) {
   for (int i = body; i > 0; i = model.bodies()[i].parent)
     columns.push_back(6 + model.bodies()[i].dof);
@@ -306,6 +331,8 @@ VectorXd block_values(const RobotModel& model, const ConstraintBlock& block, con
       return clearance_values(block, instant, state);
     case ConstraintGroup::pose:
       return state.change;
+    case ConstraintGroup::capture:
+      return capture_values(model, block, instant, state);
     default:
       return state.data->cog - instant.cog;
   }
@@ -327,6 +354,8 @@ std::array<MatrixXd, 3> block_derivatives(const RobotModel& model, const Constra
     by[0] = clearance_derivatives(model, block, instant, state);
   } else if (block.group == ConstraintGroup::pose) {
     by[0].setIdentity(block.rows, model.velocity_count());
+  } else if (block.group == ConstraintGroup::capture) {
+    by = capture_derivatives(model, block, instant, state);
   } else {
     by[0] = state.cog_by;
   }

@@ -26,7 +26,8 @@ namespace ayumi {
 /// height [m]; position: joint angle [rad]; speed: joint speed /
 /// limit; acceleration: joint acceleration / limit; torque: motor torque / limit; clearance:
 /// clearance_rows.hpp [m]; cog: from the commanded COG [m]; pose: the correction itself, base
-/// position [m], base rotation vector and joints [rad].
+/// position [m], base rotation vector and joints [rad]; capture: xi, COG + its rate / omega,
+/// from the planned one along the ground [m], then as zmp.
 enum class ConstraintGroup {
   support,
   unilateral,
@@ -45,7 +46,8 @@ enum class ConstraintGroup {
   torque,
   clearance,
   cog,
-  pose
+  pose,
+  capture
 };
 const char* name_of(ConstraintGroup group);
 
@@ -61,6 +63,7 @@ struct Instant {
   std::array<Eigen::Isometry3d, 2> path;    ///< by Side: where the motion has it
   std::array<Eigen::Isometry3d, 2> place;   ///< by Side: where a swing leaves or lands, the nearer
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< commanded [m]
+  Eigen::Vector2d xi = Eigen::Vector2d::Zero();   ///< planned, of capture blocks [m]
   bool torques = false;                           ///< some block asks for them
   const CollisionModel* collisions = nullptr;     ///< of clearance blocks
 };
@@ -73,7 +76,8 @@ struct ConstraintBlock {
   ShapePair shapes;       ///< of clearance blocks
   int row = 0, rows = 0;  ///< first and number
   double scale = 1;       ///< of yaw rows: 1 / (m g); of joint rows: 1 / limit
-  double factor = 0;      ///< of yaw rows: friction times lever [m]; of landing rows [1/m]
+  double factor = 0;      ///< of yaw rows: friction times lever [m]; of landing rows [1/m];
+                          ///< of capture rows: 1 / omega [s]
   Eigen::Matrix<double, Eigen::Dynamic, 6> wrench_rows;  ///< of linear ground groups
 };
 

@@ -16,6 +16,7 @@
 
 #include "ayumi/check/contacts.hpp"
 #include "ayumi/check/finding_kinds.hpp"
+#include "ayumi/math/windows.hpp"
 #include "ayumi/optimize/correction_constraints.hpp"
 #include "ayumi/optimize/nlp.hpp"
 #include "ayumi/optimize/repair.hpp"
@@ -41,10 +42,13 @@ struct CorrectionSpec {
   std::string profile;
   std::array<double, kKindCount> tolerance = tolerances({});  ///< of the check, by Kind
   double friction = 0.8;
-  double zmp_margin = 0.002;    ///< least distance of the ZMP inside the support [m]
-  double safe_margin = 0;       ///< the same where the motion's own is less than the least [m]
-  double joint_margin = 1e-4;   ///< inside the position limits [rad]
-  double share = 0.998;         ///< of speed limits and friction that may be used
+  double zmp_margin = 0.002;   ///< least distance of the ZMP inside the support [m]
+  double safe_margin = 0;      ///< the same where the motion's own is less than the least [m]
+  double joint_margin = 1e-4;  ///< inside the position limits [rad]
+  double share = 0.998;        ///< of speed limits and friction that may be used
+  double xi_spare = 3e-4;      ///< that xi is wanted off the planned one at most [m]
+  double zmp_spare = 1e-3;     ///< likewise the ZMP, where xi is [m]
+  std::vector<TimeWindow> wrong_plan;  ///< where planned COG or ZMP are themselves at fault [s]
   bool gentle_swings = true;    ///< a low sole is wanted level and over its place, others not low
   double force_share = 0.1;     ///< least normal force in contact over the weight
   double sole_position = 2e-4;  ///< band a supporting sole stays in [m]
@@ -114,6 +118,9 @@ class CorrectionProblem {
   void place_clearance_blocks(int instant);
   void place_clearance_block(int instant, const ShapePair& shapes, double own);
   void place_command_blocks(int instant);
+  void measure_capture();
+  void place_capture_block(int instant);
+  Eigen::Matrix<double, 2, 6> planned_zmp_rows(int instant) const;
   double tolerance(Kind kind) const { return spec_.tolerance[static_cast<int>(kind)]; }
   std::vector<const CommandSample*> watched(int instant) const;
   void place_jacobian();
@@ -134,6 +141,7 @@ class CorrectionProblem {
   std::vector<Instant> instants_;
   double landing_factor_ = 0;              ///< of landing rows [1/m]
   double foot_clearance_ = 0;              ///< wanted in the middle half of a swing [m]
+  std::vector<bool> keeps_xi_;             ///< xi is wanted near the planned one, by instant
   std::vector<double> margin_;             ///< wanted of the ZMP, by instant [m]
   std::vector<ConstraintBlock> blocks_;    ///< in order of their instants
   std::vector<std::vector<int>> columns_;  ///< by block

@@ -33,6 +33,7 @@ void CorrectionProblem::add_block(ConstraintBlock block, double lower, double up
 void CorrectionProblem::place_constraints() {
   place_margins();
   measure_swings();
+  measure_capture();
   for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
     place_kept_pose(i);
     place_foot_blocks(i);
@@ -43,6 +44,7 @@ void CorrectionProblem::place_constraints() {
     }
     place_clearance_blocks(i);
     place_command_blocks(i);
+    place_capture_block(i);
   }
 }
 
@@ -306,6 +308,16 @@ void CorrectionProblem::place_torque_blocks(int instant) {
   }
 }
 
+// f_n times the ZMP from the commanded one, over the weight.
+Eigen::Matrix<double, 2, 6> CorrectionProblem::planned_zmp_rows(int instant) const {
+  const Instant& at = instants_[instant];
+  const Eigen::Vector3d zmp = at.plane.frame.inverse() * series_.samples[at.sample].zmp;
+  Eigen::Matrix<double, 2, 6> rows;
+  rows.row(0) << 0, 0, -zmp.x(), 0, -1, 0;
+  rows.row(1) << 0, 0, -zmp.y(), 1, 0, 0;
+  return rows / (model_.mass() * kGravity);
+}
+
 // What is trusted beside the posture.
 void CorrectionProblem::place_command_blocks(int instant) {
   const Instant& at = instants_[instant];
@@ -314,12 +326,8 @@ void CorrectionProblem::place_command_blocks(int instant) {
     add_block(block_of(ConstraintGroup::cog, instant, 0, 3),
               -kShare * tolerance(Kind::cog_residual), kShare * tolerance(Kind::cog_residual));
   if (spec_.trust != Trust::zmp || at.plane.empty() || !at.known) return;
-  const Eigen::Vector3d zmp = at.plane.frame.inverse() * series_.samples[at.sample].zmp;
   ConstraintBlock block = block_of(ConstraintGroup::zmp, instant, 0, 2);
-  block.wrench_rows.setZero(2, 6);
-  block.wrench_rows.row(0) << 0, 0, -zmp.x(), 0, -1, 0;
-  block.wrench_rows.row(1) << 0, 0, -zmp.y(), 1, 0, 0;
-  block.wrench_rows /= model_.mass() * kGravity;
+  block.wrench_rows = planned_zmp_rows(instant);
   const double slack = kShare * tolerance(Kind::zmp_residual);
   add_block(std::move(block), -slack, slack);
 }

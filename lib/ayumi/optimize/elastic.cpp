@@ -19,6 +19,7 @@ constexpr double kHardFactor = 100;  // feet and flight against the rest
 // their repair takes twice the iterations and stands no better.
 constexpr double kSafetyPrice = 0.1;    // of a millimetre of the ZMP's safety in one window
 constexpr double kLandingPrice = 1;     // of a millimetre a low sole is off its place, or too low
+constexpr double kCapturePrice = 0.3;   // of a millimetre of xi or ZMP from where they were planned
 constexpr double kSafetyWindow = 0.05;  // [s]
 constexpr double kMillimetre = 1e-3;
 constexpr double kStart = 0.01;  // of slacks, more than is needed
@@ -42,6 +43,16 @@ double unit_of(ConstraintGroup group) {
 // Wanted of swings beyond what the check asks for.
 bool of_swing(ConstraintGroup group) {
   return group == ConstraintGroup::landing || group == ConstraintGroup::foot_clearance;
+}
+
+// Wanted beyond the check, and may be missing without end.
+bool is_wish(ConstraintGroup group) { return of_swing(group) || group == ConstraintGroup::capture; }
+
+// Of the objective, for a unit.
+double wish_price(ConstraintGroup group) {
+  return of_swing(group)                     ? kLandingPrice
+         : group == ConstraintGroup::capture ? kCapturePrice
+                                             : kSafetyPrice;
 }
 
 bool is_hard(ConstraintGroup group) {
@@ -162,9 +173,8 @@ Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
 
 Price price_of(ConstraintGroup group) {
   constexpr double kChange = 2 / kObjectiveScale;  // of one of the objective
-  if (group == ConstraintGroup::support)
-    return {kMillimetre, kChange * kSafetyPrice, kSafetyWindow};
-  if (of_swing(group)) return {kMillimetre, kChange * kLandingPrice, kSafetyWindow};
+  if (group == ConstraintGroup::support || is_wish(group))
+    return {kMillimetre, kChange * wish_price(group), kSafetyWindow};
   return {unit_of(group), kChange * kPrice, kWindow};
 }
 
@@ -174,15 +184,15 @@ Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt
   std::map<std::tuple<int, int, long>, int> index;
   std::vector<double> most, price;
   for (const ConstraintBlock& block : problem.blocks()) {
-    const bool landing = of_swing(block.group);
-    const double spare = landing ? kNoBound : problem.safety(block.instant) / kMillimetre;
-    if ((!landing && block.group != ConstraintGroup::support) || spare <= 0) continue;
+    const bool wish = is_wish(block.group);
+    const double spare = wish ? kNoBound : problem.safety(block.instant) / kMillimetre;
+    if ((!wish && block.group != ConstraintGroup::support) || spare <= 0) continue;
     const double t = problem.instants()[block.instant].sample * dt;
     const std::tuple key(static_cast<int>(block.group), block.item, std::lround(t / kSafetyWindow));
     const auto found = index.try_emplace(key, static_cast<int>(most.size()));
     if (found.second) {
       most.push_back(spare);
-      price.push_back(factor * (landing ? kLandingPrice : kSafetyPrice));
+      price.push_back(factor * wish_price(block.group));
     }
     double& all = most[static_cast<size_t>(found.first->second)];
     all = std::min(all, spare);
@@ -207,7 +217,7 @@ Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt) {
     const auto found = index.try_emplace(key, static_cast<int>(unit.size()));
     if (found.second) {
       unit.push_back(unit_of(block.group));
-      price.push_back(of_swing(block.group)  ? kLandingPrice
+      price.push_back(is_wish(block.group)   ? wish_price(block.group)
                       : is_hard(block.group) ? kPrice * kHardFactor
                                              : kPrice);
     }

@@ -31,8 +31,8 @@ Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt);
 
 /// The program of `problem` with what no check asks for to be had at a price, and to give way where
 /// it costs more change than it is worth or is not to be had: the ZMP's safety, as far as to the
-/// least margin asked for, landings over their places, and feet off the ground. `factor` on the
-/// prices.
+/// least margin asked for, landings over their places, feet off the ground, and xi and ZMP where
+/// the plan has them. `factor` on the prices.
 Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt,
                      double factor = 1);
 

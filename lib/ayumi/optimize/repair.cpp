@@ -68,6 +68,7 @@ class Repair {
       result_.status = RepairStatus::already_consistent;
       return result_;
     }
+    spec_.wrong_plan = wrong_plan(result_.before);
     // COG, ZMP and f_z of the full model: what is left is wrong with the motion itself.
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
     as_given_ = result_;
@@ -194,6 +195,8 @@ class Repair {
     const bool safe = spec_.safe_margin > spec_.zmp_margin;  // was to be had
     spec_.zmp_margin = asked_.zmp_margin;
     spec_.safe_margin = safe ? asked_.safe_margin : asked_.zmp_margin;
+    // Given up to get on, not because there was no solution with them.
+    spec_.gentle_swings = spec_.gentle_swings || (safe && asked_.gentle_swings);
     spec_ = at_limits(spec_, options_.safety);
     spec_.spacing = track_.spacing;
     spec_.start = track_.coefficients;
@@ -353,7 +356,7 @@ class Repair {
     }
     result_.moved = motion_change(model_, series_, result_.series);
     result_.change = weighted_change(model_, series_, result_.series, spec_.weights);
-    result_.change.safety = safety_price(model_, series_, result_.series, options_);
+    result_.change.safety = safety_price(model_, series_, result_.series, options_, result_.before);
     result_.max_joint_change = result_.moved.joint.size;
     result_.max_cog_change = result_.moved.cog.size;
     result_.at = result_.moved.joint.at;

@@ -160,6 +160,16 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   return spec;
 }
 
+std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report) {
+  constexpr double kAround = 0.3;  // [s]
+  std::vector<TimeWindow> windows;
+  for (const Finding& f : report.findings)
+    if (f.severity == Severity::error &&
+        (f.kind == "cog_residual" || f.kind == "zmp_residual" || f.kind == "support_margin"))
+      windows.emplace_back(f.begin - kAround, f.end + kAround);
+  return windows;
+}
+
 void add_near_pairs(const RobotModel& model, const CommandSeries& series,
                     const CollisionModel& collisions, std::vector<int>& pairs) {
   constexpr double kNear = 0.005;  // [m]

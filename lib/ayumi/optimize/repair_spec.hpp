@@ -19,6 +19,9 @@ void add_near_pairs(const RobotModel& model, const CommandSeries& series,
 std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
                                                       double pad);
 
+/// Where the commanded COG or ZMP are themselves at fault, not by a posture that is wrong.
+std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report);
+
 /// What is written to a file: numbers of nine decimals, and only the control points and joints that
 /// move, with the three zero points before and after that a cubic spline needs to begin at rest.
 CorrectionTrack trimmed(const CorrectionTrack& track);

@@ -44,6 +44,7 @@ bool is_bought(ConstraintGroup group) {
     case ConstraintGroup::foot_clearance:
     case ConstraintGroup::position:
     case ConstraintGroup::clearance:
+    case ConstraintGroup::capture:
       return true;
     default:
       return false;
@@ -68,11 +69,13 @@ double lack(const CorrectionProblem& problem, const ConstraintBlock& block, cons
 }  // namespace
 
 double safety_price(const RobotModel& model, const CommandSeries& before,
-                    const CommandSeries& after, const RepairOptions& options) {
+                    const CommandSeries& after, const RepairOptions& options,
+                    const ConsistencyReport& check) {
   if (before.samples.size() != after.samples.size()) return 0;
   CorrectionSpec spec = repair_spec(model, before, options);
   spec.windows = windows_of(before, after, spec.spacing);
   if (spec.windows.empty()) return 0;
+  spec.wrong_plan = wrong_plan(check);
   const CollisionModel collisions(model);
   spec.collisions = &collisions;
   for (const CommandSeries* series : {&before, &after})
