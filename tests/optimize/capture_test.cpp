@@ -77,11 +77,11 @@ TEST_F(ThrownKnee, RepairedWithstandsThePushesOfItsPlan) {
   options.controllers = {{"dtad", {}}};
   options.directions = 4;
   options.replicas = 0;
+  options.step = kStep / 3;  // levels of two plans differ by as much as one of them
   const auto before = push_limits(hoap1(), thrown, options);
   const auto after = push_limits(hoap1(), repaired().series, options);
   for (size_t i = 0; i < before.size(); ++i)
-    EXPECT_GE(after[i].limits[0].impulse,
-              before[i].limits[0].impulse - 1.01 * kStep * before[i].bound)
+    EXPECT_GE(after[i].limits[0].impulse, before[i].limits[0].impulse - kStep * before[i].bound)
         << before[i].direction << " rad";
 }
 
