@@ -85,6 +85,7 @@ bool disagrees(const SimulationLog& log) {
 void plot_motions(const RobotModel& model, const CommandSeries& before, const CommandSeries& after,
                   const MotionPlot& plot, const std::filesystem::path& path) {
   constexpr double kAround = 0.4;  // [s]
+  constexpr double kSeen = 0.03;   // of the joint that moved most: less would be one line twice
   const SimulationLog a = plan_log(model, before, before);
   const SimulationLog b = plan_log(model, after, before);
   const MotionChange change = motion_change(model, before, after);
@@ -102,7 +103,9 @@ void plot_motions(const RobotModel& model, const CommandSeries& before, const Co
     begin = std::min(begin, joint.begin);
     end = std::max(end, joint.end);
     const int dof = model.find_dof(joint.joint);
-    if (options.joints.size() < kJointsDrawn) options.joints.push_back(dof);
+    if (options.joints.size() < kJointsDrawn &&
+        std::abs(joint.most) > kSeen * std::abs(change.joints.front().most))
+      options.joints.push_back(dof);
     const bool fast = std::any_of(a.samples.begin(), a.samples.end(), [&](const auto& s) {
       return std::abs(s.state.dtheta[dof]) > speed[dof];
     });

@@ -12,8 +12,8 @@ namespace ayumi::app {
 namespace {
 
 // The first profile whose actuators are enough where the robot's first one is not; what else the
-// check finds is told.
-void choose_profile(const Context& context, const RobotModel& model, Pattern& pattern,
+// check finds is told, and false.
+bool choose_profile(const Context& context, const RobotModel& model, Pattern& pattern,
                     const CommandSeries& series) {
   CheckOptions options;
   options.profile = pattern.profile;
@@ -28,15 +28,16 @@ void choose_profile(const Context& context, const RobotModel& model, Pattern& pa
   } else if (!need.text.empty()) {
     context.print(need.text + "\n");
   }
-  if (report.consistent) return;
+  if (report.consistent) return true;
   const Finding& first = report.findings.front();
   context.print("`ayumi check` finds it inconsistent: " + first.kind + " " + first.where + " at " +
                 text::fixed(first.at, 3) + " s: " + first.hint + "\n");
+  return false;
 }
 
 }  // namespace
 
-void write_new_pattern(const Context& context, const RobotModel& model, Pattern pattern,
+bool write_new_pattern(const Context& context, const RobotModel& model, Pattern pattern,
                        const std::string& robot, const std::string& out,
                        const std::vector<std::string>& comments) {
   refuse_overwriting(context, out);
@@ -44,7 +45,8 @@ void write_new_pattern(const Context& context, const RobotModel& model, Pattern 
   pattern.name = std::filesystem::path(out).stem().string();
   pattern.file = out;
   const CommandSeries series = sample(model, pattern, {}, context.progress());
-  if (series.viip.empty() && model.has_soles()) choose_profile(context, model, pattern, series);
+  const bool consistent =
+      !series.viip.empty() || !model.has_soles() || choose_profile(context, model, pattern, series);
   pattern.file = "new";  // relative names hold from the working folder
   write_pattern(out, pattern, comments);
   context.print(out + ": " + text::fixed(series.duration(), 2) + " s, " +
@@ -56,6 +58,7 @@ void write_new_pattern(const Context& context, const RobotModel& model, Pattern 
                                             {"phases", pattern.phases.size()},
                                             {"keyframes", pattern.keyframes.size()}}
                          .dump(2));
+  return consistent;
 }
 
 }  // namespace ayumi::app

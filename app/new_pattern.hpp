@@ -5,8 +5,9 @@
 
 namespace ayumi::app {
 
-/// Samples the motion, then writes it as `out`: a file that cannot be used is not made.
-void write_new_pattern(const Context& context, const RobotModel& model, Pattern pattern,
+/// Samples the motion, then writes it as `out`: a file that cannot be used is not made. Whether the
+/// check finds it consistent; what it finds is told.
+bool write_new_pattern(const Context& context, const RobotModel& model, Pattern pattern,
                        const std::string& robot, const std::string& out,
                        const std::vector<std::string>& comments);
 

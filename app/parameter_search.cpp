@@ -23,7 +23,7 @@ using Values = std::map<std::string, double>;
 
 constexpr int kMostTrials = 60;     // of several parameters together
 constexpr double kUnsampled = 1e6;  // worse than any motion
-constexpr double kSlowest = 5;      // more is not called a matter of time
+constexpr double kSlowest = 8;      // more is not called a matter of time
 constexpr double kPaceStep = 1.15, kPaceResolution = 0.02;
 constexpr double kPart = 0.8;  // what is more of a pattern is all of it
 
@@ -75,7 +75,7 @@ class Search {
     if (whole(given) && nearest_whole(parameter, given, passing)) return true;
     double tried = 0;
     for (const double share :
-         {0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.95, 1.0, 1.5, 2.0, 3.0}) {
+         {0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.95, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0}) {
       for (const double sign : {-1.0, 1.0}) {
         if (sign < 0 && share > 1) continue;
         double good = given * (1 + sign * share), bad = given * (1 + sign * tried);

@@ -1,5 +1,6 @@
 // Is a pattern physically consistent?
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -39,6 +40,21 @@ void print_tolerances(const Context& context) {
   context.print_json(Json{{"tolerances", kinds}}.dump(2));
 }
 
+bool has_encoders(const RobotModel& model) {
+  const auto& dofs = model.dofs();
+  return std::any_of(dofs.begin(), dofs.end(), [](const Dof& d) { return d.encoder.device > 0; });
+}
+
+// What the robot's own actuators, by which a table for it is judged, lack where the pattern assumes
+// others.
+ActuatorNeed own_need(const PatternInput& input, CheckOptions judged) {
+  const std::string own = input.model.limits().name;
+  if (judged.profile.empty() || judged.profile == own) return {};
+  judged.profile = own;
+  return actuator_need(input.model, input.series, judged,
+                       check_consistency(input.model, input.series, judged));
+}
+
 Json check_one(const Context& context, const Options& options, const std::string& file) {
   const auto begin = std::chrono::steady_clock::now();
   const PatternInput input = load_pattern(context, file, options.input);
@@ -49,16 +65,25 @@ Json check_one(const Context& context, const Options& options, const std::string
     need = actuator_need(input.model,
                          keyed_goals(input.model, input.series, input.pattern.controller), judged);
   report.consistent = report.consistent && need.text.empty();
+  const ActuatorNeed own = own_need(input, judged);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  context.print(file + ": " + (report.consistent ? "consistent" : "INCONSISTENT") + ", " +
-                text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
-                (need.text.empty() ? "" : "  " + need.text + "\n") + check_table(report));
+  context.print(
+      file + ": " + (report.consistent ? "consistent" : "INCONSISTENT") + ", " +
+      text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
+      (need.text.empty() ? "" : "  " + need.text + "\n") +
+      (own.text.empty()
+           ? ""
+           : "  the robot as it is: " + own.text +
+                 (has_encoders(input.model) ? " (`export --format hoap` judges by it)" : "") +
+                 "\n") +
+      check_table(report));
   Json json = {{"pattern", file}};
   json.update(Json::parse(check_json(report)));
   json["actuators"] = {{"enough", need.text.empty()},
                        {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
-                       {"sufficient_profiles", need.sufficient}};
+                       {"sufficient_profiles", need.sufficient},
+                       {"own", own.text.empty() ? Json(nullptr) : Json(own.text)}};
   json["wall_s"] = wall;
   return json;
 }

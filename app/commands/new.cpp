@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/check/profiles.hpp"
 #include "ayumi/control/viip.hpp"
 #include "ayumi/control/viip_goals.hpp"
@@ -39,9 +41,10 @@ struct NewOptions {
 
 constexpr const char* kScaled = "; left out: HOAP-1's scaled to the robot";
 
-void write_new(const Context& context, const RobotModel& model, Pattern pattern,
+bool write_new(const Context& context, const RobotModel& model, Pattern pattern,
                const NewOptions& options, const std::vector<std::string>& comments) {
-  write_new_pattern(context, model, std::move(pattern), options.robot, options.out, comments);
+  return write_new_pattern(context, model, std::move(pattern), options.robot, options.out,
+                           comments);
 }
 
 void add_common(CLI::App& command, NewOptions& options) {
@@ -49,6 +52,50 @@ void add_common(CLI::App& command, NewOptions& options) {
       ->type_name("ROBOT")
       ->capture_default_str();
   command.add_option("-o,--out", options.out, "pattern file to write")->type_name("F")->required();
+}
+
+// No joint beyond its limits, no bodies that meet, feet in their places and within reach.
+bool posture_fits(const RobotModel& model, const WalkParameters& walk) {
+  constexpr double kTick = 0.01;  // [s]
+  try {
+    const ConsistencyReport report =
+        check_consistency(model, sample(model, walk_pattern(model, walk), {.dt = kTick}));
+    return std::none_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
+      return f.severity == Severity::error && is_of_posture(f);
+    });
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::internal) throw;
+    return false;
+  }
+}
+
+// The way aside or the turn that the legs can do, where they cannot do what was asked for; "" where
+// that is not what is wrong.
+std::string what_fits(const RobotModel& model, const WalkParameters& asked) {
+  struct Measure {
+    double WalkParameters::*value;
+    const char* option;
+    double unit, step;
+  };
+  if (posture_fits(model, asked)) return "";
+  for (const Measure& m : {Measure{&WalkParameters::side, "--side", 1, 1e-3},
+                           Measure{&WalkParameters::turn, "--turn", std::numbers::pi / 180, 0.5}}) {
+    const double given = asked.*m.value / m.unit;
+    int fits = 0, fails = static_cast<int>(std::ceil(std::abs(given) / m.step));
+    WalkParameters walk = asked;
+    const auto at = [&](int steps) {
+      walk.*m.value = std::copysign(steps * m.step, given) * m.unit;
+      return posture_fits(model, walk);
+    };
+    if (fails == 0 || !at(0)) continue;
+    while (fails - fits > 1) {
+      const int middle = (fits + fails) / 2;
+      (at(middle) ? fits : fails) = middle;
+    }
+    return std::string(m.option) + " " + text::brief(std::copysign(fits * m.step, given)) +
+           " is what the legs can do";
+  }
+  return "";
 }
 
 void new_walk(const Context& context, NewOptions options) {
@@ -63,11 +110,20 @@ void new_walk(const Context& context, NewOptions options) {
   w.lift = options.lift.value_or(scaled.lift);
   w.turn = options.turn_deg * std::numbers::pi / 180;
   w.first_swing = options.first == "left" ? Side::left : Side::right;
-  write_new(context, model, walk_pattern(model, w), options,
-            {"Walk of " + std::to_string(w.steps) + " steps: stride " + text::brief(w.stride) +
-                 " m, period " + text::brief(w.period) + " s, double support " +
-                 text::brief(100 * w.double_support) + " %, lift " + text::brief(w.lift) + " m",
-             "The COG is left out: it is solved from the ZMP keys for the whole robot."});
+  const std::vector<std::string> comments = {
+      "Walk of " + std::to_string(w.steps) + " steps: stride " + text::brief(w.stride) +
+          " m, period " + text::brief(w.period) + " s, double support " +
+          text::brief(100 * w.double_support) + " %, lift " + text::brief(w.lift) + " m",
+      "The COG is left out: it is solved from the ZMP keys for the whole robot."};
+  try {
+    if (write_new(context, model, walk_pattern(model, w), options, comments)) return;
+  } catch (const Error& error) {
+    const std::string fits = error.code() == ErrorCode::bad_pattern ? what_fits(model, w) : "";
+    if (fits.empty()) throw;
+    fail(error.code(), error.what() + std::string("; ") + fits);
+  }
+  const std::string fits = what_fits(model, w);
+  if (!fits.empty()) context.print("  " + fits + "\n");
 }
 
 void new_step(const Context& context, NewOptions options) {

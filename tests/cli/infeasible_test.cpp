@@ -54,6 +54,32 @@ TEST_F(Infeasible, ValuesAndPacesToldPass) {
             1);
 }
 
+// What is told to need 5.2 times as long does pass when it gets that.
+TEST_F(Infeasible, AWindowFarTooShortIsStillAMatterOfTime) {
+  write(folder / "slap.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
+    "units": { "angle": "deg" }, "parameters": { "time": 0.2 },
+    "phases": [{ "until": "1.4 + ${time}", "support": "both" }],
+    "keyframes": [
+      { "t": 0, "zmp": "center", "posture": "home" },
+      { "t": 0.6, "posture": "home" },
+      { "t": "0.6 + ${time}", "posture": { "l_shoulder_pitch": -60 } },
+      { "t": "1.4 + ${time}", "zmp": "center" }] })");
+  const Output failed =
+      ayumi({"repair", "slap.json", "-o", "out.json", "--lock", "0.6..0.8", "--json"});
+  EXPECT_EQ(failed.exit_code, 4) << failed.err;
+  const Json json = Json::parse(failed.out);
+  EXPECT_NEAR(json["obstacles"][0]["time_factor"], 5.16, 0.02);
+  ASSERT_EQ(json["parameters"].size(), 1u);
+  EXPECT_NEAR(json["parameters"][0]["passes"], 1.04, 0.02);
+  const std::string time = "time=" + json["parameters"][0]["passes"].dump();
+  EXPECT_EQ(ayumi({"check", "slap.json", "--set", time}).exit_code, 0);
+  const double whole = json["slower"]["whole"];
+  EXPECT_NEAR(whole, 5.16, 0.1);
+  EXPECT_EQ(ayumi({"edit", "retime", "slap.json", "--scale", std::to_string(whole), "-o", "s.json"})
+                .exit_code,
+            0);
+}
+
 // A foot out of reach cannot even be sampled; the error names the stride that would do.
 TEST_F(Infeasible, AFootOutOfReachNamesTheStrideThatPasses) {
   write(folder / "step.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",

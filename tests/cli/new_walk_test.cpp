@@ -19,13 +19,21 @@ TEST(NewWalk, StairsAreWrittenForTheProfileThatClimbsThem) {
       << out.out;
   EXPECT_NE(contents(folder.path() / "w.json").find("\"profile\": \"hoap1-strong\""),
             std::string::npos);
-  EXPECT_EQ(run_program({"check", "-q", "w.json"}, folder.path()).exit_code, 0);
+  // It passes with the motors it asks for, and a table for the robot as it is would be refused.
+  const Output check = run_program({"check", "-q", "w.json"}, folder.path());
+  EXPECT_EQ(check.exit_code, 0);
+  EXPECT_NE(check.out.find("the robot as it is: profile hoap1 is not enough: needs "),
+            std::string::npos)
+      << check.out;
+  EXPECT_NE(check.out.find("(`export --format hoap` judges by it)"), std::string::npos);
 }
 
 TEST(NewWalk, OnTheLevelItIsTheRobotsOwn) {
   Folder folder;
   EXPECT_EQ(made(folder, {"--steps", "2"}).out.find("profile"), std::string::npos);
   EXPECT_EQ(contents(folder.path() / "w.json").find("\"profile\""), std::string::npos);
+  EXPECT_EQ(run_program({"check", "-q", "w.json"}, folder.path()).out.find("robot as it is"),
+            std::string::npos);
 }
 
 TEST(NewWalk, WhatNoProfileMendsIsSaid) {
@@ -35,6 +43,25 @@ TEST(NewWalk, WhatNoProfileMendsIsSaid) {
   EXPECT_NE(out.out.find("`ayumi check` finds it inconsistent: self_collision r_foot - l_foot"),
             std::string::npos)
       << out.out;
+  EXPECT_NE(out.out.find(" is what the legs can do"), std::string::npos) << out.out;
+}
+
+// A way aside that asks too much of the ankles, or is out of reach, is told with the one that fits.
+TEST(NewWalk, AsideNoFartherThanTheLegsCan) {
+  Folder folder;
+  const Output far = made(folder, {"--steps", "2", "--stride", "0", "--side", "0.04"});
+  EXPECT_EQ(far.exit_code, 0) << far.err;
+  const size_t at = far.out.find("--side 0.0");
+  ASSERT_NE(at, std::string::npos) << far.out;
+  const std::string fits = far.out.substr(at + 7, far.out.find(' ', at + 7) - at - 7);
+  EXPECT_LT(std::stod(fits), 0.04);
+  EXPECT_GT(std::stod(fits), 0.01);
+  made(folder, {"--steps", "2", "--stride", "0", "--side", fits});
+  EXPECT_EQ(run_program({"check", "-q", "w.json"}, folder.path()).exit_code, 0);
+  const Output beyond = made(folder, {"--steps", "2", "--stride", "0", "--side", "0.07"});
+  EXPECT_EQ(beyond.exit_code, 3) << beyond.out;
+  EXPECT_NE(beyond.err.find("; --side " + fits + " is what the legs can do"), std::string::npos)
+      << beyond.err;
 }
 
 }  // namespace

@@ -298,6 +298,11 @@ ImportedMotion read_motion(const std::string& given, const std::string& file,
   const bool hoap = options.format == "hoap" || (options.format.empty() && looks_like_hoap(bytes));
   ImportedMotion result = hoap ? read_hoap_motion(bytes, file, model, options.rate)
                                : read_table_motion(bytes, file, model, options);
+  constexpr int kLeastRows = 6;  // accelerations take five
+  if (result.motion.theta.rows() < kLeastRows)
+    fail(ErrorCode::bad_file, file + ": " + std::to_string(result.motion.theta.rows()) +
+                                  " rows of motion; at least " + std::to_string(kLeastRows) +
+                                  " are needed");
   if (options.commands || result.commands) take_out_lead(model, result);
   smooth_angles(model, options, result);
   if (result.motion.support.empty()) result.filled.push_back("contacts: detected from the motion");
