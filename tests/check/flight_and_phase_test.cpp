@@ -7,6 +7,7 @@
 
 #include "ayumi/check/consistency.hpp"
 #include "tests/support/planted.hpp"
+#include "tests/support/robot_motions.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -54,6 +55,24 @@ TEST(Consequence, OfAFlightThatIsNotFreeAreTorques) {
     e = errors_of(p);
     EXPECT_TRUE(e.kinds.count("ballistic") && e.all.size() > 1) << e.told;
   }
+}
+
+// In a long flight the COG is farthest off where its acceleration is free again.
+TEST(Consequence, OfALongFlightThatIsNotFreeIsTheCogInItsMiddle) {
+  const RobotModel& robot = bundled_robot("humanoid30");
+  Pattern p = baked(robot, pattern_of({"humanoid30", "jump"}));
+  const double from = begin_of(p, 1), to = p.phases[1].until, at = 0.5 * (from + to);
+  ASSERT_EQ(p.phases[1].support, Support::none);
+  for_rows(*p.table, [&](double t, size_t k) {
+    const double s = (t - at) / (0.5 * (to - from));
+    if (std::abs(s) < 1) p.table->base[k].position.z() += 0.0015 * (1 + std::cos(M_PI * s));
+  });
+  int free = 0;
+  for (const Finding& f : report_of(robot, p).findings) {
+    EXPECT_FALSE(f.kind == "cog_residual" && f.severity == Severity::error) << f.at;
+    free += f.kind == "ballistic" && f.severity == Severity::error;
+  }
+  EXPECT_EQ(free, 1);
 }
 
 // A flight at another scale ends with a jump to the ground: soles and forces there are not the

@@ -134,7 +134,6 @@ class Causes {
 
   bool in_a_leg(int dof) const { return in_leg_of(0, dof) || in_leg_of(1, dof); }
 
-  // Forces answer 50 ms around.
   Span episode(int i) const {
     Span s = deviation_around(pass_, windows_[i]);
     if (is_foot(of(i).kind)) {
@@ -333,12 +332,13 @@ class Causes {
         return beside.contains(windows_[j]) && (is_need(of(j)) || is_residual(of(j).kind));
       });
     }
-    blame(i, around(windows_[i], kStencil), [&](int j) {
-      return of(j).kind == Kind::fz_residual || of(j).kind == Kind::cog_residual;
+    const Span near = around(whole, kEdge), here = around(windows_[i], kStencil);
+    blame(i, near, [&](int j) {
+      if (of(j).kind != Kind::fz_residual && of(j).kind != Kind::cog_residual) return false;
+      return near.contains(windows_[j]) || here.touches(windows_[j]);
     });
   }
 
-  // Errors of one kind, the worst first.
   std::vector<int> by_excess(Kind kind) const {
     std::vector<int> result;
     for (int i = 0; i < count(); ++i)
