@@ -2,7 +2,8 @@
 // seconds in functions and in the linear algebra of Ipopt, peak memory of the process. The same
 // repair by MUMPS follows at once (processor time), and what an iteration's linear algebra takes
 // with it over what it takes without; the lower of as many rounds as the first argument says (2).
-// Last, or alone where that argument is "check", the check of a walk of 10 s at 1 kHz by parts.
+// A second argument is the number of steps of the longest walk (13).
+// Last, or alone where the first is "check", the check of a walk of 10 s at 1 kHz by parts.
 
 #include <sys/resource.h>
 
@@ -12,6 +13,7 @@
 #include <ctime>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ayumi/check/collision_scan.hpp"
 #include "ayumi/check/consistency.hpp"
@@ -44,21 +46,35 @@ double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_P
 
 struct Measured {
   RepairResult result;
+  std::vector<int> programs;  // iterations of each
   double all = 0;
 };
 
 void keep_quicker(Measured& best, const RobotModel& model, const CommandSeries& series,
                   const RepairOptions& options) {
+  std::vector<int> programs;
+  auto count = [&programs](const ProgressEvent& event) {
+    if (event.fraction == 0) programs.push_back(-1);
+    ++programs.back();
+    return true;
+  };
   const double begin = processor_seconds();
-  RepairResult r = repair(model, series, options);
+  RepairResult r = repair(model, series, options, count);
   const double all = processor_seconds() - begin;
   if (best.all > 0 && best.result.work.solver_seconds <= r.work.solver_seconds) return;
   best.result = std::move(r);
+  best.programs = programs;
   best.all = all;
 }
 
 double milliseconds_each(const RepairWork& work) {
   return 1e3 * work.solver_seconds / std::max(1, work.iterations);
+}
+
+std::string listed(const std::vector<int>& numbers) {
+  std::string list;
+  for (const int n : numbers) list += (list.empty() ? "" : " + ") + std::to_string(n);
+  return list;
 }
 
 void measure(const char* name, const RobotModel& model, const CommandSeries& series,
@@ -76,16 +92,17 @@ void measure(const char* name, const RobotModel& model, const CommandSeries& ser
   const RepairWork &w = r.work, &m = other.result.work;
   std::printf(
       "%-16s %5.2f s walk  %-10s %d rounds  %5d variables %5d constraints %7d nonzeros J %6d H  "
-      "%3d iterations  functions %5.2f s  linear algebra %5.2f s  check and the rest %5.2f s  "
+      "%3d iterations (%s)  functions %5.2f s  linear algebra %5.2f s  check and the rest %5.2f s  "
       "together %5.2f s  violation %.1e  peak %4ld MB\n"
       "    with MUMPS: %d iterations, linear algebra %.2f s, together %.2f s; an iteration's "
       "linear "
       "algebra %.1f ms, here %.2f ms, ratio %.2f\n",
       name, series.duration(), name_of(r.status), w.rounds, w.variables, w.constraints,
-      w.jacobian_nonzeros, w.hessian_nonzeros, w.iterations, w.function_seconds, w.solver_seconds,
-      own.all - w.function_seconds - w.solver_seconds, own.all, r.constraint_violation,
-      usage.ru_maxrss / 1024, m.iterations, m.solver_seconds, other.all, milliseconds_each(m),
-      milliseconds_each(w), milliseconds_each(m) / milliseconds_each(w));
+      w.jacobian_nonzeros, w.hessian_nonzeros, w.iterations, listed(own.programs).c_str(),
+      w.function_seconds, w.solver_seconds, own.all - w.function_seconds - w.solver_seconds,
+      own.all, r.constraint_violation, usage.ru_maxrss / 1024, m.iterations, m.solver_seconds,
+      other.all, milliseconds_each(m), milliseconds_each(w),
+      milliseconds_each(m) / milliseconds_each(w));
   std::fflush(stdout);
 }
 
@@ -138,13 +155,15 @@ int main(int count, char** arguments) {
     return 0;
   }
   const int rounds = count > 1 ? std::max(1, std::atoi(arguments[1])) : 2;
+  const int most = count > 2 ? std::atoi(arguments[2]) : 13;
   for (const int steps : {3, 8, 13}) {
+    if (steps > most) continue;
     const CommandSeries series = walk_of(model, steps);
     measure("knees bend less", tight_knees(robot, series), series, {}, rounds);
   }
   RepairOptions slippery;
   slippery.check.friction = 0.1;
   for (const int steps : {3, 8, 13})
-    measure("friction 0.10", model, walk_of(model, steps), slippery, rounds);
+    if (steps <= most) measure("friction 0.10", model, walk_of(model, steps), slippery, rounds);
   measure_check(model);
 }

@@ -58,8 +58,6 @@ std::vector<Vector3d> corners(const RobotModel& model, Side side, const Isometry
   return result;
 }
 
-bool of_ground(ConstraintGroup group) { return group <= ConstraintGroup::yaw; }
-
 // Yaw moment about the ZMP of a plane wrench (f, n): n_z + (n_x f_x + n_y f_y) / f_z.
 double yaw_moment(const Vector6d& w) { return w[5] + (w[3] * w[0] + w[4] * w[1]) / w[2]; }
 
@@ -71,12 +69,29 @@ Eigen::Matrix<double, 1, 6> yaw_gradient(const Vector6d& w) {
 
 // A ground block by the plane wrench, and its derivative.
 VectorXd ground_values(const ConstraintBlock& block, const Vector6d& w) {
+  if (block.group == ConstraintGroup::friction)
+    return VectorXd::Constant(1, block.scale * (block.factor * w[2] - cone_size(block, w)));
   if (block.group != ConstraintGroup::yaw) return block.wrench_rows * w;
   const double most = block.factor * w[2], moment = yaw_moment(w);
   return block.scale * Eigen::Vector2d(most - moment, most + moment);
 }
 
+}  // namespace
+
+bool is_of_ground(ConstraintGroup group) { return group <= ConstraintGroup::yaw; }
+
+double cone_size(const ConstraintBlock& block, const Vector6d& w) {
+  constexpr double kRound = 1e-4;
+  return std::sqrt(w.head<2>().squaredNorm() + std::pow(kRound / block.scale, 2));
+}
+
 MatrixXd ground_gradient(const ConstraintBlock& block, const Vector6d& w) {
+  if (block.group == ConstraintGroup::friction) {
+    MatrixXd row = MatrixXd::Zero(1, 6);
+    row.leftCols<2>() = -w.head<2>().transpose() / cone_size(block, w);
+    row(0, 2) = block.factor;
+    return block.scale * row;
+  }
   if (block.group != ConstraintGroup::yaw) return block.wrench_rows;
   MatrixXd rows(2, 6);
   rows << -yaw_gradient(w), yaw_gradient(w);
@@ -84,14 +99,22 @@ MatrixXd ground_gradient(const ConstraintBlock& block, const Vector6d& w) {
   return block.scale * rows;
 }
 
-}  // namespace
-
 Vector6d sole_deviation(const Isometry3d& actual, const Isometry3d& planned) {
   const Matrix3d E = rotation_error(actual, planned);
   Vector6d deviation;
   deviation << actual.translation() - planned.translation(),
       0.5 * Vector3d(E(2, 1) - E(1, 2), E(0, 2) - E(2, 0), E(1, 0) - E(0, 1));
   return deviation;
+}
+
+Eigen::Matrix<double, 5, 6> landing_rows(const RobotModel& model, Side side,
+                                         const Isometry3d& place) {
+  double reach = 0;
+  for (const Eigen::Vector2d& v : model.sole(side).polygon) reach = std::max(reach, v.norm());
+  Eigen::Matrix<double, 5, 6> rows = Eigen::Matrix<double, 5, 6>::Zero();
+  rows.topLeftCorner<2, 3>() = place.linear().leftCols<2>().transpose();
+  rows.bottomRightCorner<3, 3>() = reach * place.linear().transpose();
+  return rows;
 }
 
 InstantState instant_state(const RobotModel& model, const CommandSample& sample,
@@ -148,17 +171,6 @@ bool of_joint(ConstraintGroup group) {
 const Isometry3d& reference(const ConstraintBlock& block, const Instant& instant) {
   return block.group == ConstraintGroup::path ? instant.path[block.item]
                                               : instant.ground[block.item];
-}
-
-// From the deviation of a sole to landing_way().
-Eigen::Matrix<double, 5, 6> landing_rows(const RobotModel& model, Side side,
-                                         const Isometry3d& place) {
-  double reach = 0;
-  for (const Eigen::Vector2d& v : model.sole(side).polygon) reach = std::max(reach, v.norm());
-  Eigen::Matrix<double, 5, 6> rows = Eigen::Matrix<double, 5, 6>::Zero();
-  rows.topLeftCorner<2, 3>() = place.linear().leftCols<2>().transpose();
-  rows.bottomRightCorner<3, 3>() = reach * place.linear().transpose();
-  return rows;
 }
 
 VectorXd foot_values(const RobotModel& model, const ConstraintBlock& block, const Instant& instant,
@@ -315,7 +327,7 @@ std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& b
 VectorXd block_values(const RobotModel& model, const ConstraintBlock& block, const Instant& instant,
                       const InstantState& state) {
   const CorrectedMotion& m = state.motion;
-  if (of_ground(block.group))
+  if (is_of_ground(block.group))
     return ground_values(block, plane_wrench(instant.plane, m.state.base.position, state.wrench));
   if (of_foot(block.group)) return foot_values(model, block, instant, state);
   switch (block.group) {
@@ -341,7 +353,7 @@ VectorXd block_values(const RobotModel& model, const ConstraintBlock& block, con
 std::array<MatrixXd, 3> block_derivatives(const RobotModel& model, const ConstraintBlock& block,
                                           const Instant& instant, const InstantState& state) {
   std::array<MatrixXd, 3> by;
-  if (of_ground(block.group)) return ground_derivatives(block, instant, state);
+  if (is_of_ground(block.group)) return ground_derivatives(block, instant, state);
   if (of_foot(block.group)) {
     by[0] = foot_derivatives(model, block, instant, state);
   } else if (of_joint(block.group)) {

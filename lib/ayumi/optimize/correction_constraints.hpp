@@ -16,18 +16,17 @@
 namespace ayumi {
 
 /// support: f_n (ZMP inside each edge - margin) / (m g) [m]; unilateral: f_n / (m g);
-/// friction: (mu f_n - f_t) / (m g) on the sides of a pyramid inside the cone, linear where the
-/// cone itself would ask for its curvature; flight: ground force / (m g) and moment / (m g) about
-/// the planned COG; zmp: f_n (ZMP - commanded ZMP) / (m g) [m]; yaw: (lever f_n -+ yaw moment about
-/// the ZMP) / (m g) [m], the lever held as it is in the motion; stance: sole from its place,
-/// position [m] and rotation [rad]; path: the same from where the motion has it; swing: corner
-/// heights [m]; foot_clearance: the same; landing: factor h^2 less the way of a
-/// sole from its place, along it or, times half its size, around three axes, either way, h its
-/// height [m]; position: joint angle [rad]; speed: joint speed /
-/// limit; acceleration: joint acceleration / limit; torque: motor torque / limit; clearance:
-/// clearance_rows.hpp [m]; cog: from the commanded COG [m]; pose: the correction itself, base
-/// position [m], base rotation vector and joints [rad]; capture: xi, COG + its rate / omega,
-/// from the planned one along the ground [m], then as zmp.
+/// friction: (mu f_n - f_t) / (m g), f_t the root of a sum of squares with 1e-4 m g; flight: ground
+/// force / (m g) and moment / (m g) about the planned COG; zmp: f_n (ZMP - commanded ZMP) / (m g)
+/// [m]; yaw: (lever f_n -+ yaw moment about the ZMP) / (m g) [m], the lever held as it is in the
+/// motion; stance: sole from its place, position [m] and rotation [rad]; path: the same from where
+/// the motion has it; swing: corner heights [m]; foot_clearance: the same; landing: factor h^2 less
+/// the way of a sole from its place, along it or, times half its size, around three axes, either
+/// way, h its height [m]; position: joint angle [rad]; speed: joint speed / limit; acceleration:
+/// joint acceleration / limit; torque: motor torque / limit; clearance: clearance_rows.hpp [m];
+/// cog: from the commanded COG [m]; pose: the correction itself, base position [m], base rotation
+/// vector and joints [rad]; capture: xi, COG + its rate / omega, from the planned one along the
+/// ground [m], then as zmp.
 enum class ConstraintGroup {
   support,
   unilateral,
@@ -75,8 +74,8 @@ struct ConstraintBlock {
   int item = 0;           ///< foot (by Side), dof, or pair of bodies
   ShapePair shapes;       ///< of clearance blocks
   int row = 0, rows = 0;  ///< first and number
-  double scale = 1;       ///< of yaw rows: 1 / (m g); of joint rows: 1 / limit
-  double factor = 0;      ///< of yaw rows: friction times lever [m]; of landing rows [1/m];
+  double scale = 1;       ///< of yaw and friction rows: 1 / (m g); of joint rows: 1 / limit
+  double factor = 0;      ///< of yaw rows: friction times lever [m]; mu; of landing rows [1/m];
                           ///< of capture rows: 1 / omega [s]
   Eigen::Matrix<double, Eigen::Dynamic, 6> wrench_rows;  ///< of linear ground groups
 };
@@ -111,6 +110,17 @@ Vector6d sole_deviation(const Eigen::Isometry3d& actual, const Eigen::Isometry3d
 Eigen::Matrix<double, 5, 1> landing_way(const RobotModel& model, Side side,
                                         const Eigen::Isometry3d& actual,
                                         const Eigen::Isometry3d& place);
+
+/// From the deviation of a sole to landing_way().
+Eigen::Matrix<double, 5, 6> landing_rows(const RobotModel& model, Side side,
+                                         const Eigen::Isometry3d& place);
+
+/// Whether rows are functions of the ground wrench; then their derivative by the plane wrench.
+bool is_of_ground(ConstraintGroup group);
+Eigen::MatrixXd ground_gradient(const ConstraintBlock& block, const Vector6d& plane_wrench);
+
+/// f_t of a friction row, without a kink at 0 [N].
+double cone_size(const ConstraintBlock& block, const Vector6d& plane_wrench);
 
 /// Columns of the correction that a block depends on.
 std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block,

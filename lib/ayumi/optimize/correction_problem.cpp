@@ -21,6 +21,34 @@ namespace {
 constexpr double kValueGram[] = {2416.0 / 5040, 1191.0 / 5040, 120.0 / 5040, 1.0 / 5040};
 constexpr double kCurvatureGram[] = {8.0 / 3, -1.5, 0, 1.0 / 6};
 
+Curvature restricted(const Curvature& all, const std::vector<int>& columns) {
+  Curvature some = all;
+  some.value = all.value(columns, columns);
+  some.acceleration = all.acceleration(columns, columns);
+  for (int k = 0; k < 3; ++k)
+    if (all.force_by[k].size() > 0) some.force_by[k] = all.force_by[k](Eigen::all, columns);
+  return some;
+}
+
+// Over the pairs of control points that act at an instant.
+void spread(const SplineWeights& w, const Curvature& curvature, std::vector<MatrixXd>& pairs) {
+  const MatrixXd &V = curvature.value, &G = curvature.acceleration;
+  const MatrixXd Gt = G.transpose(), S = G + Gt;
+  const bool cone = !curvature.cone.isZero(0);
+  std::array<MatrixXd, 4> force;
+  for (int i = 0; i < 4 && cone; ++i)
+    force[i] = w.value[i] * curvature.force_by[0] + w.rate[i] * curvature.force_by[1] +
+               w.acceleration[i] * curvature.force_by[2];
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j <= i; ++j) {
+      MatrixXd& pair = pairs[static_cast<size_t>(4 * (w.first + i) + i - j)];
+      if (pair.size() == 0) pair = MatrixXd::Zero(V.rows(), V.cols());
+      pair += w.value[i] * w.value[j] * V + w.acceleration[i] * w.value[j] * G +
+              w.value[i] * w.acceleration[j] * Gt + w.rate[i] * w.rate[j] * S;
+      if (cone) pair.noalias() += force[i].transpose() * (curvature.cone * force[j]);
+    }
+}
+
 MatrixXd coefficients(const Eigen::MatrixXi& index, const VectorXd& x) {
   return index.unaryExpr([&x](int variable) { return variable < 0 ? 0.0 : x[variable]; });
 }
@@ -41,6 +69,7 @@ CorrectionProblem::CorrectionProblem(const RobotModel& model, const CommandSerie
   place_constraints();
   place_jacobian();
   place_objective();
+  place_curvature();
 }
 
 bool CorrectionProblem::inside_a_window(double begin, double end) const {
@@ -116,37 +145,42 @@ void CorrectionProblem::place_instants() {
     samples.insert(k - 1);
     samples.insert(k);
   }
-  for (int k : samples) {
-    Instant instant;
-    instant.sample = k;
-    instant.weights = correction_weights(zero_, k * series_.dt);
-    instant.at_knot = knots.contains(k);
-    instant.known = !at_flight_edge(series_, k);
-    if (!free_at(instant.weights)) continue;
-    for (Side side : {Side::left, Side::right}) {
-      const int s = static_cast<int>(side);
-      const int i = plan_.index[s][k];
-      instant.contact[s] = plan_.intervals[s][i].contact;
-      const int last = static_cast<int>(plan_.intervals[s].size()) - 1;
-      const ContactInterval& before = plan_.intervals[s][std::max(0, i - 1)];
-      const ContactInterval& after = plan_.intervals[s][std::min(last, i + 1)];
-      const bool lower = before.sole.translation().z() < after.sole.translation().z();
-      instant.ground[s] = instant.contact[s] ? plan_.intervals[s][i].sole
-                          : lower            ? before.sole
-                                             : after.sole;
-      const ContactInterval& swing = plan_.intervals[s][i];
-      instant.place[s] = k - swing.first < swing.last - k ? before.sole : after.sole;
-    }
-    instant.plane = support_plane(model_, plan_.support(k), instant.ground);
-    RobotData data(model_);
-    const CommandSample& sample = series_.samples[k];
-    update_positions(model_, sample.state, data);
-    instant.path = {sole_pose(model_, data, Side::left), sole_pose(model_, data, Side::right)};
-    instant.cog = sample.cog;
-    instant.collisions = spec_.collisions;
-    if (instant.plane.empty()) instant.plane.frame.translation() = series_.samples[k].cog;
-    instants_.push_back(std::move(instant));
+  for (const PressedLimit& limit : spec_.pressed)
+    if (!samples.contains(limit.sample)) only_[limit.sample].emplace(limit.group, limit.item);
+  for (const auto& [sample, rows] : only_) samples.insert(sample);
+  for (const int k : samples) add_instant(k, knots.contains(k));
+}
+
+void CorrectionProblem::add_instant(int k, bool at_knot) {
+  Instant instant;
+  instant.sample = k;
+  instant.weights = correction_weights(zero_, k * series_.dt);
+  instant.at_knot = at_knot;
+  instant.known = !at_flight_edge(series_, k);
+  if (!free_at(instant.weights)) return;
+  for (Side side : {Side::left, Side::right}) {
+    const int s = static_cast<int>(side);
+    const int i = plan_.index[s][k];
+    instant.contact[s] = plan_.intervals[s][i].contact;
+    const int last = static_cast<int>(plan_.intervals[s].size()) - 1;
+    const ContactInterval& before = plan_.intervals[s][std::max(0, i - 1)];
+    const ContactInterval& after = plan_.intervals[s][std::min(last, i + 1)];
+    const bool lower = before.sole.translation().z() < after.sole.translation().z();
+    instant.ground[s] = instant.contact[s] ? plan_.intervals[s][i].sole
+                        : lower            ? before.sole
+                                           : after.sole;
+    const ContactInterval& swing = plan_.intervals[s][i];
+    instant.place[s] = k - swing.first < swing.last - k ? before.sole : after.sole;
   }
+  instant.plane = support_plane(model_, plan_.support(k), instant.ground);
+  RobotData data(model_);
+  const CommandSample& sample = series_.samples[k];
+  update_positions(model_, sample.state, data);
+  instant.path = {sole_pose(model_, data, Side::left), sole_pose(model_, data, Side::right)};
+  instant.cog = sample.cog;
+  instant.collisions = spec_.collisions;
+  if (instant.plane.empty()) instant.plane.frame.translation() = series_.samples[k].cog;
+  instants_.push_back(std::move(instant));
 }
 
 // What decides whether a limit is near: the motion, and wherever it has come to. Were it only the
@@ -187,6 +221,68 @@ void CorrectionProblem::place_objective() {
                          (h * kValueGram[d] + smooth / (h * h * h) * kCurvatureGram[d]));
       }
   hessian_values_ = Eigen::Map<VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  objective_nonzeros_ = hessian_.size();
+}
+
+// Nonzeros of all pairs of variables of base and legs up to three control points apart: by the
+// later point, by their distance, by columns. Arms add little on the ground. In flight they do not,
+// and there the whole curvature asked for more iterations than none.
+void CorrectionProblem::place_curvature() {
+  if (!model_.has_soles() || std::any_of(instants_.begin(), instants_.end(),
+                                         [](const Instant& at) { return at.plane.empty(); }))
+    return;
+  std::set<int> columns_of_legs = {0, 1, 2, 3, 4, 5};
+  for (const Side side : {Side::left, Side::right})
+    for (const int dof : model_.leg(side)) columns_of_legs.insert(6 + dof);
+  curved_.assign(columns_of_legs.begin(), columns_of_legs.end());
+  const int columns = static_cast<int>(curved_.size());
+  for (int point = 0; point < index_.rows(); ++point)
+    for (int d = 0; d < 4; ++d) {
+      pairs_.push_back(hessian_.size());
+      for (int a = 0; a < columns && d <= point; ++a)
+        for (int b = 0; b < (d == 0 ? a + 1 : columns); ++b) {
+          const int one = index_(point, curved_[a]), other = index_(point - d, curved_[b]);
+          if (one >= 0 && other >= 0) hessian_.add(std::max(one, other), std::min(one, other));
+        }
+    }
+}
+
+void CorrectionProblem::add_curvature(const VectorXd& x, const VectorXd& multipliers,
+                                      VectorXd& values) const {
+  if (curved_.empty()) return;
+  const MatrixXd c = coefficients(index_, x);
+  RobotData data(model_);
+  TreeDynamics dynamics(model_);
+  std::vector<MatrixXd> pairs(pairs_.size());
+  size_t first = 0;
+  for (size_t at = 0; at < instants_.size(); ++at) {
+    size_t end = first;
+    while (end < blocks_.size() && blocks_[end].instant == static_cast<int>(at)) ++end;
+    const std::span<const ConstraintBlock> blocks(&blocks_[0] + first, end - first);
+    first = end;
+    const Instant& instant = instants_[at];
+    const InstantState state =
+        instant_state(model_, series_.samples[instant.sample], instant, c, &dynamics, data);
+    const Curvature curvature = curvature_of(model_, blocks, multipliers, instant, state, dynamics);
+    if (!is_flat(curvature)) spread(instant.weights, restricted(curvature, curved_), pairs);
+  }
+  add_pairs(pairs, values);
+}
+
+void CorrectionProblem::add_pairs(const std::vector<MatrixXd>& pairs, VectorXd& values) const {
+  const int columns = static_cast<int>(curved_.size());
+  for (int point = 0; point < index_.rows(); ++point)
+    for (int d = 0; d < 4; ++d) {
+      const auto pair = static_cast<size_t>(4 * point + d);
+      if (pairs[pair].size() == 0) continue;
+      int next = pairs_[pair];
+      for (int a = 0; a < columns; ++a)
+        for (int b = 0; b < (d == 0 ? a + 1 : columns); ++b) {
+          const int one = index_(point, curved_[a]), other = index_(point - d, curved_[b]);
+          if (one < 0 || other < 0) continue;
+          values[next++] += (d > 0 && one == other ? 2 : 1) * pairs[pair](a, b);
+        }
+    }
 }
 
 VectorXd CorrectionProblem::constraints(const VectorXd& x) const {
@@ -253,7 +349,7 @@ Nlp CorrectionProblem::nlp() const {
   nlp.hessian = hessian_;
   auto gradient = [this](const VectorXd& x, VectorXd& g) {
     g.setZero();
-    for (int i = 0; i < hessian_.size(); ++i) {
+    for (int i = 0; i < objective_nonzeros_; ++i) {
       const int a = hessian_.rows[i], b = hessian_.columns[i];
       g[a] += hessian_values_[i] * x[b];
       if (a != b) g[b] += hessian_values_[i] * x[a];
@@ -267,8 +363,11 @@ Nlp CorrectionProblem::nlp() const {
   };
   nlp.constraints = [this](const VectorXd& x, VectorXd& g) { g = constraints(x); };
   nlp.jacobian_values = [this](const VectorXd& x, VectorXd& values) { jacobian_values(x, values); };
-  nlp.hessian_values = [this](const VectorXd&, double scale, const VectorXd&, VectorXd& values) {
-    values = scale * hessian_values_;
+  nlp.hessian_values = [this](const VectorXd& x, double scale, const VectorXd& multipliers,
+                              VectorXd& values) {
+    values.setZero();
+    values.head(objective_nonzeros_) = scale * hessian_values_;
+    add_curvature(x, multipliers, values);
   };
   return nlp;
 }

@@ -9,7 +9,9 @@
 // order in a correction of a few hundredths of a radian, is left out: Gauss-Newton).
 
 #include <array>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,12 +20,20 @@
 #include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/math/windows.hpp"
 #include "ayumi/optimize/correction_constraints.hpp"
+#include "ayumi/optimize/curvature.hpp"
 #include "ayumi/optimize/nlp.hpp"
 #include "ayumi/optimize/repair.hpp"
 
 namespace ayumi {
 
 inline constexpr double kObjectiveScale = 100.0;  ///< of 1/2 of the weighted change
+
+/// One kind of row between the instants where all are placed.
+struct PressedLimit {
+  int sample = 0;
+  ConstraintGroup group = ConstraintGroup::friction;
+  int item = 0;  ///< as of its block
+};
 
 /// What may move and what must hold.
 struct CorrectionSpec {
@@ -58,10 +68,10 @@ struct CorrectionSpec {
   /// A limit is constrained where the motion, or one of `seen`, uses more than this share of it;
   /// the rest is looked at by the check of the result.
   double watched_share = 0.7;
-  /// Every limit is where the check has it: of the friction cone planes that touch it from outside,
-  /// where `current` presses against it, in place of a pyramid inside.
+  /// Every limit is where the check has it.
   bool at_limits = false;
   std::vector<double> extra;               ///< more instants, where an earlier result failed [s]
+  std::vector<PressedLimit> pressed;       ///< rows of their own, where no instant is
   std::vector<const CommandSeries*> seen;  ///< earlier results, the last one last
   Eigen::MatrixXd start;                   ///< control points of a start; empty: zero
 };
@@ -81,6 +91,9 @@ class CorrectionProblem {
   double safety(int instant) const { return margin_[instant] - spec_.zmp_margin; }
 
   Eigen::VectorXd constraints(const Eigen::VectorXd& x) const;
+  /// Beside the instants whose limits are pressed against: what one row tells, not feet, the ZMP
+  /// or clearances.
+  std::vector<PressedLimit> beside_pressed(const Eigen::VectorXd& x) const;
   /// Of another motion over the same plan, sampled alike.
   Eigen::VectorXd constraints_of(const CommandSeries& motion) const;
 
@@ -96,10 +109,12 @@ class CorrectionProblem {
   void place_variables();
   void place_end(int first, double time);
   void place_instants();
+  void add_instant(int sample, bool at_knot);
+  bool wanted(const ConstraintBlock& block) const;
   void place_constraints();
   void place_margins();
   void place_ground_blocks(int instant);
-  Eigen::MatrixXd cone_rows(const Eigen::Vector2d& force) const;
+  void place_friction(int instant);
   void place_flight_block(int instant);
   Vector6d own_wrench(int sample) const;
   void place_kept_pose(int instant);
@@ -130,6 +145,10 @@ class CorrectionProblem {
   bool inside_a_window(double begin, double end) const;
   bool locked_within(double begin, double end) const;
   void jacobian_values(const Eigen::VectorXd& x, Eigen::VectorXd& values) const;
+  void place_curvature();
+  void add_curvature(const Eigen::VectorXd& x, const Eigen::VectorXd& multipliers,
+                     Eigen::VectorXd& values) const;
+  void add_pairs(const std::vector<Eigen::MatrixXd>& pairs, Eigen::VectorXd& values) const;
 
   const RobotModel& model_;
   const CommandSeries& series_;
@@ -138,6 +157,7 @@ class CorrectionProblem {
   CorrectionTrack zero_;   ///< the track with zero coefficients
   Eigen::MatrixXi index_;  ///< variable of control point and column, or -1
   int variable_count_ = 0;
+  std::map<int, std::set<std::pair<ConstraintGroup, int>>> only_;  ///< of samples with few rows
   std::vector<Instant> instants_;
   double landing_factor_ = 0;              ///< of landing rows [1/m]
   double foot_clearance_ = 0;              ///< wanted in the middle half of a swing [m]
@@ -148,6 +168,9 @@ class CorrectionProblem {
   Eigen::VectorXd lower_, upper_;
   SparsePattern jacobian_, hessian_;
   Eigen::VectorXd hessian_values_;
+  int objective_nonzeros_ = 0;  ///< come first
+  std::vector<int> curved_;     ///< columns with curvature
+  std::vector<int> pairs_;      ///< first nonzero of four for every control point
 };
 
 }  // namespace ayumi

@@ -16,11 +16,12 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kConeSides = 16;  // of the pyramid inside the friction cone
+constexpr double kInsideCone = 0.98;  // where limits are not those of the check
 
 }  // namespace
 
 void CorrectionProblem::add_block(ConstraintBlock block, double lower, double upper) {
+  if (!wanted(block)) return;
   block.row = static_cast<int>(lower_.size());
   lower_.conservativeResize(block.row + block.rows);
   upper_.conservativeResize(block.row + block.rows);
@@ -30,21 +31,48 @@ void CorrectionProblem::add_block(ConstraintBlock block, double lower, double up
   blocks_.push_back(std::move(block));
 }
 
+bool CorrectionProblem::wanted(const ConstraintBlock& block) const {
+  const auto few = only_.find(instants_[block.instant].sample);
+  return few == only_.end() || few->second.contains({block.group, block.item});
+}
+
+std::vector<PressedLimit> CorrectionProblem::beside_pressed(const VectorXd& x) const {
+  constexpr double kPressed = 1e-3, kPressedCone = 0.05;  // shares
+  constexpr int kParts = 4;                               // of the way to the next instant
+  const VectorXd g = constraints(x);
+  std::vector<PressedLimit> rows;
+  for (const ConstraintBlock& b : blocks_) {
+    const bool one = b.group == ConstraintGroup::friction || b.group == ConstraintGroup::speed ||
+                     b.group == ConstraintGroup::position || b.group == ConstraintGroup::torque;
+    const double near = b.group == ConstraintGroup::friction ? kPressedCone * b.factor : kPressed;
+    if (!one || std::min(g[b.row] - lower_[b.row], upper_[b.row] - g[b.row]) > near) continue;
+    const int here = instants_[b.instant].sample;
+    for (const int beside : {b.instant - 1, b.instant + 1}) {
+      if (beside < 0 || beside >= static_cast<int>(instants_.size())) continue;
+      const int there = instants_[beside].sample;
+      for (int part = 1; part <= kParts; ++part)
+        rows.push_back({here + (there - here) * part / kParts, b.group, b.item});
+    }
+  }
+  return rows;
+}
+
 void CorrectionProblem::place_constraints() {
   place_margins();
   measure_swings();
   measure_capture();
   for (int i = 0; i < static_cast<int>(instants_.size()); ++i) {
-    place_kept_pose(i);
-    place_foot_blocks(i);
+    const bool all = !only_.contains(instants_[i].sample);
+    if (all) place_kept_pose(i);
+    if (all) place_foot_blocks(i);
     place_joint_blocks(i);
     if (instants_[i].known) {
       place_ground_blocks(i);
       place_torque_blocks(i);
     }
-    place_clearance_blocks(i);
-    place_command_blocks(i);
-    place_capture_block(i);
+    if (all) place_clearance_blocks(i);
+    if (all) place_command_blocks(i);
+    if (all) place_capture_block(i);
   }
 }
 
@@ -120,22 +148,12 @@ void CorrectionProblem::place_flight_block(int instant) {
   upper_.tail<6>() = offset + slack.cwiseMax(kept);
 }
 
-// A pyramid inside the friction cone; at limits planes that touch the cone, close to each other
-// about the direction of the force as it is.
-MatrixXd CorrectionProblem::cone_rows(const Eigen::Vector2d& force) const {
-  std::vector<double> directions;
-  for (int i = 0; i < kConeSides; ++i) directions.push_back(2 * i * M_PI / kConeSides);
-  if (spec_.at_limits)
-    for (const double aside : {-0.1, -0.03, 0.0, 0.03, 0.1})
-      directions.push_back(std::atan2(force.y(), force.x()) + aside);
-  const double inside = spec_.at_limits ? 1 : std::cos(M_PI / kConeSides);
-  MatrixXd rows = MatrixXd::Zero(static_cast<Eigen::Index>(directions.size()), 6);
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    rows(i, 0) = -std::cos(directions[static_cast<size_t>(i)]);
-    rows(i, 1) = -std::sin(directions[static_cast<size_t>(i)]);
-    rows(i, 2) = spec_.share * tolerance(Kind::friction) * spec_.friction * inside;
-  }
-  return rows;
+void CorrectionProblem::place_friction(int instant) {
+  ConstraintBlock block =
+      block_of(ConstraintGroup::friction, instant, 0, 1, 1 / (model_.mass() * kGravity));
+  block.factor = spec_.share * tolerance(Kind::friction) * spec_.friction *
+                 (spec_.at_limits ? 1 : kInsideCone);
+  add_block(std::move(block), 0, kNoBound);
 }
 
 void CorrectionProblem::place_ground_blocks(int instant) {
@@ -147,7 +165,7 @@ void CorrectionProblem::place_ground_blocks(int instant) {
     add_block(std::move(block), lower, upper);
   };
   if (plane.empty()) {
-    place_flight_block(instant);
+    if (!only_.contains(instants_[instant].sample)) place_flight_block(instant);
     return;
   }
   MatrixXd rows = support_rows(plane);
@@ -156,12 +174,10 @@ void CorrectionProblem::place_ground_blocks(int instant) {
 
   RobotData data(model_);
   double least_force = weight, most_grip = 0, most_yaw = 0, lever = 0;
-  Eigen::Vector2d pulled = Eigen::Vector2d::Zero();  // in the end that of the current motion
   for (const CommandSample* sample : watched(instant)) {
     const Vector6d wrench =
         plane_wrench(plane, sample->state.base.position,
                      inverse_dynamics(model_, sample->state, sample->acceleration, data).head<6>());
-    pulled = wrench.head<2>();
     const GroundUse use = ground_use(plane, wrench, 0.02 * weight);
     least_force = std::min(least_force, use.normal_force);
     if (!use.has_zmp) continue;
@@ -176,8 +192,7 @@ void CorrectionProblem::place_ground_blocks(int instant) {
     rows(0, 2) = 1;
     add(ConstraintGroup::unilateral, rows, spec_.force_share, kNoBound);
   }
-  if (most_grip > spec_.watched_share * tolerance(Kind::friction))
-    add(ConstraintGroup::friction, cone_rows(pulled), 0, kNoBound);
+  if (most_grip > spec_.watched_share * tolerance(Kind::friction)) place_friction(instant);
   if (lever > 0 && most_yaw > spec_.watched_share * tolerance(Kind::yaw_moment)) {
     ConstraintBlock block = block_of(ConstraintGroup::yaw, instant, 0, 2, 1 / weight);
     block.factor = spec_.share * tolerance(Kind::yaw_moment) * lever;

@@ -22,7 +22,6 @@ constexpr double kLandingPrice = 1;     // of a millimetre a low sole is off its
 constexpr double kCapturePrice = 0.3;   // of a millimetre of xi or ZMP from where they were planned
 constexpr double kSafetyWindow = 0.05;  // [s]
 constexpr double kMillimetre = 1e-3;
-constexpr double kStart = 0.01;  // of slacks, more than is needed
 
 // What is as bad as a millimetre.
 double unit_of(ConstraintGroup group) {
@@ -97,7 +96,7 @@ Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
   const auto extra = static_cast<Eigen::Index>(layout->twice.size());
   Nlp soft;
   soft.start.resize(n + slacks);
-  soft.start << nlp.start, lacks(nlp, soft_rows).array() + kStart;
+  soft.start << nlp.start, lacks(nlp, soft_rows).array() + soft_rows.start;
   soft.lower.resize(n + slacks);
   soft.lower << nlp.lower, VectorXd::Zero(slacks);
   soft.upper.resize(n + slacks);
@@ -164,9 +163,12 @@ Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
     for (const int k : *repeated) values[next++] = inner[k];
     for (const double v : *value) values[next++] = v;
   };
-  soft.hessian_values = [&nlp, n, m](const VectorXd& x, double scale, const VectorXd& multipliers,
-                                     VectorXd& values) {
-    nlp.hessian_values(x.head(n), scale, multipliers.head(m), values);
+  soft.hessian_values = [&nlp, n, m, layout](const VectorXd& x, double scale,
+                                             const VectorXd& multipliers, VectorXd& values) {
+    VectorXd inner = multipliers.head(m);
+    for (size_t i = 0; i < layout->twice.size(); ++i)
+      inner[layout->twice[i]] += multipliers[m + static_cast<Eigen::Index>(i)];
+    nlp.hessian_values(x.head(n), scale, inner, values);
   };
   return soft;
 }
@@ -178,8 +180,10 @@ Price price_of(ConstraintGroup group) {
   return {unit_of(group), kChange * kPrice, kWindow};
 }
 
-Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt, double factor) {
+Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt, double factor,
+                     double barrier) {
   Slacks slacks;
+  slacks.start = barrier / kSafetyPrice;
   slacks.group.assign(static_cast<size_t>(problem.constraint_count()), -1);
   std::map<std::tuple<int, int, long>, int> index;
   std::vector<double> most, price;

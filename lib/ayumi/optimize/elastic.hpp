@@ -11,6 +11,7 @@ namespace ayumi {
 struct Slacks {
   std::vector<int> group;
   Eigen::VectorXd unit, price, most;
+  double start = 0.01;  ///< more than is needed
 };
 
 /// One more variable s >= 0 per group: g >= lower - unit s, g <= upper + unit s for its rows, and
@@ -32,8 +33,9 @@ Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt);
 /// The program of `problem` with what no check asks for to be had at a price, and to give way where
 /// it costs more change than it is worth or is not to be had: the ZMP's safety, as far as to the
 /// least margin asked for, landings over their places, feet off the ground, and xi and ZMP where
-/// the plan has them. `factor` on the prices.
-Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt,
-                     double factor = 1);
+/// the plan has them. `factor` on the prices; `barrier` that the solution starts with, which asks
+/// for so much more of each slack than is needed.
+Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt, double factor = 1,
+                     double barrier = NlpOptions().start_barrier);
 
 }  // namespace ayumi

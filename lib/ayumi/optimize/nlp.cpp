@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <coin/IpIpoptApplication.hpp>
 #include <coin/IpTNLP.hpp>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 
@@ -187,8 +188,11 @@ void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
   list.SetStringValue("nlp_scaling_method", "none");  // the problems come scaled
   list.SetStringValue("mu_strategy", "monotone");
   list.SetNumericValue("mu_init", options.start_barrier);
+  list.SetNumericValue("mu_linear_decrease_factor", 0.05);  // Newton's steps follow
+  list.SetNumericValue("mu_superlinear_decrease_power", 1.8);
   for (const char* name : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"})
     list.SetNumericValue(name, options.start_push);
+  list.SetNumericValue("constr_mult_init_max", 0);  // no system to be solved for them before
   list.SetNumericValue("tol", options.tolerance);
   list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
   list.SetIntegerValue("max_iter", options.max_iterations);

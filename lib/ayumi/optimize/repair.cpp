@@ -49,8 +49,11 @@ constexpr int kHalvings = 2;                 // of the knots' spacing, at most
 constexpr double kFinest = 8;                // samples between knots that are not halved any more
 constexpr double kRoundMargin = 0.001;       // more ZMP margin each round [m]
 constexpr int kPolishRounds = 4;             // at the limits of the check itself
-constexpr double kLittle = 1e-4;             // of the way back, rather than another round
-constexpr double kPolishTolerance = 1e-7;    // of optimality, over what the change costs
+constexpr int kBeforeFinerKnots = 50;        // iterations of the first program
+constexpr double kAside = 0.1;             // from a result that fails to one that passes, to begin
+constexpr double kLittle = 1e-4;           // of the way back, rather than another round
+constexpr double kRoundTolerance = 1e-3;   // the least change is looked for at the end
+constexpr double kPolishTolerance = 1e-7;  // of optimality, over what the change costs
 
 class Repair {
  public:
@@ -78,14 +81,14 @@ class Repair {
     if (locked_out(model_, spec_, result_.check))
       last_status_ = NlpStatus::infeasible;
     else
-      solve_rounds();
+      solve_rounds(flight);
     if (done() && result_.work.rounds > 0 && !flight) polish();
     conclude();
     return result_;
   }
 
  private:
-  void solve_rounds() {
+  void solve_rounds(bool flight) {
     free_ends();
     double pad = kPad;
     int unsolved = 0;
@@ -94,7 +97,8 @@ class Repair {
       if (result_.check.consistent) passing_ = track_;
       choose_windows(round, pad);
       try {
-        solve_round("repair round " + std::to_string(round + 1), NlpOptions().tolerance);
+        solve_round("repair round " + std::to_string(round + 1),
+                    flight ? NlpOptions().tolerance : kRoundTolerance);
       } catch (const Interrupted&) {
         if (!options_.keep_partial) throw;
         keep_partial();
@@ -149,6 +153,7 @@ class Repair {
     const RepairResult found = result_;
     const CorrectionTrack passing = track_;
     const bool as_table = table_passes();
+    spec_.pressed = problem_->beside_pressed(problem_->point(track_.coefficients));
     const double tolerance = std::clamp(kPolishTolerance * objective_, 1e-9, 1e-6);
     set_limits_of_the_check();
     try {
@@ -157,7 +162,7 @@ class Repair {
         if (last_status_ != NlpStatus::solved || result_.check.consistent) break;
         if (round + 1 < kPolishRounds && take_between(passing, kLittle, as_table)) break;
         add_instants(result_.check, series_.dt, spec_.extra);
-        spec_.start = passing.coefficients;  // inside all limits, where the result is not
+        spec_.start = between(track_, passing, kAside).coefficients;
       }
     } catch (const Interrupted&) {
       if (!options_.keep_partial) throw;
@@ -289,9 +294,12 @@ class Repair {
     if (spec_.start.size() == 0)
       hard.start = start_of(*problem_, hard, model_, series_, result_.before.findings);
     const bool warm = spec_.start.size() > 0 && violation_at_start(hard) < kFarOff;
-    const Nlp nlp = with_soft_safety(*problem_, hard, series_.dt, options_.safety);
     NlpOptions options = nlp_options(warm);
+    const Nlp nlp =
+        with_soft_safety(*problem_, hard, series_.dt, options_.safety, options.start_barrier);
     options.tolerance = tolerance;
+    if (result_.work.rounds == 0)
+      options.max_iterations = std::min(options.max_iterations, kBeforeFinerKnots);
     const NlpSolution solution = solve(nlp, options, progress_, stage);
     note_work(nlp, solution);
     last_status_ = solution.status;
