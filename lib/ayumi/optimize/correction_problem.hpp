@@ -5,8 +5,8 @@
 // the posture there is itself at fault. Objective:
 //   1/2 sum_columns w integral (d^2 + tau^4 d''^2) dt,
 // quadratic, by the Gram matrices of the splines. Constraints: correction_constraints.hpp at chosen
-// samples. Hessian: that of the objective (exact for it; the curvature of the constraints, second
-// order in a correction of a few hundredths of a radian, is left out: Gauss-Newton).
+// samples. Hessian: that of the objective, and on the ground the curvature of the constraints
+// (curvature.hpp).
 
 #include <array>
 #include <map>

@@ -11,9 +11,14 @@ constexpr double kHair = 1e-6;  // of a limit, for rounding
 
 }  // namespace
 
-CorrectionSpec at_limits(const CorrectionSpec& spec, double safety) {
+CorrectionSpec at_limits(const CorrectionSpec& spec, const CorrectionSpec& asked, double safety) {
   auto tolerance = [&](Kind kind) { return spec.tolerance[static_cast<int>(kind)]; };
+  const bool safe = spec.safe_margin > spec.zmp_margin;  // was to be had
   CorrectionSpec limits = spec;
+  limits.zmp_margin = asked.zmp_margin;
+  limits.safe_margin = safe ? asked.safe_margin : asked.zmp_margin;
+  // Given up to get on, not because there was no solution with them.
+  limits.gentle_swings = spec.gentle_swings || (safe && asked.gentle_swings);
   limits.at_limits = true;
   limits.joint_margin = kHair;
   limits.share = 1 - kHair;

@@ -9,9 +9,10 @@
 
 namespace ayumi {
 
-/// `spec` with every limit where the check has it, less a hair. Where `safety` is above 0, feet,
-/// clearances and the ZMP keep what is wanted beyond the check's limits; else that goes too.
-CorrectionSpec at_limits(const CorrectionSpec& spec, double safety);
+/// `spec` with every limit where the check has it, less a hair, and margins of the ZMP as they were
+/// `asked` for and were to be had. Where `safety` is above 0, feet, clearances and the ZMP keep
+/// what is wanted beyond the check's limits; else that goes too.
+CorrectionSpec at_limits(const CorrectionSpec& spec, const CorrectionSpec& asked, double safety);
 
 /// The times of every error, to be instants.
 void add_instants(const ConsistencyReport& report, double dt, std::vector<double>& instants);

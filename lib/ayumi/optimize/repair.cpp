@@ -75,20 +75,20 @@ class Repair {
     // COG, ZMP and f_z of the full model: what is left is wrong with the motion itself.
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
     as_given_ = result_;
-    const bool flight = flight_is_at_fault(result_.check);
-    if (flight)
+    flight_ = flight_is_at_fault(result_.check);
+    if (flight_)
       spec_.spacing = std::min(spec_.spacing, shortest_flight(series_) / kKnotsOfFaultyFlight);
     if (locked_out(model_, spec_, result_.check))
       last_status_ = NlpStatus::infeasible;
     else
-      solve_rounds(flight);
-    if (done() && result_.work.rounds > 0 && !flight) polish();
+      solve_rounds();
+    if (done() && result_.work.rounds > 0 && !flight_) polish();
     conclude();
     return result_;
   }
 
  private:
-  void solve_rounds(bool flight) {
+  void solve_rounds() {
     free_ends();
     double pad = kPad;
     int unsolved = 0;
@@ -97,8 +97,7 @@ class Repair {
       if (result_.check.consistent) passing_ = track_;
       choose_windows(round, pad);
       try {
-        solve_round("repair round " + std::to_string(round + 1),
-                    flight ? NlpOptions().tolerance : kRoundTolerance);
+        solve_round("repair round " + std::to_string(round + 1), kRoundTolerance);
       } catch (const Interrupted&) {
         if (!options_.keep_partial) throw;
         keep_partial();
@@ -176,7 +175,7 @@ class Repair {
     last_status_ = NlpStatus::solved;
   }
 
-  // The result, or the first that passes between it and `passing`, at most a share of the way.
+  // The result, or the first that passes from it to `passing`, at most a share of the way.
   bool take_between(const CorrectionTrack& passing, double most, bool as_table) {
     const CorrectionTrack wanted = track_;
     auto passes = [&] { return result_.check.consistent && (!as_table || table_passes()); };
@@ -197,12 +196,7 @@ class Repair {
   }
 
   void set_limits_of_the_check() {
-    const bool safe = spec_.safe_margin > spec_.zmp_margin;  // was to be had
-    spec_.zmp_margin = asked_.zmp_margin;
-    spec_.safe_margin = safe ? asked_.safe_margin : asked_.zmp_margin;
-    // Given up to get on, not because there was no solution with them.
-    spec_.gentle_swings = spec_.gentle_swings || (safe && asked_.gentle_swings);
-    spec_ = at_limits(spec_, options_.safety);
+    spec_ = at_limits(spec_, asked_, options_.safety);
     spec_.spacing = track_.spacing;
     spec_.start = track_.coefficients;
   }
@@ -297,8 +291,8 @@ class Repair {
     NlpOptions options = nlp_options(warm);
     const Nlp nlp =
         with_soft_safety(*problem_, hard, series_.dt, options_.safety, options.start_barrier);
-    options.tolerance = tolerance;
-    if (result_.work.rounds == 0)
+    if (!flight_) options.tolerance = tolerance;
+    if (!flight_ && result_.work.rounds == 0)
       options.max_iterations = std::min(options.max_iterations, kBeforeFinerKnots);
     const NlpSolution solution = solve(nlp, options, progress_, stage);
     note_work(nlp, solution);
@@ -381,6 +375,7 @@ class Repair {
   std::deque<CommandSeries> seen_;            // results of earlier rounds
   std::set<std::string> errors_;              // left over by the last round, where it was solved
   int halvings_ = 0;                          // of the knots' spacing
+  bool flight_ = false;                       // one is at fault
   Eigen::VectorXd least_violating_;
   RepairResult result_;
   CorrectionTrack track_;                   // of the result, every control point
