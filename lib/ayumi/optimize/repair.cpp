@@ -147,7 +147,6 @@ class Repair {
   }
 
   // The least correction that passes, from one that does: limits where the check has them.
-  // The programs of flights have fine knots, and their rows are what they are: that is left out.
   void polish() {
     const RepairResult found = result_;
     const CorrectionTrack passing = track_;
