@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <iterator>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/finding_kinds.hpp"
+#include "ayumi/control/controller.hpp"
 #include "ayumi/io/pattern_file.hpp"
 #include "ayumi/pattern/sample.hpp"
 
@@ -29,7 +32,7 @@ std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
     double value = 0;
     const char* end = word.data() + word.size();
     if (equals == std::string::npos || equals == 0 ||
-        std::from_chars(word.data() + equals + 1, end, value).ptr != end)
+        std::from_chars(word.data() + equals + 1, end, value).ptr != end || !std::isfinite(value))
       fail(ErrorCode::usage, option + ": '" + word + "' is not NAME=NUMBER");
     pairs[word.substr(0, equals)] = value;
   }
@@ -56,6 +59,24 @@ void check_scenario(const Pattern& pattern, const RobotModel& model) {
   }
 }
 
+// What the library calls wrong use is bad input where a file says it.
+template <class Check>
+void check_words(const std::string& place, const Check& check) {
+  try {
+    check();
+  } catch (const Error& error) {
+    fail(ErrorCode::bad_pattern, place + ": " + error.what());
+  }
+}
+
+void check_gains_and_tolerances(const Pattern& pattern, const RobotModel& model) {
+  check_words(model.description().sidecar_file + ": /control",
+              [&] { check_controller(model, {.type = pattern.controller.type, .gains = {}}); });
+  check_words(pattern.file + ": /controller", [&] { check_controller(model, pattern.controller); });
+  check_words(pattern.file + ": /tolerances",
+              [&] { tolerances({.tolerances = pattern.tolerances}); });
+}
+
 }  // namespace
 
 std::string read_input(const std::filesystem::path& file) {
@@ -74,6 +95,7 @@ PatternInput load_pattern(const Context& context, const std::filesystem::path& f
   Pattern pattern = read_given_pattern(file, read_pairs(options.set, "--set"));
   RobotModel model = load_robot(robot_of(pattern), robot_search(context), {.meshes = meshes});
   check_scenario(pattern, model);
+  check_gains_and_tolerances(pattern, model);
   const std::string wanted = options.profile.empty() ? pattern.profile : options.profile;
   const std::string profile = model.limits(wanted).name;
   CommandSeries series =

@@ -139,6 +139,8 @@ void await_return(const std::string& file) {
 void watch(Context& context, const Options& options) {
   if (options.patterns.size() != 1) fail(ErrorCode::usage, "check --watch: name one PATTERN");
   const std::string& file = options.patterns.front();
+  if (file == "-")
+    fail(ErrorCode::usage, "check --watch: standard input does not change; name a file");
   Stamps seen;
   while (true) {
     seen = stamps_of(watched_files(file, seen));

@@ -7,6 +7,7 @@
 #include "ayumi/io/results_json.hpp"
 #include "ayumi/optimize/safety_price.hpp"
 #include "motion_words.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "repairing.hpp"
 
@@ -131,7 +132,7 @@ void add_diff(CLI::App& app, Context& context) {
   command
       ->add_option("--safety", options.safety,
                    "factor on the price of safety in it, as for repair; left out: the pattern's, 1")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   add_pattern_options(*command, options.input);
   command->callback([&context] { diff(context, options); });

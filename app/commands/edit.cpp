@@ -14,6 +14,7 @@
 #include "ayumi/pattern/sample.hpp"
 #include "ayumi/study/retime.hpp"
 #include "check_table.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 
 namespace ayumi::app {
@@ -244,17 +245,17 @@ void add_edit(CLI::App& app, Context& context) {
       add_join_of(*command, "blend", "one after the other, with a transition between", options);
   blend_command.add_option("--over", options.over, "time of the transition [s]")
       ->required()
-      ->check(CLI::Range(0.02, 60.0))
+      ->check(number_within(0.02, 60.0))
       ->type_name("S");
   blend_command.callback([&context] { join(context, options); });
   CLI::App& ramp_command =
       add_edit_of(*command, "ramp", "from a posture to the motion, and back at its end", options);
   ramp_command.add_option("--from", options.ramps.in, "time of the way there [s]; 0: none")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(number_within(0.0, 60.0))
       ->type_name("S")
       ->capture_default_str();
   ramp_command.add_option("--back", options.ramps.out, "time of the way back [s]; 0: none")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(number_within(0.0, 60.0))
       ->type_name("S")
       ->capture_default_str();
   ramp_command.add_option("--posture", options.ramps.posture, "a posture of the pattern or robot")
@@ -264,7 +265,7 @@ void add_edit(CLI::App& app, Context& context) {
   CLI::App& retime_command =
       add_edit_of(*command, "retime", "the same motion in another time", options);
   retime_command.add_option("--scale", options.scale, "of the time: 0.8 is faster")
-      ->check(CLI::Range(0.01, 100.0))
+      ->check(number_within(0.01, 100.0))
       ->type_name("S");
   retime_command.add_flag("--to-limits", options.to_limits,
                           "the fastest scale that passes the check");

@@ -20,6 +20,7 @@
 #include "ayumi/preview/gltf.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "commands.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "run_robot.hpp"
 
@@ -279,10 +280,10 @@ void add_export(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"csv", "json", "hoap", "gltf"}));
   command->add_option("-o,--out", options->output, "file to write")->required()->type_name("FILE");
   command->add_option("--ramp", options->safety.ramp, "approach ramp, at least this long [s]")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(number_within(0.0, 60.0))
       ->capture_default_str();
   command->add_option("--hold", options->safety.hold, "hold the end this long [s]")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(number_within(0.0, 60.0))
       ->capture_default_str();
   command
       ->add_option("--from", options->safety.from,

@@ -11,6 +11,7 @@
 #include "ayumi/control/gain_design.hpp"
 #include "ayumi/pattern/generate.hpp"
 #include "ayumi/pattern/sample.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 
 namespace ayumi::app {
@@ -239,7 +240,7 @@ void add_gains(CLI::App& app, Context& context) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_option("--latency", options->latency, "of the sensors [s], instead of the robot's")
-      ->check(CLI::Range(0.0, 0.2).description(""))
+      ->check(number_within(0.0, 0.2).description(""))
       ->type_name("T");
   command->callback([options, &context] { print_gains(context, *options); });
 }

@@ -7,6 +7,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/motion_import.hpp"
 #include "ayumi/io/pattern_table.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 
 namespace ayumi::app {
@@ -94,7 +95,7 @@ void add_import(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"rad", "deg"}))
       ->capture_default_str();
   command->add_option("--rate", options.import.rate, "of rows without a time column [1/s]")
-      ->check(CLI::Range(1.0, 1e5))
+      ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
   command->add_flag("--commands", options.import.commands,
                     "angles are what servos receive, as ayumi export writes them: take the lead "
@@ -103,7 +104,7 @@ void add_import(CLI::App& app, Context& context) {
       ->add_option("--smooth", options.import.smooth,
                    "angles may change by that to become smooth; left out: 0.1 of a sequence's "
                    "counts, 0 of angles")
-      ->check(CLI::Range(0.0, 5.0))
+      ->check(number_within(0.0, 5.0))
       ->type_name("DEG");
   command->callback([&context] {
     options.import.degrees = unit == "deg";

@@ -12,6 +12,7 @@
 #include "ayumi/base/version.hpp"
 #include "ayumi/control/controller.hpp"
 #include "ayumi/preview/push_map.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "push_results.hpp"
 #include "simulation.hpp"
@@ -286,16 +287,16 @@ void add_push(CLI::App& app, Context& context) {
       ->type_name("T")
       ->delimiter(',');
   command->add_option("--step", push.step, "of the search, as a share of the bound")
-      ->check(CLI::Range(0.005, 1.0).description(""))
+      ->check(number_within(0.005, 1.0).description(""))
       ->type_name("X");
   command->add_option("--cap", push.cap, "largest push tried, as a share of the bound")
-      ->check(CLI::Range(0.1, 20.0).description(""))
+      ->check(number_within(0.1, 20.0).description(""))
       ->type_name("X");
   command->add_option("--replicas", push.replicas, "small variations of every push, all to survive")
       ->check(CLI::Range(0, 100).description(""))
       ->type_name("N");
   command->add_option("--duration", push.duration, "of a push [s]")
-      ->check(CLI::Range(0.001, 1.0).description(""))
+      ->check(number_within(0.001, 1.0).description(""))
       ->type_name("T");
   command->add_flag("--noise", push.simulate.sensor_noise,
                     "sensor noise, bias and latency of the sidecar");

@@ -14,6 +14,7 @@
 #include "ayumi/pattern/edit.hpp"
 #include "check_table.hpp"
 #include "motion_words.hpp"
+#include "option_checks.hpp"
 #include "parameter_search.hpp"
 #include "repairing.hpp"
 
@@ -294,16 +295,16 @@ void add_repair(CLI::App& app, Context& context) {
       ->add_option("--margin", options.margin,
                    "of the ZMP inside the support where the motion's own is too "
                    "small [m]; left out: 0.9 of the sole's inner radius")
-      ->check(CLI::Range(0.0, 0.1))
+      ->check(number_within(0.0, 0.1))
       ->type_name("M");
   command
       ->add_option("--safety", options.safety,
                    "what safety is worth beside change; left out: 1, 0: the least change that "
                    "passes check")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   command->add_option("--knots", options.repair.knot_spacing, "spacing of the correction [s]")
-      ->check(CLI::Range(0.005, 1.0))
+      ->check(number_within(0.005, 1.0))
       ->type_name("S")
       ->capture_default_str();
   command->add_option("--max-iterations", options.repair.max_iterations, "of Ipopt in each round")

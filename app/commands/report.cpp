@@ -5,6 +5,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "report_input.hpp"
 #include "run_robot.hpp"
@@ -63,7 +64,7 @@ void add_report(CLI::App& app, Context& context) {
   command->add_option("--max-size", options->max_megabytes, "of the page [MB]")
       ->capture_default_str();
   command->add_option("--rate", options->report.rate, "postures per second of the replay")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(number_within(1.0, 1000.0))
       ->capture_default_str();
   command->add_flag("--no-replay", options->no_replay, "pictures only");
   command->footer(

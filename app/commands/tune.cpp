@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/text.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 
 namespace ayumi::app {
@@ -101,7 +102,7 @@ void add_tune(CLI::App& app, Context& context) {
       ->delimiter(',')
       ->type_name("NAMES");
   command->add_option("--level", t.level, "of the pushes, times the capture bound")
-      ->check(CLI::Range(0.01, 5.0).description(""))
+      ->check(number_within(0.01, 5.0).description(""))
       ->capture_default_str()
       ->type_name("X");
   command->add_option("--directions", t.directions, "evenly spread, the first forward")

@@ -69,6 +69,27 @@ TEST_F(Usage, MissingWordsAreUsageErrors) {
   EXPECT_EQ(ayumi({"robots", "one", "two"}).exit_code, 2);
 }
 
+TEST_F(Usage, ValuesThatAreNoNumbersAreUsageErrors) {
+  const std::string pattern = AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json";
+  const std::vector<std::vector<std::string>> lines = {
+      {"repair", "-q", pattern, "-o", "new.json", "--safety", "nan"},
+      {"repair", "-q", pattern, "-o", "new.json", "--weight", "l_knee=nan"},
+      {"simulate", "-q", pattern, "-o", "new", "--gain", "q=inf"},
+      {"edit", "retime", "-q", pattern, "--scale", "NaN", "-o", "new.json"},
+      {"check", "-q", pattern, "--tolerance", "friction=nan"}};
+  for (const std::vector<std::string>& line : lines) {
+    const Output output = ayumi(line);
+    EXPECT_EQ(output.exit_code, 2) << line[0] << ": " << output.err;
+    EXPECT_EQ(output.out, "");
+  }
+}
+
+TEST_F(Usage, StandardInputCannotBeWatched) {
+  const Output output = ayumi({"check", "-", "--watch"});
+  EXPECT_EQ(output.exit_code, 2);
+  EXPECT_NE(output.err.find("name a file"), std::string::npos) << output.err;
+}
+
 TEST_F(Usage, GainsThatCannotWorkAreUsageErrors) {
   const std::string pattern = AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json";
   const Output unknown = ayumi({"simulate", "-q", pattern, "--gain", "qq=1"});
