@@ -76,7 +76,10 @@ TEST_F(Usage, ValuesThatAreNoNumbersAreUsageErrors) {
       {"repair", "-q", pattern, "-o", "new.json", "--weight", "l_knee=nan"},
       {"simulate", "-q", pattern, "-o", "new", "--gain", "q=inf"},
       {"edit", "retime", "-q", pattern, "--scale", "NaN", "-o", "new.json"},
-      {"check", "-q", pattern, "--tolerance", "friction=nan"}};
+      {"check", "-q", pattern, "--tolerance", "friction=nan"},
+      {"push", "-q", pattern, "--times", "nan"},
+      {"tune", "-q", pattern, "--times", "nan"},
+      {"gains", "hoap1", "--poles", "nan,-2"}};
   for (const std::vector<std::string>& line : lines) {
     const Output output = ayumi(line);
     EXPECT_EQ(output.exit_code, 2) << line[0] << ": " << output.err;

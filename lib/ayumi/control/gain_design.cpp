@@ -120,8 +120,9 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
   };
   if (wishes.poles) {
     const auto& [p1, p2] = *wishes.poles;
-    const double right = std::max(p1.real(), p2.real());
-    if (right >= 0) refuse("pole [1/s]", right, "not left of 0; the COG would never come back");
+    const double right = p1.real() < 0 ? p2.real() : p1.real();
+    if (!(p1.real() < 0 && p2.real() < 0))
+      refuse("pole [1/s]", right, "not left of 0; the COG would never come back");
     params = gains_from_poles(p1 / omega, p2 / omega, params);
   }
   if (wishes.absorb) {

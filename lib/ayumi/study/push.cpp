@@ -193,8 +193,8 @@ void check_options(const PushOptions& options, const CommandSeries& series) {
     refuse("the search step must be positive and not above the cap");
   if (options.replicas < 0) refuse("replicas must not be negative");
   for (const PushPhase& phase : options.phases)
-    if (!phase.standing && (phase.at < options.time_spread + series.dt ||
-                            phase.at + options.duration > series.duration()))
+    if (!phase.standing && !(phase.at >= options.time_spread + series.dt &&
+                             phase.at + options.duration <= series.duration()))
       refuse("time " + text::brief(phase.at) + " s is outside the pattern (" +
              text::brief(series.duration()) + " s)");
 }

@@ -160,7 +160,7 @@ void check(const TuneOptions& options, const CommandSeries& series, const Gains&
       refuse("gain '" + name + "' cannot be tuned" + text::suggestion(name, names) +
              " (those that can: " + text::join(names, ", ") + ")");
   for (const PushPhase& phase : options.phases)
-    if (!phase.standing && (phase.at < kLead || phase.at + options.duration > series.duration()))
+    if (!phase.standing && !(phase.at >= kLead && phase.at + options.duration <= series.duration()))
       refuse("time " + text::brief(phase.at) + " s is outside the pattern (" +
              text::brief(series.duration()) + " s)");
 }
