@@ -66,6 +66,20 @@ TEST(LogReading, FlightsAreWorthShowing) {
   EXPECT_NEAR(times[3], 1, 1e-12) << "within the run";
 }
 
+TEST(LogReading, AWalkIsShownOnBothFeet) {
+  SimulationLog log = test::box_run(test::box_robot());
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const bool left = k % 100 < 50;  // 0.1 s on each foot
+    log.samples[k].planned_contact = {left, !left};
+  }
+  const std::vector<double> times = telling_instants(log, 6);  // evenly: all on the left foot
+  ASSERT_EQ(times.size(), 6u);
+  for (size_t i = 0; i + 1 < times.size(); ++i)
+    EXPECT_EQ(sample_at(log, times[i]).planned_contact[0], i % 2 == 0) << times[i];
+  EXPECT_NEAR(times[1], 0.15, 1e-12) << "the middle of a step";
+  EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+}
+
 TEST(LogReading, TheGroundIsTheSlopeWithEveryMotionOfTheFloor) {
   SimulationLog log = test::box_run(test::box_robot());
   log.world.slope = {0.1, 0};

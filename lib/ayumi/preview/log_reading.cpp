@@ -1,6 +1,7 @@
 #include "ayumi/preview/log_reading.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
@@ -18,6 +19,35 @@ Vector mix(const Vector& a, const Vector& b, double share) {
 
 BasePose mix(const BasePose& a, const BasePose& b, double share) {
   return {mix(a.position, b.position, share), a.attitude.slerp(share, b.attitude)};
+}
+
+/// Stretches of ticks in which just these feet (left, right) are planned on the ground.
+std::vector<FlightRecord> stretches(const SimulationLog& log, const std::array<bool, 2>& feet) {
+  std::vector<FlightRecord> result;
+  bool before = false;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const bool now = log.samples[k].planned_contact == feet;
+    const double t = static_cast<double>(k) * log.dt;
+    if (now && !before) result.push_back({t, t});
+    if (now) result.back().end = t + log.dt;
+    before = now;
+  }
+  return result;
+}
+
+/// Instants evenly spaced over a walk may meet every other step only: one on the same foot as the
+/// instant before it moves to the middle of a step on the other foot within `reach` [s].
+void alternate_feet(const SimulationLog& log, double reach, std::vector<double>& times) {
+  for (size_t i = 1; i + 1 < times.size(); ++i) {
+    const std::array<bool, 2> before = sample_at(log, times[i - 1]).planned_contact;
+    if (before[0] == before[1] || sample_at(log, times[i]).planned_contact != before) continue;
+    double nearest = times[i] + reach;
+    for (const FlightRecord& step : stretches(log, {before[1], before[0]})) {
+      const double middle = 0.5 * (step.begin + step.end);
+      if (std::abs(middle - times[i]) < std::abs(nearest - times[i])) nearest = middle;
+    }
+    if (std::abs(nearest - times[i]) < reach) times[i] = nearest;
+  }
 }
 
 }  // namespace
@@ -118,16 +148,7 @@ std::string push_text(const PushRecord& push) {
 }
 
 std::vector<FlightRecord> flights(const SimulationLog& log) {
-  std::vector<FlightRecord> result;
-  bool before = false;
-  for (size_t k = 0; k < log.samples.size(); ++k) {
-    const bool flies = !log.samples[k].planned_contact[0] && !log.samples[k].planned_contact[1];
-    const double t = static_cast<double>(k) * log.dt;
-    if (flies && !before) result.push_back({t, t});
-    if (flies) result.back().end = t + log.dt;
-    before = flies;
-  }
-  return result;
+  return stretches(log, {false, false});
 }
 
 double telling_instant(const SimulationLog& log) {
@@ -150,6 +171,7 @@ std::vector<double> telling_instants(const SimulationLog& log, int count) {
   std::vector<double> times;
   for (int i = 0; i < count; ++i)
     times.push_back(begin + (end - begin) * i / std::max(1, count - 1));
+  if (flown.empty()) alternate_feet(log, 0.5 * (end - begin) / std::max(1, count - 1), times);
   if (2 * static_cast<int>(flown.size()) > count) return times;
   for (const FlightRecord& flight : flown) {
     const double middle = 0.5 * (flight.begin + flight.end);

@@ -56,8 +56,8 @@ std::vector<FlightRecord> flights(const SimulationLog& log);
 /// middle of the first flight, else that of the run [s].
 double telling_instant(const SimulationLog& log);
 
-/// `count` instants worth showing, evenly spaced over the run, or over its flights with a little
-/// before and after; the middle of each flight is among them where there are enough [s].
+/// `count` instants worth showing [s], evenly spaced over the run, or over its flights and a little
+/// around them, whose middles are among them where there are enough; of a walk on both feet.
 std::vector<double> telling_instants(const SimulationLog& log, int count);
 
 }  // namespace ayumi
