@@ -79,6 +79,11 @@ void check_gains_and_tolerances(const Pattern& pattern, const RobotModel& model)
 
 }  // namespace
 
+void check_against_robot(const Pattern& pattern, const RobotModel& model) {
+  check_scenario(pattern, model);
+  check_gains_and_tolerances(pattern, model);
+}
+
 std::string read_input(const std::filesystem::path& file) {
   if (file != "-") return read_file(file);
   return {std::istreambuf_iterator<char>(std::cin), {}};
@@ -94,8 +99,7 @@ PatternInput load_pattern(const Context& context, const std::filesystem::path& f
                           const PatternOptions& options, bool meshes) {
   Pattern pattern = read_given_pattern(file, read_pairs(options.set, "--set"));
   RobotModel model = load_robot(robot_of(pattern), robot_search(context), {.meshes = meshes});
-  check_scenario(pattern, model);
-  check_gains_and_tolerances(pattern, model);
+  check_against_robot(pattern, model);
   const std::string wanted = options.profile.empty() ? pattern.profile : options.profile;
   const std::string profile = model.limits(wanted).name;
   CommandSeries series =

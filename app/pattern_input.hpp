@@ -35,6 +35,10 @@ std::string read_input(const std::filesystem::path& file);
 Pattern read_given_pattern(const std::filesystem::path& file,
                            const std::map<std::string, double>& set = {});
 
+/// Throws Error(bad_pattern) naming file and place for disturbances on links or joints that the
+/// robot does not have, and for unknown gains and tolerances.
+void check_against_robot(const Pattern& pattern, const RobotModel& model);
+
 /// Reads the pattern (as read_given_pattern) and its robot and samples it at the robot's servo
 /// period.
 PatternInput load_pattern(const Context& context, const std::filesystem::path& file,

@@ -76,6 +76,7 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
                 {},
                 {},
                 {}};
+  check_against_robot(pattern, source.model);
   const CommandSeries series = sample(source.model, pattern, {}, context.progress());
   if (!series.viip.empty())
     fail(ErrorCode::bad_pattern, options.input +
