@@ -106,7 +106,7 @@ class Repair {
       spec_.zmp_margin += kRoundMargin;
       spec_.safe_margin += kRoundMargin;
       if (last_status_ != NlpStatus::solved) {
-        ++unsolved;
+        if (round > 0 || flight_) ++unsolved;  // the first one may only have been cut short
         pad *= 2;
         // Finer knots first; then safety gives way before the repair does.
         if (unsolved > 1 || last_status_ == NlpStatus::infeasible) {
