@@ -45,6 +45,7 @@ constexpr double kFarOff = 1e-3;             // barrier would only lead away fro
 constexpr double kWarmPush = 1e-6;           // of that start off its bounds, likewise
 constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
 constexpr int kUnsolved = 3;                 // rounds without a solution
+constexpr double kKnotsOfSlip = 10;          // soles in their places ask for all of what slipped
 constexpr int kHalvings = 2;                 // of the knots' spacing, at most
 constexpr double kFinest = 8;                // samples between knots that are not halved any more
 constexpr double kRoundMargin = 0.001;       // more ZMP margin each round [m]
@@ -78,6 +79,10 @@ class Repair {
     flight_ = flight_is_at_fault(result_.check);
     if (flight_)
       spec_.spacing = std::min(spec_.spacing, shortest_flight(series_) / kKnotsOfFaultyFlight);
+    for (const Finding& f : result_.check.findings)
+      if (f.kind == "foot_slip" && f.severity == Severity::error)
+        spec_.spacing = std::min(spec_.spacing,
+                                 std::max((f.end - f.begin) / kKnotsOfSlip, kFinest * series_.dt));
     if (locked_out(model_, spec_, result_.check))
       last_status_ = NlpStatus::infeasible;
     else
