@@ -39,7 +39,7 @@ bool within(const std::vector<TimeWindow>& windows, double t) {
 // all the same, xi has to move.
 void CorrectionProblem::measure_capture() {
   constexpr double kAround = 0.5;  // [s]
-  constexpr double kOff = 0.01;    // of the COG's height: a push less by a step of a study
+  constexpr double kOff = 0.014;   // of the COG's height: what a push study can tell
   keeps_xi_.assign(instants_.size(), false);
   if (!spec_.gentle_swings || spec_.trust != Trust::posture) return;
   RobotData data(model_);
@@ -52,7 +52,8 @@ void CorrectionProblem::measure_capture() {
     update_positions(model_, plan.state, data);
     update_velocities(model_, plan.state, data);
     const Vector2d xi = (data.cog + over_omega(plan) * data.dcog).head<2>();
-    if ((xi - planned_xi(plan)).norm() > kOff * (plan.cog.z() - plan.zmp.z())) off.push_back(t);
+    if ((xi - planned_xi(plan)).norm() > spec_.watched_share * kOff * (plan.cog.z() - plan.zmp.z()))
+      off.push_back(t);
   }
   for (size_t i = 0; i < times.size(); ++i)
     keeps_xi_[i] = std::any_of(off.begin(), off.end(),
