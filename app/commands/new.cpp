@@ -9,7 +9,6 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
-#include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/check/profiles.hpp"
 #include "ayumi/control/viip.hpp"
 #include "ayumi/control/viip_goals.hpp"
@@ -19,6 +18,7 @@
 #include "ayumi/pattern/sample.hpp"
 #include "new_pattern.hpp"
 #include "pattern_input.hpp"
+#include "walk_that_fits.hpp"
 
 namespace ayumi::app {
 
@@ -52,50 +52,6 @@ void add_common(CLI::App& command, NewOptions& options) {
       ->type_name("ROBOT")
       ->capture_default_str();
   command.add_option("-o,--out", options.out, "pattern file to write")->type_name("F")->required();
-}
-
-// No joint beyond its limits, no bodies that meet, feet in their places and within reach.
-bool posture_fits(const RobotModel& model, const WalkParameters& walk) {
-  constexpr double kTick = 0.01;  // [s]
-  try {
-    const ConsistencyReport report =
-        check_consistency(model, sample(model, walk_pattern(model, walk), {.dt = kTick}));
-    return std::none_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
-      return f.severity == Severity::error && is_of_posture(f);
-    });
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::internal) throw;
-    return false;
-  }
-}
-
-// The way aside or the turn that the legs can do, where they cannot do what was asked for; "" where
-// that is not what is wrong.
-std::string what_fits(const RobotModel& model, const WalkParameters& asked) {
-  struct Measure {
-    double WalkParameters::*value;
-    const char* option;
-    double unit, step;
-  };
-  if (posture_fits(model, asked)) return "";
-  for (const Measure& m : {Measure{&WalkParameters::side, "--side", 1, 1e-3},
-                           Measure{&WalkParameters::turn, "--turn", std::numbers::pi / 180, 0.5}}) {
-    const double given = asked.*m.value / m.unit;
-    int fits = 0, fails = static_cast<int>(std::ceil(std::abs(given) / m.step));
-    WalkParameters walk = asked;
-    const auto at = [&](int steps) {
-      walk.*m.value = std::copysign(steps * m.step, given) * m.unit;
-      return posture_fits(model, walk);
-    };
-    if (fails == 0 || !at(0)) continue;
-    while (fails - fits > 1) {
-      const int middle = (fits + fails) / 2;
-      (at(middle) ? fits : fails) = middle;
-    }
-    return std::string(m.option) + " " + text::brief(std::copysign(fits * m.step, given)) +
-           " is what the legs can do";
-  }
-  return "";
 }
 
 void new_walk(const Context& context, NewOptions options) {

@@ -13,5 +13,11 @@ TEST(Windows, ThatOverlapOrTouchAreOne) {
   EXPECT_TRUE(merged({}).empty());
 }
 
+TEST(Windows, HoldTheirEnds) {
+  const std::vector<TimeWindow> windows = {{0, 1}, {2, 3}};
+  for (const double t : {0.0, 0.5, 1.0, 2.0, 3.0}) EXPECT_TRUE(within(windows, t)) << t;
+  for (const double t : {-0.1, 1.1, 1.9, 3.1}) EXPECT_FALSE(within(windows, t)) << t;
+}
+
 }  // namespace
 }  // namespace ayumi

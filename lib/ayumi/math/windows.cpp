@@ -16,4 +16,9 @@ std::vector<TimeWindow> merged(std::vector<TimeWindow> windows) {
   return result;
 }
 
+bool within(const std::vector<TimeWindow>& windows, double t) {
+  return std::any_of(windows.begin(), windows.end(),
+                     [t](const TimeWindow& w) { return t >= w.first && t <= w.second; });
+}
+
 }  // namespace ayumi

@@ -28,11 +28,6 @@ bool carried(const Instant& at, const CommandSample& plan) {
   return at.known && !at.plane.empty() && plan.cog.z() > plan.zmp.z();
 }
 
-bool within(const std::vector<TimeWindow>& windows, double t) {
-  return std::any_of(windows.begin(), windows.end(),
-                     [t](const TimeWindow& w) { return t >= w.first && t <= w.second; });
-}
-
 }  // namespace
 
 // Around where the posture is off a plan that is right; where both agree and the motion is at fault

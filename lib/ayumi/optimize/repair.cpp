@@ -37,24 +37,22 @@ namespace {
 constexpr int kRounds = 8;
 constexpr size_t kReasons = 6;  // told at most
 constexpr double kPad = 0.5;    // free time around a finding, doubled when it is not enough [s]
-constexpr double kRoundJointMargin = 5e-4;   // [rad]
-constexpr double kRoundShare = 0.004;        // of speed limits and friction
-constexpr double kWarmBarrier = 1e-5;        // of a start that violates little, where the first
-constexpr double kNearlyMet = 1e-3;          // an unsolved program's violation, to go on from there
-constexpr double kFarOff = 1e-3;             // barrier would only lead away from it
-constexpr double kWarmPush = 1e-6;           // of that start off its bounds, likewise
-constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
-constexpr int kUnsolved = 3;                 // rounds without a solution
-constexpr double kKnotsOfSlip = 10;          // soles in their places ask for all of what slipped
-constexpr int kHalvings = 2;                 // of the knots' spacing, at most
-constexpr double kFinest = 8;                // samples between knots that are not halved any more
-constexpr double kRoundMargin = 0.001;       // more ZMP margin each round [m]
-constexpr int kPolishRounds = 4;             // at the limits of the check itself
-constexpr int kBeforeFinerKnots = 50;        // iterations of the first program
-constexpr double kAside = 0.1;             // from a result that fails to one that passes, to begin
-constexpr double kLittle = 1e-4;           // of the way back, rather than another round
-constexpr double kRoundTolerance = 1e-3;   // the least change is looked for at the end
-constexpr double kPolishTolerance = 1e-7;  // of optimality, over what the change costs
+constexpr double kRoundJointMargin = 5e-4;  // [rad]
+constexpr double kRoundShare = 0.004;       // of speed limits and friction
+constexpr double kWarmBarrier = 1e-5;       // of a start that violates little, where the first
+constexpr double kNearlyMet = 1e-3;         // an unsolved program's violation, to go on from there
+constexpr double kFarOff = 1e-3;            // barrier would only lead away from it
+constexpr double kWarmPush = 1e-6;          // of that start off its bounds, likewise
+constexpr int kUnsolved = 3;                // rounds without a solution
+constexpr int kHalvings = 2;                // of the knots' spacing, at most
+constexpr double kFinest = 8;               // samples between knots that are not halved any more
+constexpr double kRoundMargin = 0.001;      // more ZMP margin each round [m]
+constexpr int kPolishRounds = 4;            // at the limits of the check itself
+constexpr int kBeforeFinerKnots = 50;       // iterations of the first program
+constexpr double kAside = 0.1;              // from a result that fails to one that passes, to begin
+constexpr double kLittle = 1e-4;            // of the way back, rather than another round
+constexpr double kRoundTolerance = 1e-3;    // the least change is looked for at the end
+constexpr double kPolishTolerance = 1e-7;   // of optimality, over what the change costs
 
 class Repair {
  public:
@@ -77,12 +75,8 @@ class Repair {
     take(CorrectionProblem(model_, series_, spec_).track(VectorXd()));
     as_given_ = result_;
     flight_ = flight_is_at_fault(result_.check);
-    if (flight_)
-      spec_.spacing = std::min(spec_.spacing, shortest_flight(series_) / kKnotsOfFaultyFlight);
-    for (const Finding& f : result_.check.findings)
-      if (f.kind == "foot_slip" && f.severity == Severity::error)
-        spec_.spacing = std::min(spec_.spacing,
-                                 std::max((f.end - f.begin) / kKnotsOfSlip, kFinest * series_.dt));
+    spec_.spacing =
+        std::min(spec_.spacing, spacing_of_faults(series_, result_.check, kFinest * series_.dt));
     if (locked_out(model_, spec_, result_.check))
       last_status_ = NlpStatus::infeasible;
     else

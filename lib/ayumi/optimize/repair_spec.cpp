@@ -50,6 +50,18 @@ std::vector<double> kept_instants(const std::vector<std::pair<double, double>>& 
   return times;
 }
 
+/// [s]; without a flight no bound.
+double shortest_flight(const CommandSeries& series) {
+  double shortest = kNoBound;
+  size_t first = 0;
+  for (size_t k = 0; k <= series.samples.size(); ++k) {
+    if (k < series.samples.size() && series.samples[k].support == Support::none) continue;
+    if (k > first) shortest = std::min(shortest, static_cast<double>(k - first) * series.dt);
+    first = k + 1;
+  }
+  return shortest;
+}
+
 }  // namespace
 
 double safe_margin(const RobotModel& model) {
@@ -67,15 +79,16 @@ bool flight_is_at_fault(const ConsistencyReport& report) {
   });
 }
 
-double shortest_flight(const CommandSeries& series) {
-  double shortest = kNoBound;
-  size_t first = 0;
-  for (size_t k = 0; k <= series.samples.size(); ++k) {
-    if (k < series.samples.size() && series.samples[k].support == Support::none) continue;
-    if (k > first) shortest = std::min(shortest, static_cast<double>(k - first) * series.dt);
-    first = k + 1;
-  }
-  return shortest;
+double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& report,
+                         double finest) {
+  constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
+  constexpr double kKnotsOfSlip = 10;          // soles in their places ask for all of what slipped
+  double spacing =
+      flight_is_at_fault(report) ? shortest_flight(series) / kKnotsOfFaultyFlight : kNoBound;
+  for (const Finding& f : report.findings)
+    if (f.kind == "foot_slip" && f.severity == Severity::error)
+      spacing = std::min(spacing, std::max((f.end - f.begin) / kKnotsOfSlip, finest));
+  return spacing;
 }
 
 std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
@@ -188,9 +201,7 @@ bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
     const bool joint =
         dof >= 0 && spec.locked[dof] &&
         (f.kind == "joint_position" || f.kind == "joint_speed" || f.kind == "servo_step");
-    const bool window =
-        std::any_of(spec.locked_windows.begin(), spec.locked_windows.end(),
-                    [&](const auto& w) { return f.at >= w.first && f.at <= w.second; });
+    const bool window = within(spec.locked_windows, f.at);
     const bool instant =
         is_of_posture(f) && std::any_of(spec.kept_instants.begin(), spec.kept_instants.end(),
                                         [&](const double t) { return t >= f.begin && t <= f.end; });

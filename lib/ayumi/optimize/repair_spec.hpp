@@ -32,8 +32,10 @@ CorrectionTrack kept_at(CorrectionTrack track, const std::vector<double>& times)
 /// An error of its free fall or its angular momentum.
 bool flight_is_at_fault(const ConsistencyReport& report);
 
-/// [s]; without a flight no bound.
-double shortest_flight(const CommandSeries& series);
+/// How far apart knots may be for what is wrong to be undone [s]: in a flight at fault, which is no
+/// longer than that, and where a foot slips, at least `finest` there; else no bound.
+double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& report,
+                         double finest);
 
 /// Whether a joint that may not move is beyond its limits, or something is wrong at a time that may
 /// not change, with the posture at an instant: then there is nothing to solve.
