@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 
 namespace ayumi::app {
 

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/control/dtad.hpp"
+#include "ayumi/control/laws/dtad.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi::app {
 
 /// One instant of a run, as the equations need it.
-struct Instant {
+struct CollocationPoint {
   const SimulationLog& log;
   const RobotModel& model;
   DtadParams gains;
@@ -27,7 +27,7 @@ struct Equation {
   std::string formula;  ///< in one line, corrected where the printed form cannot be followed
   std::string words;    ///< what it says and what it is for
   /// Lines with numbers; null where a run has none for it.
-  std::vector<std::string> (*numbers)(const Instant&);
+  std::vector<std::string> (*numbers)(const CollocationPoint&);
 };
 
 /// Equations of the paper that this program works with, by number.

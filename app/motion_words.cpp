@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/preview/loci.hpp"
+#include "ayumi/plot/com_zmp_plot.hpp"
 #include "plan_log.hpp"
 
 namespace ayumi::app {

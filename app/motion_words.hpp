@@ -5,8 +5,8 @@
 #include <string>
 
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/optimize/motion_change.hpp"
-#include "ayumi/optimize/weighted_change.hpp"
+#include "ayumi/repair/motion_change.hpp"
+#include "ayumi/repair/weighted_change.hpp"
 #include "commands.hpp"
 
 namespace ayumi::app {

@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/profiles.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/check/actuator_need.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi::app {
 

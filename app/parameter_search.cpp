@@ -6,13 +6,13 @@
 #include <map>
 #include <set>
 
+#include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/math/windows.hpp"
-#include "ayumi/optimize/obstacles.hpp"
-#include "ayumi/pattern/edit.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/repair/infeasibility_report.hpp"
 #include "ayumi/study/retime.hpp"
 
 namespace ayumi::app {

@@ -11,8 +11,8 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/finding_kinds.hpp"
 #include "ayumi/control/controller.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi::app {
 

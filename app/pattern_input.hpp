@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "commands.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "ayumi/check/motion_dynamics.hpp"
-#include "ayumi/io/run_folder.hpp"
-#include "ayumi/pattern/differentiate.hpp"
+#include "ayumi/demand/motion_demand.hpp"
+#include "ayumi/io/run/run_folder.hpp"
+#include "ayumi/motion/differentiate.hpp"
 
 namespace ayumi::app {
 

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/io/run_folder.hpp"
-#include "ayumi/preview/strip.hpp"
+#include "ayumi/io/run/run_folder.hpp"
+#include "ayumi/render/snapshots.hpp"
 
 namespace ayumi::app {
 

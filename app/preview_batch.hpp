@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/preview/image.hpp"
+#include "ayumi/render/image.hpp"
 #include "commands.hpp"
 
 namespace ayumi::app {

@@ -7,8 +7,8 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/pattern/repair_wishes.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/motion/repair_preferences.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi::app {
 

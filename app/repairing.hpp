@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/optimize/repair.hpp"
+#include "ayumi/repair/repair.hpp"
 #include "pattern_input.hpp"
 
 namespace ayumi::app {

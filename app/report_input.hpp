@@ -1,7 +1,7 @@
 #pragma once
 // What a run's folder gives a report.
 
-#include "ayumi/io/run_folder.hpp"
+#include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/report/report.hpp"
 
 namespace ayumi::app {

@@ -1,7 +1,7 @@
 #pragma once
 // The robot of a run.
 
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "commands.hpp"
 
 namespace ayumi::app {

@@ -5,9 +5,9 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/gain_design.hpp"
-#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 #ifdef AYUMI_HAS_MUJOCO
-#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 #endif
 
 namespace ayumi::app {

@@ -8,7 +8,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/finding_kinds.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi::app {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/model/robot_model.hpp"
-#include "ayumi/pattern/generate.hpp"
 
 namespace ayumi::app {
 

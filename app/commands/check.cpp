@@ -8,10 +8,10 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/profiles.hpp"
+#include "ayumi/check/actuator_need.hpp"
 #include "ayumi/control/viip_goals.hpp"
-#include "ayumi/io/pattern_table.hpp"
-#include "ayumi/io/results_json.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/run/results_json.hpp"
 #include "check_table.hpp"
 #include "pattern_input.hpp"
 #include "signals.hpp"

@@ -4,8 +4,8 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/results_json.hpp"
-#include "ayumi/optimize/safety_price.hpp"
+#include "ayumi/io/run/results_json.hpp"
+#include "ayumi/repair/robustness_cost.hpp"
 #include "motion_words.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"

@@ -1,7 +1,7 @@
 // Pattern surgery: bake, mirror, retime, concat, blend, ramp. The result is sampled and checked
 // before it is written.
 
-#include "ayumi/pattern/edit.hpp"
+#include "ayumi/author/edit/edit.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -9,9 +9,9 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/pattern_table.hpp"
-#include "ayumi/io/results_json.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/run/results_json.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "ayumi/study/retime.hpp"
 #include "check_table.hpp"
 #include "option_checks.hpp"

@@ -7,7 +7,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/run_folder.hpp"
+#include "ayumi/io/run/run_folder.hpp"
 #include "commands.hpp"
 #include "equations.hpp"
 #include "pattern_input.hpp"
@@ -93,8 +93,8 @@ Numbers numbers_of(const Context& context, const Equation& e, const Options& opt
   ControllerSpec spec;
   for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
     spec.gains.emplace_back(name, value);
-  const Instant instant{log, model, dtad_params(model, spec),
-                        static_cast<size_t>(std::lround(place.t / log.dt))};
+  const CollocationPoint instant{log, model, dtad_params(model, spec),
+                                 static_cast<size_t>(std::lround(place.t / log.dt))};
   Numbers result;
   if (e.numbers) result.lines = e.numbers(instant);
   result.where = place.run;

@@ -4,13 +4,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/control/capture_bound.hpp"
 #include "ayumi/control/gain_design.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 

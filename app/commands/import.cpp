@@ -5,8 +5,8 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/motion_import.hpp"
-#include "ayumi/io/pattern_table.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/table/motion_import.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 

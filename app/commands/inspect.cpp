@@ -10,7 +10,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/model/diagnose.hpp"
 #include "ayumi/model/outline.hpp"
-#include "ayumi/preview/clip.hpp"
+#include "ayumi/render/clip.hpp"
 #include "commands.hpp"
 
 namespace ayumi::app {

@@ -6,16 +6,16 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
-#include "ayumi/check/profiles.hpp"
-#include "ayumi/control/viip.hpp"
+#include "ayumi/check/actuator_need.hpp"
+#include "ayumi/control/laws/viip.hpp"
 #include "ayumi/control/viip_goals.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/postures.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "new_pattern.hpp"
 #include "pattern_input.hpp"
 #include "walk_that_fits.hpp"

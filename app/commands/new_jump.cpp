@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <memory>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "new_pattern.hpp"
 
 namespace ayumi::app {

@@ -8,8 +8,8 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/run_folder.hpp"
-#include "ayumi/preview/loci.hpp"
+#include "ayumi/io/run/run_folder.hpp"
+#include "ayumi/plot/com_zmp_plot.hpp"
 #include "commands.hpp"
 #include "run_robot.hpp"
 

@@ -11,7 +11,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/control/controller.hpp"
-#include "ayumi/preview/push_map.hpp"
+#include "ayumi/plot/push_map.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "push_results.hpp"

@@ -1,17 +1,17 @@
 // The nearest consistent pattern by Ipopt, written as the author's file with a correction track.
 
-#include "ayumi/optimize/repair.hpp"
+#include "ayumi/repair/repair.hpp"
 
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/pattern_table.hpp"
-#include "ayumi/io/results_json.hpp"
-#include "ayumi/pattern/edit.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/run/results_json.hpp"
 #include "check_table.hpp"
 #include "motion_words.hpp"
 #include "option_checks.hpp"

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/results_json.hpp"
-#include "ayumi/io/run_folder.hpp"
+#include "ayumi/io/run/results_json.hpp"
+#include "ayumi/io/run/run_folder.hpp"
 #include "pattern_input.hpp"
 #include "simulation.hpp"
 

@@ -20,7 +20,7 @@ struct Room {
   int floor = 0;
   std::set<std::string> also = {};    ///< seen although on the same floor
   std::set<std::string> hidden = {};  ///< lower rooms that are out of sight
-  bool data_only = false;             ///< of floors 5 and 6 only data_headers()
+  bool data_only = false;             ///< of the rooms that compute only data_headers()
 };
 
 inline const std::map<std::string, Room>& rooms() {
@@ -30,24 +30,43 @@ inline const std::map<std::string, Room>& rooms() {
       {"geometry", {2, {}, {}, false}},
       {"model", {2, {"geometry"}, {}, false}},
       {"dynamics", {3, {}, {}, false}},
-      {"pattern", {4, {}, {}, false}},
-      {"check", {5, {}, {}, false}},
-      {"control", {5, {"check"}, {}, false}},
-      {"optimize", {6, {}, {"control"}, false}},
-      {"sim", {6, {}, {"check"}, false}},
-      {"study", {7, {}, {}, false}},
-      {"plant_mujoco", {7, {}, {"check", "control", "optimize"}, false}},
-      {"io", {7, {}, {}, true}},
-      {"preview", {7, {}, {}, true}},
-      {"report", {8, {}, {}, true}},
-      {"app", {9, {}, {}, false}}};
+      {"motion", {4, {}, {}, false}},
+      {"plan", {5, {}, {}, false}},
+      {"demand", {5, {}, {}, false}},
+      {"author", {6, {}, {}, false}},
+      {"limits", {6, {}, {}, false}},
+      {"check", {7, {}, {}, false}},
+      {"control", {7, {}, {"limits"}, false}},
+      {"repair", {8, {}, {"control"}, false}},
+      {"sim", {8, {}, {"check", "limits"}, false}},
+      {"study", {9, {}, {}, false}},
+      {"sim/plant_mujoco", {9, {}, {"check", "limits", "control", "repair"}, false}},
+      {"io", {9, {}, {}, true}},
+      {"render", {9, {}, {}, true}},
+      {"plot", {9, {"render"}, {}, true}},
+      {"report", {10, {}, {}, true}},
+      {"app", {11, {}, {}, false}}};
   return table;
 }
 
-/// Headers of floors 5 and 6 that hold results and options, open to io, preview and report.
+/// Rooms of which io, render, plot and report see data_headers() only.
+inline bool computes(const std::string& room) {
+  static const std::set<std::string> rooms = {"check", "limits", "control", "repair", "sim"};
+  return rooms.contains(room);
+}
+
+/// The room of "check/consistency.hpp": the longest leading folder that is one.
+inline std::string room_of(const std::string& path) {
+  const size_t first = path.find('/'), second = path.find('/', first + 1);
+  const std::string two = second == std::string::npos ? "" : path.substr(0, second);
+  return rooms().contains(two) ? two : path.substr(0, first);
+}
+
+/// Headers of the rooms that compute which hold results and options.
 inline const std::set<std::string>& data_headers() {
-  static const std::set<std::string> headers = {"check/consistency.hpp", "optimize/repair.hpp",
-                                                "sim/simulate.hpp", "sim/simulation_log.hpp"};
+  static const std::set<std::string> headers = {"check/consistency.hpp", "check/table_safety.hpp",
+                                                "repair/repair.hpp", "sim/simulate.hpp",
+                                                "sim/simulation_log.hpp"};
   return headers;
 }
 
@@ -70,19 +89,19 @@ struct ThirdParty {
 inline const std::vector<ThirdParty>& third_parties() {
   static const std::vector<ThirdParty> table = {
       {"Eigen", std::regex("(unsupported/)?Eigen/.*"), {}},
-      {"Ipopt", std::regex("Ip[A-Z].*|coin(-or)?/.*"), {"optimize"}},
+      {"Ipopt", std::regex("Ip[A-Z].*|coin(-or)?/.*"), {"repair"}},
       {"urdfdom", std::regex("(urdf|console_bridge|tinyxml).*"), {"io"}},
       {"assimp", std::regex("assimp/.*"), {"io"}},
       {"OpenSSL", std::regex("openssl/.*"), {"io"}},
       {"nlohmann-json", std::regex("nlohmann/.*"), {"io", "app"}},
-      {"OpenGL", std::regex("E?GL/.*"), {"preview"}},
-      {"cairo", std::regex("cairo.*"), {"preview"}},
-      {"libjpeg", std::regex("jpeglib\\.h"), {"preview"}},
+      {"OpenGL", std::regex("E?GL/.*"), {"render"}},
+      {"cairo", std::regex("cairo.*"), {"render", "plot"}},
+      {"libjpeg", std::regex("jpeglib\\.h"), {"render"}},
       {"CLI11", std::regex("CLI/.*"), {"app"}},
-      {"MuJoCo", std::regex("mujoco/.*"), {"plant_mujoco"}},
+      {"MuJoCo", std::regex("mujoco/.*"), {"sim/plant_mujoco"}},
       {"POSIX",
        std::regex("sys/.*|(unistd|fcntl|signal|spawn|poll|termios|pthread)\\.h"),
-       {"base", "preview", "app"}},
+       {"base", "render", "app"}},
       {"processor intrinsics", std::regex("(imm|x86)intrin\\.h"), {"dynamics", "sim"}}};
   return table;
 }
@@ -90,7 +109,7 @@ inline const std::vector<ThirdParty>& third_parties() {
 /// The broken rule, empty when a file of `room` may include "ayumi/`header`".
 inline std::string room_rule(const std::string& room, bool public_header,
                              const std::string& header) {
-  const std::string target = header.substr(0, header.find('/'));
+  const std::string target = room_of(header);
   const auto to = rooms().find(target);
   if (to == rooms().end()) return "there is no room '" + target + "'";
   if (public_header && private_headers().contains(header))
@@ -102,7 +121,7 @@ inline std::string room_rule(const std::string& room, bool public_header,
   if (floor >= from.floor || from.hidden.contains(target))
     return "room '" + room + "' (floor " + std::to_string(from.floor) + ") may not include room '" +
            target + "' (floor " + std::to_string(floor) + ")";
-  if (from.data_only && (floor == 5 || floor == 6) && !data_headers().contains(header))
+  if (from.data_only && computes(target) && !data_headers().contains(header))
     return "room '" + room + "' may include only data types of room '" + target + "'";
   return "";
 }
@@ -158,7 +177,7 @@ inline std::vector<std::string> layering_violations(const fs::path& root) {
       if (entry.is_directory() && forbidden.contains(inside.filename()))
         found.push_back(shown + ": no such folder name");
       if (extension != ".cpp" && extension != ".hpp") continue;
-      const std::string room = top == "app" ? "app" : inside.begin()->string();
+      const std::string room = top == "app" ? "app" : room_of(inside.generic_string());
       const bool public_header = extension == ".hpp" && room != "app" &&
                                  !private_headers().contains(inside.generic_string());
       const auto breaks = file_violations(entry.path(), shown, room, public_header);

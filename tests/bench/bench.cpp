@@ -12,7 +12,7 @@
 #include <cstring>
 #include <set>
 
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi::bench {

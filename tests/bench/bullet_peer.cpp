@@ -7,7 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <memory>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi::bench {
 

@@ -7,14 +7,14 @@
 #include <numeric>
 #include <optional>
 
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/pattern/sample.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "tests/bench/bench.hpp"
 #ifdef BENCH_HAS_MUJOCO
-#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 #endif
 
 namespace ayumi::bench {

@@ -5,7 +5,7 @@
 #include <dart/dynamics/dynamics.hpp>
 #include <memory>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi::bench {
 

@@ -14,14 +14,13 @@
 #include <fstream>
 #include <string>
 
+#include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/pattern/edit.hpp"
-#include "ayumi/pattern/sample.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "tests/support/walk.hpp"
 

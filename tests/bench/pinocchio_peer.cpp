@@ -13,7 +13,7 @@
 #include <pinocchio/config.hpp>
 #include <pinocchio/multibody/model.hpp>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi::bench {
 

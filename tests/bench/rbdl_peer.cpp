@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi::bench {
 

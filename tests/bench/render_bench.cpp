@@ -12,9 +12,9 @@
 #include <map>
 
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/preview/clip.hpp"
-#include "ayumi/preview/robot_surface.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/render/clip.hpp"
+#include "ayumi/render/robot_surface.hpp"
 #ifdef AYUMI_HAS_MUJOCO
 #include <GL/osmesa.h>
 #include <mujoco/mujoco.h>

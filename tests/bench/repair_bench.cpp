@@ -15,13 +15,13 @@
 #include <utility>
 #include <vector>
 
-#include "ayumi/check/collision_scan.hpp"
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/demand/collision_scan.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/optimize/repair.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/repair/repair.hpp"
 
 using namespace ayumi;
 

@@ -7,7 +7,7 @@
 
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/plain_motion.hpp"
 #include "tests/support/random_robot.hpp"
 

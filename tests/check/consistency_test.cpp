@@ -5,7 +5,7 @@
 #include <set>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/check/contacts.hpp"
+#include "ayumi/demand/contact_plan.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/walk.hpp"
 

@@ -7,9 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/pattern/generate.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"

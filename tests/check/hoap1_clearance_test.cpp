@@ -7,7 +7,7 @@
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 
 namespace ayumi {
 namespace {

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/postures.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
 namespace {

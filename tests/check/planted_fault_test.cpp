@@ -5,13 +5,13 @@
 #include <cmath>
 #include <set>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/finding_kinds.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/pattern_table.hpp"
-#include "ayumi/pattern/edit.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"

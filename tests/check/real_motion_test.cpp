@@ -8,15 +8,14 @@
 #include <fstream>
 #include <sstream>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/io/motion_import.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/io/table/motion_import.hpp"
 #include "ayumi/math/polygon.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"
 

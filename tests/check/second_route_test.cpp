@@ -7,11 +7,11 @@
 #include <algorithm>
 
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/check/contacts.hpp"
-#include "ayumi/check/motion_dynamics.hpp"
-#include "ayumi/check/residuals.hpp"
+#include "ayumi/demand/contact_plan.hpp"
+#include "ayumi/demand/ground_demand.hpp"
+#include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/math/polygon.hpp"
-#include "ayumi/pattern/differentiate.hpp"
+#include "ayumi/motion/differentiate.hpp"
 #include "tests/support/plain_motion.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/robot_motions.hpp"
@@ -114,7 +114,7 @@ TEST_P(SecondRoute, GroundFiguresByPlainSums) {
     if (inside <= 0.002 || f.head<2>().norm() > kFriction * f.z()) return;
     std::vector<Vector2d> hull;
     for (const Vector3d& c : corners) hull.push_back(c.head<2>());
-    const double lever = yaw_lever(ConvexPolygon(hull), at.head<2>());
+    const double lever = torsional_friction_arm(ConvexPolygon(hull), at.head<2>());
     const double moment = (ground.moment - at.cross(f)).z();
     yaw = std::max(yaw, std::abs(moment) / (kFriction * f.z() * lever));
   });

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/pattern/export_safety.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
-#include "ayumi/pattern/servo_lead.hpp"
+#include "ayumi/check/table_safety.hpp"
+#include "ayumi/motion/servo_feedforward.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/hoap1.hpp"
 

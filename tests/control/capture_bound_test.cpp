@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "tests/support/biped.hpp"
 
 namespace ayumi {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/weighted_solve.hpp"
 #include "tests/support/pendulum.hpp"

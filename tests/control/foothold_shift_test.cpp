@@ -4,14 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
-#include "ayumi/control/dtad.hpp"
+#include "ayumi/control/laws/dtad.hpp"
 #include "ayumi/control/support.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulator.hpp"
 
 namespace ayumi {

@@ -7,8 +7,8 @@
 #include <deque>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 namespace {

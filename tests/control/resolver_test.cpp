@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 
 namespace ayumi {
 namespace {

@@ -1,13 +1,13 @@
 // The closed forms of (26)(27) as the controller uses them, against their springs integrated, and
 // the goals it refuses.
-#include "ayumi/control/viip_jump.hpp"
+#include "ayumi/control/laws/viip_jump.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "tests/support/biped.hpp"
 
 namespace ayumi {

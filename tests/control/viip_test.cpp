@@ -1,9 +1,9 @@
-#include "ayumi/control/viip.hpp"
+#include "ayumi/control/laws/viip.hpp"
 
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "tests/support/biped.hpp"
 
 namespace ayumi {

@@ -6,7 +6,7 @@
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/supports.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {

@@ -8,7 +8,7 @@
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/mujoco_model.hpp"
 #include "tests/support/random_robot.hpp"
 

@@ -7,11 +7,11 @@
 
 #include <mujoco/mujoco.h>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"
-#include "ayumi/io/urdf.hpp"
+#include "ayumi/io/robot/urdf.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "tests/support/odd_urdf.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace ayumi {

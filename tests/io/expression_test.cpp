@@ -1,4 +1,4 @@
-#include "ayumi/io/expression.hpp"
+#include "ayumi/io/pattern/expression.hpp"
 
 #include <gtest/gtest.h>
 

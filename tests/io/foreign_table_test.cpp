@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/io/motion_import.hpp"
+#include "ayumi/io/table/motion_import.hpp"
 #include "tests/support/hoap1.hpp"
 
 namespace ayumi::test {

@@ -1,4 +1,4 @@
-#include "ayumi/io/hoap.hpp"
+#include "ayumi/io/formats/hoap.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/bus_robot.hpp"
 
 namespace ayumi {

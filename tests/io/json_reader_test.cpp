@@ -1,4 +1,4 @@
-#include "ayumi/io/json_reader.hpp"
+#include "ayumi/io/json/json_reader.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ayumi/io/mesh.hpp"
+#include "ayumi/io/robot/mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace ayumi {

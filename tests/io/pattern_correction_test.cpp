@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "ayumi/base/file.hpp"
-#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 
 namespace ayumi {
 namespace {

@@ -1,4 +1,4 @@
-#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 
 #include "tests/io/pattern_texts.hpp"
 

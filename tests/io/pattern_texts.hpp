@@ -8,7 +8,7 @@
 #include <map>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 
 namespace ayumi::test {
 

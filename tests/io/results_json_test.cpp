@@ -1,11 +1,11 @@
-#include "ayumi/io/results_json.hpp"
+#include "ayumi/io/run/results_json.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "ayumi/io/simulation_log_file.hpp"
+#include "ayumi/io/run/simulation_log_file.hpp"
 
 namespace ayumi {
 namespace {

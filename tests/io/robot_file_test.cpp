@@ -1,4 +1,4 @@
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/sha256.hpp"
-#include "ayumi/io/urdf.hpp"
+#include "ayumi/io/robot/urdf.hpp"
+#include "ayumi/io/run/sha256.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/temporary_folder.hpp"
 

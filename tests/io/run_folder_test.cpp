@@ -1,4 +1,4 @@
-#include "ayumi/io/run_folder.hpp"
+#include "ayumi/io/run/run_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
-#include "ayumi/io/sha256.hpp"
-#include "ayumi/io/simulation_log_file.hpp"
+#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/io/run/simulation_log_file.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {

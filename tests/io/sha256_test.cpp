@@ -1,4 +1,4 @@
-#include "ayumi/io/sha256.hpp"
+#include "ayumi/io/run/sha256.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ayumi/io/table.hpp"
+#include "ayumi/io/table/table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/io/number_table.hpp"
+#include "ayumi/io/table/number_table.hpp"
 
 namespace ayumi {
 namespace {

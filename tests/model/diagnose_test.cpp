@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 
 namespace ayumi {
 namespace {

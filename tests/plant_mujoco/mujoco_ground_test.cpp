@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 #include "ayumi/sim/schedule.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/block.hpp"

@@ -1,10 +1,10 @@
 // The jumps of HOAP-1 in MuJoCo: an independent integrator and softer ground under the same law.
 #include <gtest/gtest.h>
 
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/pattern/sample.hpp"
-#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 #include "tests/support/jump_figures.hpp"
 
 namespace ayumi {

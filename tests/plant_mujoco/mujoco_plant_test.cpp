@@ -1,15 +1,15 @@
 // Two integrators, one robot: what Ayumi's plant says against MuJoCo.
 
-#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 
 #include <gtest/gtest.h>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/pattern/sample.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/walk.hpp"

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/pattern/sample.hpp"
-#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "tests/support/hoap1.hpp"
 

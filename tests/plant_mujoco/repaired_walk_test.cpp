@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/optimize/repair.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/repair/repair.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
 

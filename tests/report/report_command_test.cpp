@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/preview/standing_run.hpp"
+#include "tests/render/standing_run.hpp"
 
 namespace ayumi::test {
 namespace {

@@ -5,7 +5,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/report/html.hpp"
 #include "tests/cli/program.hpp"
-#include "tests/preview/box_robot.hpp"
+#include "tests/render/box_robot.hpp"
 
 namespace ayumi::test {
 namespace {

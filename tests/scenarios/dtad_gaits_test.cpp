@@ -2,13 +2,13 @@
 // push, the large robot. Actuators as they are.
 #include <gtest/gtest.h>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/io/table.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/io/table/table.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -2,11 +2,11 @@
 // log: how high, how they land, what is conserved on the way.
 #include <gtest/gtest.h>
 
-#include "ayumi/check/profiles.hpp"
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/check/actuator_need.hpp"
 #include "ayumi/control/viip_goals.hpp"
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/jump_figures.hpp"

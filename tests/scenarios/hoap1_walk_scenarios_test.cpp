@@ -2,10 +2,10 @@
 // real actuators of HOAP-1. The limits are those a user relies on.
 #include <gtest/gtest.h>
 
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/random.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 
 namespace ayumi {

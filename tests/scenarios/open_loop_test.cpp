@@ -2,8 +2,8 @@
 // that an integrator which knows nothing of the plan moves as planned.
 #include <gtest/gtest.h>
 
-#include "ayumi/io/pattern_file.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
 

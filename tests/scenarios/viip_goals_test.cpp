@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/check/profiles.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/check/actuator_need.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
 

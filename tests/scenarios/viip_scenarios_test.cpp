@@ -2,9 +2,9 @@
 // seconds.
 #include <gtest/gtest.h>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "ayumi/study/push.hpp"
 #include "tests/support/hoap1.hpp"

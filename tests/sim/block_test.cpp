@@ -9,11 +9,11 @@
 #include <limits>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {

@@ -1,4 +1,4 @@
-#include "ayumi/sim/contact_solver.hpp"
+#include "ayumi/sim/plant/contact_solver.hpp"
 
 #include <gtest/gtest.h>
 

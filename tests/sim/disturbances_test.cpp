@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/walk.hpp"

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/schedule.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/walk.hpp"

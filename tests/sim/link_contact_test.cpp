@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/walk.hpp"
 

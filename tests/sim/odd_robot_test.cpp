@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/io/urdf.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/io/robot/urdf.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/odd_urdf.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -1,10 +1,10 @@
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 
 #include <gtest/gtest.h>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/random_robot.hpp"
 

@@ -5,10 +5,10 @@
 
 #include <memory>
 
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/io/simulation_log_file.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/io/run/simulation_log_file.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/base/version.hpp"
-#include "ayumi/io/pattern_file.hpp"
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/mirror.hpp"

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/random_robot.hpp"
 

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/sensors.hpp"
 #include "tests/support/biped.hpp"
 

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "ayumi/pattern/edit.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
 

@@ -2,7 +2,7 @@
 // What the check says of a pattern, as `ayumi check` asks it.
 
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi::test {
 

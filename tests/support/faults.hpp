@@ -9,7 +9,7 @@
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi::test {

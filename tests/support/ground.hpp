@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/schedule.hpp"
 
 namespace ayumi::test {

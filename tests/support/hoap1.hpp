@@ -1,7 +1,7 @@
 #pragma once
 // HOAP-1 as most tests use it: its file, read once.
 
-#include "ayumi/io/robot_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 
 namespace ayumi::test {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi::test {

@@ -3,7 +3,7 @@
 // them; every joint keeps its angle, since its axis turns the other way.
 
 #include "ayumi/model/robot_model.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi::test {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi::test {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi::test {
 

@@ -10,9 +10,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/model/robot_model.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi::test {
 

@@ -4,7 +4,7 @@
 #include <set>
 #include <sstream>
 
-#include "ayumi/pattern/generate.hpp"
+#include "ayumi/author/generate/generate.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"

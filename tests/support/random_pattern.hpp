@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "ayumi/pattern/pattern.hpp"
+#include "ayumi/motion/pattern.hpp"
 
 namespace ayumi::test {
 

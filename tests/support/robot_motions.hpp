@@ -7,9 +7,9 @@
 #include <map>
 #include <string>
 
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi::test {
 

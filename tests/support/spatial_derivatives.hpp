@@ -11,10 +11,10 @@
 //   d tau    / d dq  = same with (2B S + 2 I psi1)
 // Base columns: translation 0; w: 2B_i S_k + I_i (0, w x e_k); rotation by turning the whole
 // system back: -[F x] + dw [w x] + dalpha [alpha x] + da [(a + g) x].
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi::test {
 

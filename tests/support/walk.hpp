@@ -6,12 +6,12 @@
 #include <cmath>
 #include <vector>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi::test {
 

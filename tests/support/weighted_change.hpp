@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "ayumi/pattern/command_series.hpp"
-#include "ayumi/pattern/correction.hpp"
+#include "ayumi/motion/command_series.hpp"
+#include "ayumi/motion/correction.hpp"
 
 namespace ayumi::test {
 

@@ -23,10 +23,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/check/residuals.hpp"
 #include "ayumi/check/slower_pace.hpp"
 #include "ayumi/check/spans.hpp"
 #include "ayumi/check/what_if.hpp"
+#include "ayumi/demand/ground_demand.hpp"
 
 namespace ayumi {
 

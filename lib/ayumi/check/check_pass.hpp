@@ -2,7 +2,7 @@
 // One run of the check over a command series: what all its parts read and what they find.
 
 #include "ayumi/check/finding_windows.hpp"
-#include "ayumi/check/motion_dynamics.hpp"
+#include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
 
 namespace ayumi {

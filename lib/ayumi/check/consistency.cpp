@@ -7,10 +7,10 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/check/causes.hpp"
 #include "ayumi/check/check_pass.hpp"
 #include "ayumi/check/hints.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

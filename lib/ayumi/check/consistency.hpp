@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ayumi/model/robot_model.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
 

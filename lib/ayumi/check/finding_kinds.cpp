@@ -5,7 +5,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/check/check_pass.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
@@ -62,7 +62,7 @@ void check_margin(CheckPass& pass, int k, int whose, double margin) {
            outside ? Severity::error : Severity::warning);
 }
 
-void check_margins(CheckPass& pass, int k, const GroundUse& use) {
+void check_margins(CheckPass& pass, int k, const GroundDemand& use) {
   const CommandSample& s = pass.series.samples[k];
   const SupportPlane& plane = pass.dynamics.plane();
   pass.summary.min_zmp_margin = std::min(pass.summary.min_zmp_margin, use.margin);
@@ -75,7 +75,7 @@ void check_margins(CheckPass& pass, int k, const GroundUse& use) {
     check_margin(pass, k, 1, command_margin);
 }
 
-void check_grip(CheckPass& pass, int k, const GroundUse& use) {
+void check_grip(CheckPass& pass, int k, const GroundDemand& use) {
   const int support = static_cast<int>(pass.series.samples[k].support);
   const double grip = pass.friction * use.normal_force;
   const double ratio = use.tangential_force / grip;
@@ -85,7 +85,7 @@ void check_grip(CheckPass& pass, int k, const GroundUse& use) {
   // Nothing resists turning where the foot slides anyway, and a ZMP outside has no lever: both
   // are told above.
   if (ratio >= 1 || use.margin <= pass.tolerance(Kind::support_margin)) return;
-  const double lever = yaw_lever(pass.dynamics.plane().polygon, use.zmp);
+  const double lever = torsional_friction_arm(pass.dynamics.plane().polygon, use.zmp);
   const double yaw = std::abs(use.yaw_moment) / (grip * lever);
   raise_to(pass.summary.max_yaw_ratio, yaw);
   const double most_yaw = pass.tolerance(Kind::yaw_moment);
@@ -93,7 +93,7 @@ void check_grip(CheckPass& pass, int k, const GroundUse& use) {
 }
 
 void check_ground(CheckPass& pass, int k, const SampleDynamics& motion) {
-  const GroundUse& use = motion.use;
+  const GroundDemand& use = motion.use;
   const double least = pass.tolerance(Kind::unilateral) * pass.weight;
   if (use.normal_force < least) {
     const bool pulls = use.normal_force < 0;

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "ayumi/check/check_pass.hpp"
-#include "ayumi/check/collision_scan.hpp"
-#include "ayumi/pattern/servo_lead.hpp"
+#include "ayumi/demand/collision_scan.hpp"
+#include "ayumi/motion/servo_feedforward.hpp"
 
 namespace ayumi {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/base/version.hpp"
-#include "ayumi/check/residuals.hpp"
+#include "ayumi/demand/ground_demand.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
@@ -71,7 +71,7 @@ bool SlowerPace::ground_holds(const Violation& v, double pace) {
     case Kind::yaw_moment:
       return std::abs(now.use.yaw_moment) <=
              limit * pass_.friction * now.use.normal_force *
-                 yaw_lever(pass_.dynamics.plane().polygon, now.use.zmp);
+                 torsional_friction_arm(pass_.dynamics.plane().polygon, now.use.zmp);
     case Kind::ballistic:
       return flight_is_free(v.sample, pace, limit);
     case Kind::angular_momentum:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/check/residuals.hpp"
+#include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 
 namespace ayumi {

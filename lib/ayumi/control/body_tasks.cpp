@@ -1,6 +1,6 @@
 #include "ayumi/control/body_tasks.hpp"
 
-#include "ayumi/dynamics/tree_kernels.hpp"
+#include "ayumi/dynamics/kernels/tree_kernels.hpp"
 #include "ayumi/math/weighted_solve.hpp"
 
 namespace ayumi {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/control/support.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

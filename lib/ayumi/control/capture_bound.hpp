@@ -4,7 +4,7 @@
 // Minkowski integral of the supports to come, int omega exp(-omega s) S(t + s) ds. It is a figure
 // of a point mass: a body with inertia about its edge can pass it by a little. docs/theory.md.
 
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
 

@@ -5,10 +5,10 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/control/feedforward.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/track.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

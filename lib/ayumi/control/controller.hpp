@@ -5,10 +5,10 @@
 #include <optional>
 #include <variant>
 
-#include "ayumi/control/dtad.hpp"
 #include "ayumi/control/foothold_shift.hpp"
-#include "ayumi/control/viip.hpp"
-#include "ayumi/control/viip_jump.hpp"
+#include "ayumi/control/laws/dtad.hpp"
+#include "ayumi/control/laws/viip.hpp"
+#include "ayumi/control/laws/viip_jump.hpp"
 
 namespace ayumi {
 

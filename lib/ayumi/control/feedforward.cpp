@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ayumi/check/motion_dynamics.hpp"
+#include "ayumi/demand/motion_demand.hpp"
 
 namespace ayumi {
 

@@ -4,7 +4,7 @@
 // posture sent as it is sags under the weight by tau / kp and follows late by kd / kp.
 
 #include "ayumi/model/robot_model.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
 

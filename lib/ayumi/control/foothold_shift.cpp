@@ -10,10 +10,10 @@
 #include <cmath>
 #include <limits>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/control/support.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/pattern/foot_plan.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/plan/foot_plan.hpp"
 
 namespace ayumi {
 

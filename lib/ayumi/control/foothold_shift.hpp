@@ -6,7 +6,7 @@
 
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/control/footsteps.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
 

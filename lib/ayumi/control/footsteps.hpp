@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ayumi/model/robot_model.hpp"
-#include "ayumi/pattern/viip_goal.hpp"
+#include "ayumi/motion/viip_goal.hpp"
 
 namespace ayumi {
 

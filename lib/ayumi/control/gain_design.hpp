@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/control/dtad.hpp"
+#include "ayumi/control/laws/dtad.hpp"
 
 namespace ayumi {
 

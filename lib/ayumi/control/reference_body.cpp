@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

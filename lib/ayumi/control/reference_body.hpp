@@ -7,8 +7,8 @@
 
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/control/resolver.hpp"
-#include "ayumi/pattern/command_series.hpp"
-#include "ayumi/pattern/servo_lead.hpp"
+#include "ayumi/motion/command_series.hpp"
+#include "ayumi/motion/servo_feedforward.hpp"
 
 namespace ayumi {
 

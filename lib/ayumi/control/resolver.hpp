@@ -8,7 +8,7 @@
 
 #include "ayumi/control/body_tasks.hpp"
 #include "ayumi/dynamics/robot_data.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
 

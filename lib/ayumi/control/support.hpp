@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ayumi/math/polygon.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
 

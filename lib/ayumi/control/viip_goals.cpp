@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
+#include "ayumi/control/laws/viip.hpp"
 #include "ayumi/control/resolver.hpp"
 #include "ayumi/control/support.hpp"
-#include "ayumi/control/viip.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "ayumi/pattern/keyed_goal.hpp"
-#include "ayumi/pattern/scenario.hpp"
+#include "ayumi/motion/keyed_goal.hpp"
+#include "ayumi/motion/scenario.hpp"
 
 namespace ayumi {
 

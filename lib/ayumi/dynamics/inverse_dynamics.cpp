@@ -1,6 +1,5 @@
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 
 namespace ayumi {

@@ -1,8 +1,8 @@
 #include "ayumi/dynamics/robot_data.hpp"
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/tree_cholesky.hpp"
 #include "ayumi/dynamics/tree_links.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

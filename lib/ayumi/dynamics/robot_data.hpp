@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "ayumi/dynamics/tree_kernels.hpp"
+#include "ayumi/dynamics/kernels/tree_kernels.hpp"
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {

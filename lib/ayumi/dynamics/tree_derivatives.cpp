@@ -11,10 +11,10 @@
 //   2B X = (2 X_w x p, D X_w),   D = 2 (tr G - G),   of one body G = v h' + [w x] sum m c c'.
 // Base columns: translation 0; w: 2B_i S_k + I_i (0, w x e_k); rotation by turning the whole
 // system back: -[F x] + dw [w x] + dalpha [alpha x] + da [(a + g) x].
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

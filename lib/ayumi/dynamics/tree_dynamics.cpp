@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/tree_links.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

@@ -9,8 +9,8 @@
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/joint_drive.hpp"
+#include "ayumi/dynamics/kernels/tree_kernels.hpp"
 #include "ayumi/dynamics/tree_cholesky.hpp"
-#include "ayumi/dynamics/tree_kernels.hpp"
 
 namespace ayumi {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "ayumi/dynamics/tree_kernels.hpp"
+#include "ayumi/dynamics/kernels/tree_kernels.hpp"
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {

@@ -1,6 +1,6 @@
 #include "ayumi/dynamics/zmp.hpp"
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

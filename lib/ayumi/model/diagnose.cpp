@@ -12,9 +12,9 @@
 #include <numbers>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/model/body_poses.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/model/outline.hpp"
 
 namespace ayumi {

@@ -11,7 +11,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/model/validate.hpp"
 
 namespace ayumi {

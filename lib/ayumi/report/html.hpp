@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/preview/drawing.hpp"
+#include "ayumi/plot/drawing.hpp"
 
 namespace ayumi::html {
 

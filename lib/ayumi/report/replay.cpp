@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/preview/gltf.hpp"
-#include "ayumi/preview/log_reading.hpp"
-#include "ayumi/preview/robot_surface.hpp"
-#include "ayumi/preview/scenery.hpp"
+#include "ayumi/render/gltf.hpp"
+#include "ayumi/render/log_reading.hpp"
+#include "ayumi/render/robot_surface.hpp"
+#include "ayumi/render/scenery.hpp"
 #include "ayumi/report/html.hpp"
 
 namespace ayumi {

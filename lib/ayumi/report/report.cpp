@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/preview/loci.hpp"
-#include "ayumi/preview/loci_parts.hpp"
-#include "ayumi/preview/log_reading.hpp"
-#include "ayumi/preview/robot_surface.hpp"
-#include "ayumi/preview/simplify.hpp"
-#include "ayumi/preview/strip.hpp"
+#include "ayumi/plot/com_zmp_plot.hpp"
+#include "ayumi/plot/com_zmp_plot_parts.hpp"
+#include "ayumi/render/log_reading.hpp"
+#include "ayumi/render/robot_surface.hpp"
+#include "ayumi/render/simplify.hpp"
+#include "ayumi/render/snapshots.hpp"
 #include "ayumi/report/html.hpp"
 #include "ayumi/report/page.hpp"
 #include "ayumi/report/replay.hpp"

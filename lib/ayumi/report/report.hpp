@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
-#include "ayumi/io/run_results.hpp"
+#include "ayumi/io/run/run_results.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 

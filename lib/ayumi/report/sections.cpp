@@ -5,7 +5,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
-#include "ayumi/preview/log_reading.hpp"
+#include "ayumi/render/log_reading.hpp"
 #include "ayumi/report/html.hpp"
 
 namespace ayumi::html {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ayumi/dynamics/robot_data.hpp"
-#include "ayumi/pattern/scenario.hpp"
+#include "ayumi/motion/scenario.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 #include "ayumi/sim/step.hpp"
 

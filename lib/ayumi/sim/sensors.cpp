@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

@@ -6,7 +6,7 @@
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/model/robot_model.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {

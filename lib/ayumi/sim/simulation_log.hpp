@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ayumi/model/robot_state.hpp"
-#include "ayumi/pattern/reference_trajectory.hpp"
-#include "ayumi/pattern/scenario.hpp"
+#include "ayumi/motion/reference_trajectory.hpp"
+#include "ayumi/motion/scenario.hpp"
 #include "ayumi/sim/work.hpp"
 
 namespace ayumi {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/sim/plant.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/plant/plant.hpp"
 
 namespace ayumi {
 

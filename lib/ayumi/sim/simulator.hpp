@@ -7,7 +7,7 @@
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/control/controller.hpp"
-#include "ayumi/sim/any_plant.hpp"
+#include "ayumi/sim/plant_interface.hpp"
 #include "ayumi/sim/schedule.hpp"
 #include "ayumi/sim/sensors.hpp"
 #include "ayumi/sim/simulate.hpp"

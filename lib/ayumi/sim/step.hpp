@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "ayumi/pattern/world.hpp"
+#include "ayumi/motion/ground_world.hpp"
 #include "ayumi/sim/work.hpp"
 
 namespace ayumi {

@@ -1,7 +1,7 @@
 #include "ayumi/sim/tilt_estimate.hpp"
 
-#include "ayumi/base/version.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

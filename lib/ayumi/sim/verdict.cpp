@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

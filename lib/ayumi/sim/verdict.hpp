@@ -3,7 +3,7 @@
 
 #include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/model/robot_model.hpp"
-#include "ayumi/pattern/command_series.hpp"
+#include "ayumi/motion/command_series.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 #include "ayumi/sim/step.hpp"
 

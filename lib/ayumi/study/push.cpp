@@ -13,7 +13,6 @@
 #include <mutex>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/control/capture_bound.hpp"
 #include "ayumi/math/random.hpp"
 #include "ayumi/sim/simulator.hpp"

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/finding_kinds.hpp"
-#include "ayumi/pattern/edit.hpp"
-#include "ayumi/pattern/sample.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
 

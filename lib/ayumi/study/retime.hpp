@@ -3,7 +3,7 @@
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/pattern/pattern.hpp"
+#include "ayumi/motion/pattern.hpp"
 
 namespace ayumi {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "ayumi/base/version.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 

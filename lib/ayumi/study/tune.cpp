@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/control/capture_bound.hpp"
 #include "ayumi/control/gain_design.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/study/runs.hpp"
 
 namespace ayumi {

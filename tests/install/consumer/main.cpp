@@ -3,14 +3,14 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "ayumi/io/robot_file.hpp"
-#include "ayumi/optimize/repair.hpp"
-#include "ayumi/pattern/generate.hpp"
-#include "ayumi/pattern/sample.hpp"
-#include "ayumi/preview/renderer.hpp"
-#include "ayumi/preview/robot_surface.hpp"
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/render/renderer.hpp"
+#include "ayumi/render/robot_surface.hpp"
+#include "ayumi/repair/repair.hpp"
 #ifdef HAS_MUJOCO
-#include "ayumi/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 #endif
 
 int main(int argc, char** argv) {
@@ -22,14 +22,14 @@ int main(int argc, char** argv) {
       ayumi::load_robot("hoap1", {{data / "robots"}}, with_meshes);  // ayumi::io
   const ayumi::CommandSeries series =
       ayumi::sample(robot, ayumi::stand_pattern(robot, 0.5));         // ayumi::core
-  const ayumi::RepairResult repaired = ayumi::repair(robot, series);  // ayumi::optimize
+  const ayumi::RepairResult repaired = ayumi::repair(robot, series);  // ayumi::repair
 
   ayumi::Scene scene;
   scene.poses = ayumi::body_poses(robot, series.samples.front().state);
   ayumi::RenderOptions small;
   small.width = 160;
   small.height = 90;
-  ayumi::Renderer renderer(ayumi::robot_surface(robot), small);  // ayumi::preview
+  ayumi::Renderer renderer(ayumi::robot_surface(robot), small);  // ayumi::render
   const ayumi::Image image = renderer.render(scene);
 
   std::printf("%s: %.3f kg, %s, %zu bytes of picture\n", robot.name().c_str(), robot.mass(),

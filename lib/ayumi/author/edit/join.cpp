@@ -1,0 +1,296 @@
+// Motions one after the other. The second is moved over the ground, T = (yaw, x, y), so that its
+// first footholds are the last of the first. A transition between two postures at rest keeps both
+// soles where they are: COG, trunk and the joints beside the legs go by s = 10 u^3 - 15 u^4 + 6
+// u^5, the legs follow by inverse kinematics.
+#include <cmath>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/inverse_kinematics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/polygon.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+using Feet = std::array<Isometry3d, 2>;
+
+constexpr double kSamePlace = 1e-3;  // [m]
+constexpr double kSameAngle = 0.01;  // of a sole [rad]
+constexpr double kSameBase = 2e-5;   // what the base may jump in one sample [m]
+constexpr double kSameJoint = 2e-4;  // what a joint may jump in one sample [rad]
+
+Feet soles_of(const RobotModel& model, const RobotState& state) {
+  RobotData data(model);
+  update_positions(model, state, data);
+  return {sole_pose(model, data, Side::left), sole_pose(model, data, Side::right)};
+}
+
+// Onto the line between the feet: its middle and its heading.
+Isometry3d stand(const Feet& feet) {
+  const Vector3d across = feet[0].translation() - feet[1].translation();
+  Isometry3d frame = Isometry3d::Identity();
+  frame.translation() = 0.5 * (feet[0].translation() + feet[1].translation());
+  frame.translation().z() = 0;
+  frame.linear() =
+      Eigen::AngleAxisd(std::atan2(-across.x(), across.y()), Vector3d::UnitZ()).toRotationMatrix();
+  return frame;
+}
+
+void require_stand(const Pattern& pattern, const CommandSample& sample, const char* when) {
+  if (sample.support != Support::both)
+    fail(ErrorCode::bad_pattern, in_file(pattern, std::string(when)) +
+                                     ": both feet must be on the ground there, so that another "
+                                     "motion can follow");
+}
+
+RobotState moved(const Isometry3d& way, const RobotState& state) {
+  RobotState result = state;
+  result.base.position = way * state.base.position;
+  result.base.attitude = (Eigen::Quaterniond(way.linear()) * state.base.attitude).normalized();
+  return result;
+}
+
+void move_foothold(const Isometry3d& way, Foothold& foothold) {
+  foothold.position = way * foothold.position;
+  foothold.rpy = matrix_to_rpy(way.linear() * rpy_to_matrix(foothold.rpy));
+}
+
+// Footholds, keys that a table keeps, and what happens to the robot: elsewhere and later.
+void move_plan(const Isometry3d& way, double later, Pattern& pattern) {
+  for (Phase& phase : pattern.phases) {
+    phase.until += later;
+    if (phase.swing) move_foothold(way, phase.swing->to);
+  }
+  for (Keyframe& key : pattern.keyframes) {
+    key.t += later;
+    for (auto& foot : key.feet)
+      if (foot) move_foothold(way, *foot);
+  }
+  for (Disturbance& push : pattern.scenario) {
+    push.at += later;
+    if (push.frame == DisturbanceFrame::world) push.direction = way.linear() * push.direction;
+    push.place = (way * Vector3d(push.place.x(), push.place.y(), 0)).head<2>();
+  }
+}
+
+void add_row(DenseTable& table, const RobotState& state) {
+  table.base.push_back(state.base);
+  table.theta.row(static_cast<Eigen::Index>(table.base.size()) - 1) = state.theta.transpose();
+}
+
+Phase both_feet_until(double time) {
+  Phase phase;
+  phase.until = time;
+  return phase;
+}
+
+double rest_to_rest(double u) { return u * u * u * (10 - 15 * u + 6 * u * u); }
+
+int ticks_of(double time, double dt) { return static_cast<int>(std::lround(time / dt)); }
+
+// What lies between two postures that stand on the same soles; neither of them is in it.
+std::vector<RobotState> transition(const RobotModel& model, const RobotState& from,
+                                   const RobotState& to, int ticks) {
+  RobotData data(model);
+  const auto target_of = [&](const RobotState& state) {
+    PostureTarget target;
+    update_positions(model, state, data);
+    target.feet = {sole_pose(model, data, Side::left), sole_pose(model, data, Side::right)};
+    target.cog = data.cog;
+    target.trunk = data.rotation[model.trunk_body()];
+    return target;
+  };
+  const PostureTarget a = target_of(from), b = target_of(to);
+  const InverseKinematics legs(model, from.theta);
+  std::vector<RobotState> states;
+  RobotState state = from;
+  for (int k = 1; k < ticks; ++k) {
+    const double s = rest_to_rest(static_cast<double>(k) / ticks);
+    PostureTarget target;
+    target.cog = (1 - s) * a.cog + s * b.cog;
+    target.trunk = Eigen::Quaterniond(a.trunk).slerp(s, Eigen::Quaterniond(b.trunk));
+    for (size_t i = 0; i < 2; ++i) {
+      target.feet[i].translation() =
+          (1 - s) * a.feet[i].translation() + s * b.feet[i].translation();
+      target.feet[i].linear() = Eigen::Quaterniond(a.feet[i].linear())
+                                    .slerp(s, Eigen::Quaterniond(b.feet[i].linear()))
+                                    .toRotationMatrix();
+    }
+    for (int i = 0; i < model.dof_count(); ++i)
+      if (!legs.solves(i)) state.theta[i] = (1 - s) * from.theta[i] + s * to.theta[i];
+    if (!legs.solve(target, state, data).reached)
+      fail(ErrorCode::bad_pattern,
+           "the legs do not reach from one posture to the other with both feet where they are");
+    states.push_back(state);
+  }
+  return states;
+}
+
+// The pattern as a table of posture and base alone: COG, ZMP and f_z are those of the full model.
+Pattern plain(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
+              const std::string& table, size_t rows) {
+  Pattern result = baked(model, pattern, series, table);
+  result.repair = {};  // of joints and times that were another motion's
+  DenseTable& dense = *result.table;
+  dense.cog.clear();
+  dense.zmp.clear();
+  dense.fz.clear();
+  dense.theta.conservativeResize(static_cast<Eigen::Index>(rows), Eigen::NoChange);
+  if (result.phases.empty()) result.phases.emplace_back();
+  result.phases.back().until = series.duration();
+  return result;
+}
+
+double angle_between(const Matrix3d& a, const Matrix3d& b) {
+  return Eigen::AngleAxisd(a.transpose() * b).angle();
+}
+
+void require_same_stand(const Pattern& second, const Feet& last, const Feet& first) {
+  for (size_t i = 0; i < 2; ++i) {
+    const double way = (last[i].translation() - first[i].translation()).norm();
+    if (way < kSamePlace && angle_between(last[i].linear(), first[i].linear()) < kSameAngle)
+      continue;
+    fail(ErrorCode::bad_pattern,
+         in_file(second, "start") + ": its feet stand otherwise than those of the motion before, " +
+             text::fixed(1000 * way, 1) + " mm off; limit " + text::fixed(1000 * kSamePlace, 1) +
+             " mm: let one motion end where the other begins");
+  }
+}
+
+void require_same_posture(const RobotModel& model, const Pattern& second, const RobotState& last,
+                          const RobotState& first) {
+  int worst = 0;
+  const double most = (last.theta - first.theta).cwiseAbs().maxCoeff(&worst);
+  const double way = (last.base.position - first.base.position).norm();
+  const double turn = last.base.attitude.angularDistance(first.base.attitude);
+  if (way > kSameBase || turn > kSameJoint)
+    fail(ErrorCode::bad_pattern, in_file(second, "start") + ": its base is " +
+                                     text::fixed(1000 * way, 2) + " mm and " +
+                                     text::fixed(turn * 180 / M_PI, 2) +
+                                     " deg from where the motion before ends: blend the two over "
+                                     "some time");
+  if (most < kSameJoint) return;
+  fail(ErrorCode::bad_pattern,
+       in_file(second, "start") + ": " + model.dofs()[worst].name + " is " +
+           text::fixed(most * 180 / M_PI, 2) + " deg from where the motion before ends; limit " +
+           text::fixed(kSameJoint * 180 / M_PI, 2) + " deg: blend the two over some time");
+}
+
+}  // namespace
+
+Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPart& second,
+               double over, const std::string& table) {
+  const CommandSeries &a = first.series, &b = second.series;
+  if (std::abs(a.dt - b.dt) > 1e-12)
+    fail(ErrorCode::usage, "motions of " + text::exact(a.dt) + " and " + text::exact(b.dt) +
+                               " s per sample do not join");
+  require_stand(first.pattern, a.samples.back(), "end");
+  require_stand(second.pattern, b.samples.front(), "start");
+  const Feet last = soles_of(model, a.samples.back().state);
+  const Isometry3d way = stand(last) * stand(soles_of(model, b.samples.front().state)).inverse();
+  const RobotState from = a.samples.back().state, to = moved(way, b.samples.front().state);
+  require_same_stand(second.pattern, last, soles_of(model, to));
+  if (over <= 0) require_same_posture(model, second.pattern, from, to);
+
+  const int ticks = ticks_of(over, a.dt);
+  const auto between = ticks > 0 ? transition(model, from, to, ticks) : std::vector<RobotState>();
+  // Without a transition the first sample of the second motion is the last of the first.
+  const size_t skip = ticks > 0 ? 0 : 1;
+  const size_t rows = a.samples.size() + between.size() + b.samples.size() - skip;
+  Pattern result = plain(model, first.pattern, a, table, rows);
+  for (const RobotState& state : between) add_row(*result.table, state);
+  for (size_t k = skip; k < b.samples.size(); ++k)
+    add_row(*result.table, moved(way, b.samples[k].state));
+
+  const double later = a.duration() + ticks * a.dt;
+  if (ticks > 0) result.phases.push_back(both_feet_until(later));
+  Pattern rest = plain(model, second.pattern, b, table, b.samples.size());
+  move_plan(way, later, rest);
+  result.phases.insert(result.phases.end(), rest.phases.begin(), rest.phases.end());
+  result.keyframes.insert(result.keyframes.end(), rest.keyframes.begin(), rest.keyframes.end());
+  result.scenario.insert(result.scenario.end(), rest.scenario.begin(), rest.scenario.end());
+  return result;
+}
+
+namespace {
+
+// The posture, standing with its COG between the feet where they are.
+RobotState standing_at(const RobotModel& model, const Pattern& pattern, const std::string& posture,
+                       const RobotState& near) {
+  RobotState state = near;
+  for (const auto& [joint, angle] : posture_joints(model, pattern, posture, "ramp"))
+    state.theta[find_joint(model, joint, "ramp")] = angle;
+  RobotState home = model.rest_state();
+  home.theta = state.theta;
+  RobotData data(model);
+  update_positions(model, home, data);
+  const double height =
+      data.cog.z() - 0.5 * (sole_pose(model, data, Side::left).translation().z() +
+                            sole_pose(model, data, Side::right).translation().z());
+  PostureTarget target;
+  target.feet = soles_of(model, near);
+  const Isometry3d frame = stand(target.feet);
+  const double ground = 0.5 * (target.feet[0].translation().z() + target.feet[1].translation().z());
+  target.cog = frame.translation() + Vector3d(0, 0, ground + height);
+  target.trunk = frame.linear();
+  state.theta = near.theta;
+  const InverseKinematics legs(model, near.theta);
+  for (int i = 0; i < model.dof_count(); ++i)
+    if (!legs.solves(i)) state.theta[i] = home.theta[i];
+  // Above the middle of the soles, not of their origins.
+  Vector3d middle = Vector3d::Zero();
+  for (size_t i = 0; i < 2; ++i) {
+    const ConvexPolygon sole(model.sole(static_cast<Side>(i)).polygon);
+    middle += 0.5 * (target.feet[i] * Vector3d(sole.centroid().x(), sole.centroid().y(), 0));
+  }
+  target.cog.head<2>() = middle.head<2>();
+  if (!legs.solve(target, state, data).reached)
+    fail(ErrorCode::bad_pattern, in_file(pattern, "ramp") + ": posture '" + posture +
+                                     "' is out of reach with the feet where the motion has them");
+  return state;
+}
+
+}  // namespace
+
+Pattern ramped(const RobotModel& model, const MotionPart& motion, const Ramps& ramps,
+               const std::string& table) {
+  const CommandSeries& series = motion.series;
+  const int in = ticks_of(ramps.in, series.dt), out = ticks_of(ramps.out, series.dt);
+  std::vector<RobotState> before, after;
+  if (in > 0) {
+    require_stand(motion.pattern, series.samples.front(), "start");
+    const RobotState& first = series.samples.front().state;
+    before.push_back(standing_at(model, motion.pattern, ramps.posture, first));
+    const auto way = transition(model, before.front(), first, in);
+    before.insert(before.end(), way.begin(), way.end());
+  }
+  if (out > 0) {
+    require_stand(motion.pattern, series.samples.back(), "end");
+    const RobotState& last = series.samples.back().state;
+    const RobotState end = standing_at(model, motion.pattern, ramps.posture, last);
+    after = transition(model, last, end, out);
+    after.push_back(end);
+  }
+  const size_t rows = before.size() + series.samples.size() + after.size();
+  Pattern result = plain(model, motion.pattern, series, table, series.samples.size());
+  move_plan(Isometry3d::Identity(), in * series.dt, result);
+  result.table->base.clear();
+  result.table->theta.resize(static_cast<Eigen::Index>(rows), model.dof_count());
+  for (const RobotState& state : before) add_row(*result.table, state);
+  for (const CommandSample& sample : series.samples) add_row(*result.table, sample.state);
+  for (const RobotState& state : after) add_row(*result.table, state);
+  if (in > 0) result.phases.insert(result.phases.begin(), both_feet_until(in * series.dt));
+  if (out > 0) result.phases.push_back(both_feet_until(static_cast<double>(rows - 1) * series.dt));
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,256 @@
+// With M = diag(1, -1, 1): positions p -> M p; rotations R(a, angle) -> M R M = R(-M a, angle), so
+// a joint about a has its image about -M a; moments and other axial vectors n -> -M n.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kAlike = 0.005;    // distance of a point from the other's image [m]
+constexpr double kParallel = 0.99;  // cosine between an axis and the other's image
+
+Vector3d image(const Vector3d& p) { return {p.x(), -p.y(), p.z()}; }
+Vector3d axial_image(const Vector3d& v) { return {-v.x(), v.y(), -v.z()}; }
+
+Eigen::Quaterniond image(const Eigen::Quaterniond& q) { return {q.w(), -q.x(), q.y(), -q.z()}; }
+
+struct Counterpart {
+  int body = -1, sign = 0;
+  double distance = 0;
+};
+
+// The nearest body whose joint lies on the image of this one's axis.
+Counterpart counterpart(const RobotModel& model, const RobotData& data, int i) {
+  const Body& body = model.bodies()[i];
+  const Vector3d p = image(data.position[i]);
+  const Vector3d axis = body.prismatic ? image(data.axis[i]) : axial_image(data.axis[i]);
+  Counterpart best;
+  for (int j = 1; j < static_cast<int>(model.bodies().size()); ++j) {
+    const double along = axis.dot(data.axis[j]);
+    const Vector3d way = data.position[j] - p;
+    const double aside = body.prismatic ? 0 : way.cross(axis).norm();
+    if (model.bodies()[j].prismatic != body.prismatic || std::abs(along) < kParallel ||
+        aside > kAlike || (best.body >= 0 && way.norm() >= best.distance))
+      continue;
+    best = {j, along > 0 ? 1 : -1, way.norm()};
+  }
+  return best;
+}
+
+int nearest_link(const RobotModel& model, const RobotData& data, const Link& link, int body) {
+  const auto place = [&](const Link& l) -> Vector3d {
+    return data.position[l.body] + data.rotation[l.body] * l.pose.translation();
+  };
+  const Vector3d goal = image(place(link));
+  int best = -1;
+  for (int i = 0; i < static_cast<int>(model.links().size()); ++i) {
+    if (model.links()[i].body != body) continue;
+    if (best < 0 ||
+        (place(model.links()[i]) - goal).norm() < (place(model.links()[best]) - goal).norm())
+      best = i;
+  }
+  return best;
+}
+
+}  // namespace
+
+MirrorMap mirror_map(const RobotModel& model) {
+  RobotState state = model.rest_state();
+  state.theta.setZero();
+  RobotData data(model);
+  update_positions(model, state, data);
+  MirrorMap map;
+  map.dof.resize(model.dof_count());
+  map.sign.resize(model.dof_count());
+  const int bodies = static_cast<int>(model.bodies().size());
+  std::vector<int> body(bodies, 0);
+  for (int i = 1; i < bodies; ++i) {
+    const Counterpart found = counterpart(model, data, i);
+    const Body& here = model.bodies()[i];
+    if (found.body < 0 || counterpart(model, data, found.body).body != i)
+      fail(ErrorCode::bad_model, model.name() + ": joint '" + model.dofs()[here.dof].name +
+                                     "' has no counterpart on the other side, so the robot has "
+                                     "no mirror image");
+    body[i] = found.body;
+    if (model.dofs()[here.dof].body != i) continue;  // a mimic follows its driver
+    map.dof[here.dof] = model.bodies()[found.body].dof;
+    map.sign[here.dof] = found.sign;
+  }
+  for (const Link& link : model.links())
+    map.link.push_back(nearest_link(model, data, link, body[link.body]));
+  return map;
+}
+
+namespace {
+
+class Mirror {
+ public:
+  Mirror(const RobotModel& model, const Pattern& pattern)
+      : model_(model), pattern_(pattern), map_(mirror_map(model)) {}
+
+  Pattern whole() {
+    Pattern result = pattern_;
+    for (auto& [name, joints] : result.postures) joints = of(joints, "postures/" + name);
+    std::set<std::string> named = {pattern_.default_posture};
+    for (const Keyframe& key : pattern_.keyframes)
+      if (key.posture) named.insert(*key.posture);
+    for (const std::string& name : named) mirror_robot_posture(result, name);
+    result.start_feet = of(pattern_.start_feet);
+    for (Phase& phase : result.phases) mirror(phase);
+    for (Keyframe& key : result.keyframes) mirror(key);
+    if (result.table) mirror(*result.table);
+    if (result.correction) mirror(*result.correction);
+    result.repair = of(pattern_.repair);
+    result.world.slope.x() *= -1;
+    for (Disturbance& push : result.scenario) mirror(push);
+    return result;
+  }
+
+ private:
+  using Joints = std::map<std::string, double>;
+
+  int dof_of(const std::string& joint, const std::string& place) const {
+    return find_joint(model_, joint, in_file(pattern_, place));
+  }
+
+  Joints of(const Joints& joints, const std::string& place, bool with_sign = true) const {
+    Joints result;
+    for (const auto& [joint, value] : joints) {
+      const int dof = dof_of(joint, place);
+      const double sign = with_sign ? map_.sign[dof] : 1;
+      result[model_.dofs()[map_.dof[dof]].name] = value == 0 ? 0 : sign * value;
+    }
+    return result;
+  }
+
+  RepairWishes of(const RepairWishes& wishes) const {
+    RepairWishes result = wishes;
+    std::swap(result.feet[0], result.feet[1]);
+    for (std::string& joint : result.joints)
+      joint = model_.dofs()[map_.dof[dof_of(joint, "repair/lock/joints")]].name;
+    result.weights = of(wishes.weights, "repair/weights", false);
+    return result;
+  }
+
+  // A posture of the robot that is not its own image gets a twin of the same name in the pattern;
+  // a twin that is the robot's again goes.
+  void mirror_robot_posture(Pattern& result, const std::string& name) const {
+    if (!model_.has_posture(name)) return;
+    const VectorXd theta = model_.posture(name);
+    Joints robots;
+    for (int dof = 0; dof < model_.dof_count(); ++dof) robots[model_.dofs()[dof].name] = theta[dof];
+    if (const auto own = result.postures.find(name); own != result.postures.end()) {
+      if (own->second == robots) result.postures.erase(own);
+    } else if (Joints twin = of(robots, name); twin != robots) {
+      result.postures[name] = std::move(twin);
+    }
+  }
+
+  static Foothold of(const Foothold& foot) {
+    return {image(foot.position), {-foot.rpy.x(), foot.rpy.y(), -foot.rpy.z()}};
+  }
+
+  static std::array<std::optional<Foothold>, 2> of(
+      const std::array<std::optional<Foothold>, 2>& feet) {
+    std::array<std::optional<Foothold>, 2> result;
+    for (size_t side : {0, 1})
+      if (feet[side]) result[1 - side] = of(*feet[side]);
+    return result;
+  }
+
+  void mirror(Phase& phase) const {
+    if (phase.support == Support::left)
+      phase.support = Support::right;
+    else if (phase.support == Support::right)
+      phase.support = Support::left;
+    if (phase.viip) mirror(*phase.viip);
+    if (!phase.swing) return;
+    phase.swing->foot = other(phase.swing->foot);
+    phase.swing->to = of(phase.swing->to);
+  }
+
+  static void mirror(ViipGoal& goal) {
+    if (auto* cog = std::get_if<CogGoal>(&goal)) cog->displacement.y() *= -1;
+    if (auto* step = std::get_if<StepGoal>(&goal)) {
+      step->velocity.y() *= -1;
+      step->turn *= -1;
+    }
+  }
+
+  void mirror(Keyframe& key) const {
+    key.joints = of(key.joints, key.place);
+    key.weights = of(key.weights, key.place, false);
+    if (key.zmp) {
+      using Place = ZmpKey::Place;
+      Place& place = key.zmp->place;
+      place = place == Place::left ? Place::right : place == Place::right ? Place::left : place;
+      key.zmp->point.y() *= -1;
+    }
+    if (key.cog_y) *key.cog_y *= -1;
+    if (key.torso) *key.torso = {-key.torso->x(), key.torso->y(), -key.torso->z()};
+    key.feet = of(key.feet);
+  }
+
+  // Columns keep their order where the table has both sides; else they are renamed.
+  void mirror(DenseTable& table) const {
+    const std::string place = "table " + table.file;
+    const Eigen::MatrixXd theta = table.theta;
+    std::vector<std::string> images;
+    for (const std::string& joint : table.joints)
+      images.push_back(model_.dofs()[map_.dof[dof_of(joint, place)]].name);
+    const bool whole = std::all_of(images.begin(), images.end(), [&](const std::string& joint) {
+      return std::find(table.joints.begin(), table.joints.end(), joint) != table.joints.end();
+    });
+    for (size_t j = 0; j < images.size(); ++j) {
+      const auto to = whole ? std::find(table.joints.begin(), table.joints.end(), images[j]) -
+                                  table.joints.begin()
+                            : static_cast<std::ptrdiff_t>(j);
+      table.theta.col(to) =
+          map_.sign[dof_of(table.joints[j], place)] * theta.col(static_cast<Eigen::Index>(j));
+    }
+    if (!whole) table.joints = images;
+    for (BasePose& base : table.base) base = {image(base.position), image(base.attitude)};
+    for (Vector3d& p : table.cog) p = image(p);
+    for (Vector3d& p : table.zmp) p = image(p);
+  }
+
+  void mirror(CorrectionTrack& track) const {
+    for (const int column : {1, 3, 5})  // y, and the rotations about x and z
+      track.coefficients.col(column) *= -1;
+    for (size_t j = 0; j < track.joints.size(); ++j) {
+      const int dof = dof_of(track.joints[j], "correction");
+      track.coefficients.col(static_cast<Eigen::Index>(6 + j)) *= map_.sign[dof];
+      track.joints[j] = model_.dofs()[map_.dof[dof]].name;
+    }
+  }
+
+  void mirror(Disturbance& push) const {
+    const bool axial = push.type == DisturbanceType::torque;
+    push.direction = axial ? axial_image(push.direction) : image(push.direction);
+    push.point = image(push.point);
+    const int link = model_.find_link(push.on);
+    if (link >= 0) push.on = model_.links()[map_.link[link]].name;
+  }
+
+  const RobotModel& model_;
+  const Pattern& pattern_;
+  const MirrorMap map_;
+};
+
+}  // namespace
+
+Pattern mirrored(const RobotModel& model, const Pattern& pattern) {
+  return Mirror(model, pattern).whole();
+}
+
+}  // namespace ayumi

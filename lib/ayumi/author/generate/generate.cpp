@@ -1,0 +1,223 @@
+// Footholds hang on a centre that moves along the walk: step i moves it by the stride (and sideways
+// with the leading foot) along the mean heading of the step and turns it; the swing foot lands
+// beside it at its home distance. The ZMP rests long enough at both ends for the COG to start from
+// rest: a bounded motion anticipates by exp(-w t).
+#include "ayumi/author/generate/generate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/foot_plan.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kStairClearance = 0.002;  // least of a sole from the next stair [m]
+constexpr double kStairSpare = 0.006;      // the default one
+constexpr double kStairHalfWidth = 1;      // of the leg's length
+constexpr double kStairLeg = 0.905;        // of the straight leg, between hip and sole of both feet
+
+// Of both ends, in units of 1/omega: the ZMP rests, then shifts onto the first foot.
+constexpr double kRest = 4.5, kShift = 2.6;
+
+double to_tenth_milliradian(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
+
+/// How far a sole reaches ahead of its frame and behind it [m].
+struct SoleLength {
+  double front = 0, back = 0;
+};
+
+SoleLength sole_length(const RobotModel& model) {
+  SoleLength length;
+  for (const Side side : {Side::left, Side::right})
+    for (const Eigen::Vector2d& p : model.sole(side).polygon) {
+      length.front = std::max(length.front, p.x());
+      length.back = std::max(length.back, -p.x());
+    }
+  return length;
+}
+
+void check_stairs(const RobotModel& model, const WalkParameters& p) {
+  const SoleLength sole = sole_length(model);
+  if (p.turn != 0 || p.side != 0)
+    fail(ErrorCode::usage, "walk: rise goes straight ahead; leave turn and side out");
+  require_range("walk", "rise", p.rise, 0, 0.15 * leg_length(model), " m");
+  if (p.stride < sole.front + sole.back + 2 * kStairClearance)
+    fail(ErrorCode::usage, "walk: stride " + text::exact(p.stride) +
+                               " m is shorter than a stair has to be for a sole of " +
+                               text::brief(sole.front + sole.back) + " m; give at least " +
+                               text::brief(sole.front + sole.back + 2 * kStairClearance) + " m");
+}
+
+/// Stairs under the footholds, each from midway between the soles on it and before it.
+World stairs(const RobotModel& model, const WalkParameters& p) {
+  const SoleLength sole = sole_length(model);
+  const double spare = 0.5 * (p.stride - sole.front - sole.back);
+  World world;
+  for (int i = 1; i <= p.steps; ++i) {
+    GroundBlock stair;
+    const double from = i * p.stride - sole.back - spare;
+    stair.low = {to_tenth_millimetre(from), -kStairHalfWidth * leg_length(model)};
+    stair.high = {to_tenth_millimetre(from + (i < p.steps ? p.stride : 3 * p.stride)),
+                  kStairHalfWidth * leg_length(model)};
+    for (Eigen::Vector2d* corner : {&stair.low, &stair.high})
+      corner->y() = to_tenth_millimetre(corner->y());
+    stair.height = to_tenth_millimetre(i * p.rise);
+    world.blocks.push_back(stair);
+  }
+  return world;
+}
+
+void check_parameters(const RobotModel& model, const WalkParameters& p) {
+  const double leg = leg_length(model);
+  require_range("walk", "steps", p.steps, 1, 10000, "");
+  require_range("walk", "stride", p.stride, -0.6 * leg, 0.6 * leg, " m");
+  require_range("walk", "period", p.period, 0.2, 10, " s");
+  require_range("walk", "double_support", p.double_support, 0.05, 0.6, "");
+  require_range("walk", "lift", p.lift, 0.01 * leg, 0.4 * leg, " m");
+  require_range("walk", "side", p.side, -0.4 * leg, 0.4 * leg, " m");
+  require_range("walk", "turn", p.turn, -0.6, 0.6, " rad");
+  if (p.cog_height != 0)
+    require_range("walk", "cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
+  if (p.rise != 0) check_stairs(model, p);
+}
+
+ZmpKey::Place place_of(Side side) {
+  return side == Side::left ? ZmpKey::Place::left : ZmpKey::Place::right;
+}
+
+Foothold foothold(const Vector3d& center, double yaw, double beside) {
+  const Vector3d at = center + rpy_to_matrix({0, 0, yaw}) * Vector3d(0, beside, 0);
+  Foothold result;
+  result.position = {to_tenth_millimetre(at.x()), to_tenth_millimetre(at.y()),
+                     to_tenth_millimetre(at.z())};
+  result.rpy.z() = to_tenth_milliradian(yaw);
+  return result;
+}
+
+void write_step(PatternWriter& writer, const WalkParameters& p, Side swing_foot,
+                const Foothold& to) {
+  const double single = p.period * (1 - p.double_support);
+  const Side stance = other(swing_foot);
+  const ZmpKey::Place place = place_of(stance);
+  writer.key(writer.t, place);
+  writer.phase(single, stance == Side::left ? Support::left : Support::right,
+               Swing{swing_foot, to, to_tenth_millimetre(p.lift)});
+  writer.key(writer.t, place);
+}
+
+std::string title(const WalkParameters& p) {
+  std::string name = "walk, " + std::to_string(p.steps) +
+                     (p.rise != 0 ? " stairs of " : " steps of ") + text::brief(1e3 * p.stride) +
+                     " mm";
+  if (p.side != 0) name += ", " + text::brief(1e3 * p.side) + " mm sideways per pair";
+  if (p.rise != 0) name += ", rising " + text::brief(1e3 * p.rise) + " mm each";
+  if (p.turn != 0) name += ", turning " + text::brief(p.turn * 180 / M_PI) + " deg per step";
+  return name;
+}
+
+}  // namespace
+
+WalkParameters walk_defaults(const RobotModel& model) {
+  const double size = size_beside_hoap1(model), slow = std::sqrt(size);
+  WalkParameters p;
+  p.stride = 1e-3 * std::round(1e3 * size * p.stride);
+  p.lift = 1e-3 * std::round(1e3 * size * p.lift);
+  p.period = 0.01 * std::round(100 * slow * p.period);
+  return p;
+}
+
+WalkParameters stair_defaults(const RobotModel& model, double rise) {
+  WalkParameters p = walk_defaults(model);
+  const SoleLength sole = sole_length(model);
+  p.rise = rise;
+  p.steps = 3;
+  p.stride = 1e-3 * std::ceil(1e3 * (sole.front + sole.back + 2 * kStairSpare));
+  p.period = 0.05 * std::round(22 * p.period);
+  p.lift = to_tenth_millimetre(rise + 0.006 * size_beside_hoap1(model));
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const Vector3d hip = data.pose(model.dofs()[model.leg(Side::left).front()].body).translation();
+  const double reach = (sole_pose(model, data, Side::left).translation() - hip).norm();
+  const double apart = 0.5 * p.stride, leg = kStairLeg * leg_length(model);
+  const double wanted = std::sqrt(std::max(0.0, leg * leg - apart * apart)) - 0.5 * rise;
+  p.cog_height = default_cog_height(model, {}) - std::max(0.0, reach - wanted);
+  return p;
+}
+
+Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) {
+  const WalkParameters& p = parameters;
+  check_parameters(model, p);
+  Pattern pattern;
+  pattern.name = title(p);
+  pattern.robot = model.name();
+  pattern.cog_height = to_tenth_millimetre(p.cog_height);
+
+  if (p.cog_height == 0) pattern.cog_height = bent_height(model);
+
+  const auto start = start_feet(model, pattern);
+  const double beside = 0.5 * (start[0].translation() - start[1].translation()).norm();
+  const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
+  const double rest = to_millisecond(0.01 * std::round(100 * kRest / omega));
+  const double shift = to_millisecond(0.01 * std::round(100 * kShift / omega));
+  const double both = p.period * p.double_support;
+
+  PatternWriter writer{pattern};
+  writer.key(0, ZmpKey::Place::center);
+  writer.key(rest, ZmpKey::Place::center);
+  writer.phase(rest + shift, Support::both);
+  Vector3d center = Vector3d::Zero();
+  double yaw = 0;
+  Side swing = p.first_swing;
+  const Side leading = p.side > 0 ? Side::left : Side::right;
+  const int swings = p.rise != 0 ? 2 * p.steps : p.steps + 1;
+  if (p.rise != 0) {
+    pattern.world = stairs(model, p);
+    // Between soles of two heights the height of the ZMP is a matter of convention.
+    pattern.tolerances["zmp_residual"] = to_tenth_millimetre(std::max(0.005, 0.6 * p.rise));
+  }
+  for (int i = 0; i < swings; ++i) {
+    const bool closing = i + 1 == swings;
+    if (p.rise != 0) {
+      if (i % 2 == 0) center += Vector3d(p.stride, 0, p.rise);
+    } else if (!closing) {
+      const double turned = yaw + p.turn;
+      const Vector3d move(p.stride, swing == leading ? p.side : 0.0, 0);
+      center += rpy_to_matrix({0, 0, 0.5 * (yaw + turned)}) * move;
+      yaw = turned;
+    }
+    write_step(writer, p, swing, foothold(center, yaw, swing == Side::left ? beside : -beside));
+    if (!closing) writer.phase(both, Support::both);
+    swing = other(swing);
+  }
+  writer.key(writer.t + shift, ZmpKey::Place::center);
+  writer.phase(rest + shift, Support::both);
+  return pattern;
+}
+
+Pattern stand_pattern(const RobotModel& model, double duration) {
+  if (!(duration >= 0.01 && duration <= 3600))
+    fail(ErrorCode::usage, "stand: duration " + text::exact(duration) +
+                               " s is out of range; it may be from 0.01 to 3600 s");
+  Pattern pattern;
+  pattern.name = "stand for " + text::brief(duration) + " s";
+  pattern.robot = model.name();
+  pattern.cog_height = bent_height(model);
+  PatternWriter writer{pattern};
+  writer.key(0, ZmpKey::Place::center);
+  writer.phase(duration, Support::both);
+  return pattern;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,79 @@
+#include "ayumi/author/generate/pattern_builder.hpp"
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kHoap1Height = 0.245;  // of its home COG [m]
+
+// Legs longer than this share of their straight length are bent to the second one.
+constexpr double kStraightLeg = 0.97, kBentLeg = 0.94;
+
+}  // namespace
+
+double to_millisecond(double t) { return std::round(1e3 * t) / 1e3; }
+double to_tenth_millimetre(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
+
+void require_range(const char* pattern, const char* name, double value, double low, double high,
+                   const char* unit) {
+  if (value >= low && value <= high) return;
+  fail(ErrorCode::usage, std::string(pattern) + ": " + name + " " + text::exact(value) + unit +
+                             " is out of range; it may be from " + text::brief(low) + " to " +
+                             text::brief(high) + unit);
+}
+
+double leg_length(const RobotModel& model) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const auto& leg = model.leg(Side::left);
+  Vector3d from = data.pose(model.dofs()[leg.front()].body).translation();
+  double length = 0;
+  for (const int dof : leg) {
+    const Vector3d to = data.pose(model.dofs()[dof].body).translation();
+    length += (to - from).norm();
+    from = to;
+  }
+  return length + (sole_pose(model, data, Side::left).translation() - from).norm();
+}
+
+double bent_height(const RobotModel& model) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const Vector3d hip = data.pose(model.dofs()[model.leg(Side::left).front()].body).translation();
+  const double reach = (sole_pose(model, data, Side::left).translation() - hip).norm();
+  const double leg = leg_length(model);
+  if (reach < kStraightLeg * leg) return 0;
+  return to_tenth_millimetre(default_cog_height(model, {}) - (reach - kBentLeg * leg));
+}
+
+double size_beside_hoap1(const RobotModel& model) {
+  return default_cog_height(model, {}) / kHoap1Height;
+}
+
+void PatternWriter::key(double at, ZmpKey::Place place) {
+  Keyframe key;
+  key.zmp = ZmpKey{place, Eigen::Vector2d::Zero()};
+  add(at, key);
+}
+
+void PatternWriter::add(double at, Keyframe key) {
+  key.t = to_millisecond(at);
+  key.place = "keyframes/" + std::to_string(pattern.keyframes.size());
+  pattern.keyframes.push_back(key);
+}
+
+void PatternWriter::phase(double length, Support support, std::optional<Swing> swing) {
+  t += length;
+  pattern.phases.push_back({to_millisecond(t), support, swing});
+}
+
+}  // namespace ayumi

@@ -1,0 +1,231 @@
+// Who carries, from how the feet move against each other, or over the ground.
+#include "ayumi/author/import/contact_detection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kRest = 0.020;           // relative speed of feet that stand [m/s]
+constexpr double kLever = 0.05;           // a turn counts as the speed of a point this far [m]
+constexpr double kLevel = 0.003;          // difference of heights of feet that stand [m]
+constexpr double kHandoverSpeed = 0.04;   // of feet along the ground as one takes over [m/s]
+constexpr double kHandoverTime = 0.3;     // within which one takes over [s]
+constexpr double kHandoverHeight = 0.01;  // between them [m]
+constexpr double kLook = 0.010;           // speeds are differences over twice this [s]
+constexpr double kShortest = 0.02;        // stretch of one support [s]
+
+double speed_between(const Isometry3d& from, const Isometry3d& to, double time) {
+  const Vector3d turn = log_rotation(Quaterniond(from.linear().transpose() * to.linear()));
+  return ((to.translation() - from.translation()).norm() + kLever * turn.norm()) / time;
+}
+
+// +1: only the left carries, -1: only the right, 0: both, 2: moving too low to tell.
+std::vector<int> relative_labels(const RobotModel& model, const Soles& soles, double dt) {
+  const int n = static_cast<int>(soles[0].size());
+  const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
+  const auto relative = [&](int k) { return soles[0][k].inverse() * soles[1][k]; };
+  const auto center = [&](Side side) {
+    const Eigen::Vector2d& c = model.sole(side).center;
+    return Vector3d(c.x(), c.y(), 0);
+  };
+  std::vector<int> labels(n);
+  for (int k = 0; k < n; ++k) {
+    const int a = std::max(0, k - look), b = std::min(n - 1, k + look);
+    const double speed = speed_between(relative(a), relative(b), (b - a) * dt);
+    const double right_up = (relative(k) * center(Side::right)).z();
+    const double left_up = (relative(k).inverse() * center(Side::left)).z();
+    const double height = 0.5 * (right_up - left_up);
+    labels[k] = speed < kRest && std::abs(height) < kLevel ? 0
+                : std::abs(height) < kLevel / 2            ? 2
+                : height > 0                               ? 1
+                                                           : -1;
+  }
+  return labels;
+}
+
+// Rows that cannot be told join the nearer told row beside them that is not double support.
+void tell_low_swings(std::vector<int>& labels) {
+  const int n = static_cast<int>(labels.size());
+  for (int k = 0; k < n;) {
+    int last = k;
+    while (last + 1 < n && labels[last + 1] == labels[k]) ++last;
+    if (labels[k] == 2) {
+      const int before = k > 0 ? labels[k - 1] : 0, after = last + 1 < n ? labels[last + 1] : 0;
+      for (int i = k; i <= last; ++i)
+        labels[i] = before == 0 || before == 2 ? after
+                    : after == 0               ? before
+                    : i - k < last - i         ? before
+                                               : after;
+    }
+    k = last + 1;
+  }
+}
+
+// Real robots are told angles that make up for what gives way under load, so that their soles never
+// rest against each other at one height. Where one foot takes over from the other at once, both
+// carry as long as they do not part along the ground, and are not far from one height.
+void add_handovers(const Soles& soles, double dt, std::vector<int>& labels) {
+  const int n = static_cast<int>(labels.size());
+  const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
+  const auto ground_normal = [&](int k) {
+    return Vector3d((soles[0][k].linear().col(2) + soles[1][k].linear().col(2)).normalized());
+  };
+  // In the axes of the left foot, which is as good as still at those times.
+  const auto between = [&](int k) -> Vector3d {
+    return soles[0][k].linear().transpose() *
+           (soles[1][k].translation() - soles[0][k].translation());
+  };
+  const auto stands = [&](int k) {
+    const int a = std::max(0, k - look), b = std::min(n - 1, k + look);
+    const Vector3d up = soles[0][k].linear().transpose() * ground_normal(k);
+    const Vector3d speed = (between(b) - between(a)) / ((b - a) * dt);
+    return (speed - up.dot(speed) * up).norm() < kHandoverSpeed &&
+           std::abs(up.dot(between(k))) < kHandoverHeight;
+  };
+  const int near = static_cast<int>(std::lround(kHandoverTime / dt));
+  const std::vector<int> given = labels;
+  for (int k = 1; k < n; ++k) {
+    if (given[k] == 0 || given[k - 1] == 0 || given[k] == given[k - 1]) continue;
+    for (int i = std::max(0, k - near); i < std::min(n, k + near); ++i)
+      if (stands(i)) labels[i] = 0;
+  }
+}
+
+std::vector<Support> supports_with_base(const RobotModel& model, const Soles& soles, double dt) {
+  const int n = static_cast<int>(soles[0].size());
+  const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
+  const auto lowest = [&](int s, int k) {
+    double low = 1e300;
+    for (const Eigen::Vector2d& v : model.sole(static_cast<Side>(s)).polygon)
+      low = std::min(low, (soles[s][k] * Vector3d(v.x(), v.y(), 0)).z());
+    return low;
+  };
+  double ground = 1e300;
+  for (int k = 0; k < n; ++k) ground = std::min({ground, lowest(0, k), lowest(1, k)});
+  std::vector<Support> result(n);
+  for (int k = 0; k < n; ++k) {
+    std::array<bool, 2> down;
+    for (int s : {0, 1}) {
+      const int a = std::max(0, k - look), b = std::min(n - 1, k + look);
+      down[s] = lowest(s, k) - ground < kLevel &&
+                speed_between(soles[s][a], soles[s][b], (b - a) * dt) < kRest;
+    }
+    result[k] = down[0] && down[1] ? Support::both
+                : down[0]          ? Support::left
+                : down[1]          ? Support::right
+                                   : Support::none;
+  }
+  return result;
+}
+
+// The shortest stretch below the limit goes to its longer neighbour, until there is none.
+std::vector<Support> without_blinks(std::vector<Support> supports, double dt) {
+  const int least = static_cast<int>(std::lround(kShortest / dt));
+  while (true) {
+    const std::vector<Stretch> all = stretches(supports);
+    const auto length = [&](size_t i) { return all[i].last - all[i].first + 1; };
+    size_t shortest = all.size();
+    for (size_t i = 0; i < all.size(); ++i)
+      if (length(i) < least && (shortest == all.size() || length(i) < length(shortest)))
+        shortest = i;
+    if (shortest == all.size() || all.size() == 1) return supports;
+    const bool back = shortest + 1 == all.size() ||
+                      (shortest > 0 && length(shortest - 1) >= length(shortest + 1));
+    const Support joined = all[back ? shortest - 1 : shortest + 1].support;
+    std::fill(supports.begin() + all[shortest].first, supports.begin() + all[shortest].last + 1,
+              joined);
+  }
+}
+
+// Height of a sole's centre over the other sole, over the ground where the motion has a base.
+double height_of(const RobotModel& model, const RawMotion& motion, const Soles& soles, int foot,
+                 int k) {
+  const Eigen::Vector2d& c = model.sole(static_cast<Side>(foot)).center;
+  const Vector3d center = soles[foot][k] * Vector3d(c.x(), c.y(), 0);
+  return motion.base.empty() ? (soles[1 - foot][k].inverse() * center).z() : center.z();
+}
+
+// Detection says `both` while the last or first of a swing goes on. Where the sole comes to rest
+// before the middle of that stretch, the contact begins (or ends) there.
+void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& soles,
+                std::vector<Support>& supports) {
+  constexpr double kAtRest = 1e-5;  // over its place [m]
+  for (const Stretch& run : stretches(supports)) {
+    if (run.support != Support::both) continue;
+    for (const int step : {1, -1}) {
+      const int edge = step > 0 ? run.first : run.last, outside = edge - step;
+      if (outside < 0 || outside >= static_cast<int>(supports.size())) continue;
+      if (supports[outside] == Support::none) continue;
+      const int foot = supports[outside] == Support::left ? 1 : 0;
+      const auto height = [&](int k) { return height_of(model, motion, soles, foot, k); };
+      const int middle = (run.first + run.last) / 2;
+      int least = edge;
+      while (least != middle && height(least + step) < height(least)) least += step;
+      if (least == middle) continue;  // it sinks all the time: no swing, a load
+      const double place = height(least);
+      for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
+        supports[k] = supports[outside];
+    }
+  }
+}
+
+RobotState state_of(const RobotModel& model, const RawMotion& motion, Eigen::Index k) {
+  RobotState state = model.rest_state();
+  state.theta = motion.theta.row(k).transpose();
+  if (!motion.base.empty()) state.base = motion.base[static_cast<size_t>(k)];
+  return state;
+}
+
+}  // namespace
+
+Soles soles_of(const RobotModel& model, const RawMotion& motion) {
+  RobotData data(model);
+  Soles soles;
+  for (Eigen::Index k = 0; k < motion.theta.rows(); ++k) {
+    update_positions(model, state_of(model, motion, k), data);
+    for (const Side side : {Side::left, Side::right})
+      soles[static_cast<size_t>(side)].push_back(sole_pose(model, data, side));
+  }
+  return soles;
+}
+
+std::vector<Stretch> stretches(const std::vector<Support>& supports) {
+  std::vector<Stretch> result;
+  for (int k = 0; k < static_cast<int>(supports.size()); ++k) {
+    if (result.empty() || result.back().support != supports[k])
+      result.push_back({k, k, supports[k]});
+    result.back().last = k;
+  }
+  return result;
+}
+
+std::vector<Support> supports_from(const RobotModel& model, const RawMotion& motion,
+                                   const Soles& soles) {
+  if (!motion.base.empty()) {
+    std::vector<Support> result =
+        without_blinks(supports_with_base(model, soles, motion.dt), motion.dt);
+    end_swings(model, motion, soles, result);
+    return result;
+  }
+  std::vector<int> labels = relative_labels(model, soles, motion.dt);
+  tell_low_swings(labels);
+  add_handovers(soles, motion.dt, labels);
+  std::vector<Support> result;
+  for (const int label : labels)
+    result.push_back(label == 1 ? Support::left : label == -1 ? Support::right : Support::both);
+  result = without_blinks(std::move(result), motion.dt);
+  end_swings(model, motion, soles, result);
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,205 @@
+// Sole frames F (world) and S_k (in the base, row k): a foot that stands at F puts the base at
+// F S_k^-1. The next foothold of a foot B that lands beside A is F_A times the relative pose
+// S_A^-1 S_B while both carry, made level.
+#include "ayumi/author/import/contact_reconstruction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/author/import/contact_detection.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/math/track.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+namespace {
+
+Isometry3d level(const Isometry3d& pose) {
+  Isometry3d flat = Isometry3d::Identity();
+  flat.translation() << pose.translation().x(), pose.translation().y(), 0;
+  flat.linear() = rpy_to_matrix({0, 0, matrix_to_rpy(pose.linear()).z()});
+  return flat;
+}
+
+Foothold foothold_of(const Isometry3d& pose) {
+  return {pose.translation(), {0, 0, matrix_to_rpy(pose.linear()).z()}};
+}
+
+class Grounding {
+ public:
+  Grounding(const RobotModel& model, const RawMotion& motion)
+      : model_(model),
+        motion_(motion),
+        soles_(soles_of(model, motion)),
+        supports_(motion.support.empty() ? supports_from(model, motion, soles_) : motion.support),
+        runs_(stretches(supports_)),
+        place_(runs_.size()) {}
+
+  GroundedMotion whole(const std::string& table) {
+    if (motion_.base.empty())
+      place_feet();
+    else
+      read_feet();
+    GroundedMotion result;
+    fill_phases(result);
+    fill_table(result.pattern, table);
+    return result;
+  }
+
+ private:
+  int middle(size_t run) const { return (runs_[run].first + runs_[run].last) / 2; }
+  bool carries(size_t run, int foot) const {
+    return supports(runs_[run].support, static_cast<Side>(foot));
+  }
+
+  // Both feet at first, as they are to each other; then each new contact beside the other foot.
+  void place_feet() {
+    const int k = middle(0);
+    const Isometry3d right = soles_[0][k].inverse() * soles_[1][k];
+    std::array<Isometry3d, 2> now = {Isometry3d::Identity(), level(right)};
+    const Isometry3d center = center_of(now);
+    for (Isometry3d& foot : now) foot = center.inverse() * foot;
+    for (size_t r = 0; r < runs_.size(); ++r) {
+      for (int foot : {0, 1}) {
+        const bool lands = r > 0 && carries(r, foot) && !carries(r - 1, foot);
+        if (lands) {
+          const int at = carries(r, 1 - foot) ? middle(r) : runs_[r].first;
+          now[foot] = level(now[1 - foot] * soles_[1 - foot][at].inverse() * soles_[foot][at]);
+        }
+      }
+      place_[r] = now;
+    }
+  }
+
+  static Isometry3d center_of(const std::array<Isometry3d, 2>& feet) {
+    Isometry3d center = Isometry3d::Identity();
+    center.translation() = 0.5 * (feet[0].translation() + feet[1].translation());
+    const Vector3d heading = feet[0].linear().col(0) + feet[1].linear().col(0);
+    center.linear() = rpy_to_matrix({0, 0, std::atan2(heading.y(), heading.x())});
+    return center;
+  }
+
+  void read_feet() {
+    for (size_t r = 0; r < runs_.size(); ++r)
+      for (int foot : {0, 1})
+        place_[r][foot] = r > 0 && carries(r, foot) && carries(r - 1, foot)
+                              ? place_[r - 1][foot]
+                              : level(soles_[foot][middle(r)]);
+  }
+
+  double time(int k) const { return k * motion_.dt; }
+
+  double lift_of(size_t run, int foot) const {
+    double highest = 0;
+    for (int k = runs_[run].first; k <= runs_[run].last; ++k) {
+      const Isometry3d relative = soles_[1 - foot][k].inverse() * soles_[foot][k];
+      highest = std::max(highest, relative.translation().z());
+    }
+    return highest;
+  }
+
+  void fill_phases(GroundedMotion& result) const {
+    Pattern& pattern = result.pattern;
+    const bool flies = std::any_of(runs_.begin(), runs_.end(),
+                                   [](const Stretch& run) { return run.support == Support::none; });
+    for (int foot : {0, 1}) pattern.start_feet[foot] = foothold_of(place_[0][foot]);
+    for (size_t r = 0; r < runs_.size(); ++r) {
+      Phase phase;
+      phase.support = runs_[r].support;
+      phase.until = time(runs_[r].last + (r + 1 < runs_.size() ? 1 : 0));
+      if (!flies && phase.support != Support::both && r + 1 < runs_.size()) {
+        const int foot = phase.support == Support::left ? 1 : 0;
+        phase.swing =
+            Swing{static_cast<Side>(foot), foothold_of(place_[r + 1][foot]), lift_of(r, foot)};
+      }
+      pattern.phases.push_back(phase);
+    }
+    for (int foot : {0, 1}) add_contacts(foot, result.contacts);
+    std::stable_sort(result.contacts.begin(), result.contacts.end(),
+                     [](const FootContact& a, const FootContact& b) { return a.begin < b.begin; });
+  }
+
+  void add_contacts(int foot, std::vector<FootContact>& contacts) const {
+    for (size_t r = 0; r < runs_.size(); ++r) {
+      if (!carries(r, foot)) continue;
+      const bool goes_on = r > 0 && carries(r - 1, foot);
+      if (!goes_on)
+        contacts.push_back(
+            {static_cast<Side>(foot), time(runs_[r].first), 0, foothold_of(place_[r][foot])});
+      contacts.back().end = time(runs_[r].last + (r + 1 < runs_.size() ? 1 : 0));
+    }
+  }
+
+  // Share of the right foot in carrying the base.
+  double share(size_t run, int k) const {
+    const auto single = [&](size_t r) { return runs_[r].support == Support::right ? 1.0 : 0.0; };
+    const bool before = run > 0, after = run + 1 < runs_.size();
+    if (runs_[run].support != Support::both) return single(run);
+    const double from = before ? single(run - 1) : 0.5, to = after ? single(run + 1) : 0.5;
+    const double u =
+        static_cast<double>(k - runs_[run].first + 1) / (runs_[run].last - runs_[run].first + 2);
+    return from + (to - from) * minimum_jerk(u).value;
+  }
+
+  BasePose base_at(size_t run, int k) const {
+    const double right = share(run, k);
+    const Isometry3d by_left = place_[run][0] * soles_[0][k].inverse();
+    const Isometry3d by_right = place_[run][1] * soles_[1][k].inverse();
+    BasePose base;
+    base.position = (1 - right) * by_left.translation() + right * by_right.translation();
+    base.attitude = Quaterniond(by_left.linear()).slerp(right, Quaterniond(by_right.linear()));
+    return base;
+  }
+
+  void fill_table(Pattern& pattern, const std::string& table) const {
+    DenseTable dense;
+    dense.file = table;
+    dense.dt = motion_.dt;
+    dense.joints = model_.dof_names();
+    dense.theta = motion_.theta;
+    dense.base = motion_.base;
+    dense.cog = motion_.cog;
+    dense.zmp = motion_.zmp;
+    dense.fz = motion_.fz;
+    if (motion_.base.empty())
+      for (size_t r = 0; r < runs_.size(); ++r)
+        for (int k = runs_[r].first; k <= runs_[r].last; ++k) dense.base.push_back(base_at(r, k));
+    pattern.table = std::move(dense);
+  }
+
+  const RobotModel& model_;
+  const RawMotion& motion_;
+  const Soles soles_;
+  const std::vector<Support> supports_;
+  const std::vector<Stretch> runs_;
+  std::vector<std::array<Isometry3d, 2>> place_;  // by run, then Side
+};
+
+void require_motion(const RobotModel& model, const RawMotion& motion) {
+  if (!model.has_soles())
+    fail(ErrorCode::bad_model, model.name() + ": the robot has no soles; name both in its sidecar");
+  if (motion.theta.rows() < 6)
+    fail(ErrorCode::bad_pattern,
+         "a motion of " + std::to_string(motion.theta.rows()) + " rows; at least 6 are needed");
+}
+
+}  // namespace
+
+std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion) {
+  require_motion(model, motion);
+  return supports_from(model, motion, soles_of(model, motion));
+}
+
+GroundedMotion grounded(const RobotModel& model, const RawMotion& motion,
+                        const std::string& table) {
+  require_motion(model, motion);
+  return Grounding(model, motion).whole(table);
+}
+
+}  // namespace ayumi

@@ -1,0 +1,79 @@
+#include "ayumi/check/actuator_need.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+namespace {
+
+bool of_actuators(const Finding& f) {
+  return f.severity == Severity::error && (f.kind == "joint_speed" || f.kind == "joint_torque" ||
+                                           f.kind == "servo_step" || f.kind == "continuous_torque");
+}
+
+// The finding of this kind that is furthest beyond its limit.
+const Finding* worst(const ConsistencyReport& report, const std::string& kind) {
+  const Finding* found = nullptr;
+  for (const Finding& f : report.findings)
+    if (of_actuators(f) && f.kind == kind &&
+        (!found || std::abs(f.worst / f.limit) > std::abs(found->worst / found->limit)))
+      found = &f;
+  return found;
+}
+
+std::vector<std::string> missing(const ConsistencyReport& report) {
+  std::vector<std::string> parts;
+  for (const std::string kind :
+       {"joint_torque", "continuous_torque", "joint_speed", "servo_step"}) {
+    const Finding* f = worst(report, kind);
+    if (!f) continue;
+    parts.push_back(text::brief(std::abs(f->worst), 3) + " " + f->unit +
+                    (kind == "continuous_torque" ? " lasting" : "") + " at " + f->where + " at " +
+                    text::fixed(f->at, 2) + " s (has " + text::brief(std::abs(f->limit), 3) + ")");
+  }
+  return parts;
+}
+
+ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
+                     const CheckOptions& options, const ConsistencyReport& report) {
+  ActuatorNeed need;
+  const std::vector<std::string> parts = missing(report);
+  if (parts.empty()) return need;
+  for (const std::string& name : model.profile_names()) {
+    if (name == report.profile) continue;
+    CheckOptions other = options;
+    other.profile = name;
+    if (missing(check_consistency(model, series, other)).empty()) need.sufficient.push_back(name);
+  }
+  need.text = "profile " + report.profile + " is not enough: needs " + text::join(parts, ", ") +
+              "; " +
+              (need.sufficient.empty() ? "no other profile would do"
+                                       : text::join(need.sufficient, ", ") + " would do");
+  return need;
+}
+
+}  // namespace
+
+ActuatorNeed actuator_need(const RobotModel& model, const CommandSeries& series,
+                           const CheckOptions& options, const ConsistencyReport& report) {
+  return need_of(model, series, options, report);
+}
+
+ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>& goals,
+                           const CheckOptions& options) {
+  for (const KeyedGoal& goal : goals) {
+    if (!goal.obstacle.empty()) return {goal.place + ": " + goal.obstacle, {}};
+    ActuatorNeed need =
+        need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
+    if (need.text.empty()) continue;
+    need.text = goal.place + ": " + need.text + " (times from the start of its keyed form)";
+    return need;
+  }
+  return {};
+}
+
+}  // namespace ayumi

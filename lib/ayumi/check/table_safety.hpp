@@ -1,0 +1,77 @@
+#pragma once
+// Before a table goes to a real robot: an approach ramp, an end hold, and a check of what the
+// servos would receive, on whole encoder counts where the robot has them. Servos jump to whatever
+// the next row says, so the table has to be harmless by itself.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/reference_trajectory.hpp"
+
+namespace ayumi {
+
+struct SafetyOptions {
+  std::string profile;        ///< actuator profile of the speed limits; "" = default
+  double ramp = 2.0;          ///< least duration of the approach [s]; 0: no ramp
+  std::string from = "home";  ///< named posture the robot stands in; "first" = the first row
+  double hold = 0.5;          ///< the last row is repeated this long [s]
+  double counts_per_ms = 57;  ///< the motor board's own speed cap
+  double rest_speed = 0.1;    ///< start and end count as rest below this [rad/s]
+};
+
+/// One way in which a table is unsafe: its worst instant.
+struct SafetyViolation {
+  std::string kind;  ///< "position", "step", "range", "torque", "start_speed", "end_speed"
+  std::string joint;
+  double t = 0;                 ///< [s]
+  double value = 0, limit = 0;  ///< in `unit`
+  std::string unit;             ///< "rad", "counts", "rad/s", "N m"
+  int rows = 0;                 ///< how many rows break this limit
+};
+
+/// "l_knee at 1.234 s: step 61 counts exceeds 57 (3 rows)"
+std::string text_of(const SafetyViolation& violation);
+
+struct SafetyReport {
+  bool safe = true;
+  double ramp = 0, hold = 0;              ///< as laid around the motion [s]
+  double max_step_ratio = 0;              ///< step / what one tick allows
+  std::string worst_joint;                ///< of max_step_ratio
+  double worst_at = 0;                    ///< [s]
+  double min_limit_margin = 0;            ///< to the soft position limits [rad]
+  std::string margin_joint;               ///< of min_limit_margin
+  double start_speed = 0, end_speed = 0;  ///< fastest joint at the ends [rad/s]
+  std::vector<SafetyViolation> violations;
+};
+
+struct SafeTable {
+  ReferenceTrajectory table;  ///< ramp + motion + hold; in ramp and hold everything but theta is
+                              ///< that of the first and last row
+  size_t first = 0;           ///< row of the table where the motion begins
+  SafetyReport report;
+};
+
+/// Lays ramp and hold around the motion and judges the result. The ramp is minimum jerk and grows
+/// until no joint passes half its speed limit. Throws Error(bad_pattern) for no rows or joints that
+/// are not the robot's, Error(bad_model) for an unknown posture or profile.
+SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& reference,
+                    const SafetyOptions& options = {});
+
+/// Where motor torques (rows x dof of the robot, the first at `begin` [s] of a table) are beyond
+/// the peaks of a profile: the worst of every joint. A table tells nothing of forces; a log does.
+std::vector<SafetyViolation> torque_violations(const RobotModel& model,
+                                               const Eigen::MatrixXd& torque, double dt,
+                                               double begin, const std::string& profile);
+
+/// Encoder counts of every row, rows x dof in the robot's joint order: the nearest whole count, or
+/// its neighbour (less than one count off) where only that one keeps the position limits and
+/// `step_limits` (counts per tick, by dof). Joints without an encoder give 0.
+Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
+                               const Eigen::VectorXd& step_limits);
+
+/// Largest step per tick by dof in counts: the least of the motor board's cap and the profile's
+/// speed limit; infinite for joints without an encoder.
+Eigen::VectorXd count_step_limits(const RobotModel& model, double dt, const SafetyOptions& options);
+
+}  // namespace ayumi

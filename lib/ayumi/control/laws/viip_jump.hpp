@@ -1,0 +1,92 @@
+#pragma once
+// The jump of VIIP, section 4.1 of the paper: stoop, (24)(25); push, (26); flight; absorb, (27);
+// settle, (24)(25). Law and closed forms: docs/theory.md.
+
+#include "ayumi/control/laws/viip.hpp"
+
+namespace ayumi {
+
+/// What a jump by (26) does to a point mass [m], [m/s], [s]; heights above ref z_G.
+struct JumpFigures {
+  double apex = 0;              ///< z_H released at ref z_G, z_H + z_d^2/(4 z_H) held to f_z = 0
+  double lift_off = 0;          ///< 0, or z_d^2/(2 z_H)
+  double lift_off_speed = 0;    ///< upwards
+  double touchdown_speed = 0;   ///< downwards, at ref z_G
+  double push = 0, flight = 0;  ///< durations
+};
+JumpFigures jump_figures(const JumpGoal& goal);
+
+class ViipJump {
+ public:
+  /// Goes on from `start`. `held`: the posture that the pattern holds meanwhile; the height of its
+  /// COG is ref z_G. Throws Error(bad_pattern) for a goal that is no jump.
+  ViipJump(const RobotModel& model, const ActuatorLimits& limits, const ViipParams& params,
+           double dt, const Handover& start, const CommandSample& held, const JumpGoal& goal);
+
+  /// Feet, support, COG and ZMP of the coming tick.
+  const CommandSample& plan() const { return plan_; }
+
+  ControlOutput update(const Estimate& estimate);
+
+  /// What the next law goes on from.
+  Handover handover() const { return {reference_, dcog_, target_, plan_}; }
+
+ private:
+  enum class Stage { stoop, push, flight, absorb, settle };
+
+  // Of one flight, fixed at release.
+  struct Flight {
+    Eigen::Vector3d cog = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();
+    Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // angular, about the COG [N m s]
+    std::array<Eigen::Vector3d, 2> feet, landing;        // from the COG [m]
+    double duration = 0;                                 // to the expected touchdown [s]
+    double retraction = 0;                               // of the legs before it [m]
+  };
+
+  void enter(Stage stage);
+  CogReference cog_reference(const Estimate& estimate);
+  double vertical_force() const;
+  double progress() const;
+  bool leaves_now();
+  double lean() const;
+  void stand(const Estimate& estimate, ControlOutput& out);
+  Resolution resolve_standing(const Eigen::Vector3d& trunk_rate, double level) const;
+  Resolution resolve_with_momentum(double share);
+  void release();
+  void fly(const Estimate& estimate, ControlOutput& out);
+  Eigen::Vector3d foot_place(int side, double t) const;
+  void touch_down(const Estimate& estimate);
+  Eigen::VectorXd torque(const Eigen::VectorXd& velocity);
+  void move_joints(const Eigen::VectorXd& velocity, ControlOutput& out);
+  void finish_plan();
+
+  const RobotModel* model_;
+  ActuatorLimits limits_;
+  ViipParams params_;
+  double dt_;
+  JumpGoal goal_;
+  double height_, omega_;  // ref z_G above the ground, sqrt(g / z)
+  CommandSample held_, plan_;
+  Eigen::Vector2d offset_;  // held COG from the middle of the feet [m]
+  mutable RobotData data_;
+  Eigen::VectorXd weight_, lead_, target_;
+  RobotState reference_;
+  Side anchor_ = Side::left;
+  Eigen::Vector3d dcog_ = Eigen::Vector3d::Zero();
+  Eigen::Vector2d zmp_filtered_, zmp_;
+  Stage stage_ = Stage::stoop;
+  double elapsed_ = 0;        // in this stage [s]
+  double unloaded_ = 0;       // time without ground force at the end of a spring push [s]
+  double loaded_ = 0;         // time with ground force at the end of a flight [s]
+  double forward_ = 0;        // share of the torque that is fed forward
+  Eigen::VectorXd velocity_;  // generalised, of the last tick; empty after an impact
+  int left_ = 1;              // jumps to go, this one included
+  double from_ = 0;           // COG height at which the stage began [m]
+  double stiffness_ = 0;      // K_Pz / m of (26) or (27) [1/s^2]
+  double depth_ = 0;          // way of the push or of the absorption [m]
+  Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();       // of the reference, angular [N m s]
+  Eigen::Vector3d momentum_rate_ = Eigen::Vector3d::Zero();  // on the ground [N m]
+  Flight flight_;
+};
+
+}  // namespace ayumi

@@ -1,0 +1,84 @@
+#pragma once
+// What a planned motion needs from the ground, the motors and the feet, and how far that is from
+// what was commanded. Each quantity is computed here once: the report evaluates it, the nonlinear
+// program constrains it.
+
+#include <Eigen/Dense>
+#include <array>
+
+#include "ayumi/dynamics/robot_data.hpp"
+#include "ayumi/math/polygon.hpp"
+#include "ayumi/motion/command_series.hpp"
+
+namespace ayumi {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// Where the robot stands: the plane of the supporting soles (mean origin, mean normal; for feet at
+/// different heights a plane between them) and the convex hull of the soles in it.
+struct SupportPlane {
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();  ///< z is the normal
+  ConvexPolygon polygon;                                    ///< in its x y plane [m]
+
+  bool empty() const { return polygon.empty(); }
+};
+
+/// From the sole poses (by Side); empty when no foot supports.
+SupportPlane support_plane(const RobotModel& model, Support support,
+                           const std::array<Eigen::Isometry3d, 2>& soles);
+
+/// The base wrench of inverse_dynamics (moment about `base_position`) about the origin and in the
+/// axes of the plane.
+Vector6d plane_wrench(const SupportPlane& plane, const Eigen::Vector3d& base_position,
+                      const Vector6d& base_wrench);
+
+/// edges x 6: rows . plane_wrench = f_n (distance of the ZMP inside each edge) [N m].
+Eigen::Matrix<double, Eigen::Dynamic, 6> support_rows(const SupportPlane& plane);
+
+/// Ground force in the axes of the plane, and the ZMP where it has a meaning (f_n > min_force).
+struct GroundDemand {
+  double normal_force = 0;      ///< [N]
+  double tangential_force = 0;  ///< [N]
+  bool has_zmp = false;
+  Eigen::Vector2d zmp = Eigen::Vector2d::Zero();        ///< in the plane [m]
+  Eigen::Vector3d zmp_world = Eigen::Vector3d::Zero();  ///< [m]
+  double margin = 0;                                    ///< inside the polygon [m]
+  double yaw_moment = 0;                                ///< about the normal through the ZMP
+};
+GroundDemand ground_demand(const SupportPlane& plane, const Vector6d& plane_wrench,
+                           double min_force);
+
+/// Lever of the yaw moment that friction can resist without moving the ZMP [m]: mean distance from
+/// the ZMP over the largest part of the polygon that is symmetric about it, evenly pressed. A lower
+/// bound of what is possible; 0 outside.
+double torsional_friction_arm(const ConvexPolygon& polygon, const Eigen::Vector2d& zmp);
+
+/// The ground wrench shared between the feet, each about the base origin (force, moment), by Side.
+/// One foot takes all. Two feet share so that each centre of pressure stays in its own sole if the
+/// ZMP is in their hull; the shares sum to the whole exactly.
+std::array<Vector6d, 2> foot_wrenches(const RobotModel& model, Support support,
+                                      const std::array<Eigen::Isometry3d, 2>& soles,
+                                      const SupportPlane& plane, const GroundDemand& use,
+                                      const Eigen::Vector3d& base_position,
+                                      const Vector6d& base_wrench);
+
+/// Dry friction turns its sign over twice this joint rate [rad/s].
+inline constexpr double kCoulombRate = 0.01;
+
+/// Motor torques [dof]: `force` of inverse_dynamics without what the ground gives at the feet, plus
+/// rotor inertia, viscous and Coulomb friction of the servo. `data` as inverse_dynamics left it.
+Eigen::VectorXd motor_torques(const RobotModel& model, const RobotState& state,
+                              const Eigen::VectorXd& acceleration, const Eigen::VectorXd& force,
+                              const std::array<Vector6d, 2>& foot_wrench, const RobotData& data);
+
+/// A sole against the pose it should keep.
+struct SoleError {
+  double slip = 0;         ///< largest horizontal way of a corner, in the plane of `planned` [m]
+  double penetration = 0;  ///< deepest corner below that plane [m]
+  double gap = 0;          ///< highest corner above it [m]
+  double lowest = 0;       ///< lowest corner above it (negative below) [m]
+};
+SoleError sole_error(const Sole& sole, const Eigen::Isometry3d& actual,
+                     const Eigen::Isometry3d& planned);
+
+}  // namespace ayumi

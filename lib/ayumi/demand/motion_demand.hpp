@@ -1,0 +1,54 @@
+#pragma once
+// What a planned motion needs at one sample, as the check looks at it: played as planned, or more
+// slowly to ask whether haste is what is wrong.
+
+#include "ayumi/demand/contact_plan.hpp"
+#include "ayumi/demand/ground_demand.hpp"
+
+namespace ayumi {
+
+struct SampleDynamics {
+  Vector6d wrench = Vector6d::Zero();                ///< of the ground, about the base origin
+  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();   ///< [m/s^2]
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of the wrench about the COG [N m]
+  GroundDemand use;                                  ///< where a foot supports
+  Eigen::VectorXd torque;                            ///< of the motors [dof]
+};
+
+/// Looks at one sample after the other; the results stay until the next call of at().
+class MotionDynamics {
+ public:
+  /// The arguments must outlive this.
+  MotionDynamics(const RobotModel& model, const CommandSeries& series, const ContactPlan& plan);
+
+  /// Inverse dynamics of sample k with its rates times `pace` and accelerations times its square:
+  /// the same path, that much slower.
+  const SampleDynamics& at(int k, double pace = 1);
+
+  /// Sample k of a flight with the base accelerated so that it needs no wrench from outside: what
+  /// is left of the motors' torques without the force and moment that no ground gives.
+  const SampleDynamics& free_flight(int k);
+
+  const RobotData& data() const { return data_; }       ///< positions and rates of that sample
+  const SupportPlane& plane() const { return plane_; }  ///< empty in flight
+  /// Planned soles of the supporting feet, by Side.
+  const std::array<Eigen::Isometry3d, 2>& soles() const { return soles_; }
+
+ private:
+  void update_plane(int k);
+  void evaluate(int k);
+
+  const RobotModel& model_;
+  const CommandSeries& series_;
+  const ContactPlan& plan_;
+  RobotData data_;
+  RobotState state_;
+  Eigen::VectorXd acceleration_;
+  SampleDynamics now_;
+  std::array<int, 2> plane_of_ = {-1, -1};
+  std::array<Eigen::Isometry3d, 2> soles_ = {Eigen::Isometry3d::Identity(),
+                                             Eigen::Isometry3d::Identity()};
+  SupportPlane plane_;
+};
+
+}  // namespace ayumi

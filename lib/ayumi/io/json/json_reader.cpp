@@ -1,0 +1,210 @@
+#include "ayumi/io/json/json_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+namespace {
+
+std::string kind_of(const Json& value) {
+  switch (value.type()) {
+    case Json::value_t::null:
+      return "null";
+    case Json::value_t::object:
+      return "an object";
+    case Json::value_t::array:
+      return "an array of " + std::to_string(value.size());
+    case Json::value_t::string:
+      return "a string";
+    case Json::value_t::boolean:
+      return value.get<bool>() ? "true" : "false";
+    default:
+      return "the number " + value.dump();
+  }
+}
+
+std::string escaped(const std::string& key) {
+  std::string text;
+  for (const char c : key) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return text;
+}
+
+std::string line_and_column(const std::string& bytes, size_t offset) {
+  size_t line = 1, column = 1;
+  for (size_t i = 0; i < std::min(offset, bytes.size()); ++i) {
+    column = bytes[i] == '\n' ? 1 : column + 1;
+    line += bytes[i] == '\n';
+  }
+  return std::to_string(line) + ":" + std::to_string(column);
+}
+
+// "[json.exception...] parse error at line 1, column 2: what" -> "what"
+std::string reason_of(const std::string& message) {
+  const size_t at = message.find("column ");
+  const size_t colon = message.find(": ", at == std::string::npos ? 0 : at);
+  return colon == std::string::npos ? message : message.substr(colon + 2);
+}
+
+}  // namespace
+
+Json parse_json(const std::string& bytes, const std::string& file, ErrorCode code) {
+  const bool blank =
+      std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
+  if (blank) fail(code, file + ": the file is empty, JSON is needed");
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  std::string duplicate;
+  const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end && !keys.empty()) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.empty() && duplicate.empty() &&
+        !keys.back().insert(parsed.get<std::string>()).second)
+      duplicate = parsed.get<std::string>();
+    return true;
+  };
+  Json document;
+  try {
+    document = Json::parse(bytes, watch, true, true);
+  } catch (const Json::parse_error& error) {
+    const size_t offset = error.byte > 0 ? error.byte - 1 : 0;
+    fail(code, file + ":" + line_and_column(bytes, offset) + ": " + reason_of(error.what()));
+  } catch (const Json::exception& error) {
+    fail(code, file + ": not usable JSON: " + reason_of(error.what()));
+  }
+  if (!duplicate.empty())
+    fail(code, file + ": the key '" + duplicate + "' appears twice in one object; keep one");
+  return document;
+}
+
+void JsonNode::complain(const std::string& message) const {
+  fail(code_, file_ + ": " + (pointer_.empty() ? "/" : pointer_) + ": " + message);
+}
+
+JsonNode JsonNode::child(const std::string& token, const Json& value) const {
+  return {value, file_, pointer_ + "/" + escaped(token), code_};
+}
+
+void JsonNode::expect_object() const {
+  if (!value_->is_object()) complain("expected an object, found " + kind_of(*value_));
+}
+
+void JsonNode::expect_array() const {
+  if (!value_->is_array()) complain("expected an array, found " + kind_of(*value_));
+}
+
+bool JsonNode::has(const std::string& key) const {
+  expect_object();
+  return value_->contains(key);
+}
+
+JsonNode JsonNode::at(const std::string& key) const {
+  if (!has(key)) complain("the key '" + key + "' is missing");
+  return child(key, (*value_)[key]);
+}
+
+std::optional<JsonNode> JsonNode::find(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  return child(key, (*value_)[key]);
+}
+
+std::vector<JsonNode> JsonNode::items() const {
+  expect_array();
+  std::vector<JsonNode> nodes;
+  for (size_t i = 0; i < value_->size(); ++i)
+    nodes.push_back(child(std::to_string(i), (*value_)[i]));
+  return nodes;
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
+  expect_object();
+  std::vector<std::pair<std::string, JsonNode>> nodes;
+  for (const auto& [key, value] : value_->items()) nodes.emplace_back(key, child(key, value));
+  return nodes;
+}
+
+void JsonNode::only_keys(const std::vector<std::string>& known) const {
+  expect_object();
+  for (const auto& [key, value] : value_->items()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const std::string hint = text::suggestion(key, known);
+    child(key, value)
+        .complain("unknown key" +
+                  (hint.empty() ? "; known here: " + text::join(known, ", ") : hint));
+  }
+}
+
+double JsonNode::number() const {
+  if (!value_->is_number()) complain("expected a number, found " + kind_of(*value_));
+  const double number = value_->get<double>();
+  if (!std::isfinite(number)) complain("expected a finite number");
+  return number;
+}
+
+double JsonNode::number_within(double lower, double upper) const {
+  const double value = number();
+  if (value < lower)
+    complain(text::exact(value) + " is below the least allowed, " + text::exact(lower));
+  if (value > upper)
+    complain(text::exact(value) + " is above the largest allowed, " + text::exact(upper));
+  return value;
+}
+
+int JsonNode::integer() const {
+  const double value = number();
+  if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max())
+    complain("expected a whole number, found " + text::exact(value));
+  return static_cast<int>(value);
+}
+
+std::uint64_t JsonNode::unsigned_integer() const {
+  if (!value_->is_number_unsigned())
+    complain("expected a whole number >= 0, found " + kind_of(*value_));
+  return value_->get<std::uint64_t>();
+}
+
+bool JsonNode::boolean() const {
+  if (!value_->is_boolean()) complain("expected true or false, found " + kind_of(*value_));
+  return value_->get<bool>();
+}
+
+std::string JsonNode::string() const {
+  if (!value_->is_string()) complain("expected a string, found " + kind_of(*value_));
+  return value_->get<std::string>();
+}
+
+std::string JsonNode::one_of(const std::vector<std::string>& allowed) const {
+  const std::string value = string();
+  if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
+    complain("'" + value + "' is not one of " + text::join(allowed, ", ") +
+             text::suggestion(value, allowed));
+  return value;
+}
+
+Eigen::VectorXd JsonNode::vector(int size) const {
+  const std::string wanted = "expected " + std::to_string(size) + " numbers, found ";
+  if (!value_->is_array() || static_cast<int>(value_->size()) != size)
+    complain(wanted + kind_of(*value_));
+  const std::vector<double> values = numbers();
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), size);
+}
+
+Eigen::Vector2d JsonNode::vector2() const { return vector(2); }
+Eigen::Vector3d JsonNode::vector3() const { return vector(3); }
+
+std::vector<double> JsonNode::numbers() const {
+  std::vector<double> values;
+  for (const JsonNode& item : items()) values.push_back(item.number());
+  return values;
+}
+
+std::vector<std::string> JsonNode::strings() const {
+  std::vector<std::string> values;
+  for (const JsonNode& item : items()) values.push_back(item.string());
+  return values;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,180 @@
+// The parts of a pattern file: phases, keyframes, controller, correction.
+#include <cmath>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/pattern/pattern_scope.hpp"
+
+namespace ayumi {
+
+namespace {
+
+Side read_side(const JsonNode& node) {
+  return node.one_of({"left", "right"}) == "left" ? Side::left : Side::right;
+}
+
+Support read_support(const JsonNode& node) {
+  const std::string name = node.one_of({"both", "left", "right", "none"});
+  for (const Support each : {Support::both, Support::left, Support::right})
+    if (name == name_of(each)) return each;
+  return Support::none;
+}
+
+Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
+  only_pattern_keys(node, "swing");
+  Swing swing;
+  swing.foot = read_side(node.at("foot"));
+  if (supports(support, swing.foot))
+    node.at("foot").complain("the " + std::string(name_of(swing.foot)) +
+                             " foot carries the robot in this phase (support " + name_of(support) +
+                             "); it cannot swing");
+  swing.to = read_foothold(node.at("to"), scope);
+  if (const auto lift = node.find("lift")) swing.lift = read_number(*lift, scope, 0, 10);
+  return swing;
+}
+
+ZmpKey read_zmp(const JsonNode& node, PatternScope& scope) {
+  ZmpKey key;
+  if (node.value().is_array()) {
+    const std::vector<double> point = read_numbers(node, scope, 2, 2, "[x, y]");
+    key.point = {point[0], point[1]};
+    return key;
+  }
+  if (!node.value().is_string())
+    node.complain("expected \"left\", \"right\", \"center\" or [x, y]");
+  const std::string place = node.one_of({"left", "right", "center"});
+  key.place = place == "left"    ? ZmpKey::Place::left
+              : place == "right" ? ZmpKey::Place::right
+                                 : ZmpKey::Place::center;
+  return key;
+}
+
+void read_posture(const JsonNode& node, Keyframe& key, PatternScope& scope) {
+  if (const auto posture = node.find("posture")) {
+    if (posture->value().is_object()) {
+      key.joints = read_joint_angles(*posture, scope);
+    } else if (posture->value().is_string()) {
+      key.posture = posture->string();
+    } else {
+      posture->complain("expected the name of a posture or {\"joint\": angle, ...}");
+    }
+  }
+  if (const auto joints = node.find("joints")) {
+    for (const auto& [joint, angle] : read_joint_angles(*joints, scope))
+      if (!key.joints.emplace(joint, angle).second)
+        joints->at(joint).complain("the joint is already set in \"posture\" of this keyframe");
+  }
+}
+
+void read_cog(const JsonNode& node, Keyframe& key, PatternScope& scope) {
+  only_pattern_keys(node, "cog");
+  if (node.size() == 0) node.complain("no coordinate is named (x, y, height)");
+  if (const auto x = node.find("x")) key.cog_x = read_number(*x, scope);
+  if (const auto y = node.find("y")) key.cog_y = read_number(*y, scope);
+  if (const auto height = node.find("height")) key.cog_height = read_number(*height, scope);
+}
+
+Eigen::Vector3d read_torso(const JsonNode& node, PatternScope& scope) {
+  only_pattern_keys(node, "torso");
+  if (node.size() == 0) node.complain("no angle is named (roll, pitch, yaw)");
+  Eigen::Vector3d rpy = Eigen::Vector3d::Zero();
+  const char* const names[] = {"roll", "pitch", "yaw"};
+  for (int i = 0; i < 3; ++i)
+    if (const auto angle = node.find(names[i])) rpy[i] = read_angle(*angle, scope);
+  return rpy;
+}
+
+}  // namespace
+
+Phase read_phase(const JsonNode& node, PatternScope& scope) {
+  only_pattern_keys(node, "phase");
+  Phase phase;
+  phase.until = read_time(node.at("until"), scope);
+  if (const auto goal = node.find("viip")) {
+    phase.viip = read_viip_goal(*goal, scope);
+    for (const char* const key : {"swing", "support"})
+      if (node.has(key))
+        node.at(key).complain("VIIP chooses support and footholds of a phase with \"viip\"");
+    return phase;
+  }
+  phase.support = read_support(node.at("support"));
+  if (const auto swing = node.find("swing")) phase.swing = read_swing(*swing, phase.support, scope);
+  return phase;
+}
+
+Keyframe read_keyframe(const JsonNode& node, PatternScope& scope) {
+  only_pattern_keys(node, "keyframe");
+  Keyframe key;
+  key.place = node.file() + ": " + node.pointer();
+  key.t = read_time(node.at("t"), scope);
+  if (const auto way = node.find("interpolation")) key.interpolation = read_interpolation(*way);
+  read_posture(node, key, scope);
+  if (const auto zmp = node.find("zmp")) key.zmp = read_zmp(*zmp, scope);
+  if (const auto cog = node.find("cog")) read_cog(*cog, key, scope);
+  if (const auto fz = node.find("fz")) key.fz = read_number(*fz, scope, 0, kLargestNumber);
+  if (const auto torso = node.find("torso")) key.torso = read_torso(*torso, scope);
+  if (const auto feet = node.find("feet")) {
+    only_pattern_keys(*feet, "feet");
+    for (const Side side : {Side::left, Side::right})
+      if (const auto foot = feet->find(name_of(side)))
+        key.feet[static_cast<size_t>(side)] = read_foothold(*foot, scope);
+  }
+  if (const auto weights = node.find("weights"))
+    for (const auto& [joint, weight] : weights->members()) {
+      key.weights[joint] = read_number(weight, scope);
+      if (key.weights[joint] <= 0) weight.complain("a weight must be above 0");
+    }
+  return key;
+}
+
+ControllerSpec read_controller(const JsonNode& node, PatternScope& scope) {
+  only_pattern_keys(node, "controller");
+  ControllerSpec controller;
+  controller.type = node.at("type").one_of(
+      {"none", "dtad", "dtad-literal", "viip", "viip-landings", "viip-nofeedback"});
+  const auto gains = node.find("gains");
+  if (!gains) return controller;
+  if (gains->has("q") && (gains->has("k") || gains->has("d")))
+    gains->complain("q sets k and d; give either q or k and d, not both");
+  if (gains->has("k") != gains->has("d"))
+    gains->complain("k and d go together; give both, or q instead");
+  for (const auto& [name, value] : gains->members())
+    controller.gains.emplace_back(name, read_number(value, scope));
+  return controller;
+}
+
+CorrectionTrack read_correction(const JsonNode& node) {
+  only_pattern_keys(node, "correction");
+  PatternScope scope;  // no parameters, no angle unit: SI as the columns say
+  CorrectionTrack track;
+  track.begin = read_number(node.at("begin"), scope, -kLongestPattern, kLongestPattern);
+  track.spacing = read_number(node.at("spacing"), scope);
+  if (track.spacing <= 0) node.at("spacing").complain("must be above 0");
+  static const std::vector<std::string> base = {"base.x[m]",    "base.y[m]",    "base.z[m]",
+                                                "base.rx[rad]", "base.ry[rad]", "base.rz[rad]"};
+  const std::vector<JsonNode> columns = node.at("columns").items();
+  for (size_t i = 0; i < std::max(base.size(), columns.size()); ++i) {
+    if (i >= columns.size()) node.at("columns").complain("the column '" + base[i] + "' is missing");
+    const std::string name = columns[i].string();
+    if (i < base.size()) {
+      if (name != base[i]) columns[i].complain("expected '" + base[i] + "', found '" + name + "'");
+      continue;
+    }
+    if (name.size() < 12 || name.rfind("theta.", 0) != 0 || name.substr(name.size() - 5) != "[rad]")
+      columns[i].complain("expected 'theta.<joint>[rad]', found '" + name + "'");
+    track.joints.push_back(name.substr(6, name.size() - 11));
+  }
+  const std::vector<JsonNode> rows = node.at("coefficients").items();
+  const auto width = static_cast<Eigen::Index>(columns.size());
+  track.coefficients.resize(static_cast<Eigen::Index>(rows.size()), width);
+  for (size_t r = 0; r < rows.size(); ++r) {
+    if (rows[r].items().size() != columns.size())
+      rows[r].complain("expected " + std::to_string(columns.size()) + " numbers, found " +
+                       std::to_string(rows[r].size()));
+    const std::vector<double> values = rows[r].numbers();
+    track.coefficients.row(static_cast<Eigen::Index>(r)) =
+        Eigen::Map<const Eigen::RowVectorXd>(values.data(), width);
+  }
+  return track;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,216 @@
+#include <algorithm>
+
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/pattern/pattern_scope.hpp"
+#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/io/table/table.hpp"
+
+namespace ayumi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kLargestFile = size_t{64} << 20;  // [bytes]
+
+void require_format(const JsonNode& root, const std::string& format) {
+  const std::string found = root.at("format").string();
+  if (found != format)
+    root.at("format").complain("'" + found + "' is not readable here; this version reads '" +
+                               format + "'");
+}
+
+// Numbers of "parameters", replaced by those set from outside.
+void read_parameters(const JsonNode& root, const std::map<std::string, double>& set,
+                     PatternScope& scope) {
+  if (const auto parameters = root.find("parameters"))
+    for (const auto& [name, value] : parameters->members()) {
+      if (name.empty() || name.find_first_of("${}") != std::string::npos)
+        value.complain("a parameter's name cannot be empty or hold $ { }");
+      PatternScope nothing;
+      scope.parameters[name] = read_number(value, nothing);
+    }
+  std::vector<std::string> names;
+  for (const auto& entry : scope.parameters) names.push_back(entry.first);
+  for (const auto& [name, value] : set) {
+    const std::string place = root.file() + ": parameter '" + name + "'";
+    if (!scope.parameters.contains(name))
+      fail(ErrorCode::usage,
+           place + " is not declared in the pattern" + text::suggestion(name, names) +
+               (names.empty() ? "; it declares none" : "; declared: " + text::join(names, ", ")));
+    if (!(std::abs(value) <= kLargestNumber))
+      fail(ErrorCode::usage, place + ": " + text::exact(value) + " is not a sensible number");
+    scope.parameters[name] = value;
+  }
+}
+
+void read_postures(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
+  const auto postures = root.find("postures");
+  if (!postures) return;
+  for (const auto& [name, joints] : postures->members())
+    if (!pattern.postures.emplace(name, read_joint_angles(joints, scope)).second)
+      joints.complain("a posture of this name is already included from another file");
+}
+
+// Posture libraries beside the pattern; returns their bytes for the fingerprint.
+std::string read_includes(const JsonNode& root, const fs::path& folder, Pattern& pattern) {
+  const auto include = root.find("include");
+  if (!include) return {};
+  const std::vector<std::string> names = include->value().is_array()
+                                             ? include->strings()
+                                             : std::vector<std::string>{include->string()};
+  std::string all;
+  for (const std::string& name : names) {
+    const fs::path path = folder / name;
+    const std::string bytes = read_file(path, kLargestFile);
+    const Json document = parse_json(bytes, path.string(), ErrorCode::bad_pattern);
+    const JsonNode library = root_of(document, path.string(), ErrorCode::bad_pattern);
+    require_format(library, "ayumi.postures/1");
+    only_pattern_keys(library, "postures_file");
+    PatternScope scope;
+    read_units(library, scope);
+    library.at("postures").expect_object();
+    read_postures(library, scope, pattern);
+    all += bytes;
+  }
+  return all;
+}
+
+void read_defaults(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
+  const auto defaults = root.find("defaults");
+  if (!defaults) return;
+  only_pattern_keys(*defaults, "defaults");
+  if (const auto way = defaults->find("interpolation"))
+    pattern.interpolation = read_interpolation(*way);
+  if (const auto posture = defaults->find("posture")) pattern.default_posture = posture->string();
+  if (const auto height = defaults->find("cog_height")) {
+    pattern.cog_height = read_number(*height, scope);
+    if (pattern.cog_height <= 0) height->complain("must be above 0");
+  }
+  if (const auto model = defaults->find("cog_model"))
+    pattern.full_model = model->one_of({"full", "point_mass"}) == "full";
+}
+
+void read_start(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
+  const auto start = root.find("start");
+  if (!start) return;
+  only_pattern_keys(*start, "start");
+  for (const Side side : {Side::left, Side::right})
+    if (const auto foot = start->find(name_of(side)))
+      pattern.start_feet[static_cast<size_t>(side)] = read_foothold(*foot, scope);
+}
+
+void require_increasing(const JsonNode& node, double time, double previous, bool first) {
+  if (time > previous || (first && time == previous)) return;
+  node.complain(text::exact(time) + " s does not come after " + text::exact(previous) +
+                " s; times must increase");
+}
+
+void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
+  const JsonNode phases = root.at("phases");
+  phases.expect_array();
+  if (phases.size() == 0)
+    phases.complain("is empty; at least one phase says who carries the robot");
+  double previous = 0;
+  for (const JsonNode& node : phases.items()) {
+    pattern.phases.push_back(read_phase(node, scope));
+    require_increasing(node.at("until"), pattern.phases.back().until, previous, false);
+    previous = pattern.phases.back().until;
+  }
+}
+
+void read_keyframes(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
+  const auto keyframes = root.find("keyframes");
+  const bool goals = std::any_of(pattern.phases.begin(), pattern.phases.end(),
+                                 [](const Phase& phase) { return phase.viip.has_value(); });
+  if (!keyframes && (root.has("table") || goals)) return;
+  if (!keyframes) root.complain("the key 'keyframes' is missing (or 'table', a sampled motion)");
+  keyframes->expect_array();
+  if (keyframes->size() == 0) keyframes->complain("is empty; at least one keyframe is needed");
+  double previous = 0;
+  for (const JsonNode& node : keyframes->items()) {
+    const bool first = pattern.keyframes.empty();
+    pattern.keyframes.push_back(read_keyframe(node, scope));
+    require_increasing(node.at("t"), pattern.keyframes.back().t, previous, first);
+    previous = pattern.keyframes.back().t;
+  }
+}
+
+void read_rest(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
+  if (const auto correction = root.find("correction"))
+    pattern.correction = read_correction(*correction);
+  if (const auto world = root.find("world")) pattern.world = read_world(*world, scope);
+  if (const auto controller = root.find("controller"))
+    pattern.controller = read_controller(*controller, scope);
+  if (const auto scenario = root.find("scenario"))
+    for (const JsonNode& node : scenario->items())
+      pattern.scenario.push_back(read_disturbance(node, scope));
+  if (const auto tolerances = root.find("tolerances"))
+    for (const auto& [kind, value] : tolerances->members())
+      pattern.tolerances[kind] = read_number(value, scope, 0, kLargestNumber);
+  if (const auto wishes = root.find("repair"))
+    pattern.repair = read_repair(*wishes, static_cast<int>(pattern.keyframes.size()), scope);
+}
+
+}  // namespace
+
+bool names_a_path(const std::string& robot) {
+  return robot.find('/') != std::string::npos || robot.ends_with(".json") ||
+         robot.ends_with(".urdf");
+}
+
+Pattern read_pattern(const fs::path& path, const std::map<std::string, double>& set_parameters) {
+  return pattern_of_text(read_file(path, kLargestFile), path, set_parameters);
+}
+
+Pattern pattern_of_text(const std::string& text, const fs::path& path,
+                        const std::map<std::string, double>& set_parameters) {
+  std::string bytes = text;
+  const Json document = parse_json(bytes, path.string(), ErrorCode::bad_pattern);
+  const JsonNode root = root_of(document, path.string(), ErrorCode::bad_pattern);
+  root.expect_object();
+  require_format(root, "ayumi.pattern/1");
+  only_pattern_keys(root, "pattern");
+
+  Pattern pattern;
+  if (const auto schema = root.find("$schema")) pattern.schema = schema->string();
+  pattern.file = path.string();
+  if (const auto name = root.find("name")) pattern.name = name->string();
+  pattern.robot = root.at("robot").string();
+  if (pattern.robot.empty()) root.at("robot").complain("is empty; name a robot");
+  if (const auto profile = root.find("profile")) pattern.profile = profile->string();
+
+  PatternScope scope;
+  read_units(root, scope);
+  pattern.degrees = scope.radians_per_unit != 1.0;
+  read_parameters(root, set_parameters, scope);
+  bytes += read_includes(root, path.parent_path(), pattern);
+  read_postures(root, scope, pattern);
+  read_defaults(root, scope, pattern);
+  read_start(root, scope, pattern);
+  read_phases(root, scope, pattern);
+  read_keyframes(root, scope, pattern);
+  read_rest(root, scope, pattern);
+  pattern.parameters = scope.parameters;
+  for (const auto& [name, value] : set_parameters)
+    if (!scope.used.contains(name))
+      fail(ErrorCode::usage, path.string() + ": parameter '" + name +
+                                 "' is declared, but nothing in the pattern uses it");
+
+  if (const auto table = root.find("table")) {
+    const fs::path file = path.parent_path() / table->string();
+    bytes += read_file(file);
+    pattern.table = read_dense_table(file);
+    pattern.table->file = table->string();
+  }
+  pattern.sha256 = sha256(bytes);
+  return pattern;
+}
+
+std::string robot_of(const Pattern& pattern) {
+  if (!names_a_path(pattern.robot)) return pattern.robot;
+  return (fs::path(pattern.file).parent_path() / pattern.robot).string();
+}
+
+}  // namespace ayumi

@@ -1,0 +1,71 @@
+// "repair" of a pattern file: what its author wants a repair to keep, weigh and trust.
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/pattern/pattern_scope.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kWidestMargin = 0.1;  // of the ZMP [m]
+
+std::pair<double, double> read_window(const JsonNode& node, PatternScope& scope) {
+  const std::vector<double> ends = read_numbers(node, scope, 2, 2, "[begin, end]");
+  for (const double t : ends)
+    if (t < 0 || t > kLongestPattern) node.complain(text::exact(t) + " s is no time of a pattern");
+  if (ends[1] < ends[0])
+    node.complain("a window ends after it begins; " + text::exact(ends[1]) + " s comes before " +
+                  text::exact(ends[0]) + " s");
+  return {ends[0], ends[1]};
+}
+
+int read_keyframe_number(const JsonNode& node, int keyframes) {
+  const int number = node.integer();
+  if (number < 0 || number >= keyframes)
+    node.complain(std::to_string(number) + " is no keyframe; " +
+                  (keyframes == 0 ? "the pattern has none"
+                                  : "they are numbered 0 to " + std::to_string(keyframes - 1)));
+  return number;
+}
+
+void read_lock(const JsonNode& node, int keyframes, PatternScope& scope, RepairWishes& wishes) {
+  only_pattern_keys(node, "lock");
+  if (const auto joints = node.find("joints")) wishes.joints = joints->strings();
+  if (const auto feet = node.find("feet"))
+    for (const JsonNode& foot : feet->items())
+      wishes.feet[foot.one_of({"left", "right"}) == "left" ? 0 : 1] = true;
+  if (const auto keys = node.find("keyframes"))
+    for (const JsonNode& key : keys->items())
+      wishes.keyframes.push_back(read_keyframe_number(key, keyframes));
+  if (const auto windows = node.find("windows"))
+    for (const JsonNode& window : windows->items())
+      wishes.windows.push_back(read_window(window, scope));
+}
+
+Trust read_trust(const JsonNode& node) {
+  const std::string name = node.one_of({"posture", "cog", "zmp"});
+  for (const Trust each : {Trust::cog, Trust::zmp})
+    if (name == name_of(each)) return each;
+  return Trust::posture;
+}
+
+}  // namespace
+
+RepairWishes read_repair(const JsonNode& node, int keyframes, PatternScope& scope) {
+  only_pattern_keys(node, "repair");
+  RepairWishes wishes;
+  if (const auto lock = node.find("lock")) read_lock(*lock, keyframes, scope, wishes);
+  if (const auto weights = node.find("weights"))
+    for (const auto& [joint, weight] : weights->members()) {
+      wishes.weights[joint] = read_number(weight, scope);
+      if (wishes.weights[joint] <= 0)
+        weight.complain("a weight must be above 0 (lock the joint to keep it still)");
+    }
+  if (const auto trust = node.find("trust")) wishes.trust = read_trust(*trust);
+  if (const auto margin = node.find("margin"))
+    wishes.margin = read_number(*margin, scope, 0, kWidestMargin);
+  if (const auto safety = node.find("safety"))
+    wishes.safety = read_number(*safety, scope, 0, kLargestNumber);
+  return wishes;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,59 @@
+#pragma once
+// Shared by the sources that read pattern files: values that may be expressions, and angles in the
+// file's unit.
+
+#include <optional>
+#include <set>
+
+#include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+
+namespace ayumi {
+
+inline constexpr double kRadiansPerDegree = EIGEN_PI / 180;
+inline constexpr double kLargestNumber = 1e6;    ///< anything beyond is a mistake
+inline constexpr double kLongestPattern = 3600;  ///< [s]
+
+/// What the values of one file need to be understood.
+struct PatternScope {
+  std::map<std::string, double> parameters;
+  std::set<std::string> used;              ///< parameters met in expressions
+  std::optional<double> radians_per_unit;  ///< none: the file names no angle unit
+};
+
+/// Whether a pattern's "robot" is a path rather than a bundled name.
+bool names_a_path(const std::string& robot);
+
+/// Complains about keys that pattern_keys() does not list for `kind`.
+void only_pattern_keys(const JsonNode& node, const std::string& kind);
+
+/// Number or "${name}" expression, finite, at most kLargestNumber in size.
+double read_number(const JsonNode& node, PatternScope& scope);
+double read_number(const JsonNode& node, PatternScope& scope, double lower, double upper);
+/// As read_number, in the file's angle unit; result in rad.
+double read_angle(const JsonNode& node, PatternScope& scope);
+double read_time(const JsonNode& node, PatternScope& scope);
+/// `least` to `most` numbers of an array, `form` telling how it is written.
+std::vector<double> read_numbers(const JsonNode& node, PatternScope& scope, size_t least,
+                                 size_t most, const std::string& form);
+Eigen::Vector3d read_vector3(const JsonNode& node, PatternScope& scope);
+/// [x, y], [x, y, z], [x, y, z, yaw] or {"position": [x, y, z], "rpy": [r, p, y]}.
+Foothold read_foothold(const JsonNode& node, PatternScope& scope);
+/// {"joint": angle, ...}
+std::map<std::string, double> read_joint_angles(const JsonNode& node, PatternScope& scope);
+Interpolation read_interpolation(const JsonNode& node);
+
+/// {"units": {...}} of a pattern or posture library into the scope.
+void read_units(const JsonNode& root, PatternScope& scope);
+
+ViipGoal read_viip_goal(const JsonNode& node, PatternScope& scope);
+Phase read_phase(const JsonNode& node, PatternScope& scope);
+Keyframe read_keyframe(const JsonNode& node, PatternScope& scope);
+World read_world(const JsonNode& node, PatternScope& scope);
+ControllerSpec read_controller(const JsonNode& node, PatternScope& scope);
+Disturbance read_disturbance(const JsonNode& node, PatternScope& scope);
+CorrectionTrack read_correction(const JsonNode& node);
+/// `keyframes`: how many the pattern has.
+RepairWishes read_repair(const JsonNode& node, int keyframes, PatternScope& scope);
+
+}  // namespace ayumi

@@ -1,0 +1,227 @@
+// Each node of the scene carries T = T_parent T_node; a vertex becomes s (T v) with the scale s per
+// axis, a normal the unit vector along (s T)^-T n. Where det(s T) < 0 the triangles are turned.
+
+#include "ayumi/io/robot/mesh.hpp"
+
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+
+namespace ayumi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostTriangles = 5'000'000;
+constexpr size_t kLargeStl = 20'000'000;  // bytes, 400,000 facets
+constexpr float kCreaseAngle = 40.0f;     // [deg] sharper edges keep separate normals
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
+  Eigen::Matrix4d result;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) result(row, column) = m[row][column];
+  return result;
+}
+
+Eigen::Vector3d vector(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+float srgb(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+class Collector {
+ public:
+  Collector(const aiScene& scene, const fs::path& path, const Eigen::Vector3d& scale)
+      : scene_(scene), path_(path), scale_(scale.asDiagonal()) {}
+
+  TriangleMesh collect() {
+    add_node(*scene_.mRootNode, Eigen::Matrix4d::Identity());
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void complain(const std::string& message) const {
+    fail(ErrorCode::bad_file, path_.string() + ": " + message);
+  }
+
+  void add_node(const aiNode& node, const Eigen::Matrix4d& parent) {
+    const Eigen::Matrix4d transform = parent * matrix(node.mTransformation);
+    for (unsigned i = 0; i < node.mNumMeshes; ++i)
+      add_mesh(*scene_.mMeshes[node.mMeshes[i]], transform);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(*node.mChildren[i], transform);
+  }
+
+  void add_mesh(const aiMesh& source, const Eigen::Matrix4d& transform) {
+    const Eigen::Matrix3d turn = scale_ * transform.topLeftCorner<3, 3>();
+    const Eigen::Vector3d shift = scale_ * transform.topRightCorner<3, 1>();
+    if (std::abs(turn.determinant()) < 1e-30) complain("a scale of zero flattens the mesh");
+    const Eigen::Matrix3d normal_turn = turn.inverse().transpose();
+    MeshPart part;
+    for (unsigned i = 0; i < source.mNumVertices; ++i) {
+      part.vertices.push_back((turn * vector(source.mVertices[i]) + shift).cast<float>());
+      if (!part.vertices.back().allFinite()) complain("a vertex is not finite; repair the mesh");
+      Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+      if (source.HasNormals()) normal = normal_turn * vector(source.mNormals[i]);
+      const bool usable = std::isfinite(normal.norm()) && normal.norm() > 1e-12;
+      part.normals.emplace_back(usable ? normal.normalized().cast<float>().eval()
+                                       : Eigen::Vector3f::Zero().eval());
+      if (source.HasTextureCoords(0))
+        part.uvs.emplace_back(source.mTextureCoords[0][i].x, source.mTextureCoords[0][i].y);
+    }
+    add_triangles(source, turn.determinant() < 0, part);
+    make_missing_normals(part);
+    add_material(source, part);
+    if (!part.triangles.empty()) mesh_.parts.push_back(std::move(part));
+  }
+
+  void add_triangles(const aiMesh& source, bool mirrored, MeshPart& part) {
+    for (unsigned i = 0; i < source.mNumFaces; ++i) {
+      const aiFace& face = source.mFaces[i];
+      if (face.mNumIndices != 3) continue;
+      std::array<std::uint32_t, 3> corners = {face.mIndices[0], face.mIndices[1], face.mIndices[2]};
+      for (const std::uint32_t corner : corners)
+        if (corner >= part.vertices.size()) complain("a triangle names a vertex that is not there");
+      if (mirrored) std::swap(corners[1], corners[2]);
+      part.triangles.push_back(corners);
+    }
+    total_ += part.triangles.size();
+    if (total_ > kMostTriangles)
+      complain("more than " + std::to_string(kMostTriangles) + " triangles; simplify the mesh");
+  }
+
+  // Where the file has none: the area-weighted mean of the triangles around the vertex.
+  static void make_missing_normals(MeshPart& part) {
+    std::vector<Eigen::Vector3f> sums(part.vertices.size(), Eigen::Vector3f::Zero());
+    for (const auto& [a, b, c] : part.triangles) {
+      const Eigen::Vector3f& at = part.vertices[a];
+      const Eigen::Vector3f area = (part.vertices[b] - at).cross(part.vertices[c] - at);
+      for (const std::uint32_t corner : {a, b, c}) sums[corner] += area;
+    }
+    for (size_t i = 0; i < sums.size(); ++i) {
+      if (!part.normals[i].isZero()) continue;
+      const float length = sums[i].norm();
+      part.normals[i] = length > 0 ? (sums[i] / length).eval() : Eigen::Vector3f::UnitZ().eval();
+    }
+  }
+
+  void add_material(const aiMesh& source, MeshPart& part) const {
+    if (source.mMaterialIndex >= scene_.mNumMaterials) return;
+    const aiMaterial& material = *scene_.mMaterials[source.mMaterialIndex];
+    const std::string extension = lower_extension(path_);
+    aiString name;
+    material.Get(AI_MATKEY_NAME, name);
+    const bool invented =
+        extension == ".stl" || std::strcmp(name.C_Str(), AI_DEFAULT_MATERIAL_NAME) == 0;
+    aiColor4D color;
+    if (!invented && material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS) {
+      const bool linear = extension == ".gltf" || extension == ".glb";
+      part.color = {color.r, color.g, color.b, color.a};
+      if (linear) part.color.head<3>() = part.color.head<3>().unaryExpr(&srgb).eval();
+      float opacity = 1;
+      if (extension == ".obj" && material.Get(AI_MATKEY_OPACITY, opacity) == AI_SUCCESS)
+        part.color[3] = opacity;
+      part.has_color = true;
+    }
+    aiString texture;
+    if (material.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == AI_SUCCESS && texture.length > 0)
+      part.texture_file = texture_of(texture.C_Str());
+  }
+
+  // A path, or "data:" and the bytes of a picture inside the file; empty for bare texels.
+  std::string texture_of(std::string name) const {
+    if (const aiTexture* inside = scene_.GetEmbeddedTexture(name.c_str()))
+      return inside->mHeight > 0
+                 ? ""
+                 : "data:" + std::string(reinterpret_cast<char*>(inside->pcData), inside->mWidth);
+    std::replace(name.begin(), name.end(), '\\', '/');
+    if (name.starts_with("file://")) name.erase(0, 7);
+    return (path_.parent_path() / name).lexically_normal().string();
+  }
+
+  const aiScene& scene_;
+  const fs::path& path_;
+  Eigen::Matrix3d scale_;
+  TriangleMesh mesh_;
+  size_t total_ = 0;
+};
+
+// assimp believes COLLADA's numbers and fills the memory for a wrong one: no count and no index can
+// exceed the number of bytes.
+void check_collada(const std::string& bytes, const fs::path& path) {
+  const auto check = [&](const char* at, const char* end) {
+    while (at != end) {
+      while (at != end && std::isspace(static_cast<unsigned char>(*at))) ++at;
+      const char* const stop =
+          std::find_if(at, end, [](unsigned char c) { return std::isspace(c) != 0; });
+      if (at == stop) break;
+      size_t value = 0;
+      const auto [last, error] = std::from_chars(at, stop, value);
+      if (error != std::errc() || last != stop || value > bytes.size())
+        fail(ErrorCode::bad_file, path.string() + ": '" + std::string(at, stop) +
+                                      "' is no count or index of this file; export it again");
+      at = stop;
+    }
+  };
+  for (const auto& [begin, end] : {std::pair{"<p>", "<"}, {"<vcount>", "<"}, {" count=\"", "\""}})
+    for (size_t at = bytes.find(begin); at != std::string::npos; at = bytes.find(begin, at)) {
+      at += std::strlen(begin);
+      const size_t stop = std::min(bytes.find(end, at), bytes.size());
+      check(bytes.data() + at, bytes.data() + stop);
+      at = stop;
+    }
+}
+
+}  // namespace
+
+TriangleMesh load_mesh(const fs::path& path, const Eigen::Vector3d& scale) {
+  if (!scale.allFinite()) fail(ErrorCode::bad_file, path.string() + ": the scale is not finite");
+  const std::string bytes = read_file(path);
+  if (bytes.empty()) fail(ErrorCode::bad_file, path.string() + ": the mesh file is empty");
+  if (lower_extension(path) == ".dae") check_collada(bytes, path);
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngle);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = nullptr;
+  std::string reason;
+  try {
+    unsigned steps = aiProcess_Triangulate | aiProcess_GenSmoothNormals |
+                     aiProcess_JoinIdenticalVertices | aiProcess_SortByPType;
+    // STL has one normal per facet, often zero: round surfaces would look faceted, or edges round.
+    // Of very many facets neither shows, and assimp's search among them takes long.
+    if (lower_extension(path) == ".stl" && bytes.size() < kLargeStl)
+      steps |= aiProcess_ForceGenNormals;
+    scene = importer.ReadFile(path.string(), steps);
+    reason = importer.GetErrorString();
+  } catch (const std::exception& error) {
+    reason = error.what();
+  }
+  if (!scene || !scene->mRootNode)
+    fail(ErrorCode::bad_file, path.string() + ": cannot be read as a mesh (" + reason +
+                                  "); export it again as STL, OBJ, COLLADA or glTF");
+  TriangleMesh mesh = Collector(*scene, path, scale).collect();
+  if (mesh.parts.empty())
+    fail(ErrorCode::bad_file, path.string() + ": the mesh has no triangle; export it again");
+  return mesh;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,113 @@
+#include "ayumi/io/robot/robot_file.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/robot/mesh.hpp"
+#include "ayumi/io/robot/robot_guess.hpp"
+#include "ayumi/io/robot/sidecar.hpp"
+#include "ayumi/io/robot/urdf.hpp"
+
+namespace ayumi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSidecarName = "robot.json";
+
+// The robot.json or the only URDF of a folder; empty: it has neither.
+fs::path file_in_folder(const fs::path& folder) {
+  std::error_code ignored;
+  if (fs::is_regular_file(folder / kSidecarName, ignored)) return folder / kSidecarName;
+  std::vector<fs::path> urdfs;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".urdf") urdfs.push_back(entry.path());
+  return urdfs.size() == 1 ? urdfs[0] : fs::path();
+}
+
+fs::path find_file(const std::string& name, const RobotSearch& search) {
+  const fs::path path = name;
+  const std::string extension = path.extension().string();
+  std::error_code ignored;
+  const bool folder =
+      fs::is_directory(path, ignored) && extension != ".urdf" && extension != ".json";
+  if (folder)
+    if (const fs::path file = file_in_folder(path); !file.empty()) return file;
+  if (!folder && (fs::exists(path, ignored) || extension == ".urdf" || extension == ".json"))
+    return path;
+  std::vector<std::string> known;
+  for (const RobotEntry& entry : find_robots(search)) {
+    if (entry.name == name) return entry.sidecar;
+    known.push_back(entry.name);
+  }
+  if (folder)
+    fail(ErrorCode::bad_file, name + ": holds neither a " + kSidecarName +
+                                  " nor exactly one .urdf; name the robot's file");
+  fail(ErrorCode::bad_file, "robot '" + name + "': no such file, folder or bundled robot" +
+                                (known.empty() ? "" : "; known: " + text::join(known, ", ")) +
+                                text::suggestion(name, known));
+}
+
+// What the robot touches with is always read; what it looks like only where it is drawn.
+void fill_meshes(RobotDescription& robot, bool visuals) {
+  std::map<std::string, TriangleMesh> loaded;
+  const auto fill = [&](std::vector<PlacedShape>& shapes, const std::string& link) {
+    for (PlacedShape& placed : shapes) {
+      auto* shape = std::get_if<MeshShape>(&placed.shape);
+      if (!shape) continue;
+      const std::string key = shape->file + " " + text::exact(shape->scale.x()) + " " +
+                              text::exact(shape->scale.y()) + " " + text::exact(shape->scale.z());
+      if (!loaded.contains(key)) try {
+          loaded[key] = load_mesh(shape->file, shape->scale);
+        } catch (const Error& error) {
+          fail(error.code(), robot.urdf_file + ": link " + link + ": mesh " + error.what());
+        }
+      shape->mesh = loaded[key];
+    }
+  };
+  for (LinkDescription& link : robot.links) {
+    if (visuals) fill(link.visuals, link.name);
+    fill(link.collisions, link.name);
+  }
+}
+
+}  // namespace
+
+std::vector<RobotEntry> find_robots(const RobotSearch& search) {
+  std::map<std::string, fs::path> found;
+  for (const fs::path& folder : search.folders) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored))
+      if (fs::is_regular_file(entry.path() / kSidecarName, ignored))
+        found.emplace(entry.path().filename().string(), entry.path() / kSidecarName);
+  }
+  std::vector<RobotEntry> entries;
+  for (const auto& [name, sidecar] : found) entries.push_back({name, sidecar});
+  return entries;
+}
+
+RobotDescription load_robot_description(const std::string& name_or_path, const RobotSearch& search,
+                                        const LoadOptions& options) {
+  if (name_or_path.empty())
+    fail(ErrorCode::bad_file, "robot '': a name, folder, sidecar or URDF is needed");
+  const fs::path file = find_file(name_or_path, search);
+  const bool sidecar = file.extension() != ".urdf";
+  RobotDescription robot = sidecar ? read_sidecar(file, search.folders) : read_urdf(file);
+  fill_meshes(robot, options.meshes);
+  std::error_code ignored;
+  if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))
+    robot.assumptions.push_back("the " + std::string(kSidecarName) +
+                                " beside the URDF is not used; name the folder to use it");
+  infer_missing(robot);
+  return robot;
+}
+
+RobotModel load_robot(const std::string& name_or_path, const RobotSearch& search,
+                      const LoadOptions& options) {
+  return RobotModel(load_robot_description(name_or_path, search, options));
+}
+
+}  // namespace ayumi

@@ -1,0 +1,343 @@
+#include "ayumi/io/robot/sidecar.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/io/robot/urdf.hpp"
+#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/model/validate.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// '*' stands for any run of characters.
+bool matches(std::string_view pattern, std::string_view name) {
+  if (pattern.empty()) return name.empty();
+  if (pattern[0] != '*')
+    return !name.empty() && pattern[0] == name[0] && matches(pattern.substr(1), name.substr(1));
+  for (size_t skip = 0; skip <= name.size(); ++skip)
+    if (matches(pattern.substr(1), name.substr(skip))) return true;
+  return false;
+}
+
+std::vector<std::string> moving_joints(const RobotDescription& robot) {
+  std::vector<std::string> names;
+  for (const JointDescription& joint : robot.joints)
+    if (joint.type != JointType::fixed && joint.type != JointType::floating && joint.mimic.empty())
+      names.push_back(joint.name);
+  return names;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// The joints of one group: {"joints": ["*_knee", "l_elbow"], ...}.
+std::vector<std::string> group_joints(const JsonNode& group, const RobotDescription& robot) {
+  const std::vector<std::string> names = moving_joints(robot);
+  std::vector<std::string> chosen;
+  for (const JsonNode& pattern : group.at("joints").items()) {
+    const size_t before = chosen.size();
+    for (const std::string& name : names)
+      if (matches(pattern.string(), name)) chosen.push_back(name);
+    if (chosen.size() == before)
+      pattern.complain("no moving joint of the robot matches '" + pattern.string() + "'" +
+                       text::suggestion(pattern.string(), names));
+  }
+  return chosen;
+}
+
+Eigen::Isometry3d pose_of(const JsonNode& node) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (const auto origin = node.find("origin")) pose.translation() = origin->vector3();
+  if (const auto rpy = node.find("rpy")) {
+    const Eigen::Vector3d angles = rpy->vector3();
+    pose.linear() = (Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+                     Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()))
+                        .toRotationMatrix();
+  }
+  return pose;
+}
+
+void read_number(const JsonNode& node, const std::string& key, double& value) {
+  if (const auto found = node.find(key)) value = found->number();
+}
+
+void read_not_negative(const JsonNode& node, const std::string& key, double& value) {
+  if (const auto found = node.find(key)) value = found->number_within(0, 1e12);
+}
+
+void read_soles(const JsonNode& node, RobotDescription& robot) {
+  node.only_keys({"left", "right"});
+  for (const auto& [side, foot] : node.members()) {
+    foot.only_keys({"link", "origin", "rpy", "polygon", "stiffness", "damping_time"});
+    SoleDescription sole;
+    sole.link = foot.at("link").string();
+    sole.frame = pose_of(foot);
+    for (const JsonNode& corner : foot.at("polygon").items())
+      sole.polygon.push_back(corner.vector2());
+    read_not_negative(foot, "stiffness", sole.stiffness);
+    read_not_negative(foot, "damping_time", sole.damping_time);
+    robot.soles[side] = sole;
+  }
+}
+
+void read_postures(const JsonNode& node, double unit, RobotDescription& robot) {
+  for (const auto& [name, joints] : node.members()) {
+    if (robot.postures.contains(name)) joints.complain("this posture is given twice; keep one");
+    auto& posture = robot.postures[name];
+    for (const auto& [joint, value] : joints.members()) posture[joint] = unit * value.number();
+  }
+}
+
+// A joint whose gain no group states has no servo; one whose gain is stated as 0 has no motor.
+void read_servos(const JsonNode& node, RobotDescription& robot) {
+  std::map<std::string, ServoDescription> all;
+  for (const JointDescription& joint : robot.joints)
+    if (contains(moving_joints(robot), joint.name))
+      all[joint.name] = {0, 0, 0, joint.damping, joint.friction};
+  for (const JsonNode& group : node.items()) {
+    group.only_keys({"joints", "kp", "kd", "rotor_inertia", "viscous", "coulomb"});
+    for (const std::string& joint : group_joints(group, robot)) {
+      ServoDescription& servo = all[joint];
+      if (group.has("kp")) robot.servos[joint];
+      read_not_negative(group, "kp", servo.kp);
+      read_not_negative(group, "kd", servo.kd);
+      read_not_negative(group, "rotor_inertia", servo.rotor_inertia);
+      read_not_negative(group, "viscous", servo.viscous);
+      read_not_negative(group, "coulomb", servo.coulomb);
+    }
+  }
+  for (auto& [joint, servo] : robot.servos) servo = all[joint];
+}
+
+void read_profiles(const JsonNode& node, RobotDescription& robot) {
+  for (const JsonNode& item : node.items()) {
+    item.only_keys({"name", "thermal_window", "limits"});
+    ActuatorProfile profile;
+    profile.name = item.at("name").string();
+    for (const ActuatorProfile& other : robot.profiles)
+      if (other.name == profile.name) item.complain("two profiles are named '" + other.name + "'");
+    read_number(item, "thermal_window", profile.thermal_window);
+    const std::map<std::string, std::map<std::string, double>*> limits = {
+        {"speed", &profile.speed},
+        {"peak_torque", &profile.peak_torque},
+        {"continuous_torque", &profile.continuous_torque}};
+    for (const JsonNode& group : item.at("limits").items()) {
+      group.only_keys({"joints", "speed", "peak_torque", "continuous_torque"});
+      for (const std::string& joint : group_joints(group, robot)) {
+        for (const auto& [key, values] : limits)
+          if (const auto limit = group.find(key)) (*values)[joint] = limit->number();
+      }
+    }
+    robot.profiles.push_back(profile);
+  }
+}
+
+void read_encoders(const JsonNode& node, RobotDescription& robot) {
+  std::map<int, std::string> owner;
+  for (const auto& [joint, entry] : node.members()) {
+    entry.only_keys({"device", "counts_per_degree"});
+    EncoderDescription encoder;
+    encoder.device = entry.at("device").integer();
+    if (encoder.device < 1) entry.at("device").complain("device numbers start at 1");
+    const auto [other, fresh] = owner.emplace(encoder.device, joint);
+    if (!fresh)
+      entry.at("device").complain("the joint '" + other->second + "' has this device already");
+    encoder.counts_per_degree = entry.at("counts_per_degree").number();
+    if (encoder.counts_per_degree == 0)
+      entry.at("counts_per_degree").complain("counts per degree cannot be 0");
+    robot.encoders[joint] = encoder;
+  }
+}
+
+void read_sensors(const JsonNode& node, SensorDescription& sensors) {
+  node.only_keys({"imu_link", "imu_position", "latency", "attitude_noise", "attitude_bias",
+                  "gyro_noise", "accelerometer_noise", "force_noise", "force_resolution",
+                  "encoder_quantisation"});
+  if (const auto link = node.find("imu_link")) sensors.imu_link = link->string();
+  if (const auto position = node.find("imu_position")) sensors.imu_position = position->vector3();
+  read_not_negative(node, "latency", sensors.latency);
+  read_not_negative(node, "attitude_noise", sensors.attitude_noise);
+  read_number(node, "attitude_bias", sensors.attitude_bias);
+  read_not_negative(node, "gyro_noise", sensors.gyro_noise);
+  read_not_negative(node, "accelerometer_noise", sensors.accelerometer_noise);
+  read_not_negative(node, "force_noise", sensors.force_noise);
+  read_not_negative(node, "force_resolution", sensors.force_resolution);
+  if (const auto rounds = node.find("encoder_quantisation"))
+    sensors.encoder_quantisation = rounds->boolean();
+}
+
+void read_control(const JsonNode& node, RobotDescription& robot) {
+  node.only_keys({"joint_weight", "dtad", "viip"});
+  if (const auto groups = node.find("joint_weight"))
+    for (const JsonNode& group : groups->items()) {
+      group.only_keys({"joints", "weight"});
+      const double weight = group.at("weight").number();
+      if (!(weight > 0)) group.at("weight").complain("a weight must be above 0");
+      for (const std::string& joint : group_joints(group, robot))
+        robot.control.joint_weight[joint] = weight;
+    }
+  if (const auto gains = node.find("dtad"))
+    for (const auto& [name, value] : gains->members()) robot.control.dtad[name] = value.number();
+  if (const auto gains = node.find("viip"))
+    for (const auto& [name, value] : gains->members()) robot.control.viip[name] = value.number();
+}
+
+void lock_joints(const JsonNode& node, RobotDescription& robot) {
+  const std::vector<std::string> names = moving_joints(robot);
+  for (const JsonNode& item : node.items()) {
+    const auto joint =
+        std::find_if(robot.joints.begin(), robot.joints.end(),
+                     [&](const JointDescription& each) { return each.name == item.string(); });
+    if (joint == robot.joints.end() || joint->type == JointType::fixed)
+      item.complain("'" + item.string() + "' is not a moving joint of the URDF" +
+                    text::suggestion(item.string(), names));
+    joint->type = JointType::fixed;
+    joint->mimic.clear();
+  }
+}
+
+// Mass properties over those of the URDF; what an entry leaves out stays.
+void read_links(const JsonNode& node, RobotDescription& robot) {
+  std::vector<std::string> names;
+  for (const LinkDescription& link : robot.links) names.push_back(link.name);
+  for (const auto& [name, entry] : node.members()) {
+    const auto link = std::find_if(robot.links.begin(), robot.links.end(),
+                                   [&](const LinkDescription& each) { return each.name == name; });
+    if (link == robot.links.end())
+      entry.complain("the URDF has no link '" + name + "'" + text::suggestion(name, names));
+    entry.only_keys({"mass", "com", "inertia"});
+    link->has_inertial = true;
+    read_not_negative(entry, "mass", link->inertia.mass);
+    if (const auto com = entry.find("com")) link->inertia.com = com->vector3();
+    if (const auto inertia = entry.find("inertia")) {
+      const std::vector<JsonNode> items = inertia->items();
+      if (items.size() != 6) inertia->complain("expected six numbers: xx, xy, xz, yy, yz, zz");
+      std::array<double, 6> i;
+      for (size_t k = 0; k < 6; ++k) i[k] = items[k].number();
+      link->inertia.about_com << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
+    }
+  }
+}
+
+void read_position_limits(const JsonNode& node, RobotDescription& robot) {
+  for (const auto& [name, entry] : node.members()) {
+    const auto joint =
+        std::find_if(robot.joints.begin(), robot.joints.end(),
+                     [&](const JointDescription& each) { return each.name == name; });
+    if (joint == robot.joints.end() || !contains(moving_joints(robot), name))
+      entry.complain("'" + name + "' is not a moving joint of the robot" +
+                     text::suggestion(name, moving_joints(robot)));
+    const Eigen::Vector2d limits = kDegree * entry.vector2();
+    joint->has_limits = true;
+    joint->lower = limits.x();
+    joint->upper = limits.y();
+    if (joint->type == JointType::continuous) joint->type = JointType::revolute;
+  }
+}
+
+void read_lists(const JsonNode& root, RobotDescription& robot) {
+  if (const auto order = root.find("joint_order")) robot.joint_order = order->strings();
+  if (const auto pairs = root.find("collision_ignore"))
+    for (const JsonNode& pair : pairs->items()) {
+      const std::vector<std::string> links = pair.strings();
+      if (links.size() != 2) pair.complain("expected the names of two links");
+      robot.collision_ignore.emplace_back(links[0], links[1]);
+    }
+  if (const auto assumptions = root.find("assumptions")) robot.assumptions = assumptions->strings();
+}
+
+const std::vector<std::string> kKeys = {"$schema",
+                                        "format",
+                                        "name",
+                                        "urdf",
+                                        "joint_order",
+                                        "locked_joints",
+                                        "links",
+                                        "position_limits_deg",
+                                        "trunk_link",
+                                        "soles",
+                                        "postures",
+                                        "postures_deg",
+                                        "servos",
+                                        "servo_period",
+                                        "profiles",
+                                        "encoders",
+                                        "sensors",
+                                        "control",
+                                        "soft_limit_margin",
+                                        "soft_limit_margin_deg",
+                                        "collision_ignore",
+                                        "assumptions"};
+
+void read_root(const JsonNode& root, RobotDescription& robot) {
+  const std::vector<std::pair<const char*, std::function<void(const JsonNode&)>>> readers = {
+      {"locked_joints", [&](const JsonNode& node) { lock_joints(node, robot); }},
+      {"position_limits_deg", [&](const JsonNode& node) { read_position_limits(node, robot); }},
+      {"links", [&](const JsonNode& node) { read_links(node, robot); }},
+      {"name", [&](const JsonNode& node) { robot.name = node.string(); }},
+      {"trunk_link", [&](const JsonNode& node) { robot.trunk_link = node.string(); }},
+      {"soles", [&](const JsonNode& node) { read_soles(node, robot); }},
+      {"postures", [&](const JsonNode& node) { read_postures(node, 1, robot); }},
+      {"postures_deg", [&](const JsonNode& node) { read_postures(node, kDegree, robot); }},
+      {"servos", [&](const JsonNode& node) { read_servos(node, robot); }},
+      {"profiles", [&](const JsonNode& node) { read_profiles(node, robot); }},
+      {"encoders", [&](const JsonNode& node) { read_encoders(node, robot); }},
+      {"sensors", [&](const JsonNode& node) { read_sensors(node, robot.sensors); }},
+      {"control", [&](const JsonNode& node) { read_control(node, robot); }},
+      {"soft_limit_margin", [&](const JsonNode& node) { robot.soft_limit_margin = node.number(); }},
+      {"soft_limit_margin_deg",
+       [&](const JsonNode& node) { robot.soft_limit_margin = kDegree * node.number(); }},
+      {"servo_period", [&](const JsonNode& node) { robot.servo_period = node.number(); }},
+  };
+  for (const auto& [key, read] : readers)
+    if (const auto node = root.find(key)) read(*node);
+  read_lists(root, robot);
+}
+
+}  // namespace
+
+namespace {
+
+std::filesystem::path find_urdf(const JsonNode& node, const std::filesystem::path& file,
+                                const std::vector<std::filesystem::path>& folders) {
+  const std::filesystem::path name = node.string(), beside = file.parent_path() / name;
+  std::error_code ignored;
+  if (std::filesystem::exists(beside, ignored)) return beside;
+  for (const std::filesystem::path& folder : folders)
+    for (const std::filesystem::path& path : {folder / name, folder / "urdf" / name})
+      if (std::filesystem::exists(path, ignored)) return path;
+  node.complain("there is no " + beside.string() + ", and no folder of --robot-path has " +
+                name.string() + ", itself or in urdf/");
+}
+
+}  // namespace
+
+RobotDescription read_sidecar(const std::filesystem::path& file,
+                              const std::vector<std::filesystem::path>& folders) {
+  const std::string bytes = read_file(file);
+  const Json document = parse_json(bytes, file.string(), ErrorCode::bad_file);
+  const JsonNode root = root_of(document, file.string(), ErrorCode::bad_file);
+  root.only_keys(kKeys);
+  root.at("format").one_of({"ayumi.robot/1"});
+  const std::filesystem::path urdf = find_urdf(root.at("urdf"), file, folders);
+  const std::string urdf_bytes = read_file(urdf);
+  RobotDescription robot = parse_urdf(urdf_bytes, urdf);
+  robot.sidecar_file = file.string();
+  robot.sha256 = sha256(urdf_bytes + bytes);
+  read_root(root, robot);
+  return robot;
+}
+
+}  // namespace ayumi

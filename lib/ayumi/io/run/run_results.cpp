@@ -1,0 +1,137 @@
+#include "ayumi/io/run/run_results.hpp"
+
+#include <limits>
+
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/json/json_reader.hpp"
+
+namespace ayumi {
+namespace {
+
+/// null is a figure that does not exist.
+double figure(const JsonNode& node) {
+  return node.value().is_null() ? std::numeric_limits<double>::quiet_NaN() : node.number();
+}
+
+Severity severity_of(const JsonNode& node) {
+  const std::string word = node.one_of({"error", "warning", "info"});
+  return word == "error" ? Severity::error : word == "warning" ? Severity::warning : Severity::info;
+}
+
+Finding finding_of(const JsonNode& node) {
+  Finding f;
+  f.kind = node.at("kind").string();
+  f.severity = severity_of(node.at("severity"));
+  f.begin = node.at("begin_s").number();
+  f.end = node.at("end_s").number();
+  f.at = node.at("at_s").number();
+  f.worst = figure(node.at("worst"));
+  f.limit = figure(node.at("limit"));
+  f.unit = node.at("unit").string();
+  f.where = node.at("where").string();
+  f.hint = node.at("hint").string();
+  return f;
+}
+
+CheckSummary summary_of(const JsonNode& node) {
+  CheckSummary s;
+  const auto read = [&](const char* key, double& value) { value = figure(node.at(key)); };
+  read("min_zmp_margin_m", s.min_zmp_margin);
+  read("max_cog_residual_m", s.max_cog_residual);
+  read("max_zmp_residual_m", s.max_zmp_residual);
+  read("max_fz_residual_N", s.max_fz_residual);
+  read("max_joint_position_ratio", s.max_joint_position_ratio);
+  read("max_joint_speed_ratio", s.max_joint_speed_ratio);
+  read("max_torque_ratio", s.max_torque_ratio);
+  read("max_continuous_torque_ratio", s.max_continuous_torque_ratio);
+  read("max_friction_ratio", s.max_friction_ratio);
+  read("max_yaw_ratio", s.max_yaw_ratio);
+  read("min_self_clearance_m", s.min_self_clearance);
+  return s;
+}
+
+ConsistencyReport check_of(const JsonNode& node) {
+  ConsistencyReport report;
+  report.consistent = node.at("verdict").one_of({"consistent", "inconsistent"}) == "consistent";
+  report.profile = node.at("profile").string();
+  for (const JsonNode& finding : node.at("findings").items())
+    report.findings.push_back(finding_of(finding));
+  report.summary = summary_of(node.at("summary"));
+  return report;
+}
+
+RepairNote repair_of(const JsonNode& node) {
+  const JsonNode moved = node.at("moved");
+  std::vector<RepairNote::Moved> joints;
+  for (const JsonNode& j : moved.at("joints").items())
+    joints.push_back({j.at("joint").string(), figure(j.at("most_rad")), figure(j.at("at_s")),
+                      figure(j.at("begin_s")), figure(j.at("end_s"))});
+  return {.status = node.at("status").string(),
+          .max_joint_change = figure(moved.at("max_joint_rad")),
+          .max_cog_change = figure(moved.at("max_cog_m")),
+          .iterations = node.at("iterations").integer(),
+          .reasons = node.at("reasons").strings(),
+          .joints = joints,
+          .margin_before = figure(node.at("zmp_margin").at("before_m")),
+          .margin_after = figure(node.at("zmp_margin").at("after_m"))};
+}
+
+ExportNote export_of(const JsonNode& node) {
+  ExportNote note;
+  note.safe = node.at("safe").boolean();
+  note.max_step_ratio = figure(node.at("max_step_ratio"));
+  note.worst_joint = node.at("worst_joint").string();
+  for (const JsonNode& violation : node.at("violations").items())
+    note.violations.push_back(
+        violation.at("kind").string() + " of " + violation.at("joint").string() + " at " +
+        text::fixed(violation.at("at_s").number(), 3) +
+        " s: " + text::brief(figure(violation.at("value"))) + " " + violation.at("unit").string() +
+        ", limit " + text::brief(figure(violation.at("limit"))));
+  return note;
+}
+
+}  // namespace
+
+RunResults read_results(const RunFolder& run, const std::string& file) {
+  RunResults results;
+  for (const auto& [key, words] : run.sections) {
+    if (key != "check" && key != "repair" && key != "export") continue;
+    const Json document = parse_json(words, file + ": /" + key, ErrorCode::bad_file);
+    if (document.is_null()) continue;
+    const JsonNode node = root_of(document, file + ": /" + key, ErrorCode::bad_file);
+    if (key == "check") results.check = check_of(node);
+    if (key == "repair") results.repair = repair_of(node);
+    if (key == "export") results.safety = export_of(node);
+  }
+  return results;
+}
+
+std::vector<PushThreshold> read_push_thresholds(const std::filesystem::path& file) {
+  const Json document = parse_json(read_file(file), file.string(), ErrorCode::bad_file);
+  const JsonNode root = root_of(document, file.string(), ErrorCode::bad_file);
+  root.expect_object();
+  if (root.at("format").string() != "ayumi.push/1")
+    root.at("format").complain("is not the results file of a push study (ayumi.push/1)");
+  std::vector<std::string> controllers;
+  for (const JsonNode& controller : root.at("study").at("controllers").items())
+    controllers.push_back(controller.at("type").string());
+  std::vector<PushThreshold> thresholds;
+  for (const JsonNode& push : root.at("cases").items()) {
+    const std::vector<JsonNode> limits = push.at("limits").items();
+    if (limits.size() != controllers.size())
+      push.at("limits").complain("one limit per controller of the study is needed");
+    for (size_t c = 0; c < limits.size(); ++c)
+      thresholds.push_back({.phase = push.at("phase").string(),
+                            .controller = controllers[c],
+                            .at = push.at("at_s").number(),
+                            .direction = push.at("direction_rad").number(),
+                            .impulse = limits[c].at("impulse_Ns").number(),
+                            .open_loop = push.at("open_loop").at("impulse_Ns").number(),
+                            .bound = push.at("bound_Ns").number(),
+                            .capped = limits[c].at("capped").boolean()});
+  }
+  return thresholds;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,61 @@
+#pragma once
+// Verdicts read back from what the commands wrote: the sections of a run's run.json and the results
+// file of a push study.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/io/run/run_folder.hpp"
+
+namespace ayumi {
+
+/// What `repair` did.
+struct RepairNote {
+  std::string status;           ///< "repaired", "infeasible", ...
+  double max_joint_change = 0;  ///< [rad]
+  double max_cog_change = 0;    ///< [m]
+  int iterations = 0;
+  std::vector<std::string> reasons;
+  struct Moved {
+    std::string joint;
+    double most = 0, at = 0, begin = 0, end = 0;  ///< [rad], sliding joints [m]; [s]
+  };
+  std::vector<Moved> joints = {};              ///< the most first
+  double margin_before = 0, margin_after = 0;  ///< least, of the ZMP [m]
+};
+
+/// Whether the joint table may go to a robot.
+struct ExportNote {
+  bool safe = false;
+  double max_step_ratio = 0;
+  std::string worst_joint;
+  std::vector<std::string> violations;  ///< in words
+};
+
+struct RunResults {
+  std::optional<ConsistencyReport> check;
+  std::optional<RepairNote> repair;
+  std::optional<ExportNote> safety;
+};
+
+/// Reads the sections "check", "repair" and "export" of a run; `file` names it in errors. Throws
+/// Error(bad_file).
+RunResults read_results(const RunFolder& run, const std::string& file);
+
+/// Largest survivable impulse at one phase from one direction under one controller.
+struct PushThreshold {
+  std::string phase, controller;
+  double at = 0;                                 ///< [s]
+  double direction = 0;                          ///< [rad] about the world's z from x
+  double impulse = 0, open_loop = 0, bound = 0;  ///< [N s]
+  bool capped = false;                           ///< the study's largest push was survived
+};
+
+/// Thresholds of a file that `ayumi push -o` wrote ("ayumi.push/1"), in its order. Throws
+/// Error(bad_file).
+std::vector<PushThreshold> read_push_thresholds(const std::filesystem::path& file);
+
+}  // namespace ayumi

@@ -1,0 +1,339 @@
+#include "ayumi/io/run/simulation_log_file.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/io/pattern/scenario_text.hpp"
+#include "ayumi/io/run/provenance_fields.hpp"
+#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/model/gravity.hpp"
+
+namespace ayumi {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "logs are little-endian");
+
+constexpr char kMagic[] = "AYUMILOG";
+constexpr std::uint32_t kVersion = 1;
+constexpr size_t kPrefix = 16;  // magic, version, header length
+constexpr const char* kOutcomes[] = {"stands", "unsettled", "fell"};
+
+using OrderedJson = nlohmann::ordered_json;
+
+// Calls visit(name, field) for every field of a sample, in file order. The one list behind column
+// names, writing and reading.
+template <typename Sample, typename Visit>
+void for_each_field(Sample& s, const Visit& visit) {
+  visit("base", "m", s.state.base);
+  visit("base.v", "m/s", s.state.base_velocity);
+  visit("base.w", "rad/s", s.state.base_angular_velocity);
+  visit("theta", "rad", s.state.theta);
+  visit("dtheta", "rad/s", s.state.dtheta);
+  visit("target", "rad", s.target);
+  visit("torque", "N m", s.torque);
+  visit("ref.base", "m", s.reference_base);
+  visit("ref.theta", "rad", s.reference_theta);
+  visit("cog", "m", s.cog);
+  visit("dcog", "m/s", s.dcog);
+  visit("zmp", "m", s.zmp);
+  visit("fz", "N", s.fz);
+  visit("measured.cog", "m", s.measured_cog);
+  visit("measured.zmp", "m", s.measured_zmp);
+  visit("measured.fz", "N", s.measured_fz);
+  visit("cmd.base", "m", s.command_base);
+  visit("cmd.theta", "rad", s.command_theta);
+  visit("cmd.cog", "m", s.command_cog);
+  visit("cmd.zmp", "m", s.command_zmp);
+  visit("cmd.fz", "N", s.command_fz);
+  visit("ref.cog", "m", s.reference_cog);
+  visit("ref.zmp", "m", s.reference_zmp);
+  visit("ref.fz", "N", s.reference_fz);
+  for (size_t side = 0; side < 2; ++side) {
+    const std::string foot = side == 0 ? "left" : "right";
+    visit(foot + ".force", "N", s.foot_force[side]);
+    visit(foot + ".cop", "m", s.foot_cop[side]);
+    visit(foot + ".planned_contact", "1", s.planned_contact[side]);
+  }
+  visit("push.force", "N", s.push_force);
+  visit("push.point", "m", s.push_point);
+  visit("contact.residual", "m/s", s.contact_residual);
+  visit("contact.iterations", "1", s.contact_iterations);
+  visit("energy", "J", s.energy);
+  visit("work.servos", "J", s.work.servos);
+  visit("work.contacts", "J", s.work.contacts);
+  visit("work.outside", "J", s.work.outside);
+  visit("work.joints", "J", s.work.joints);
+}
+
+// Overloads by the type of a field; `joints` names the entries of joint vectors.
+class ColumnNames {
+ public:
+  ColumnNames(const std::vector<std::string>& joints, std::vector<std::string>& names)
+      : joints_(joints), names_(names) {}
+  void operator()(const std::string& name, const char* unit, const Eigen::Vector3d&) const {
+    for (const char* const axis : {".x", ".y", ".z"}) add(name + axis, unit);
+  }
+  void operator()(const std::string& name, const char* unit, const Eigen::VectorXd&) const {
+    for (const std::string& joint : joints_) add(name + "." + joint, unit);
+  }
+  void operator()(const std::string& name, const char* unit, const BasePose& base) const {
+    (*this)(name, unit, base.position);
+    for (const char* const part : {".qw", ".qx", ".qy", ".qz"}) names_.push_back(name + part);
+  }
+  template <typename Scalar>
+  std::enable_if_t<std::is_arithmetic_v<Scalar>> operator()(const std::string& name,
+                                                            const char* unit, const Scalar&) const {
+    add(name, unit);
+  }
+
+ private:
+  void add(const std::string& name, const std::string& unit) const {
+    names_.push_back(unit == "1" ? name : name + "[" + unit + "]");
+  }
+  const std::vector<std::string>& joints_;
+  std::vector<std::string>& names_;
+};
+
+class AppendValues {
+ public:
+  AppendValues(size_t joints, std::string& bytes)
+      : joints_(static_cast<Eigen::Index>(joints)), bytes_(bytes) {}
+  void operator()(const std::string&, const char*, const Eigen::Vector3d& v) const {
+    for (const double value : v) add(value);
+  }
+  void operator()(const std::string&, const char*, const Eigen::VectorXd& v) const {
+    require(v.size() == joints_, "a joint vector of the log has the wrong size");
+    for (const double value : v) add(value);
+  }
+  void operator()(const std::string&, const char*, const BasePose& base) const {
+    for (const double value : base.position) add(value);
+    const Eigen::Quaterniond& q = base.attitude;
+    for (const double value : {q.w(), q.x(), q.y(), q.z()}) add(value);
+  }
+  template <typename Scalar>
+  std::enable_if_t<std::is_arithmetic_v<Scalar>> operator()(const std::string&, const char*,
+                                                            const Scalar& value) const {
+    add(static_cast<double>(value));
+  }
+
+ private:
+  void add(double value) const {
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  Eigen::Index joints_;
+  std::string& bytes_;
+};
+
+class TakeValues {
+ public:
+  TakeValues(size_t joints, const char*& at) : joints_(joints), at_(at) {}
+  void operator()(const std::string&, const char*, Eigen::Vector3d& v) const {
+    for (double& value : v) value = take();
+  }
+  void operator()(const std::string&, const char*, Eigen::VectorXd& v) const {
+    v.resize(static_cast<Eigen::Index>(joints_));
+    for (double& value : v) value = take();
+  }
+  void operator()(const std::string& name, const char* unit, BasePose& base) const {
+    (*this)(name, unit, base.position);
+    Eigen::Quaterniond& q = base.attitude;
+    for (double* const part : {&q.w(), &q.x(), &q.y(), &q.z()}) *part = take();
+  }
+  void operator()(const std::string&, const char*, double& value) const { value = take(); }
+  void operator()(const std::string&, const char*, bool& value) const { value = take() != 0; }
+  void operator()(const std::string&, const char*, int& value) const {
+    const double number = take();
+    value = std::abs(number) < 2e9 ? static_cast<int>(number) : 0;
+  }
+
+ private:
+  double take() const {
+    double value = 0;
+    std::memcpy(&value, at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+  size_t joints_;
+  const char*& at_;
+};
+
+std::vector<std::string> columns_of(const std::vector<std::string>& joints) {
+  std::vector<std::string> names;
+  const SimulationSample sample;
+  for_each_field(sample, ColumnNames(joints, names));
+  return names;
+}
+
+template <size_t N>
+int index_of(const JsonNode& node, const char* const (&names)[N]) {
+  const std::vector<std::string> all(names, names + N);
+  const std::string name = node.one_of(all);
+  return static_cast<int>(std::find(all.begin(), all.end(), name) - all.begin());
+}
+
+// visit(key, figure) for every figure of the result, in file order.
+template <typename Result, typename Visit>
+void for_each_figure(Result& r, const Visit& visit) {
+  visit("fell_at", r.fell_at);
+  visit("max_tilt", r.max_tilt);
+  visit("final_cog_error", r.final_cog_error);
+  visit("final_speed", r.final_speed);
+  visit("zmp_tracking_rms", r.zmp_tracking_rms);
+  visit("flight", r.flight);
+  visit("apex", r.apex);
+  visit("steps", r.steps);
+  visit("max_speed_ratio", r.max_speed_ratio);
+  visit("max_torque_ratio", r.max_torque_ratio);
+  visit("max_penetration", r.max_penetration);
+  visit("max_slip", r.max_slip);
+  visit("max_contact_residual", r.max_contact_residual);
+  visit("max_contact_iterations", r.max_contact_iterations);
+  visit("mean_contact_iterations", r.mean_contact_iterations);
+}
+
+OrderedJson json_of(const SimulationResult& result) {
+  OrderedJson json = {{"outcome", kOutcomes[static_cast<int>(result.outcome)]}};
+  for_each_figure(result, [&](const char* key, auto figure) { json[key] = figure; });
+  return json;
+}
+
+SimulationResult result_of(const JsonNode& node) {
+  SimulationResult result;
+  result.outcome = static_cast<Outcome>(index_of(node.at("outcome"), kOutcomes));
+  for_each_figure(result, [&](const char* key, auto& figure) {
+    const JsonNode value = node.at(key);
+    if constexpr (std::is_integral_v<std::decay_t<decltype(figure)>>) {
+      figure = value.integer();
+    } else {  // an infinite or undefined figure is null in JSON
+      figure = value.value().is_null() ? NAN : value.number();
+    }
+  });
+  return result;
+}
+
+std::string header_of(const SimulationLog& log, const std::string& command_line) {
+  OrderedJson header = {{"format", "ayumi.log/1"},
+                        {"tool", std::string("ayumi ") + version()},
+                        {"gravity", kGravity},
+                        {"frame", "world: x forward, y left, z up"},
+                        {"quaternion_order", "w x y z, base to world"},
+                        {"dt", log.dt},
+                        {"controller", log.controller},
+                        {"plant", log.plant}};
+  OrderedJson provenance;
+  for_each_provenance(log.provenance,
+                      [&](const char* key, const std::string& value) { provenance[key] = value; });
+  provenance["command_line"] = command_line;
+  header["provenance"] = provenance;
+  header["world"] = OrderedJson::parse(world_text(log.world, false));
+  header["scenario"] = OrderedJson::array();
+  for (const Disturbance& push : log.scenario)
+    header["scenario"].push_back(OrderedJson::parse(disturbance_text(push, false)));
+  header["events"] = OrderedJson::array();
+  for (const SimulationEvent& event : log.events)
+    header["events"].push_back({{"t", event.t}, {"kind", event.kind}, {"text", event.text}});
+  header["result"] = json_of(log.result);
+  header["joints"] = log.joints;
+  header["columns"] = columns_of(log.joints);
+  header["rows"] = log.samples.size();
+  return header.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+}
+
+void read_header(const JsonNode& header, SimulationLog& log) {
+  log.dt = header.at("dt").number();
+  log.controller = header.at("controller").string();
+  if (const auto plant = header.find("plant")) log.plant = plant->string();
+  const JsonNode provenance = header.at("provenance");
+  for_each_provenance(log.provenance, [&](const char* key, std::string& value) {
+    value = provenance.at(key).string();
+  });
+  PatternScope scope{.parameters = {}, .used = {}, .radians_per_unit = 1.0};
+  log.world = read_world(header.at("world"), scope);
+  for (const JsonNode& node : header.at("scenario").items())
+    log.scenario.push_back(read_disturbance(node, scope));
+  for (const JsonNode& node : header.at("events").items())
+    log.events.push_back(
+        {node.at("t").number(), node.at("kind").string(), node.at("text").string()});
+  log.result = result_of(header.at("result"));
+  log.joints = header.at("joints").strings();
+}
+
+std::uint32_t word_at(const std::string& bytes, size_t at) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + at, sizeof word);
+  return word;
+}
+
+void append_word(std::string& bytes, std::uint32_t word) {
+  bytes.append(reinterpret_cast<const char*>(&word), sizeof word);
+}
+
+std::string bytes_of(const SimulationLog& log, const std::string& command_line) {
+  const std::string header = header_of(log, command_line);
+  std::string bytes = kMagic;
+  append_word(bytes, kVersion);
+  append_word(bytes, static_cast<std::uint32_t>(header.size()));
+  bytes += header;
+  bytes.reserve(bytes.size() + log.samples.size() * columns_of(log.joints).size() * sizeof(double));
+  for (const SimulationSample& sample : log.samples)
+    for_each_field(sample, AppendValues(log.joints.size(), bytes));
+  return bytes;
+}
+
+}  // namespace
+
+std::string log_bytes(const SimulationLog& log) {
+  return bytes_of(log, log.provenance.command_line);
+}
+
+SimulationLog parse_log(const std::string& bytes, const std::string& file) {
+  const auto stop = [&](const std::string& reason) {
+    fail(ErrorCode::bad_file, file + ": " + reason);
+  };
+  if (bytes.empty()) stop("the file is empty, a simulation log is needed");
+  if (bytes.size() < kPrefix || bytes.compare(0, 8, kMagic) != 0)
+    stop("is not a simulation log (it does not begin with AYUMILOG)");
+  if (word_at(bytes, 8) != kVersion)
+    stop("log version " + std::to_string(word_at(bytes, 8)) + " is not readable here; this " +
+         "version reads " + std::to_string(kVersion));
+  const size_t length = word_at(bytes, 12);
+  if (length > bytes.size() - kPrefix) stop("truncated: the header is cut off");
+  const std::string place = file + " (header)";
+  const Json document = parse_json(bytes.substr(kPrefix, length), place, ErrorCode::bad_file);
+  const JsonNode header = root_of(document, place, ErrorCode::bad_file);
+  SimulationLog log;
+  read_header(header, log);
+  const std::vector<std::string> columns = columns_of(log.joints);
+  if (header.at("columns").strings() != columns)
+    header.at("columns").complain("are not those of this version; simulate again");
+  const auto rows = static_cast<size_t>(header.at("rows").unsigned_integer());
+  const size_t row_bytes = columns.size() * sizeof(double);
+  const size_t found = bytes.size() - kPrefix - length;
+  if (rows > found / row_bytes || rows * row_bytes != found)
+    stop((rows > found / row_bytes ? "truncated: " : "damaged: ") + std::to_string(found) +
+         " bytes of samples where the header says " + std::to_string(rows) + " rows of " +
+         std::to_string(row_bytes));
+  const char* at = bytes.data() + kPrefix + length;
+  log.samples.resize(rows);
+  for (SimulationSample& sample : log.samples)
+    for_each_field(sample, TakeValues(log.joints.size(), at));
+  return log;
+}
+
+SimulationLog read_log(const std::filesystem::path& path) {
+  return parse_log(read_file(path, size_t{4} << 30), path.string());
+}
+
+void write_log(const std::filesystem::path& path, const SimulationLog& log) {
+  write_file(path, log_bytes(log));
+}
+
+std::string log_hash(const SimulationLog& log) { return sha256(bytes_of(log, "")); }
+
+}  // namespace ayumi

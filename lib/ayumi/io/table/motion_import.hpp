@@ -1,0 +1,58 @@
+#pragma once
+// Motions of other origin: HOAP sequences as the real robots' files are, tables of angles, and the
+// joint tables Ayumi writes. What was understood, filled in or left out is said in words.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ayumi/author/import/contact_reconstruction.hpp"
+
+namespace ayumi {
+
+struct ImportOptions {
+  std::string format{};   ///< "hoap", "csv", "json"; "" by the content
+  bool degrees = false;   ///< unit of bare joint columns
+  double rate = 0;        ///< of rows without a time column [1/s]
+  bool commands = false;  ///< angles are what servos receive, as in Ayumi's reference tables
+  std::optional<double> smooth{};  ///< largest change of an angle [deg]; left out: 0.1 of counts,
+                                   ///< none of angles
+};
+
+struct ImportedMotion {
+  RawMotion motion;
+  std::string format;               ///< "hoap", "csv" or "json"
+  int rows = 0;                     ///< data rows of the file
+  bool commands = false;            ///< motion.theta is what servos receive
+  std::vector<std::string> filled;  ///< what the file does not say, or says beside the motion
+};
+
+/// Layouts of HOAP sequences by columns: 25 (HOAP-1: 20 motors), 27 (HOAP-2: 21), 29 (HOAP-3: 21).
+/// Blanks, CR, `-0` and `R` anywhere behind the motors are fine. General commands (3) only take
+/// their time. Changing intervals become the smallest one, straight between rows. Bare rows of 23
+/// numbers are encoder answers (counts, 1 ms) or, with a fraction anywhere, radians of 21 motors
+/// (2 ms); `rate` [1/s] says otherwise. Throws
+/// Error(bad_file) "file:line:
+/// ..." for another number of columns, a cell that is no count, and where a device moves that the
+/// robot does not have.
+ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
+                                const RobotModel& model, double rate = 0);
+
+/// Whether a row is one without interval and command: 21 motors, then two more numbers.
+bool is_bare_hoap_row(std::string_view line);
+
+/// A head row and numbers: t[s] (or t, time, time_ms), joints as theta.<joint>[rad] or by their
+/// names, bare or with a unit as in r_knee[deg], and whole groups of cog, zmp, fz, base, contact
+/// columns as in Ayumi's tables. Rows that are not evenly spaced are interpolated. Throws
+/// Error(bad_file) naming the column or row.
+ImportedMotion read_table_motion(const std::string& bytes, const std::string& file,
+                                 const RobotModel& model, const ImportOptions& options = {});
+
+/// Either of them, by the content. `bytes` from `file`. Postures: where the file holds commands,
+/// the servos' lead is taken out. Angles are then smoothed within what ImportOptions::smooth says.
+ImportedMotion read_motion(const std::string& bytes, const std::string& file,
+                           const RobotModel& model, const ImportOptions& options = {});
+
+}  // namespace ayumi

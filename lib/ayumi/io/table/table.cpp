@@ -1,0 +1,274 @@
+#include "ayumi/io/table/table.hpp"
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/io/table/table_columns.hpp"
+#include "ayumi/model/gravity.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr const char* kMotionFormat = "ayumi.motion/1";
+constexpr const char* kFrame = "world: x forward, y left, z up";
+constexpr const char* kUnits = "m, rad, s, N";
+constexpr const char* kQuaternion = "w x y z, base to world";
+
+void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+std::vector<std::string> reference_columns(const ReferenceTrajectory& reference) {
+  std::vector<std::string> columns = {"t[s]"};
+  for (const std::string& joint : reference.joints) columns.push_back(theta_column(joint));
+  append(columns, kCogColumns);
+  append(columns, kZmpColumns);
+  columns.push_back("fz[N]");
+  append(columns, kBaseColumns);
+  append(columns, kContactColumns);
+  return columns;
+}
+
+void add(std::vector<double>& row, const Eigen::Vector3d& v) {
+  row.insert(row.end(), {v.x(), v.y(), v.z()});
+}
+
+void add(std::vector<double>& row, const BasePose& base) {
+  add(row, base.position);
+  const Eigen::Quaterniond& q = base.attitude;
+  row.insert(row.end(), {q.w(), q.x(), q.y(), q.z()});
+}
+
+std::vector<double> cells_of(const ReferenceTrajectory& reference, size_t k) {
+  const ReferenceRow& row = reference.rows[k];
+  require(row.theta.size() == static_cast<Eigen::Index>(reference.joints.size()),
+          "a reference row has another number of joints than the table");
+  std::vector<double> cells = {static_cast<double>(k) * reference.dt};
+  cells.insert(cells.end(), row.theta.begin(), row.theta.end());
+  add(cells, row.cog);
+  add(cells, row.zmp);
+  cells.push_back(row.fz);
+  add(cells, row.base);
+  for (const bool contact : row.contact) cells.push_back(contact ? 1 : 0);
+  return cells;
+}
+
+// "1,2,3"; JSON needs "-0.0" where CSV's "-0" already reads back as negative zero.
+void append_cells(std::string& text, const std::vector<double>& cells, bool json) {
+  for (size_t i = 0; i < cells.size(); ++i) {
+    require(std::isfinite(cells[i]), "a table value is not finite");
+    if (i > 0) text += ',';
+    text += json && cells[i] == 0 && std::signbit(cells[i]) ? "-0.0" : text::exact(cells[i]);
+  }
+}
+
+// Header values are one line: what is not plain text is quoted as in JSON.
+std::string header_value(const std::string& value) {
+  const bool plain = value.find_first_of("\n\r\"\\") == std::string::npos &&
+                     (value.empty() || (value.front() != ' ' && value.back() != ' '));
+  return plain ? value : Json(value).dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+std::string read_header_value(const std::string& text) {
+  if (text.empty() || text.front() != '"') return text;
+  const Json value = Json::parse(text, nullptr, false);
+  return value.is_string() ? value.get<std::string>() : text;
+}
+
+// Key and value of the lines above a table, in order.
+using HeaderLines = std::vector<std::pair<std::string, std::string>>;
+
+std::string csv_header(const HeaderLines& lines) {
+  std::string text;
+  for (const auto& [key, value] : lines) text += "# " + key + ": " + header_value(value) + "\n";
+  return text;
+}
+
+HeaderLines common_header(const char* format, double dt) {
+  return {{"format", format},
+          {"tool", std::string("ayumi ") + version()},
+          {"units", kUnits},
+          {"frame", kFrame},
+          {"quaternion_order", kQuaternion},
+          {"gravity", text::exact(kGravity)},
+          {"dt", text::exact(dt)},
+          {"rate_hz", text::exact(1 / dt)}};
+}
+
+HeaderLines provenance_lines(const Provenance& p) {
+  return {{"robot", p.robot},
+          {"robot_sha256", p.robot_sha256},
+          {"pattern", p.pattern},
+          {"pattern_sha256", p.pattern_sha256},
+          {"profile", p.profile},
+          {"controller", p.controller},
+          {"command_line", p.command_line}};
+}
+
+Provenance provenance_of(const std::map<std::string, std::string>& header) {
+  const auto value = [&](const char* key) {
+    for (const std::string& name : {std::string(key), "provenance." + std::string(key)})
+      if (const auto found = header.find(name); found != header.end())
+        return read_header_value(found->second);
+    return std::string();
+  };
+  return {value("robot"),   value("robot_sha256"), value("pattern"),     value("pattern_sha256"),
+          value("profile"), value("controller"),   value("command_line")};
+}
+
+void require_format(const NumberTable& table, const char* format, const std::string& file) {
+  const auto found = table.header.find("format");
+  if (found == table.header.end())
+    fail(ErrorCode::bad_file, file + ": no format line; '# format: " + format + "' is needed");
+  if (found->second != format)
+    fail(ErrorCode::bad_file, file + ": format '" + found->second +
+                                  "' is not readable here; this version reads '" + format + "'");
+}
+
+Eigen::Vector3d vector_of(const NumberTable& table, Eigen::Index row, const std::vector<int>& at) {
+  return {table.values(row, at[0]), table.values(row, at[1]), table.values(row, at[2])};
+}
+
+Eigen::VectorXd theta_of(const NumberTable& table, Eigen::Index row, const std::vector<int>& at) {
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(at.size()));
+  for (size_t j = 0; j < at.size(); ++j)
+    theta[static_cast<Eigen::Index>(j)] = table.values(row, at[j]);
+  return theta;
+}
+
+}  // namespace
+
+std::string reference_csv(const ReferenceTrajectory& reference) {
+  std::string text = csv_header(common_header(kReferenceFormat, reference.dt)) +
+                     csv_header(provenance_lines(reference.provenance)) +
+                     text::join(reference_columns(reference), ",") + "\n";
+  for (size_t k = 0; k < reference.rows.size(); ++k) {
+    append_cells(text, cells_of(reference, k), false);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string reference_json(const ReferenceTrajectory& reference) {
+  const auto quoted = [](const std::string& value) {
+    return Json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  std::string text = "{\n";
+  for (const auto& [key, value] : common_header(kReferenceFormat, reference.dt)) {
+    const bool number = key == "gravity" || key == "dt" || key == "rate_hz";
+    text += "  " + quoted(key) + ": " + (number ? value : quoted(value)) + ",\n";
+  }
+  std::vector<std::string> members;
+  for (const auto& [key, value] : provenance_lines(reference.provenance))
+    members.push_back("    " + quoted(key) + ": " + quoted(value));
+  text += "  \"provenance\": {\n" + text::join(members, ",\n") + "\n  },\n";
+  std::vector<std::string> columns;
+  for (const std::string& column : reference_columns(reference)) columns.push_back(quoted(column));
+  text += "  \"columns\": [" + text::join(columns, ", ") + "],\n  \"data\": [";
+  for (size_t k = 0; k < reference.rows.size(); ++k) {
+    text += k > 0 ? ",\n    [" : "\n    [";
+    append_cells(text, cells_of(reference, k), true);
+    text += ']';
+  }
+  return text + "\n  ]\n}\n";
+}
+
+ReferenceTrajectory read_reference(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const NumberTable table = read_number_table(path);
+  require_format(table, kReferenceFormat, file);
+  const TableLayout layout = layout_of(table, file);
+  if (layout.joints.empty() || layout.cog.empty() || layout.zmp.empty() || layout.fz < 0 ||
+      layout.base.empty() || layout.contact.empty())
+    fail(ErrorCode::bad_file, file +
+                                  ": a reference table has theta, cog, zmp, fz, base and "
+                                  "contact columns; some are missing");
+  ReferenceTrajectory reference;
+  reference.dt = tick_of(table, layout, file);
+  reference.joints = layout.joints;
+  reference.provenance = provenance_of(table.header);
+  for (Eigen::Index k = 0; k < table.values.rows(); ++k) {
+    ReferenceRow row;
+    row.theta = theta_of(table, k, layout.theta);
+    row.base = base_of(table, layout, k, file);
+    row.cog = vector_of(table, k, layout.cog);
+    row.zmp = vector_of(table, k, layout.zmp);
+    row.fz = table.values(k, layout.fz);
+    for (size_t i = 0; i < 2; ++i) {
+      const double contact = table.values(k, layout.contact[i]);
+      if (contact != 0 && contact != 1)
+        fail(ErrorCode::bad_file, file + ": row " + std::to_string(k + 1) + ": " +
+                                      kContactColumns[i] + " is " + text::exact(contact) +
+                                      ", 0 or 1 is needed");
+      row.contact[i] = contact == 1;
+    }
+    reference.rows.push_back(std::move(row));
+  }
+  return reference;
+}
+
+void require_joints(const ReferenceTrajectory& reference, const std::vector<std::string>& joints,
+                    const std::string& file) {
+  if (reference.joints.size() != joints.size())
+    fail(ErrorCode::bad_file, file + ": the table has " + std::to_string(reference.joints.size()) +
+                                  " joints, the robot " + std::to_string(joints.size()));
+  for (size_t i = 0; i < joints.size(); ++i)
+    if (reference.joints[i] != joints[i])
+      fail(ErrorCode::bad_file, file + ": joint " + std::to_string(i + 1) + " of the table is '" +
+                                    reference.joints[i] + "', of the robot '" + joints[i] + "'");
+}
+
+DenseTable read_dense_table(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const NumberTable table = read_number_table(path);
+  const TableLayout layout = layout_of(table, file);
+  DenseTable dense;
+  dense.file = file;
+  dense.dt = tick_of(table, layout, file);
+  dense.joints = layout.joints;
+  dense.commands = holds_commands(table);
+  const Eigen::Index rows = table.values.rows();
+  if (static_cast<double>(rows) * dense.dt > 3600)
+    fail(ErrorCode::bad_file, file + ": lasts " +
+                                  text::exact(static_cast<double>(rows) * dense.dt) +
+                                  " s, more than the 3600 s that are read");
+  dense.theta.resize(rows, static_cast<Eigen::Index>(layout.joints.size()));
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    dense.theta.row(k) = theta_of(table, k, layout.theta).transpose();
+    if (!layout.base.empty()) dense.base.push_back(base_of(table, layout, k, file));
+    if (!layout.cog.empty()) dense.cog.push_back(vector_of(table, k, layout.cog));
+    if (!layout.zmp.empty()) dense.zmp.push_back(vector_of(table, k, layout.zmp));
+    if (layout.fz >= 0) dense.fz.push_back(table.values(k, layout.fz));
+  }
+  return dense;
+}
+
+std::string dense_table_csv(const DenseTable& table) {
+  std::vector<std::string> columns = {"t[s]"};
+  for (const std::string& joint : table.joints) columns.push_back(theta_column(joint));
+  if (!table.cog.empty()) append(columns, kCogColumns);
+  if (!table.zmp.empty()) append(columns, kZmpColumns);
+  if (!table.fz.empty()) columns.push_back("fz[N]");
+  if (!table.base.empty()) append(columns, kBaseColumns);
+  auto header = common_header(kMotionFormat, table.dt);
+  if (table.commands) header.emplace_back("theta", "commands");
+  std::string text = csv_header(header) + text::join(columns, ",") + "\n";
+  for (Eigen::Index k = 0; k < table.theta.rows(); ++k) {
+    const auto at = static_cast<size_t>(k);
+    std::vector<double> cells = {static_cast<double>(k) * table.dt};
+    for (const double value : table.theta.row(k)) cells.push_back(value);
+    if (!table.cog.empty()) add(cells, table.cog[at]);
+    if (!table.zmp.empty()) add(cells, table.zmp[at]);
+    if (!table.fz.empty()) cells.push_back(table.fz[at]);
+    if (!table.base.empty()) add(cells, table.base[at]);
+    append_cells(text, cells, false);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace ayumi

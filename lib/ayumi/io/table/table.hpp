@@ -1,0 +1,37 @@
+#pragma once
+// Joint tables that say what they hold: ReferenceTrajectory as CSV and JSON ("ayumi.reference/1"),
+// and the sampled motions a pattern names. Columns and units as in docs/formats.md: t[s],
+// theta.<joint>[rad], cog.x[m], zmp.x[m], fz[N], base.x[m], base.qw, contact.left.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ayumi/motion/pattern.hpp"
+#include "ayumi/motion/reference_trajectory.hpp"
+
+namespace ayumi {
+
+/// "# key: value" lines, one head row, one row per tick; numbers read back to the same bits.
+/// Throws Error(internal) for a value that is not finite or a row with another number of joints.
+std::string reference_csv(const ReferenceTrajectory& reference);
+/// The same columns and rows as one JSON object.
+std::string reference_json(const ReferenceTrajectory& reference);
+
+/// Reads what reference_csv or reference_json wrote, told apart by the first character. Throws
+/// Error(bad_file) naming file and line or pointer: another format, missing or unknown columns,
+/// ragged rows, times that are not k dt, quaternions that are not unit (1e-6), no rows.
+ReferenceTrajectory read_reference(const std::filesystem::path& path);
+
+/// Throws Error(bad_file) unless the table's joints are exactly `joints`, in this order.
+void require_joints(const ReferenceTrajectory& reference, const std::vector<std::string>& joints,
+                    const std::string& file);
+
+/// Reads the table of a pattern: t[s] and any whole group of the columns above. Contacts are the
+/// business of the pattern's phases; contact columns are skipped. Time starts at 0 at a fixed rate.
+/// Throws Error(bad_file) as read_reference.
+DenseTable read_dense_table(const std::filesystem::path& path);
+/// The text read_dense_table reads.
+std::string dense_table_csv(const DenseTable& table);
+
+}  // namespace ayumi

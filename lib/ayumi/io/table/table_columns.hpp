@@ -1,0 +1,49 @@
+#pragma once
+// Column names of joint tables, and the groups they come in. Shared by the sources of tables.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ayumi/io/table/number_table.hpp"
+#include "ayumi/model/robot_state.hpp"
+
+namespace ayumi {
+
+inline constexpr const char* kReferenceFormat = "ayumi.reference/1";
+inline const std::vector<std::string> kCogColumns = {"cog.x[m]", "cog.y[m]", "cog.z[m]"};
+inline const std::vector<std::string> kZmpColumns = {"zmp.x[m]", "zmp.y[m]", "zmp.z[m]"};
+inline const std::vector<std::string> kBaseColumns = {
+    "base.x[m]", "base.y[m]", "base.z[m]", "base.qw", "base.qx", "base.qy", "base.qz"};
+inline const std::vector<std::string> kContactColumns = {"contact.left", "contact.right"};
+
+/// "theta.<joint>[rad]" and back; empty when the column is not one.
+std::string theta_column(const std::string& joint);
+std::string joint_of_column(const std::string& column);
+
+/// Where each group of columns stands in a table: first index, or -1 when it is absent. Throws
+/// Error(bad_file) for an unknown column, a group with members missing, no t[s].
+struct TableLayout {
+  int time = -1, fz = -1;
+  std::vector<std::string> joints;
+  std::vector<int> theta;                    ///< one per joint
+  std::vector<int> cog, zmp, base, contact;  ///< one per column of the group, or empty
+};
+TableLayout layout_of(const NumberTable& table, const std::string& file);
+
+/// Whether theta is what servos receive: a reference table, or the header says theta: commands.
+bool holds_commands(const NumberTable& table);
+
+/// dt of a table whose rows are k dt: the header's "dt", else from the time column. Throws
+/// Error(bad_file) for a time that is not k dt, naming the row.
+double tick_of(const NumberTable& table, const TableLayout& layout, const std::string& file);
+
+/// Base pose of a row; throws Error(bad_file) unless the quaternion is unit (1e-6).
+BasePose base_of(const NumberTable& table, const TableLayout& layout, Eigen::Index row,
+                 const std::string& file);
+
+/// CSV or JSON ("columns", "data" and the other keys as header) by the first character.
+NumberTable number_table(const std::string& bytes, const std::string& file);
+NumberTable read_number_table(const std::filesystem::path& path);
+
+}  // namespace ayumi

@@ -1,0 +1,69 @@
+// Numerov: x_{k+1} - 2 x_k + x_{k-1} = h^2/12 (f_{k+1} + 10 f_k + f_{k-1}), f = w2 (x - z).
+// Rest before the start means x_{-1} = x_0 and f_{-1} = f_0 = 0: x_1 - x_0 - h^2/12 f_1 = 0.
+// The bounded solution needs the divergent component w int e^{-wt} z dt at t = 0 to equal z_0; a
+// bump b(t) shifts it by w int e^{-wt} b dt, largest per size for b ~ e^{-wt}; (wt)^2 e^{-wt} costs
+// 8 % more and starts smoothly.
+#include "ayumi/math/bounded_curve.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+
+namespace ayumi {
+
+using Eigen::VectorXd;
+
+VectorXd bounded_cog(const VectorXd& z, const VectorXd& w2, double h) {
+  const Eigen::Index n = z.size() - 1;
+  require(n >= 2 && w2.size() == n + 1, "bounded_cog: at least three points");
+  const VectorXd c = h * h / 12.0 * w2;
+  VectorXd x(n + 1), upper = VectorXd::Zero(n + 1);
+  x[0] = z[0];
+  for (Eigen::Index k = 1; k < n; ++k) {
+    const double lower = 1 - c[k - 1], diagonal = -2 - 10 * c[k], next = 1 - c[k + 1];
+    const double right = -c[k - 1] * z[k - 1] - 10 * c[k] * z[k] - c[k + 1] * z[k + 1];
+    const double pivot = diagonal - lower * upper[k - 1];
+    upper[k] = next / pivot;
+    x[k] = (right - lower * x[k - 1]) / pivot;
+  }
+  x[n] = z[n];
+  for (Eigen::Index k = n - 1; k >= 1; --k) x[k] -= upper[k] * x[k + 1];
+  return x;
+}
+
+double rest_bump(double omega, double t, double duration) {
+  if (t <= 0 || t >= duration) return 0;
+  const double u = omega * t, fade = 1 - t / duration;
+  return u * u * std::exp(-u) * fade * fade;
+}
+
+RestToRest rest_to_rest_cog(const VectorXd& z, const VectorXd& w2, double h) {
+  const Eigen::Index n = z.size() - 1;
+  const double duration = h * static_cast<double>(n);
+  VectorXd bump[2] = {VectorXd(n + 1), VectorXd(n + 1)};
+  for (Eigen::Index k = 0; k <= n; ++k) {
+    const double t = h * static_cast<double>(k);
+    bump[0][k] = rest_bump(std::sqrt(w2[0]), t, duration);
+    bump[1][k] = rest_bump(std::sqrt(w2[n]), duration - t, duration);
+  }
+  // How far x is from rest before and after, for a ZMP z.
+  const auto unrest = [&](const VectorXd& x, const VectorXd& zmp) {
+    const auto at = [&](Eigen::Index end, Eigen::Index inner) {
+      return x[inner] - x[end] - h * h / 12.0 * w2[inner] * (x[inner] - zmp[inner]);
+    };
+    return Eigen::Vector2d(at(0, 1), at(n, n - 1));
+  };
+  RestToRest result;
+  result.x = bounded_cog(z, w2, h);
+  const VectorXd response[2] = {bounded_cog(bump[0], w2, h), bounded_cog(bump[1], w2, h)};
+  Eigen::Matrix2d A;
+  A << unrest(response[0], bump[0]), unrest(response[1], bump[1]);
+  const Eigen::Vector2d factor = -A.partialPivLu().solve(unrest(result.x, z));
+  result.begin = factor[0];
+  result.end = factor[1];
+  result.x += factor[0] * response[0] + factor[1] * response[1];
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,46 @@
+#pragma once
+// The command set of the paper at a fixed rate: cmd(theta, dtheta, p_G, p_Z, f_z) and the planned
+// contacts. Sample k is at time k dt.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ayumi/motion/pattern.hpp"
+
+namespace ayumi {
+
+struct CommandSample {
+  RobotState state;                                 ///< planned base and joints
+  Eigen::VectorXd acceleration;                     ///< [a_WB; dw_WB; ddtheta], world
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();    ///< cmd p_G, world [m]
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();   ///< [m/s]
+  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< cmd p_Z, world [m]
+  double fz = 0;                                    ///< cmd f_z [N]
+  Support support = Support::both;
+  std::array<Eigen::Isometry3d, 2> feet = {Eigen::Isometry3d::Identity(),
+                                           Eigen::Isometry3d::Identity()};  ///< planned sole frames
+};
+
+/// A phase that VIIP carries; the samples hold the posture meanwhile.
+struct ViipSpan {
+  long begin = 0, end = 0;  ///< ticks, the end not included
+  ViipGoal goal;
+};
+
+struct CommandSeries {
+  double dt = 0.001;  ///< [s]
+  std::vector<CommandSample> samples;
+  std::vector<ViipSpan> viip;                 ///< in time order
+  std::map<std::string, std::string> origin;  ///< track -> where it came from, in words
+  Eigen::VectorXd joint_weight;               ///< diagonal of W [dof]
+  /// The joints come from a table of what servos received, its lead taken out: played again as is.
+  bool servo_commands = false;
+
+  double duration() const { return dt * static_cast<double>(samples.size() - 1); }
+};
+
+}  // namespace ayumi

@@ -1,0 +1,79 @@
+#include "ayumi/motion/pattern_context.hpp"
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+
+namespace ayumi {
+
+std::string in_file(const Pattern& pattern, const std::string& place) {
+  const bool named = pattern.file.empty() || place.rfind(pattern.file, 0) == 0;
+  return named ? place : pattern.file + ": " + place;
+}
+
+int find_joint(const RobotModel& model, const std::string& joint, const std::string& place) {
+  const int dof = model.find_dof(joint);
+  if (dof >= 0) return dof;
+  for (const JointDescription& each : model.description().joints)
+    if (each.name == joint)
+      fail(ErrorCode::bad_pattern,
+           place + ": joint '" + joint + "' " +
+               (each.mimic.empty() ? "does not move; remove the key"
+                                   : "follows '" + each.mimic + "' (mimic); set that joint"));
+  fail(ErrorCode::bad_pattern, place + ": the robot '" + model.name() + "' has no joint '" + joint +
+                                   "'" + text::suggestion(joint, model.dof_names()));
+}
+
+std::map<std::string, double> posture_joints(const RobotModel& model, const Pattern& pattern,
+                                             const std::string& name, const std::string& place) {
+  const auto own = pattern.postures.find(name);
+  if (own != pattern.postures.end()) {
+    for (const auto& [joint, angle] : own->second) {
+      const std::string where = in_file(pattern, "postures/" + name + "/" + joint);
+      find_joint(model, joint, where);
+      if (!std::isfinite(angle)) fail(ErrorCode::bad_pattern, where + ": is not a finite number");
+    }
+    return own->second;
+  }
+  std::map<std::string, double> joints;
+  if (model.has_posture(name)) {
+    const Eigen::VectorXd theta = model.posture(name);
+    for (int dof = 0; dof < model.dof_count(); ++dof) joints[model.dofs()[dof].name] = theta[dof];
+    return joints;
+  }
+  std::vector<std::string> known;
+  for (const auto& entry : pattern.postures) known.push_back(entry.first);
+  for (const auto& entry : model.description().postures) known.push_back(entry.first);
+  fail(ErrorCode::bad_pattern, in_file(pattern, place) + ": neither the pattern nor the robot '" +
+                                   model.name() + "' has a posture '" + name + "'" +
+                                   text::suggestion(name, known) +
+                                   "; known: " + text::join(known, ", "));
+}
+
+Eigen::VectorXd default_posture(const RobotModel& model, const Pattern& pattern) {
+  Eigen::VectorXd theta =
+      model.has_posture("home") ? model.posture("home") : Eigen::VectorXd::Zero(model.dof_count());
+  for (const auto& [joint, angle] :
+       posture_joints(model, pattern, pattern.default_posture, "defaults/posture"))
+    theta[model.find_dof(joint)] = angle;
+  return theta;
+}
+
+double default_cog_height(const RobotModel& model, const Pattern& pattern) {
+  if (pattern.cog_height != 0) {
+    if (!(pattern.cog_height > 0) || !std::isfinite(pattern.cog_height))
+      fail(ErrorCode::bad_pattern, in_file(pattern, "defaults/cog_height") + ": " +
+                                       text::exact(pattern.cog_height) + " m is not above 0");
+    return pattern.cog_height;
+  }
+  RobotState state = model.rest_state();
+  state.theta = default_posture(model, pattern);
+  RobotData data(model);
+  update_positions(model, state, data);
+  return data.cog.z() - 0.5 * (sole_pose(model, data, Side::left).translation().z() +
+                               sole_pose(model, data, Side::right).translation().z());
+}
+
+}  // namespace ayumi

@@ -1,0 +1,38 @@
+// theta + L dtheta = u with u straight between rows k and k + 1, solved over one row:
+//   theta(k+1) = a theta(k) + (1 - a) u(k) + (1 - (1 - a) L / dt) (u(k+1) - u(k)),  a = exp(-dt/L)
+#include "ayumi/motion/servo_feedforward.hpp"
+
+#include <cmath>
+
+namespace ayumi {
+
+Eigen::VectorXd servo_lead(const RobotModel& model) {
+  Eigen::VectorXd lead(model.dof_count());
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const ServoDescription& servo = model.dofs()[j].servo;
+    lead[j] = servo.kp > 0 ? servo.kd / servo.kp : 0.0;
+  }
+  return lead;
+}
+
+DenseTable postures_of(const RobotModel& model, DenseTable table) {
+  if (!table.commands) return table;
+  const Eigen::VectorXd lead = servo_lead(model);
+  for (size_t i = 0; i < table.joints.size(); ++i) {
+    const int dof = model.find_dof(table.joints[i]);
+    if (dof < 0 || !(lead[dof] > 0)) continue;
+    auto column = table.theta.col(static_cast<Eigen::Index>(i));
+    const double kept = std::exp(-table.dt / lead[dof]);
+    const double slope = 1 - (1 - kept) * lead[dof] / table.dt;
+    double before = column[0];
+    for (Eigen::Index k = 1; k < column.size(); ++k) {
+      const double command = column[k];
+      column[k] = kept * column[k - 1] + (1 - kept) * before + slope * (command - before);
+      before = command;
+    }
+  }
+  table.commands = false;
+  return table;
+}
+
+}  // namespace ayumi

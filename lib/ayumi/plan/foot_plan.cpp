@@ -1,0 +1,264 @@
+#include "ayumi/plan/foot_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
+constexpr double kInstant = 1e-9;  // times nearer than this are the same [s]
+
+[[noreturn]] void complain(const Pattern& pattern, const std::string& place,
+                           const std::string& message) {
+  fail(ErrorCode::bad_pattern, in_file(pattern, place) + ": " + message);
+}
+
+Isometry3d on_ground(const Vector3d& position, double yaw) {
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() = Vector3d(position.x(), position.y(), 0);
+  pose.linear() = rpy_to_matrix({0, 0, yaw});
+  return pose;
+}
+
+// Of a flight: over which the feet take up, and give back, the speed of the COG [s].
+constexpr double kFlightRamp = 0.04;
+
+// From 0 to 1 with three derivatives that vanish at both ends.
+double smooth_step(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * u * u * (35 + u * (-84 + u * (70 - 20 * u)));
+}
+
+double lift_profile(double u) {
+  const double w = u * (1 - u);
+  return 64 * w * w * w;
+}
+
+double along_ground(double u) {
+  return minimum_jerk((u - kSwingMargin) / (1 - 2 * kSwingMargin)).value;
+}
+
+bool finite(const Foothold& foothold) {
+  return foothold.position.allFinite() && foothold.rpy.allFinite();
+}
+
+}  // namespace
+
+Isometry3d pose_of(const Foothold& foothold) {
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() = foothold.position;
+  pose.linear() = rpy_to_matrix(foothold.rpy);
+  return pose;
+}
+
+std::array<Isometry3d, 2> start_feet(const RobotModel& model, const Pattern& pattern) {
+  RobotState state = model.rest_state();
+  state.theta = default_posture(model, pattern);
+  RobotData data(model);
+  update_positions(model, state, data);
+  std::array<Isometry3d, 2> feet;
+  Vector3d middle = Vector3d::Zero();
+  for (const Side side : kSides) {
+    const Isometry3d sole = sole_pose(model, data, side);
+    feet[index(side)] = on_ground(sole.translation(), matrix_to_rpy(sole.linear()).z());
+    middle += 0.5 * feet[index(side)].translation();
+  }
+  for (Isometry3d& foot : feet) foot.translation() -= middle;
+  const auto given = pattern.start_feet;
+  for (const Side side : kSides) {
+    const auto& foot = given[index(side)];
+    if (!foot) continue;
+    if (!finite(*foot)) complain(pattern, "start", "a foothold is not a finite number");
+    const int here = index(side), there = index(other(side));
+    if (!given[there]) feet[there] = pose_of(*foot) * feet[here].inverse() * feet[there];
+    feet[here] = pose_of(*foot);
+  }
+  return feet;
+}
+
+FootPlan::FootPlan(const RobotModel& model, const Pattern& pattern)
+    : phases_(pattern.phases), start_(start_feet(model, pattern)) {
+  for (const Side side : kSides) {
+    const Eigen::Vector2d& c = model.sole(side).center;
+    center_[index(side)] = {c.x(), c.y(), 0};
+  }
+  read_phases(pattern);
+  for (const Side side : kSides) read_foot_keys(pattern, side);
+}
+
+void FootPlan::read_phases(const Pattern& pattern) {
+  if (phases_.empty())
+    complain(pattern, "phases", "there are none; at least one says who carries the robot");
+  std::array<Isometry3d, 2> now = start_;
+  double begin = 0;
+  for (size_t i = 0; i < phases_.size(); ++i) {
+    const Phase& phase = phases_[i];
+    const std::string place = "phases/" + std::to_string(i);
+    if (!(phase.until > begin) || !std::isfinite(phase.until))
+      complain(pattern, place,
+               "until " + text::exact(phase.until) + " s does not come after " +
+                   text::exact(begin) + " s; times must increase");
+    if (phase.swing) {
+      const Swing& swing = *phase.swing;
+      if (supports(phase.support, swing.foot))
+        complain(pattern, place,
+                 std::string("the ") + name_of(swing.foot) +
+                     " foot swings while it carries the "
+                     "robot (support " +
+                     name_of(phase.support) + "); set support to the other foot");
+      if (!finite(swing.to) || !std::isfinite(swing.lift) || swing.lift < 0)
+        complain(pattern, place + "/swing", "a number is not finite or the lift is below 0");
+      const int foot = index(swing.foot);
+      moves_[foot].push_back({begin, phase.until, now[foot], pose_of(swing.to), swing.lift});
+      now[foot] = pose_of(swing.to);
+    }
+    begin = phase.until;
+  }
+}
+
+void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
+  std::array<std::vector<TrackKey>, 6> keys;
+  const auto add = [&](double t, const Vector3d& position, const Vector3d& rpy, Interpolation way) {
+    for (int i = 0; i < 3; ++i) {
+      keys[i].push_back({t, position[i], way});
+      const double last = keys[3 + i].empty() ? rpy[i] : keys[3 + i].back().value;
+      keys[3 + i].push_back({t, last + std::remainder(rpy[i] - last, 2 * M_PI), way});
+    }
+  };
+  const Isometry3d& start = start_[index(side)];
+  for (const Keyframe& key : pattern.keyframes) {
+    const auto& foot = key.feet[index(side)];
+    if (!foot) continue;
+    if (!finite(*foot)) complain(pattern, key.place, "a foot pose is not a finite number");
+    if (!moves_[index(side)].empty())
+      complain(pattern, key.place,
+               std::string("the ") + name_of(side) +
+                   " foot has both keys and swings in the phases; keep one");
+    if (keys[0].empty() && key.t > 0)
+      add(0, start.translation(), matrix_to_rpy(start.linear()), Interpolation::hold);
+    if (!keys[0].empty() && key.t <= keys[0].back().t)
+      complain(pattern, key.place, "key times of this foot do not increase");
+    add(key.t, foot->position, foot->rpy, key.interpolation.value_or(pattern.interpolation));
+  }
+  if (keys[0].empty()) return;
+  KeyedFoot track;
+  for (const TrackKey& key : keys[0]) track.times.push_back(key.t);
+  for (int i = 0; i < 3; ++i) {
+    track.position[i] = Track(keys[i]);
+    track.rpy[i] = Track(keys[3 + i]);
+  }
+  keyed_[index(side)] = track;
+  // A table with a base says itself where the feet are: the check compares it with the phases.
+  if (pattern.table && !pattern.table->base.empty()) return;
+  for (size_t i = 0; i < phases_.size(); ++i) {
+    if (!supports(phases_[i].support, side)) continue;
+    const double first = begin(static_cast<int>(i)), length = phases_[i].until - first;
+    for (int step = 1; step <= 8; ++step)
+      if (!pose(side, first + length * step / 8).isApprox(pose(side, first), 1e-9))
+        complain(pattern, "phases/" + std::to_string(i),
+                 std::string("the keys of the ") + name_of(side) +
+                     " foot move it while it carries the robot; move it in a phase where it is "
+                     "free");
+  }
+}
+
+const FootPlan::Move* FootPlan::move_at(Side side, double t) const {
+  const Move* last = nullptr;
+  for (const Move& move : moves_[index(side)]) {
+    if (move.begin > t) break;
+    last = &move;
+  }
+  return last;
+}
+
+Isometry3d FootPlan::pose(Side side, double t) const {
+  Isometry3d pose = pose_without_flight(side, t);
+  pose.translation().z() += flight_lift(side, t);
+  return pose;
+}
+
+Isometry3d FootPlan::pose_without_flight(Side side, double t) const {
+  if (const auto& keyed = keyed_[index(side)]) {
+    Foothold at;
+    for (int i = 0; i < 3; ++i) {
+      at.position[i] = keyed->position[i].at(t).value;
+      at.rpy[i] = keyed->rpy[i].at(t).value;
+    }
+    return pose_of(at);
+  }
+  const Move* move = move_at(side, t);
+  if (!move) return start_[index(side)];
+  if (t >= move->end) return move->to;
+  const double s = along_ground((t - move->begin) / (move->end - move->begin));
+  const Vector3d turn =
+      log_rotation(Eigen::Quaterniond(move->from.linear().transpose() * move->to.linear()));
+  Isometry3d pose = Isometry3d::Identity();
+  pose.linear() = move->from.linear() * exp_rotation(s * turn).toRotationMatrix();
+  pose.translation() = (1 - s) * move->from.translation() + s * move->to.translation();
+  pose.translation().z() += swing_lift(side, t);
+  return pose;
+}
+
+double FootPlan::swing_lift(Side side, double t) const {
+  const Move* move = move_at(side, t);
+  if (keyed_[index(side)] || !move || t >= move->end) return 0;
+  return move->lift * lift_profile((t - move->begin) / (move->end - move->begin));
+}
+
+double FootPlan::flight_lift(Side side, double t) const {
+  const int i = phase(t);
+  if (phases_[i].support != Support::none) return 0;
+  if (phases_[i].swing && phases_[i].swing->foot == side) return 0;
+  const double from = begin(i), length = phases_[i].until - from;
+  if (const auto& keyed = keyed_[index(side)])
+    for (const double key : keyed->times)
+      if (key > from + kInstant && key < phases_[i].until - kInstant) return 0;
+  const double after = std::clamp(t - from, 0.0, length), left = length - after;
+  const double ramp = std::min(kFlightRamp, length / 2);
+  return 0.5 * kGravity * after * left * smooth_step(after / ramp) * smooth_step(left / ramp);
+}
+
+double FootPlan::ground(double t) const {
+  double sum = 0;
+  for (const Side side : kSides)
+    sum += pose_without_flight(side, t).translation().z() - swing_lift(side, t);
+  return 0.5 * sum;
+}
+
+Vector3d FootPlan::sole_center(Side side, double t) const {
+  return pose(side, t) * center_[index(side)];
+}
+
+Vector3d FootPlan::support_center(double t) const {
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  for (const Side side : kSides)
+    if (supports(support(t), side) || support(t) == Support::none) {
+      sum += sole_center(side, t);
+      ++count;
+    }
+  return sum / count;
+}
+
+int FootPlan::phase(double t) const {
+  const auto found = std::find_if(phases_.begin(), phases_.end(),
+                                  [&](const Phase& phase) { return t < phase.until - kInstant; });
+  return static_cast<int>(
+      std::min<std::ptrdiff_t>(found - phases_.begin(), static_cast<int>(phases_.size()) - 1));
+}
+
+Support FootPlan::support(double t) const { return phases_[phase(t)].support; }
+
+}  // namespace ayumi

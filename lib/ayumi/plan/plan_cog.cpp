@@ -1,0 +1,233 @@
+// The pendulum law (14)(15) gives a first COG; legs and arms then move the ZMP of the full model
+// away from it. The error e = cmd z - full z is itself put through the bounded solution and added
+// to the COG, again and again: each pass leaves what the limbs' angular momentum changed.
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/bounded_curve.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/differentiate.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/flight.hpp"
+#include "ayumi/plan/sample_job.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kGridStep = 0.005;   // of the correction [s]
+constexpr double kGoodEnough = 1e-4;  // largest full-model ZMP error to stop at [m]
+constexpr int kMostIterations = 12;
+
+// The plan on a uniform grid over the whole pattern.
+struct Grid {
+  int n = 0;     // intervals
+  double h = 0;  // [s]
+  double t(Eigen::Index k) const { return h * static_cast<double>(k); }
+};
+
+Track spline_through(const Grid& grid, const VectorXd& values) {
+  std::vector<TrackKey> keys;
+  for (int k = 0; k <= grid.n; ++k) keys.push_back({grid.t(k), values[k], Interpolation::spline});
+  return Track(keys);
+}
+
+Track default_height(const SampleJob& job, const Grid& grid) {
+  const double level = default_cog_height(job.model, job.pattern);
+  VectorXd z(grid.n + 1);
+  for (int k = 0; k <= grid.n; ++k) z[k] = level + job.feet.ground(grid.t(k));
+  if ((z.array() - z[0]).abs().maxCoeff() < 1e-9) return Track(z[0]);
+  return spline_through(grid, z);
+}
+
+// (17) with the planned height.
+VectorXd omega_squared_of(const SampleJob& job, const CogPlan& plan, const Grid& grid) {
+  VectorXd w2(grid.n + 1);
+  for (int k = 0; k <= grid.n; ++k) {
+    const TrackPoint z = plan.cog[2].at(grid.t(k));
+    const double above = z.value - plan.zmp[2].at(grid.t(k)).value;
+    w2[k] = (z.acceleration + kGravity) / above;
+    if (job.feet.support(grid.t(k)) == Support::none || std::abs(w2[k]) < 1e-6) w2[k] = 0;
+    if (!(above > 0) || w2[k] < 0)
+      fail(ErrorCode::bad_pattern,
+           in_file(job.pattern, "COG height") + ": at t = " + text::fixed(grid.t(k), 3) +
+               " s the COG is not above the ZMP or falls faster than gravity; raise the COG or "
+               "slow the height keys down");
+  }
+  return w2;
+}
+
+TrunkTurn turn_around_flights(const SampleJob& job, const CogPlan& plan) {
+  return plan_trunk_turn(job, [&](double t) -> std::array<TrackPoint, 3> {
+    return {plan.cog[0].at(t), plan.cog[1].at(t), plan.cog[2].at(t)};
+  });
+}
+
+// COG and bumps while they are being corrected, on the grid.
+struct CogSolver {
+  const SampleJob& job;
+  CogPlan& plan;
+  Grid grid;
+  VectorXd w2;
+  std::array<VectorXd, 3> cog;
+
+  void read_tracks();
+  void put_tracks();
+  void turn_trunk();
+  void add_solution(int axis, const VectorXd& z);
+  void solve_postures(bool first, std::vector<CommandSample>& samples) const;
+  double measure(std::vector<CommandSample>& samples, std::array<VectorXd, 2>& error) const;
+  void correct();
+};
+
+void CogSolver::read_tracks() {
+  for (int axis = 0; axis < 3; ++axis) {
+    cog[axis] = VectorXd::Zero(grid.n + 1);
+    if (axis < 2 && plan.solved[axis]) continue;
+    for (int k = 0; k <= grid.n; ++k) cog[axis][k] = plan.cog[axis].at(grid.t(k)).value;
+  }
+}
+
+void CogSolver::add_solution(int axis, const VectorXd& z) {
+  const RestToRest motion = rest_to_rest_cog(z, w2, grid.h);
+  cog[axis] += motion.x;
+  plan.bump[0][axis] += motion.begin;
+  plan.bump[1][axis] += motion.end;
+}
+
+// The solution so far as tracks of the plan.
+void CogSolver::put_tracks() {
+  for (int axis = 0; axis < 2; ++axis)
+    if (plan.solved[axis]) plan.cog[axis] = spline_through(grid, cog[axis]);
+}
+
+// The trunk's turn around flights for the COG so far.
+void CogSolver::turn_trunk() {
+  if (!flies(job)) return;
+  put_tracks();
+  plan.turn = turn_around_flights(job, plan);
+}
+
+void CogSolver::solve_postures(bool first, std::vector<CommandSample>& samples) const {
+  RobotData data(job.model);
+  for (int k = 0; k <= grid.n; ++k) {
+    CommandSample& sample = samples[k];
+    if (first) {
+      sample.state = k > 0 ? samples[k - 1].state : job.model.rest_state();
+      if (k == 0) sample.state.theta = job.ik.start();
+    }
+    const Vector3d wanted(cog[0][k], cog[1][k], cog[2][k]);
+    if (!first) sample.state.base.position += wanted - sample.cog;
+    sample.cog = wanted;
+    solve_posture(job, grid.t(k), plan.trunk_at(job, grid.t(k)), sample, data);
+  }
+  fill_rates(samples, grid.h, true);
+}
+
+// cmd ZMP - full-model ZMP in the solved axes; returns the largest, where the ground gives less
+// than the weight as the moment it makes over the weight.
+double CogSolver::measure(std::vector<CommandSample>& samples,
+                          std::array<VectorXd, 2>& error) const {
+  RobotData data(job.model);
+  const double weight = job.model.mass() * kGravity;
+  double worst = 0;
+  error = {VectorXd::Zero(grid.n + 1), VectorXd::Zero(grid.n + 1)};
+  for (int k = 0; k <= grid.n; ++k) {
+    samples[k].zmp = plan.zmp_at(grid.t(k));
+    if (w2[k] == 0) continue;
+    const GroundReaction full = full_model_reaction(job.model, samples[k], data);
+    const double share = std::min(1.0, full.force.z() / weight);
+    if (share < kZmpShare) continue;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (!plan.solved[axis]) continue;
+      error[axis][k] = samples[k].zmp[axis] - full.zmp[axis];
+      worst = std::max(worst, share * std::abs(error[axis][k]));
+    }
+  }
+  return worst;
+}
+
+// Keeps the best pass: where the keys jump the error cannot vanish and passes may stop improving.
+void CogSolver::correct() {
+  std::vector<CommandSample> samples(grid.n + 1);
+  std::array<VectorXd, 2> error;
+  double best = INFINITY;
+  auto best_cog = cog;
+  auto best_bump = plan.bump;
+  int worse = 0;
+  for (int pass = 0; pass <= kMostIterations && worse < 2; ++pass) {
+    solve_postures(pass == 0, samples);
+    const double worst = measure(samples, error);
+    report(job.progress, {"solve the COG", static_cast<double>(pass) / kMostIterations,
+                          "ZMP error " + millimetres(worst)});
+    worse = worst < best ? 0 : worse + 1;
+    if (worse == 0) {
+      best = worst;
+      best_cog = cog;
+      best_bump = plan.bump;
+    }
+    if (worst <= kGoodEnough) break;
+    for (int axis = 0; axis < 2; ++axis)
+      if (plan.solved[axis]) add_solution(axis, error[axis]);
+    turn_trunk();
+  }
+  cog = best_cog;
+  plan.bump = best_bump;
+}
+
+}  // namespace
+
+Vector3d CogPlan::zmp_at(double t) const {
+  Vector3d z(zmp[0].at(t).value, zmp[1].at(t).value, zmp[2].at(t).value);
+  z.head<2>() += rest_bump(omega[0], t, duration) * bump[0] +
+                 rest_bump(omega[1], duration - t, duration) * bump[1];
+  return z;
+}
+
+Eigen::Matrix3d CogPlan::trunk_at(const SampleJob& job, double t) const {
+  const Vector3d r(turn[0].at(t).value, turn[1].at(t).value, turn[2].at(t).value);
+  const Eigen::Matrix3d asked = trunk_attitude(job, t);
+  return r.isZero(0) ? asked : Eigen::Matrix3d(exp_rotation(r) * asked);
+}
+
+CogPlan plan_cog(const SampleJob& job) {
+  CogPlan plan;
+  plan.duration = job.dt * (job.count - 1);
+  Grid grid;
+  grid.n = std::max(8, static_cast<int>(std::ceil(plan.duration / kGridStep - 1e-9)));
+  grid.h = plan.duration / grid.n;
+  plan.zmp = job.tracks.zmp ? *job.tracks.zmp : default_zmp(job.feet);
+  plan.cog[2] = job.tracks.cog[2] ? *job.tracks.cog[2] : default_height(job, grid);
+  for (int axis = 0; axis < 2; ++axis) {
+    plan.solved[axis] = !job.tracks.cog[axis];
+    if (!plan.solved[axis]) plan.cog[axis] = *job.tracks.cog[axis];
+  }
+  if (!plan.solved[0] && !plan.solved[1]) {
+    if (flies(job)) plan.turn = turn_around_flights(job, plan);
+    return plan;
+  }
+
+  CogSolver solver{job, plan, grid, omega_squared_of(job, plan, grid), {}};
+  plan.omega = {std::sqrt(solver.w2[0]), std::sqrt(solver.w2[grid.n])};
+  solver.read_tracks();
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!plan.solved[axis]) continue;
+    VectorXd z(grid.n + 1);
+    for (int k = 0; k <= grid.n; ++k) z[k] = plan.zmp[axis].at(grid.t(k)).value;
+    solver.add_solution(axis, z);
+  }
+  solver.turn_trunk();
+  if (job.pattern.full_model) solver.correct();
+  solver.put_tracks();
+  if (flies(job)) plan.turn = turn_around_flights(job, plan);
+  return plan;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,23 @@
+#pragma once
+// Pattern -> CommandSeries: interpolate what the author wrote, solve what was left out.
+// ZMP keys without COG keys: the bounded solution of (14)(15), corrected so that the ZMP of the
+// full model meets the keys. Feet and COG: legs and base by inverse kinematics. Joint keys or a
+// table on the legs: base from the planned support foot, COG from the posture. COG, ZMP, f_z not
+// given: from the full model.
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/command_series.hpp"
+
+namespace ayumi {
+
+struct SampleOptions {
+  double dt = 0.001;  ///< [s]
+};
+
+/// Throws Error(bad_pattern) with file, place and remedy: unknown joint, times not increasing,
+/// a foot out of reach (foot, time, missing millimetres), a phase without a supporting foot, ...
+CommandSeries sample(const RobotModel& model, const Pattern& pattern,
+                     const SampleOptions& options = {}, const Progress& progress = {});
+
+}  // namespace ayumi

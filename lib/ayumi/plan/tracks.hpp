@@ -1,0 +1,44 @@
+#pragma once
+// The keyframes and the table of a pattern sorted into tracks over time. Every track starts from
+// the default posture at rest: without a key at t = 0 it has an implied one there (joints: the
+// default posture; ZMP: "center"; COG: over the middle of the feet; torso: level; f_z: the weight).
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/pattern.hpp"
+#include "ayumi/plan/foot_plan.hpp"
+
+namespace ayumi {
+
+/// What the author gave. COG, ZMP, f_z, torso are empty where nothing was said.
+struct PatternTracks {
+  std::vector<Track> joints;                     ///< one per dof [rad]
+  bool joint_driven = false;                     ///< the legs follow keys, not the COG
+  std::string driver;                            ///< why, in words
+  std::array<std::optional<Track>, 3> cog;       ///< world x, y, z [m]
+  std::optional<std::array<Track, 3>> zmp;       ///< world [m]
+  std::optional<Track> fz;                       ///< [N]
+  std::optional<std::array<Track, 3>> torso;     ///< roll, pitch, yaw [rad]
+  std::optional<std::array<Track, 3>> base;      ///< position from a table [m]
+  std::optional<std::array<Track, 4>> attitude;  ///< w, x, y, z from a table, unnormalised
+  bool rest_ends = true;                         ///< false: a table may start or end moving
+  Eigen::VectorXd weight;                        ///< diagonal of W
+  std::map<std::string, std::string> origin;     ///< of what is given, in words
+};
+
+/// Throws Error(bad_pattern) "file: place: ..." : an unknown joint, posture or weight; a joint that
+/// mimics another; keys out of order, beyond the last phase, or not finite; a joint both keyed and
+/// in the table. `solved` marks the leg joints that inverse kinematics could solve.
+PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const FootPlan& feet,
+                          const std::vector<bool>& solved);
+
+/// ZMP for a pattern that gives neither ZMP nor COG: the centre of the supporting sole in single
+/// support, from centre to centre in double support, the middle of the feet at both ends.
+std::array<Track, 3> default_zmp(const FootPlan& feet);
+
+}  // namespace ayumi

@@ -1,0 +1,171 @@
+#include "ayumi/plan/viip_phases.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kAtRest = 0.015;  // COG speed that counts as rest, times omega z
+constexpr double kShortest = 0.1;  // what is sampled when a pattern has VIIP phases only [s]
+
+/// A VIIP phase: number, begin and end, and how long the VIIP phases before it take together.
+struct Cut {
+  size_t phase;
+  double begin, end, before;
+};
+
+std::vector<Cut> cuts_of(const Pattern& pattern) {
+  std::vector<Cut> cuts;
+  double begin = 0, before = 0;
+  for (size_t i = 0; i < pattern.phases.size(); ++i) {
+    const Phase& phase = pattern.phases[i];
+    if (!(phase.until > begin))
+      fail(ErrorCode::bad_pattern, in_file(pattern, "phases/" + std::to_string(i)) + ": until " +
+                                       text::exact(phase.until) + " s does not come after " +
+                                       text::exact(begin) + " s; times must increase");
+    if (phase.viip) {
+      cuts.push_back({i, begin, phase.until, before});
+      before += phase.until - begin;
+    }
+    begin = phase.until;
+  }
+  return cuts;
+}
+
+double time_without(const std::vector<Cut>& cuts, double t) {
+  double cut = 0;
+  for (const Cut& each : cuts) cut += std::clamp(t - each.begin, 0.0, each.end - each.begin);
+  return t - cut;
+}
+
+/// At rest in the posture of `from`.
+CommandSample held(const RobotModel& model, const CommandSample& from) {
+  CommandSample s = from;
+  s.state.dtheta.setZero();
+  s.state.base_velocity.setZero();
+  s.state.base_angular_velocity.setZero();
+  s.acceleration.setZero();
+  s.dcog.setZero();
+  s.ddcog.setZero();
+  s.zmp.head<2>() = s.cog.head<2>();
+  s.fz = model.mass() * kGravity;
+  return s;
+}
+
+// The later of two keys at one time sets what both name.
+void merge(Keyframe& key, const Keyframe& later) {
+  const auto take = [](auto& to, const auto& from) {
+    if (from) to = from;
+  };
+  take(key.interpolation, later.interpolation);
+  take(key.posture, later.posture);
+  for (const auto& [joint, angle] : later.joints) key.joints[joint] = angle;
+  take(key.zmp, later.zmp);
+  take(key.cog_x, later.cog_x);
+  take(key.cog_y, later.cog_y);
+  take(key.cog_height, later.cog_height);
+  take(key.fz, later.fz);
+  take(key.torso, later.torso);
+  for (size_t i = 0; i < 2; ++i) take(key.feet[i], later.feet[i]);
+  for (const auto& [joint, weight] : later.weights) key.weights[joint] = weight;
+}
+
+}  // namespace
+
+bool has_viip_phases(const Pattern& pattern) {
+  return std::any_of(pattern.phases.begin(), pattern.phases.end(),
+                     [](const Phase& phase) { return phase.viip.has_value(); });
+}
+
+void refuse_viip_phases(const Pattern& pattern, const std::string& done) {
+  for (size_t i = 0; i < pattern.phases.size(); ++i)
+    if (pattern.phases[i].viip)
+      fail(ErrorCode::bad_pattern, in_file(pattern, "phases/" + std::to_string(i)) +
+                                       ": a phase with a goal moves as its controller decides, it "
+                                       "cannot be " +
+                                       done + "; simulate it and use its tables");
+}
+
+Pattern without_viip_phases(const Pattern& pattern) {
+  if (pattern.table)
+    fail(ErrorCode::bad_pattern, in_file(pattern, "table") +
+                                     ": a sampled motion and phases with \"viip\" cannot share a "
+                                     "pattern; keep one");
+  const std::vector<Cut> cuts = cuts_of(pattern);
+  Pattern result = pattern;
+  result.correction.reset();
+  result.phases.clear();
+  result.keyframes.clear();
+  for (const Phase& phase : pattern.phases)
+    if (!phase.viip) {
+      result.phases.push_back(phase);
+      result.phases.back().until = time_without(cuts, phase.until);
+    }
+  if (result.phases.empty()) result.phases.push_back({kShortest, Support::both, {}, {}});
+  for (const Keyframe& key : pattern.keyframes) {
+    for (const Cut& cut : cuts)
+      if (key.t > cut.begin && key.t < cut.end)
+        fail(ErrorCode::bad_pattern, key.place + ": the key at " + text::exact(key.t) +
+                                         " s lies inside the VIIP phase from " +
+                                         text::exact(cut.begin) + " to " + text::exact(cut.end) +
+                                         " s; goals take the place of keys there");
+    Keyframe moved = key;
+    moved.t = time_without(cuts, key.t);
+    if (!result.keyframes.empty() && moved.t <= result.keyframes.back().t + 1e-9)
+      merge(result.keyframes.back(), moved);
+    else
+      result.keyframes.push_back(moved);
+  }
+  return result;
+}
+
+CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
+                               const CommandSeries& cut) {
+  const std::vector<Cut> cuts = cuts_of(pattern);
+  const double dt = cut.dt;
+  CommandSeries series = cut;
+  series.samples.clear();
+  const auto tick = [&](double t) { return std::lround(t / dt); };
+  const long last = static_cast<long>(cut.samples.size()) - 1;
+  long done = 0;  // samples of `cut` used
+  for (const Cut& each : cuts) {
+    const long at = std::min(last, tick(each.begin - each.before));
+    for (; done < at; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
+    const CommandSample& from = cut.samples[static_cast<size_t>(at)];
+    const std::string place = in_file(pattern, "phases/" + std::to_string(each.phase)) + ": ";
+    // At the very end of a step the support is still that of the step.
+    const CommandSample& rests = cut.samples[static_cast<size_t>(std::max(0l, at - 1))];
+    if (from.support != Support::both && rests.support != Support::both)
+      fail(ErrorCode::bad_pattern,
+           place + "begins on one foot; let a phase with support both come before it");
+    const double z = from.cog.z() - from.zmp.z();
+    const double limit = kAtRest * std::sqrt(kGravity * z);
+    if (from.dcog.norm() > limit)
+      fail(ErrorCode::bad_pattern, place + "begins while the COG moves at " +
+                                       text::fixed(from.dcog.norm(), 3) + " m/s, limit " +
+                                       text::fixed(limit, 3) +
+                                       " m/s; let the motion before it come to rest");
+    const ViipSpan span{static_cast<long>(series.samples.size()), tick(each.end),
+                        *pattern.phases[each.phase].viip};
+    CommandSample rest = held(model, from);
+    rest.support = Support::both;
+    series.samples.resize(static_cast<size_t>(span.end), rest);
+    series.viip.push_back(span);
+  }
+  const bool all = cuts.back().phase + 1 == pattern.phases.size();
+  if (all)
+    series.samples.push_back(series.samples.back());
+  else
+    for (; done <= last; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
+  series.origin["viip"] = std::to_string(cuts.size()) + " phases carried by VIIP hold the posture";
+  return series;
+}
+
+}  // namespace ayumi

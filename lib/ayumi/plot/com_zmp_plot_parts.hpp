@@ -1,0 +1,49 @@
+#pragma once
+// What plots of runs have in common: styles, legend, title, pushes.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ayumi/plot/axes.hpp"
+#include "ayumi/plot/com_zmp_plot.hpp"
+#include "ayumi/render/log_reading.hpp"
+
+namespace ayumi::plot {
+
+inline constexpr double kLeft = 78, kRight = 18;  ///< margins beside the panels [pixel]
+inline const Eigen::Vector4f kPushColor = {0.62f, 0.16f, 0.48f, 1};
+inline const LineStyle kCommandStyle = {
+    .color = {0.1f, 0.1f, 0.12f, 1}, .width = 1.3, .dashes = {5, 3}};
+inline const LineStyle kReferenceStyle = {
+    .color = {0.42f, 0.42f, 0.46f, 1}, .width = 1.1, .dashes = {1.5, 2}};
+
+inline const LineStyle kLimitStyle = {
+    .color = {0.70f, 0.08f, 0.08f, 1}, .width = 1.1, .dashes = {8, 3, 2, 3}};
+
+/// Style of a run. A single run is drawn in the colour that a closed loop has beside an open one.
+LineStyle run_style(size_t index, size_t count);
+
+bool has_fallen(const SimulationLog& log);
+
+/// The times shown. Throws Error(usage) as draw_loci() says.
+Interval time_range(const std::vector<LociRun>& runs, const LociOptions& options);
+
+/// Pushes of all runs in that time; the same push in several runs once.
+std::vector<PushRecord> all_pushes(const std::vector<LociRun>& runs, const Interval& time);
+
+/// "closed loop (stands)"
+std::string legend_name(const LociRun& run);
+
+using Legend = std::vector<std::pair<std::string, LineStyle>>;
+/// Command where asked for, runs, and the reference ZMP when `with_reference`.
+Legend legend(const std::vector<LociRun>& runs, bool with_reference, bool with_command = true);
+
+/// Entries from left to right, broken where the line ends; returns the bottom [pixel].
+double draw_legend(Drawing& drawing, const Legend& entries, double top);
+
+/// A drawing with its title laid. `what` begins the description: "Loci against time".
+Drawing start_drawing(const std::vector<LociRun>& runs, const LociOptions& options,
+                      const std::string& what);
+
+}  // namespace ayumi::plot

@@ -1,0 +1,55 @@
+#pragma once
+// A flat drawing of lines, areas and text, and its two faces: SVG with real text, and a picture.
+
+#include <Eigen/Core>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "ayumi/render/image.hpp"
+
+namespace ayumi {
+
+/// A polyline or polygon; x to the right, y down [pixel]. Colours sRGB and alpha; alpha 0: none.
+struct DrawnPath {
+  std::vector<Eigen::Vector2d> points = {};
+  bool closed = false;
+  Eigen::Vector4f stroke = {0, 0, 0, 1};
+  Eigen::Vector4f fill = {0, 0, 0, 0};
+  double width = 1;                 ///< of the stroke [pixel]
+  std::vector<double> dashes = {};  ///< on, off, ... [pixel]; empty: solid
+};
+
+struct DrawnText {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< anchor on the base line [pixel]
+  std::string text;
+  double size = 12;  ///< [pixel]
+  TextAnchor anchor = TextAnchor::left;
+  bool bold = false;
+  bool upwards = false;  ///< turned to read from below
+  Eigen::Vector4f color = {0.1f, 0.1f, 0.12f, 1};
+};
+
+struct Drawing {
+  double width = 800, height = 600;  ///< [pixel]
+  std::string title, description;    ///< for those who hear the SVG instead of seeing it
+  std::vector<std::variant<DrawnPath, DrawnText>> items;  ///< in the order they are laid
+};
+
+/// Text between tags or in quotes of SVG and HTML; control characters but line ends are left out.
+std::string escaped(const std::string& text);
+
+/// Width of a text in the font of drawings [pixel].
+double text_width(const std::string& text, double size, bool bold = false);
+
+/// The bytes of an SVG file on a white ground.
+std::string to_svg(const Drawing& drawing);
+
+/// The same as a picture, `scale` picture pixels per pixel of the drawing.
+Image to_image(const Drawing& drawing, double scale = 1);
+
+/// Writes .svg or .png by the name. Throws Error(usage) for another extension, Error(bad_file)
+/// where writing fails.
+void write_drawing(const std::filesystem::path& path, const Drawing& drawing, double png_scale);
+
+}  // namespace ayumi

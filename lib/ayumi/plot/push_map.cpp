@@ -1,0 +1,208 @@
+#include "ayumi/plot/push_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/plot/axes.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector4f;
+
+constexpr double kPanel = 300, kRadius = 108;    // of one panel, of its largest ring [pixel]
+constexpr double kHead = 74, kSide = 14;         // above and beside the panels [pixel]
+constexpr double kPhaseName = 26, kRemark = 20;  // heights of lines of text [pixel]
+constexpr size_t kColumns = 3, kMostLaws = 4;
+constexpr int kCircleSteps = 72;
+
+const Vector4f kGrid = {0.86f, 0.87f, 0.89f, 1}, kQuiet = {0.42f, 0.44f, 0.48f, 1};
+const Vector4f kBound = {0.35f, 0.37f, 0.42f, 1}, kBoundFill = {0.35f, 0.37f, 0.42f, 0.08f};
+const Vector4f kOpen = {0.86f, 0.45f, 0.10f, 1};
+const Vector4f kLaws[kMostLaws] = {{0.08f, 0.33f, 0.68f, 1},
+                                   {0.62f, 0.12f, 0.24f, 1},
+                                   {0.10f, 0.50f, 0.32f, 1},
+                                   {0.45f, 0.25f, 0.60f, 1}};
+
+struct Panel {
+  Vector2d center;
+  double most;  // impulse at the largest ring [N s]
+
+  /// Forward is up, left is left.
+  Vector2d at(double direction, double impulse) const {
+    const double r = kRadius * impulse / most;
+    return center + r * Vector2d(-std::sin(direction), -std::cos(direction));
+  }
+};
+
+DrawnPath circle(const Vector2d& center, double radius, int steps) {
+  DrawnPath path;
+  path.closed = true;
+  for (int i = 0; i < steps; ++i) {
+    const double a = 2 * M_PI * i / steps;
+    path.points.push_back(center + radius * Vector2d(std::cos(a), std::sin(a)));
+  }
+  return path;
+}
+
+void draw_grid(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
+               const std::vector<double>& rings) {
+  const int digits = tick_digits(rings);
+  for (const double ring : rings) {
+    if (ring <= 0) continue;
+    DrawnPath path = circle(panel.center, kRadius * ring / panel.most, kCircleSteps);
+    path.stroke = kGrid;
+    drawing.items.push_back(path);
+  }
+  for (const double direction : phase.direction) {
+    DrawnPath path;
+    path.points = {panel.center, panel.at(direction, panel.most)};
+    path.stroke = kGrid;
+    drawing.items.push_back(path);
+  }
+  for (const double ring : rings)
+    if (ring > 0)
+      drawing.items.push_back(
+          DrawnText{.position = panel.center + Vector2d(3, 3 - kRadius * ring / panel.most),
+                    .text = text::fixed(ring, digits),
+                    .size = 9,
+                    .color = kQuiet});
+  const auto name = [&](const Vector2d& at, const char* word, TextAnchor anchor) {
+    drawing.items.push_back(DrawnText{.position = panel.center + at,
+                                      .text = word,
+                                      .size = 10,
+                                      .anchor = anchor,
+                                      .color = kQuiet});
+  };
+  name({0, -kRadius - 6}, "forward", TextAnchor::center);
+  name({0, kRadius + 14}, "back", TextAnchor::center);
+  name({-kRadius - 4, 3}, "left", TextAnchor::right);
+  name({kRadius + 4, 3}, "right", TextAnchor::left);
+}
+
+void draw_curve(Drawing& drawing, const Panel& panel, const std::vector<double>& direction,
+                const PushMapCurve& curve, const Vector4f& color) {
+  DrawnPath path;
+  path.closed = true;
+  path.stroke = color;
+  path.width = 1.8;
+  for (size_t i = 0; i < direction.size(); ++i)
+    path.points.push_back(panel.at(direction[i], curve.impulse[i]));
+  drawing.items.push_back(path);
+  for (size_t i = 0; i < direction.size(); ++i) {
+    DrawnPath dot = circle(path.points[i], 2.6, 12);
+    dot.stroke = color;
+    dot.width = 1.2;
+    dot.fill = i < curve.capped.size() && curve.capped[i] ? Vector4f(1, 1, 1, 1) : color;
+    drawing.items.push_back(dot);
+  }
+}
+
+void draw_panel(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
+                const std::vector<double>& rings) {
+  drawing.items.push_back(DrawnText{.position = panel.center - Vector2d(0, kRadius + kPhaseName),
+                                    .text = phase.name,
+                                    .size = 12,
+                                    .anchor = TextAnchor::center,
+                                    .bold = true});
+  DrawnPath bound;
+  bound.closed = true;
+  bound.stroke = kBound;
+  bound.fill = kBoundFill;
+  bound.width = 1.3;
+  bound.dashes = {5, 3};
+  for (size_t i = 0; i < phase.direction.size(); ++i)
+    bound.points.push_back(panel.at(phase.direction[i], std::max(0.0, phase.bound[i])));
+  draw_grid(drawing, panel, phase, rings);
+  drawing.items.push_back(bound);
+  for (size_t c = 0; c < phase.curves.size(); ++c)
+    draw_curve(drawing, panel, phase.direction, phase.curves[c], c == 0 ? kOpen : kLaws[c - 1]);
+}
+
+void draw_legend(Drawing& drawing, const PushMap& map, bool capped) {
+  double x = kSide;
+  const auto entry = [&](const std::string& name, const Vector4f& color, bool dashed) {
+    DrawnPath line;
+    line.points = {{x, kHead - 28}, {x + 22, kHead - 28}};
+    line.stroke = color;
+    line.width = 2;
+    if (dashed) line.dashes = {5, 3};
+    drawing.items.push_back(line);
+    drawing.items.push_back(DrawnText{.position = {x + 27, kHead - 24}, .text = name, .size = 11});
+    x += 27 + text_width(name, 11) + 18;
+  };
+  entry("capture bound B", kBound, true);
+  entry(map.baseline, kOpen, false);
+  for (size_t i = 0; i < map.laws.size(); ++i) entry(map.laws[i], kLaws[i], false);
+  std::string unit = "N s, through the COG";
+  if (capped) unit += "; hollow: the largest tried";
+  drawing.items.push_back(
+      DrawnText{.position = {x, kHead - 24}, .text = unit, .size = 11, .color = kQuiet});
+}
+
+void check(const PushMap& map) {
+  const auto refuse = [](const std::string& why) { fail(ErrorCode::usage, "push map: " + why); };
+  if (map.phases.empty()) refuse("there is no phase to draw");
+  if (map.laws.size() > kMostLaws) refuse("more than four controllers cannot be told apart");
+  for (const PushMapPhase& phase : map.phases) {
+    if (phase.curves.size() != map.laws.size() + 1 || phase.bound.size() != phase.direction.size())
+      refuse(phase.name + ": a curve is missing");
+    for (const PushMapCurve& curve : phase.curves)
+      if (curve.impulse.size() != phase.direction.size())
+        refuse(phase.name + ": a curve has not one value per direction");
+  }
+}
+
+}  // namespace
+
+Drawing draw_push_map(const PushMap& map) {
+  check(map);
+  double most = 0;
+  bool capped = false;
+  for (const PushMapPhase& phase : map.phases) {
+    for (const double bound : phase.bound) most = std::max(most, bound);
+    for (const PushMapCurve& curve : phase.curves) {
+      for (const double impulse : curve.impulse) most = std::max(most, impulse);
+      for (const bool c : curve.capped) capped = capped || c;
+    }
+  }
+  if (!(most > 0)) most = 1;
+  const std::vector<double> rings = nice_ticks({0, most}, 5);
+  most = std::max(most, rings.back());
+
+  const size_t columns = std::min(kColumns, map.phases.size());
+  const size_t rows = (map.phases.size() + columns - 1) / columns;
+  Drawing drawing;
+  drawing.width = std::max(2 * kSide + kPanel * static_cast<double>(columns), 620.0);
+  for (const std::string& remark : map.remarks)
+    drawing.width = std::max(drawing.width, 2 * kSide + text_width(remark, 11));
+  drawing.width = std::max(drawing.width, 2 * kSide + text_width(map.title, 15, true));
+  drawing.height = kHead + kPanel * static_cast<double>(rows) +
+                   kRemark * static_cast<double>(map.remarks.size()) + kSide;
+  drawing.title = map.title;
+  drawing.description = "largest survivable impulse by direction and gait phase";
+  drawing.items.push_back(
+      DrawnText{.position = {kSide, 26}, .text = map.title, .size = 15, .bold = true});
+  draw_legend(drawing, map, capped);
+  for (size_t i = 0; i < map.phases.size(); ++i) {
+    const Vector2d corner(kSide + kPanel * static_cast<double>(i % columns),
+                          kHead + kPanel * static_cast<double>(i / columns));
+    draw_panel(drawing, {corner + Vector2d(kPanel / 2, kPanel / 2 + 8), most}, map.phases[i],
+               rings);
+  }
+  double y = kHead + kPanel * static_cast<double>(rows) + 10;
+  for (const std::string& remark : map.remarks) {
+    drawing.items.push_back(DrawnText{.position = {kSide, y}, .text = remark, .size = 11});
+    y += kRemark;
+  }
+  return drawing;
+}
+
+void write_push_map(const PushMap& map, const std::filesystem::path& path) {
+  write_drawing(path, draw_push_map(map), 2);
+}
+
+}  // namespace ayumi

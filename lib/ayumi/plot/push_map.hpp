@@ -1,0 +1,41 @@
+#pragma once
+// The polar map of a push study: for every gait phase the largest survivable impulse by direction,
+// each law beside open loop and the capture bound. Seen from above, forward is up.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ayumi/plot/drawing.hpp"
+
+namespace ayumi {
+
+/// One curve of a panel; values by direction.
+struct PushMapCurve {
+  std::vector<double> impulse;    ///< [N s]
+  std::vector<bool> capped = {};  ///< the search ended there; empty: nowhere
+};
+
+struct PushMapPhase {
+  std::string name;
+  std::vector<double> direction;     ///< from forward, to the left [rad]
+  std::vector<double> bound;         ///< capture bound [N s]
+  std::vector<PushMapCurve> curves;  ///< open loop first, then as PushMap::laws
+};
+
+struct PushMap {
+  std::string title;
+  std::string baseline = "open loop";  ///< name of the first curve
+  std::vector<std::string> laws;       ///< names of the others
+  std::vector<PushMapPhase> phases;
+  std::vector<std::string> remarks;  ///< lines below, e.g. the figures over all cases
+};
+
+/// One polar panel per phase, all with the same radius. Throws Error(usage) when there is no phase,
+/// a curve has another length than its directions, or more than four laws.
+Drawing draw_push_map(const PushMap& map);
+
+/// As .svg or .png. Errors as above, and Error(bad_file).
+void write_push_map(const PushMap& map, const std::filesystem::path& path);
+
+}  // namespace ayumi

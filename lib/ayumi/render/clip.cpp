@@ -1,0 +1,390 @@
+#include "ayumi/render/clip.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/render/encoder.hpp"
+#include "ayumi/render/simplify.hpp"
+
+namespace ayumi {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+void check(const RobotModel& model, const SimulationLog& log, const ClipOptions& options) {
+  const double last = duration(log);
+  const auto need = [](bool good, const std::string& what) {
+    if (!good) fail(ErrorCode::usage, what);
+  };
+  need(log.samples.front().state.theta.size() == model.dof_count(),
+       "the run has " + std::to_string(log.samples.front().state.theta.size()) +
+           " joints, the robot " + model.name() + " has " + std::to_string(model.dof_count()) +
+           ": they do not belong together");
+  if (options.ghost.log) {
+    duration(*options.ghost.log);
+    need(options.ghost.log->joints == log.joints,
+         "ghost: the other run is one of another robot; its joints are not the same");
+  }
+  need(!options.ghost.command || log.samples.front().command_theta.size() == model.dof_count(),
+       "ghost: the log does not hold the commanded posture; simulate again");
+  need(options.fps > 0 && options.fps <= 1000,
+       "fps: " + text::exact(options.fps) + " is not between 0 and 1000");
+  need(options.speed > 0 && std::isfinite(options.speed),
+       "speed: " + text::exact(options.speed) + " is not above 0");
+  need(options.begin >= 0 && options.begin <= last, "begin: " + text::exact(options.begin) +
+                                                        " s is outside the run (0 to " +
+                                                        text::brief(last) + " s)");
+  need(options.end < 0 || options.end >= options.begin,
+       "end: " + text::exact(options.end) + " s is before the beginning");
+  need(options.at >= 0 && options.at <= last + 1e-9, "at: " + text::exact(options.at) +
+                                                         " s is outside the run (0 to " +
+                                                         text::brief(last) + " s)");
+}
+
+double robot_height(const std::vector<BodySurface>& surface, const RobotModel& model,
+                    const SimulationLog& log) {
+  const SimulationSample& first = log.samples.front();
+  const Eigen::AlignedBox3d box = robot_bounds(surface, body_poses(model, first.state));
+  if (box.isEmpty()) return 1.0;
+  // Where nothing is drawn above the COG, that around which the camera looks.
+  const double around_cog = 1.8 * (first.cog.z() - box.min().z());
+  return std::max({1e-3, box.sizes().maxCoeff(), around_cog});
+}
+
+/// The robot's surface, simplified where it is too fine; `notes` says so.
+std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOptions& options,
+                                       std::vector<std::string>& notes) {
+  std::vector<BodySurface> surface = robot_surface(model);
+  const size_t before = triangle_count(surface);
+  const double cell = simplify(surface, options.max_triangles);
+  if (!has_visuals(model))
+    notes.push_back(
+        "the robot has no visuals: drawn by its collision shapes, and sticks between joints where "
+        "it has none");
+  if (cell > 0)
+    notes.push_back("the robot has " + std::to_string(before) + " triangles; drawn with " +
+                    std::to_string(triangle_count(surface)) + ", points moved by at most " +
+                    text::brief(1e3 * std::sqrt(3.0) * cell, 2) + " mm");
+  return surface;
+}
+
+/// What stands on the floor, and where a field takes the place of the plane.
+Scenery scenery_of(const SimulationLog& log) {
+  Scenery scenery = {make_scenery(log.world), {}};
+  for (const HeightField& field : log.world.fields) {
+    const Eigen::Vector2d size(double(field.heights.rows() - 1), double(field.heights.cols() - 1));
+    scenery.hole = {field.origin, field.origin + field.spacing * size};
+  }
+  return scenery;
+}
+
+CameraPath make_path(const SimulationLog& log, const ClipOptions& options, double height) {
+  std::vector<Vector3d> cog;
+  for (const SimulationSample& sample : log.samples) cog.push_back(sample.cog);
+  return {options.camera, std::move(cog), log.dt, height,
+          double(options.picture.width) / options.picture.height};
+}
+
+std::string verdict_text(const SimulationResult& result) {
+  if (result.outcome == Outcome::fell) return "fell at " + text::fixed(result.fell_at, 2) + " s";
+  return result.outcome == Outcome::stands ? "stands" : "unsettled";
+}
+
+/// Name without folder and extension.
+std::string plain_name(const std::string& file) { return fs::path(file).stem().string(); }
+
+/// Frames 0..count-1 in order from `threads` workers that each own a renderer. At most two finished
+/// frames wait per worker, so memory does not grow with the clip.
+class FrameQueue {
+ public:
+  using MakeRenderer = std::function<std::unique_ptr<ClipRenderer>()>;
+  FrameQueue(int threads, int count, MakeRenderer make, std::function<double(int)> time) {
+    const int workers = std::clamp(threads, 1, std::max(1, count));
+    slots_ = std::vector<Slot>(static_cast<size_t>(workers));
+    for (int w = 0; w < workers; ++w)
+      threads_.emplace_back([this, w, workers, count, make, time] {
+        Slot& slot = slots_[size_t(w)];
+        try {
+          const std::unique_ptr<ClipRenderer> renderer = make();
+          if (w == 0) {
+            const std::lock_guard lock(mutex_);
+            notes_ = renderer->notes();
+          }
+          for (int k = w; k < count; k += workers)
+            if (!put(slot, renderer->frame(time(k)))) return;
+        } catch (...) {
+          const std::lock_guard lock(mutex_);
+          slot.error = std::current_exception();
+          changed_.notify_all();
+        }
+      });
+  }
+  ~FrameQueue() {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+    }
+    changed_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+  FrameQueue(const FrameQueue&) = delete;
+  FrameQueue& operator=(const FrameQueue&) = delete;
+
+  /// What the renderers draw otherwise than asked; known once a frame was taken.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+  Image take(int k) {
+    Slot& slot = slots_[size_t(k) % slots_.size()];
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return !slot.ready.empty() || slot.error; });
+    if (slot.ready.empty()) std::rethrow_exception(slot.error);
+    Image image = std::move(slot.ready.front());
+    slot.ready.erase(slot.ready.begin());
+    changed_.notify_all();
+    return image;
+  }
+
+ private:
+  struct Slot {
+    std::vector<Image> ready;
+    std::exception_ptr error;
+  };
+
+  bool put(Slot& slot, Image image) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return slot.ready.size() < 2 || stop_; });
+    if (stop_) return false;
+    slot.ready.push_back(std::move(image));
+    changed_.notify_all();
+    return true;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stop_ = false;
+  std::vector<std::string> notes_;
+  std::vector<Slot> slots_;
+  std::vector<std::thread> threads_;
+};
+
+std::string frame_name(int k) {
+  const std::string number = std::to_string(k);
+  return "frame_" + std::string(number.size() < 5 ? 5 - number.size() : 0, '0') + number + ".png";
+}
+
+/// A message with the name people gave instead of the temporary one.
+std::string with_name(std::string message, const std::string& temporary, const std::string& name) {
+  for (size_t at; (at = message.find(temporary)) != std::string::npos;)
+    message.replace(at, temporary.size(), name);
+  return message;
+}
+
+/// Fills a new folder beside `path`, then gives it that name.
+void write_folder(const fs::path& path, const std::function<void(const fs::path&)>& produce) {
+  if (fs::exists(path) && !(fs::is_directory(path) && fs::is_empty(path)))
+    fail(ErrorCode::bad_file, path.string() + ": exists already; remove it or choose another");
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(parent))
+    fail(ErrorCode::bad_file,
+         path.string() + ": the folder " + parent.string() + " does not exist; create it first");
+  const fs::path temporary = parent / (path.filename().string() + ".part");
+  std::error_code ignored;
+  try {
+    fs::remove_all(temporary);
+    fs::create_directory(temporary);
+    produce(temporary);
+    fs::rename(temporary, path);
+  } catch (const fs::filesystem_error& error) {
+    fs::remove_all(temporary, ignored);
+    fail(ErrorCode::bad_file,
+         path.string() + ": cannot be written (" + error.code().message() + ")");
+  } catch (const Error& error) {
+    fs::remove_all(temporary, ignored);
+    fail(error.code(), with_name(error.what(), temporary.string(), path.string()));
+  } catch (...) {
+    fs::remove_all(temporary, ignored);
+    throw;
+  }
+}
+
+}  // namespace
+
+ClipRenderer::ClipRenderer(const RobotModel& model, const SimulationLog& log,
+                           const ClipOptions& options)
+    : model_(model),
+      log_(log),
+      options_((check(model, log, options), options)),
+      pushes_(pushes(log)),
+      surface_(drawn_surface(model, options, notes_)),
+      height_(robot_height(surface_, model, log)),
+      bumps_(rising_bumps(model, log)),
+      renderer_(surface_, options.picture, scenery_of(log)),
+      path_(make_path(log, options, height_)) {
+  surface_ = {};
+  notes_.insert(notes_.end(), renderer_.notes().begin(), renderer_.notes().end());
+}
+
+void ClipRenderer::add_ghost(double t, Scene& scene) const {
+  if (options_.ghost.log)
+    scene.exposures.push_back({body_poses(model_, sample_at(*options_.ghost.log, t).state)});
+  if (!options_.ghost.command) return;
+  const SimulationSample sample = sample_at(log_, t);
+  RobotState state = sample.state;
+  state.base = sample.command_base;
+  state.theta = sample.command_theta;
+  scene.exposures.push_back({body_poses(model_, state)});
+}
+
+Scene ClipRenderer::scene_at(double t, Overlay& overlay) const {
+  const SimulationSample sample = sample_at(log_, t);
+  Scene scene;
+  scene.poses = body_poses(model_, sample.state);
+  scene.camera = path_.at(t);
+  scene.ground = ground_at(log_, t);
+  scene.floor = floor_at(log_, t);
+  scene.bumps = make_bumps(bumps_, log_.world.height, t);
+  if (options_.overlay.heat) scene.heat = joint_heat(model_, log_.provenance.profile, sample);
+  add_ghost(t, scene);
+  overlay = make_overlay(model_, log_, pushes_, t, sample, scene.poses, height_, options_.overlay);
+  scene.overlay = std::move(overlay.triangles);
+  return scene;
+}
+
+Image ClipRenderer::frame(double t) {
+  Overlay overlay;
+  const Scene scene = scene_at(t, overlay);
+  return finished(scene, overlay, t);
+}
+
+Image ClipRenderer::exposures(const std::vector<double>& times) {
+  if (times.empty()) fail(ErrorCode::usage, "a picture needs at least one instant");
+  Overlay overlay;
+  Scene scene = scene_at(times.back(), overlay);
+  scene.exposures.clear();
+  for (size_t i = 0; i + 1 < times.size(); ++i) {
+    const double share = double(i + 1) / double(times.size());
+    scene.exposures.push_back({body_poses(model_, sample_at(log_, times[i]).state),
+                               Eigen::Vector4f::Zero(), 0.25 + 0.5 * share});
+  }
+  return finished(scene, overlay, times.back());
+}
+
+Image ClipRenderer::finished(const Scene& scene, const Overlay& overlay, double t) {
+  Image image = renderer_.render(scene);
+  const double size = std::clamp(image.height / 32.0, 9.0, 60.0);
+  for (const Label& label : overlay.labels) {
+    const Vector3d at = project(scene.camera, image.width, image.height, label.position);
+    const auto opacity = static_cast<float>(label.opacity);
+    const TextStyle style = {.size = size,
+                             .bold = true,
+                             .anchor = TextAnchor::center,
+                             .color = {0.45f, 0.08f, 0.33f, opacity},
+                             .plate = {1, 1, 1, 0.75f * opacity}};
+    // Between the lines of text above and below.
+    const double y = std::clamp(at.y(), std::min(2.6 * size, 0.5 * image.height),
+                                std::max(image.height - 2.6 * size, 0.5 * image.height));
+    if (at.z() > 0) draw_text(image, at.x(), y, label.text, style);
+  }
+  if (options_.overlay.caption) write_caption(image, t);
+  return image;
+}
+
+void ClipRenderer::write_caption(Image& image, double t) const {
+  const double size = std::clamp(image.height / 36.0, 9.0, 54.0), margin = 0.6 * size;
+  const TextStyle plain = {.size = size, .plate = {1, 1, 1, 0.72f}};
+  TextStyle bold = plain;
+  bold.bold = true;
+  const std::string title =
+      options_.title.empty() ? plain_name(log_.provenance.pattern) : options_.title;
+  double x = margin;
+  const double top = margin + 0.7 * size, bottom = image.height - top;
+  x += draw_text(image, x, top, title, bold);
+  if (!log_.controller.empty()) x += draw_text(image, x, top, log_.controller, plain);
+  draw_text(image, x, top, "t = " + text::fixed(t, 3) + " s", plain);
+  TextStyle verdict = bold;
+  verdict.anchor = TextAnchor::right;
+  verdict.color = log_.result.outcome == Outcome::stands ? Eigen::Vector4f(0.02f, 0.40f, 0.25f, 1)
+                                                         : Eigen::Vector4f(0.70f, 0.08f, 0.08f, 1);
+  if (!log_.controller.empty())  // a plan neither stands nor falls
+    draw_text(image, image.width - margin, top, verdict_text(log_.result), verdict);
+  struct Entry {
+    bool shown;
+    std::string text;
+    Eigen::Vector4f color;
+  };
+  using namespace overlay_color;
+  const OverlayOptions& on = options_.overlay;
+  const bool ghost = options_.ghost.command || options_.ghost.log;
+  const std::array<Entry, 8> entries = {
+      {{on.cog, "● COG", kCog},
+       {on.zmp, "● ZMP", kZmp},
+       {on.reference_zmp, "○ ref ZMP", kReferenceZmp},
+       {on.support, "▭ support", kSupport},
+       {on.forces, "↑ foot force", kForce},
+       {on.push && !pushes_.empty(), "→ push", kPush},
+       {on.heat, "■ joint near a limit", {1, 0.2f, 0, 1}},
+       {ghost, "▒ " + (options_.ghost.command ? "command" : options_.ghost.name), kSupport}}};
+  x = margin;
+  for (const Entry& entry : entries) {
+    if (!entry.shown) continue;
+    TextStyle style = plain;
+    style.size = 0.8 * size;
+    style.color = entry.color;
+    style.color.head<3>() *= 0.75f;  // dark enough to be read on the plate
+    x += draw_text(image, x, bottom, entry.text, style);
+  }
+}
+
+ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const fs::path& path,
+                       const ClipOptions& options, const Progress& progress) {
+  check(model, log, options);
+  const RenderOptions& picture = options.picture;
+  const auto make = [&] { return std::make_unique<ClipRenderer>(model, log, options); };
+  if (path.extension() == ".png") {
+    const auto renderer = make();
+    write_png(path, renderer->frame(options.at));
+    return {1, picture.width, picture.height, options.fps, renderer->notes()};
+  }
+  const double end = options.end < 0 ? duration(log) : std::min(options.end, duration(log));
+  const double step = options.speed / options.fps;
+  const int count = static_cast<int>(std::floor((end - options.begin) / step + 1e-6)) + 1;
+  const auto time = [&](int k) { return options.begin + k * options.speed / options.fps; };
+  std::vector<std::string> notes;
+  const auto frames = [&](const std::function<void(int, const Image&)>& use) {
+    FrameQueue queue(options.threads, count, make, time);
+    for (int k = 0; k < count; ++k) {
+      report(progress, {"preview", double(k) / count, "frame " + std::to_string(k)});
+      use(k, queue.take(k));
+      if (k == 0) notes = queue.notes();
+    }
+  };
+  if (path.extension().empty()) {
+    write_folder(path, [&](const fs::path& folder) {
+      frames([&](int k, const Image& image) { write_png(folder / frame_name(k), image); });
+    });
+  } else {
+    write_file_with(path, [&](const fs::path& temporary) {
+      try {
+        ClipEncoder encoder(temporary, picture.width, picture.height, options.fps, options.encoder);
+        frames([&](int, const Image& image) { encoder.add(image); });
+        encoder.finish();
+      } catch (const Error& error) {
+        fail(error.code(), with_name(error.what(), temporary.string(), path.string()));
+      }
+    });
+  }
+  report(progress, {"preview", 1.0, std::to_string(count) + " frames"});
+  return {count, picture.width, picture.height, options.fps, notes};
+}
+
+}  // namespace ayumi

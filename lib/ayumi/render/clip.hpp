@@ -1,0 +1,85 @@
+#pragma once
+// A run as a clip, a single picture or a folder of frames. Nothing is simulated again.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/render/camera.hpp"
+#include "ayumi/render/overlay.hpp"
+#include "ayumi/render/renderer.hpp"
+#include "ayumi/render/scenery.hpp"
+#include "ayumi/sim/simulation_log.hpp"
+
+namespace ayumi {
+
+/// The robot a second time, translucent.
+struct GhostOptions {
+  bool command = false;                ///< the commanded posture of the same log
+  const SimulationLog* log = nullptr;  ///< or another run of the same robot; must outlive the clip
+  std::string name = "other run";      ///< of that one, in the legend
+};
+
+struct ClipOptions {
+  RenderOptions picture;
+  CameraOptions camera;
+  OverlayOptions overlay;
+  GhostOptions ghost;
+  size_t max_triangles = 400'000;  ///< of the robot; beyond it the surface is simplified
+  double fps = 30;                 ///< frames per second of the clip
+  double speed = 1;                ///< seconds of the run per second of the clip
+  double begin = 0;                ///< first instant shown [s]
+  double end = -1;                 ///< last; negative: of the run [s]
+  double at = 0;                   ///< instant of a single picture [s]
+  std::string title;               ///< first words of the caption; empty: the pattern's name
+  int threads = 1;                 ///< renderers at work; the bytes do not depend on it
+  std::string encoder = "ffmpeg";  ///< program
+};
+
+struct ClipSummary {
+  int frames = 0;
+  int width = 0, height = 0;  ///< [pixel]
+  double fps = 0;
+  std::vector<std::string> notes;  ///< what is drawn otherwise than the robot's files say, and why
+};
+
+/// One picture of the run at `t`, overlays and caption included.
+class ClipRenderer {
+ public:
+  /// `model` and `log` must outlive it. Throws Error(usage) for an empty log, options out of range,
+  /// or a log of another robot.
+  ClipRenderer(const RobotModel& model, const SimulationLog& log, const ClipOptions& options);
+  Image frame(double t);
+  /// Several instants in one picture: the last in full, the others lighter the earlier they are.
+  Image exposures(const std::vector<double>& times);
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  const RobotModel& model_;
+  const SimulationLog& log_;
+  ClipOptions options_;
+  std::vector<PushRecord> pushes_;
+  std::vector<std::string> notes_;
+  std::vector<BodySurface> surface_;  ///< until the renderer has it
+  double height_;                     ///< of the robot [m]
+  std::vector<RisingBump> bumps_;
+  Renderer renderer_;
+  CameraPath path_;
+
+  Scene scene_at(double t, Overlay& overlay) const;
+  void add_ghost(double t, Scene& scene) const;
+  Image finished(const Scene& scene, const Overlay& overlay, double t);
+  void write_caption(Image& image, double t) const;
+};
+
+/// Writes by the name of `path`: .mp4, .webm, .gif: a clip whose frame k shows begin + k speed/fps;
+/// .png: one picture at options.at; no extension: a folder of frame_00000.png, ... Whole or not at
+/// all. Throws Error(usage) for options out of range, Error(bad_file) naming the path where writing
+/// or ffmpeg fails, Interrupted when `progress` says stop.
+ClipSummary write_clip(const RobotModel& model, const SimulationLog& log,
+                       const std::filesystem::path& path, const ClipOptions& options,
+                       const Progress& progress = {});
+
+}  // namespace ayumi

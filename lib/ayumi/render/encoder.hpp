@@ -1,0 +1,41 @@
+#pragma once
+// Clips by the `ffmpeg` program, run as a child process and fed frames through a pipe.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ayumi/render/image.hpp"
+
+namespace ayumi {
+
+/// Feeds frames to one ffmpeg process. A process that is not finished is ended by the destructor.
+class ClipEncoder {
+ public:
+  /// Format by the extension of `path`: .mp4 (H.264), .webm (VP9), .gif, .apng. Throws Error(usage)
+  /// for another, or for an odd size where the format needs an even one; Error(bad_file) when
+  /// ffmpeg cannot be started. The same frames give the same bytes.
+  ClipEncoder(const std::filesystem::path& path, int width, int height, double fps,
+              const std::string& program = "ffmpeg");
+  ~ClipEncoder();
+  ClipEncoder(const ClipEncoder&) = delete;
+  ClipEncoder& operator=(const ClipEncoder&) = delete;
+
+  /// Throws Error(bad_file) with ffmpeg's last words when it has stopped.
+  void add(const Image& frame);
+  /// Waits until the file is complete; throws as add().
+  void finish();
+
+ private:
+  std::filesystem::path path_;  ///< its extension says the format
+  std::string program_;
+  int width_, height_;
+  int pipe_ = -1, log_ = -1;
+  int process_ = -1;
+  std::vector<std::uint8_t> planes_;  ///< of the frame last added
+
+  int wait();
+  [[noreturn]] void fail_with_log();
+};
+
+}  // namespace ayumi

@@ -1,0 +1,187 @@
+#include "ayumi/render/overlay.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/math/polygon.hpp"
+
+// Marks on the ground lie in layers a fraction of a millimetre apart, so that the depth test keeps
+// their order: support polygon, trails, cross, ring, disc.
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector4f;
+
+/// The ground plane and the size of the marks on it.
+struct Plane {
+  Vector3d normal, u, v, origin;
+  double size;  ///< of the robot [m]
+
+  /// Down along gravity onto the plane, then `layer` steps above it.
+  Vector3d drop(const Vector3d& p, int layer) const {
+    const Vector3d on = p - Vector3d::UnitZ() * (normal.dot(p - origin) / normal.z());
+    return on + normal * (0.0008 * size * layer);
+  }
+};
+
+Plane make_plane(const Eigen::Isometry3d& ground, double size) {
+  const Eigen::Matrix3d axes = ground.linear();
+  return {axes.col(2), axes.col(0), axes.col(1), ground.translation(), size};
+}
+
+Vector4f faded(Vector4f color, double opacity) {
+  color[3] *= static_cast<float>(opacity);
+  return color;
+}
+
+void add_support(Triangles& target, std::vector<Vector3d> corners, const Plane& plane) {
+  if (corners.size() < 3) return;
+  for (Vector3d& corner : corners) corner += plane.normal * (0.0008 * plane.size);
+  add_polygon(target, corners, faded(overlay_color::kSupport, 0.22));
+  for (Vector3d& corner : corners) corner += plane.normal * (0.0008 * plane.size);
+  add_band(target, corners,
+           std::vector<Vector4f>(corners.size(), faded(overlay_color::kSupport, 0.9)), plane.normal,
+           0.006 * plane.size, true);
+}
+
+void add_trail(Triangles& target, const SimulationLog& log, double t, const OverlayOptions& options,
+               const Plane& plane, Vector3d SimulationSample::*quantity, const Vector4f& color,
+               int layer) {
+  std::vector<Vector3d> points;
+  std::vector<Vector4f> colors;
+  const int steps = std::max(2, static_cast<int>(std::ceil(options.trail / 0.01)));
+  for (int k = steps; k >= 0; --k) {
+    const double age = options.trail * k / steps;
+    if (t - age < 0) continue;
+    const auto index =
+        std::min(log.samples.size() - 1, static_cast<size_t>(std::llround((t - age) / log.dt)));
+    const Vector3d point = plane.drop(log.samples[index].*quantity, layer);
+    if (!points.empty() && (point - points.back()).norm() < 1e-5) {
+      colors.back() = faded(color, 1 - age / options.trail);
+      continue;
+    }
+    points.push_back(point);
+    colors.push_back(faded(color, 1 - age / options.trail));
+  }
+  add_band(target, points, colors, plane.normal, 0.006 * plane.size);
+}
+
+void add_cog(Triangles& target, const Vector3d& cog, const Plane& plane) {
+  const double size = plane.size;
+  const Vector3d foot = plane.drop(cog, 5);
+  const Vector4f color = overlay_color::kCog;
+  add_sphere(target, cog, 0.026 * size, color);
+  add_rod(target, foot, cog, 0.0035 * size, faded(color, 0.85));
+  for (const double turn : {-1.0, 1.0}) {
+    const Vector3d arm = (0.025 * size) * (plane.u + turn * plane.v);
+    add_band(target, {foot - arm, foot + arm}, {color, color}, plane.normal, 0.010 * size);
+  }
+}
+
+void add_forces(Triangles& target, const SimulationSample& sample, double weight,
+                const Plane& plane) {
+  for (size_t side = 0; side < 2; ++side) {
+    const double share = sample.foot_force[side].norm() / weight;
+    if (share < 0.01) continue;
+    // Impacts exceed the weight many times; their arrow ends at twice the weight.
+    const Vector3d arrow =
+        sample.foot_force[side].normalized() * (0.5 * plane.size * std::min(share, 2.0));
+    add_arrow(target, sample.foot_cop[side], sample.foot_cop[side] + arrow, 0.008 * plane.size,
+              overlay_color::kForce);
+  }
+}
+
+void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double t,
+                const SimulationSample& sample, const OverlayOptions& options, double size) {
+  for (const PushRecord& push : pushed) {
+    const double last = std::max(push.end, push.begin + options.push_hold);
+    if (t < push.begin - 1e-9 || t >= last) continue;
+    const double fade_from = std::max(push.end, push.begin + 0.6 * options.push_hold);
+    const double opacity = t <= fade_from ? 1.0 : (last - t) / (last - fade_from);
+    const Vector3d direction = (push.impulse.norm() > 0 ? push.impulse : push.peak).normalized();
+    // The arrow's tip touches the robot there; it goes on with the COG while it fades.
+    const Vector3d tip = sample.cog + push.from_cog;
+    const Vector3d tail = tip - 0.6 * size * direction;
+    add_arrow(overlay.triangles, tail, tip, 0.014 * size, faded(overlay_color::kPush, opacity));
+    overlay.labels.push_back({tail + Vector3d::UnitZ() * (0.08 * size), push_text(push), opacity});
+  }
+}
+
+}  // namespace
+
+std::vector<Vector3d> support_corners(const RobotModel& model,
+                                      const std::vector<Eigen::Isometry3d>& poses,
+                                      const std::array<bool, 2>& contact,
+                                      const Eigen::Isometry3d& ground) {
+  if (!model.has_soles()) return {};
+  const Plane plane = make_plane(ground, 1);
+  std::vector<Eigen::Vector2d> points;
+  for (const Side side : {Side::left, Side::right}) {
+    if (!contact[static_cast<size_t>(side)]) continue;
+    const Sole& sole = model.sole(side);
+    const Eigen::Isometry3d frame = poses[size_t(sole.body)] * sole.frame;
+    for (const Eigen::Vector2d& corner : sole.polygon) {
+      const Vector3d p = plane.drop(frame * Vector3d(corner.x(), corner.y(), 0), 0) - plane.origin;
+      points.emplace_back(plane.u.dot(p), plane.v.dot(p));
+    }
+  }
+  if (points.empty()) return {};
+  std::vector<Vector3d> corners;
+  const ConvexPolygon hull(std::move(points));
+  for (const Eigen::Vector2d& corner : hull.vertices())
+    corners.push_back(plane.origin + corner.x() * plane.u + corner.y() * plane.v);
+  return corners;
+}
+
+std::vector<float> joint_heat(const RobotModel& model, const std::string& profile,
+                              const SimulationSample& sample) {
+  const std::vector<std::string> known = model.profile_names();
+  const bool has = std::find(known.begin(), known.end(), profile) != known.end();
+  const ActuatorLimits& limits = model.limits(has ? profile : "");
+  std::vector<float> heat;
+  for (const Body& body : model.bodies()) {
+    double use = 0;
+    const auto i = body.dof;
+    if (i >= 0) {
+      const Dof& dof = model.dofs()[size_t(i)];
+      if (dof.limited && dof.upper > dof.lower)
+        use = std::abs(2 * sample.state.theta[i] - dof.upper - dof.lower) / (dof.upper - dof.lower);
+      if (sample.state.dtheta.size() > i)
+        use = std::max(use, std::abs(sample.state.dtheta[i]) / limits.speed[i]);
+      if (sample.torque.size() > i)
+        use = std::max(use, std::abs(sample.torque[i]) / limits.peak_torque[i]);
+    }
+    heat.push_back(static_cast<float>(std::clamp(3 * use - 2, 0.0, 1.0)));
+  }
+  return heat;
+}
+
+Overlay make_overlay(const RobotModel& model, const SimulationLog& log,
+                     const std::vector<PushRecord>& pushed, double t,
+                     const SimulationSample& sample, const std::vector<Eigen::Isometry3d>& poses,
+                     double height, const OverlayOptions& options) {
+  Overlay overlay;
+  Triangles& target = overlay.triangles;
+  const Eigen::Isometry3d ground = marked_ground(log, t, sample);
+  const Plane plane = make_plane(ground, height);
+  if (options.support)
+    add_support(target, support_corners(model, poses, sample.planned_contact, ground), plane);
+  if (options.trails && options.cog)
+    add_trail(target, log, t, options, plane, &SimulationSample::cog, overlay_color::kCog, 3);
+  if (options.trails && options.zmp)
+    add_trail(target, log, t, options, plane, &SimulationSample::zmp, overlay_color::kZmp, 4);
+  if (options.cog) add_cog(target, sample.cog, plane);
+  if (options.reference_zmp)
+    add_ring(target, plane.drop(sample.reference_zmp, 6), plane.normal, 0.026 * height,
+             0.036 * height, overlay_color::kReferenceZmp);
+  if (options.zmp && sample.fz > 0)
+    add_ring(target, plane.drop(sample.zmp, 7), plane.normal, 0, 0.020 * height,
+             overlay_color::kZmp);
+  if (options.forces) add_forces(target, sample, 9.81 * model.mass(), plane);
+  if (options.push) add_pushes(overlay, pushed, t, sample, options, height);
+  return overlay;
+}
+
+}  // namespace ayumi

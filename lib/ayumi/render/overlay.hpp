@@ -1,0 +1,69 @@
+#pragma once
+// What a picture shows besides the robot: COG, ZMP, reference ZMP, support polygon, contact forces,
+// pushes, trails. One colour each, told apart also by the colour-blind and by shape.
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/render/log_reading.hpp"
+#include "ayumi/render/triangles.hpp"
+
+namespace ayumi {
+
+struct OverlayOptions {
+  bool cog = true;            ///< sphere, plumb line and cross on the ground
+  bool zmp = true;            ///< disc
+  bool reference_zmp = true;  ///< ring
+  bool support = true;        ///< hull of the soles of the planned contact feet
+  bool forces = true;         ///< arrow per foot
+  bool push = true;           ///< arrow with its value
+  bool trails = true;         ///< of COG (on the ground) and ZMP
+  bool heat = false;          ///< bodies whose joint is near a limit in red
+  bool caption = true;        ///< line of text and legend of the marks
+  double trail = 2.0;         ///< length of the trails [s]
+  double push_hold = 0.6;     ///< a push is shown at least this long from its start [s]
+};
+
+/// Text at a place in the world.
+struct Label {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  std::string text;
+  double opacity = 1;
+};
+
+struct Overlay {
+  Triangles triangles;
+  std::vector<Label> labels;
+};
+
+namespace overlay_color {
+inline const Eigen::Vector4f kCog = {0.95f, 0.72f, 0.10f, 1};
+inline const Eigen::Vector4f kZmp = {0.84f, 0.15f, 0.12f, 1};
+inline const Eigen::Vector4f kReferenceZmp = {0.05f, 0.30f, 0.75f, 1};
+inline const Eigen::Vector4f kSupport = {0.10f, 0.45f, 0.80f, 1};
+inline const Eigen::Vector4f kForce = {0.05f, 0.55f, 0.35f, 1};
+inline const Eigen::Vector4f kPush = {0.78f, 0.25f, 0.62f, 1};
+}  // namespace overlay_color
+
+/// Corners of the support polygon of the planned contact feet on the ground plane (z of its
+/// frame is the normal), counter-clockwise seen from above; empty without contact or without soles.
+std::vector<Eigen::Vector3d> support_corners(
+    const RobotModel& model, const std::vector<Eigen::Isometry3d>& poses,
+    const std::array<bool, 2>& contact,
+    const Eigen::Isometry3d& ground = Eigen::Isometry3d::Identity());
+
+/// How near the joint of each body is to its limits of position, speed and torque, by body: 0 up to
+/// two thirds of the nearest limit, 1 at it. `profile` by name; the default one where unknown.
+std::vector<float> joint_heat(const RobotModel& model, const std::string& profile,
+                              const SimulationSample& sample);
+
+/// Overlay of the log at time t. `pushed` are the log's pushes(); `sample` and `poses` those of t;
+/// `height` of the robot [m] scales the marks.
+Overlay make_overlay(const RobotModel& model, const SimulationLog& log,
+                     const std::vector<PushRecord>& pushed, double t,
+                     const SimulationSample& sample, const std::vector<Eigen::Isometry3d>& poses,
+                     double height, const OverlayOptions& options);
+
+}  // namespace ayumi

@@ -1,0 +1,15 @@
+#pragma once
+// Pictures as video encoders take them.
+
+#include <cstdint>
+#include <vector>
+
+#include "ayumi/render/image.hpp"
+
+namespace ayumi {
+
+/// Y, then Cb, then Cr by BT.709 in the range of video (16 to 235, 16 to 240), colours halved in
+/// both directions by the mean of four pixels. For even width and height.
+void to_yuv420(const Image& image, std::vector<std::uint8_t>& planes);
+
+}  // namespace ayumi

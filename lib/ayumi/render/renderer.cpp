@@ -1,0 +1,293 @@
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/render/renderer_parts.hpp"
+#include "ayumi/render/shaders.hpp"
+#include "ayumi/render/simplify.hpp"
+#include "ayumi/render/texture.hpp"
+
+// Order of a frame: the robot's shadow as coverage seen along the sun, read back, blurred and given
+// back as a small texture; then robot, scenery, ground, sky, shadow, exposures, overlay. An
+// exposure is drawn twice, first into the depth alone, so that only its nearest surface shines
+// through. What an overlay hides behind the robot is drawn first and faintly, then its visible
+// part.
+//
+// Ground, sky and shadow have no edges that samples would smooth (the grid smooths its own lines).
+// An antialiased frame is drawn with samples only where something else is, then resolved into the
+// rest, which has one sample and no depth.
+
+namespace ayumi {
+namespace {
+
+using Eigen::Matrix4f;
+using Eigen::Vector3d;
+
+constexpr size_t kShadowTriangles = 4000;  // finer ones do not show in it
+constexpr int kSamples = 4;
+
+const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
+
+/// From amber to red as the heat rises.
+Eigen::Vector4f heat_tint(float heat) {
+  const float h = std::clamp(heat, 0.0f, 1.0f);
+  return {1.0f, 0.62f * (1 - h), 0.02f, h > 0 ? 0.35f + 0.65f * h : 0.0f};
+}
+
+}  // namespace
+
+Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOptions& chosen,
+                       const Scenery& on_floor)
+    : options(chosen), context(chosen.way), gl(context) {
+  using namespace shaders;
+  solid = gl.link(kSolidVertex, kSolidFragment, kPlainInput);
+  textured = gl.link(kSolidVertex, kSolidFragment, kTextureInput);
+  standing = gl.link(kSceneryVertex, kSolidFragment, kSceneryInput);
+  sky = gl.link(kSkyVertex, kSkyFragment);
+  flat = gl.link(kFlatVertex, kFlatFragment);
+  const char* area = on_floor.hole.isEmpty() ? kWhole : kWithHole;
+  ground = gl.link(kGroundVertex, kGroundFragment, area);
+  shadow = gl.link(kGroundVertex, kShadowFragment, area);
+  robot = gl.make_mesh();
+  caster = gl.make_mesh();
+  overlay = gl.make_mesh();
+  scenery = gl.make_mesh();
+  bumps = gl.make_mesh();
+  upload(surface);
+  gl.fill(scenery, on_floor.triangles, GL_STATIC_DRAW);
+  all_scenery.count = static_cast<GLsizei>(on_floor.triangles.indices.size());
+  if (!on_floor.hole.isEmpty())
+    hole << on_floor.hole.min().cast<float>(), on_floor.hole.max().cast<float>();
+  square = gl.make_square();
+  drawn = gl.make_target(options.width, options.height, options.antialias ? kSamples : 0, GL_RGBA8,
+                         true);
+  scenery_box = bounds(on_floor.triangles);
+  if (options.antialias)
+    finished = gl.make_target(options.width, options.height, 0, GL_RGBA8, false);
+  flattened = gl.make_target(kShadowSize, kShadowSize, 0, GL_R8, false);
+  gl.GenTextures(1, &coverage);
+  gl.BindTexture(GL_TEXTURE_2D, coverage);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+}
+
+void Renderer::Parts::upload(const std::vector<BodySurface>& surface) {
+  Triangles all;
+  const auto add = [&](const Triangles& part) {
+    const IndexRange range = {static_cast<GLsizei>(part.indices.size()), all.indices.size()};
+    append(all, part);
+    return range;
+  };
+  std::map<std::string, GLuint> pictures;
+  const auto picture = [&](const std::string& file) {
+    const auto known = pictures.find(file);
+    if (known != pictures.end()) return known->second;
+    const Texture texture = read_texture(file, notes);
+    return pictures[file] = gl.make_texture(texture.rgba, texture.width, texture.height);
+  };
+  for (const BodySurface& body : surface) {
+    BodyRanges body_ranges = {add(body.closed), add(body.open), {}};
+    for (const TexturedSurface& part : body.textured)
+      body_ranges.textured.emplace_back(add(part.triangles), picture(part.texture));
+    ranges.push_back(std::move(body_ranges));
+    Eigen::AlignedBox3d box;
+    for (const Triangles* part : parts_of(body)) box.extend(bounds(*part));
+    boxes.push_back(box);
+  }
+  gl.fill(robot, welded(all), GL_STATIC_DRAW);
+  std::vector<BodySurface> coarse = surface;
+  simplify(coarse, kShadowTriangles);
+  all = {};
+  for (const BodySurface& body : coarse) {
+    const size_t first = all.indices.size();
+    for (const Triangles* part : parts_of(body)) append(all, *part);
+    caster_ranges.push_back({static_cast<GLsizei>(all.indices.size() - first), first});
+  }
+  for (RenderVertex& vertex : all.vertices) vertex = {vertex.position, {0, 0, 0}, {}, {0, 0}};
+  gl.fill(caster, welded(all), GL_STATIC_DRAW);
+}
+
+Eigen::AlignedBox3d Renderer::Parts::bounds_of(const std::vector<Eigen::Isometry3d>& poses) const {
+  Eigen::AlignedBox3d all;
+  for (size_t i = 0; i < boxes.size(); ++i)
+    if (!boxes[i].isEmpty()) all.extend(boxes[i].transformed(poses[i]));
+  return all;
+}
+
+void Renderer::Parts::light(const Scene& scene, const Matrix4f& view_projection,
+                            const Vector3d& sun) {
+  for (const GLuint program : {standing, textured, solid}) {
+    gl.UseProgram(program);
+    gl.set(program, "view_projection", view_projection);
+    gl.set(program, "model", Matrix4f(Matrix4f::Identity()));
+    gl.set(program, "eye", scene.camera.eye);
+    gl.set(program, "sun", sun);
+    gl.set(program, "up", Vector3d(Vector3d::UnitZ()));
+    gl.set(program, "opacity", 1.0);
+    gl.set(program, "tint", kNoTint);
+  }
+}
+
+/// Bodies from the eye outwards: what is behind is then not shaded.
+std::vector<size_t> Renderer::Parts::nearest_first(const Scene& scene) const {
+  std::vector<std::pair<double, size_t>> away;
+  for (size_t i = 0; i < boxes.size(); ++i)
+    if (!boxes[i].isEmpty())
+      away.emplace_back((scene.poses[i] * boxes[i].center() - scene.camera.eye).norm(), i);
+  std::sort(away.begin(), away.end());
+  std::vector<size_t> order;
+  for (const auto& [distance, body] : away) order.push_back(body);
+  return order;
+}
+
+/// Leaves `solid` in use, with the identity, no tint and full opacity.
+template <typename Tint>
+void Renderer::Parts::draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity,
+                                  const Tint& tint) {
+  gl.BindVertexArray(robot.array);
+  gl.Enable(GL_CULL_FACE);
+  gl.UseProgram(solid);
+  gl.set(solid, "opacity", opacity);
+  for (const size_t i : order) {
+    const BodyRanges& range = ranges[i];
+    if (!range.closed.count && !range.open.count) continue;
+    gl.set(solid, "tint", tint(i));
+    gl.set(solid, "model", Matrix4f(poses[i].matrix().cast<float>()));
+    gl.draw(range.closed);
+    if (!range.open.count) continue;
+    gl.Disable(GL_CULL_FACE);
+    gl.draw(range.open);
+    gl.Enable(GL_CULL_FACE);
+  }
+  gl.Disable(GL_CULL_FACE);
+  for (size_t i = 0; i < ranges.size(); ++i)
+    for (const auto& [range, texture] : ranges[i].textured) {
+      gl.UseProgram(textured);
+      gl.BindTexture(GL_TEXTURE_2D, texture);
+      gl.set(textured, "opacity", opacity);
+      gl.set(textured, "tint", tint(i));
+      gl.set(textured, "model", Matrix4f(poses[i].matrix().cast<float>()));
+      gl.draw(range);
+    }
+  gl.Enable(GL_CULL_FACE);
+  gl.UseProgram(solid);
+  gl.set(solid, "model", Matrix4f(Matrix4f::Identity()));
+  gl.set(solid, "tint", kNoTint);
+  gl.set(solid, "opacity", 1.0);
+}
+
+/// Leaves `solid` in use.
+void Renderer::Parts::draw_scenery(const Scene& scene, const Matrix4f& flatten, bool with_shadow) {
+  if (!all_scenery.count && scene.bumps.indices.empty()) return;
+  gl.UseProgram(standing);
+  gl.set(standing, "model", Matrix4f(scene.floor.matrix().cast<float>()));
+  gl.set(standing, "flatten", flatten);
+  gl.set(standing, "strength", with_shadow ? 0.6 : 0.0);
+  gl.BindTexture(GL_TEXTURE_2D, coverage);
+  gl.BindVertexArray(scenery.array);
+  gl.draw(all_scenery);
+  if (!scene.bumps.indices.empty()) {
+    gl.fill(bumps, scene.bumps, GL_STREAM_DRAW);
+    gl.draw({static_cast<GLsizei>(scene.bumps.indices.size()), 0});
+  }
+  gl.UseProgram(solid);
+}
+
+void Renderer::Parts::draw_exposures(const Scene& scene) {
+  for (const Exposure& exposure : scene.exposures) {
+    const auto tint = [&](size_t) { return exposure.tint; };
+    gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    draw_bodies(exposure.poses, exposure.opacity, tint);
+    gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl.Enable(GL_BLEND);
+    draw_bodies(exposure.poses, exposure.opacity, tint);
+    gl.Disable(GL_BLEND);
+  }
+}
+
+void Renderer::Parts::draw_overlay(const Scene& scene) {
+  if (scene.overlay.indices.empty()) return;
+  gl.fill(overlay, scene.overlay, GL_STREAM_DRAW);
+  gl.UseProgram(solid);
+  const IndexRange all = {static_cast<GLsizei>(scene.overlay.indices.size()), 0};
+  gl.Enable(GL_CULL_FACE);
+  gl.Enable(GL_BLEND);
+  gl.set(solid, "opacity", 0.6);
+  gl.DepthMask(GL_FALSE);
+  gl.DepthFunc(GL_GREATER);
+  gl.draw(all);
+  gl.set(solid, "opacity", 1.0);
+  gl.DepthMask(GL_TRUE);
+  gl.DepthFunc(GL_LEQUAL);
+  gl.draw(all);
+  gl.Disable(GL_BLEND);
+}
+
+Renderer::Renderer(const std::vector<BodySurface>& robot, const RenderOptions& options,
+                   const Scenery& scenery) {
+  for (const int edge : {options.width, options.height})
+    if (edge < 1 || edge > 4096)
+      fail(ErrorCode::usage, "picture size " + std::to_string(options.width) + "x" +
+                                 std::to_string(options.height) +
+                                 ": each edge must be 1 to 4096 pixels");
+  parts_ = std::make_unique<Parts>(robot, options, scenery);
+}
+
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Image Renderer::render(const Scene& scene) {
+  Parts& p = *parts_;
+  require(scene.poses.size() == p.ranges.size(), "a scene needs one pose per body");
+  for (const Exposure& exposure : scene.exposures)
+    require(exposure.poses.size() == p.ranges.size(), "an exposure needs one pose per body");
+  p.context.make_current();
+  const Eigen::AlignedBox3d box = p.bounds_of(scene.poses);
+  const Vector3d sun = sun_behind(scene.camera, Vector3d::UnitZ());
+  // A plane that the sun only grazes would carry a shadow without end.
+  const bool with_shadow = p.options.ground && p.options.shadow && !box.isEmpty() &&
+                           scene.ground.linear().col(2).dot(sun) > 0.2;
+  const Vector3d none = Vector3d::Zero();
+  const Ground plane =
+      make_ground(scene.ground, box.isEmpty() ? Eigen::AlignedBox3d(none, none) : box, sun);
+  const Eigen::Matrix4d flatten = flattening(plane, sun);
+  const Matrix4f view_projection =
+      (projection_matrix(scene.camera, double(p.options.width) / p.options.height) *
+       view_matrix(scene.camera))
+          .cast<float>();
+  const Setting setting = {plane, view_projection, with_shadow};
+  p.gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  if (with_shadow) p.draw_coverage(scene, flatten);
+  p.gl.Viewport(0, 0, p.options.width, p.options.height);
+  p.gl.DepthFunc(GL_LEQUAL);
+  p.gl.Disable(GL_BLEND);
+  p.gl.BindFramebuffer(GL_FRAMEBUFFER, p.drawn.framebuffer);
+  PixelBox edges;
+  if (p.options.antialias)
+    p.draw_around(edges = p.with_edges(scene, view_projection), scene, setting);
+  p.gl.Enable(GL_DEPTH_TEST);
+  p.gl.Clear(GL_DEPTH_BUFFER_BIT);
+  p.order = p.nearest_first(scene);
+  p.light(scene, view_projection, sun);
+  p.draw_bodies(scene.poses, 1.0, [&](size_t i) {
+    return i < scene.heat.size() ? heat_tint(scene.heat[i]) : kNoTint;
+  });
+  p.draw_scenery(scene, flatten.cast<float>(), with_shadow);
+  p.draw_plane(scene, setting);
+  p.draw_sky(scene, setting);
+  p.draw_shadow(setting);
+  p.draw_exposures(scene);
+  p.draw_overlay(scene);
+  if (p.options.antialias) p.resolve(edges);
+  return p.read();
+}
+
+const std::vector<std::string>& Renderer::notes() const { return parts_->notes; }
+
+}  // namespace ayumi

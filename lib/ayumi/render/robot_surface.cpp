@@ -1,0 +1,99 @@
+#include "ayumi/render/robot_surface.hpp"
+
+#include <algorithm>
+
+#include "ayumi/dynamics/kinematics.hpp"
+
+namespace ayumi {
+namespace {
+
+constexpr double kStick = 0.06;  // radius of a stick, of the longest one's length
+
+void add_surface(BodySurface& body, Triangles surface, const Eigen::Isometry3d& pose) {
+  Triangles& target = orient(surface) == SurfaceKind::closed ? body.closed : body.open;
+  append(target, surface, pose);
+}
+
+void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isometry3d& link_pose) {
+  const Eigen::Isometry3d pose = link_pose * placed.pose;
+  const auto* mesh = std::get_if<MeshShape>(&placed.shape);
+  if (!mesh) {
+    add_surface(body, tessellate(placed.shape, placed.color), pose);
+    return;
+  }
+  for (const MeshPart& part : mesh->mesh.parts) {
+    const bool textured =
+        !part.texture_file.empty() && !placed.has_color && part.uvs.size() == part.vertices.size();
+    if (textured) {
+      // The picture's own colours, not dyed by a colour that only says "none".
+      const Eigen::Vector4f white(1, 1, 1, part.has_color ? part.color[3] : 1.0f);
+      Triangles surface = tessellate(part, white);
+      orient(surface);
+      body.textured.push_back({{}, part.texture_file});
+      append(body.textured.back().triangles, surface, pose);
+      continue;
+    }
+    const Eigen::Vector4f color = placed.has_color || !part.has_color ? placed.color : part.color;
+    add_surface(body, tessellate(part, color), pose);
+  }
+}
+
+/// From the frame of each body without a shape to those of the bodies that hang on it.
+void add_sticks(const RobotModel& model, std::vector<BodySurface>& surface) {
+  const auto way = [](const Body& body) { return body.placement.translation().norm(); };
+  double longest = 0;
+  std::vector<bool> bare;
+  for (const BodySurface& body : surface)
+    bare.push_back(body.closed.indices.empty() && body.open.indices.empty() &&
+                   body.textured.empty());
+  for (const Body& body : model.bodies())
+    if (body.parent >= 0) longest = std::max(longest, way(body));
+  for (const Body& body : model.bodies())
+    if (body.parent >= 0 && bare[size_t(body.parent)] && way(body) > 1e-6)
+      add_rod(surface[size_t(body.parent)].open, Eigen::Vector3d::Zero(),
+              body.placement.translation(), kStick * longest, PlacedShape().color);
+}
+
+}  // namespace
+
+bool has_visuals(const RobotModel& model) {
+  return std::any_of(model.links().begin(), model.links().end(),
+                     [](const Link& link) { return !link.visuals.empty(); });
+}
+
+std::vector<BodySurface> robot_surface(const RobotModel& model) {
+  const bool visuals = has_visuals(model);
+  std::vector<BodySurface> surface(model.bodies().size());
+  for (const Link& link : model.links())
+    for (const PlacedShape& placed : visuals ? link.visuals : link.collisions)
+      add_shape(surface[size_t(link.body)], placed, link.pose);
+  if (!visuals) add_sticks(model, surface);
+  return surface;
+}
+
+std::vector<const Triangles*> parts_of(const BodySurface& body) {
+  std::vector<const Triangles*> parts = {&body.closed, &body.open};
+  for (const TexturedSurface& surface : body.textured) parts.push_back(&surface.triangles);
+  return parts;
+}
+
+std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state) {
+  RobotData data(model);
+  update_positions(model, state, data);
+  std::vector<Eigen::Isometry3d> poses;
+  for (size_t i = 0; i < model.bodies().size(); ++i)
+    poses.push_back(data.pose(static_cast<int>(i)));
+  return poses;
+}
+
+Eigen::AlignedBox3d robot_bounds(const std::vector<BodySurface>& surface,
+                                 const std::vector<Eigen::Isometry3d>& poses) {
+  Eigen::AlignedBox3d box;
+  for (size_t i = 0; i < surface.size(); ++i)
+    for (const Triangles* part : parts_of(surface[i]))
+      for (const RenderVertex& vertex : part->vertices)
+        box.extend((poses[i] * vertex.position.cast<double>()).eval());
+  return box;
+}
+
+}  // namespace ayumi

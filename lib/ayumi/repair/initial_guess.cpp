@@ -1,0 +1,148 @@
+#include "ayumi/repair/initial_guess.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "ayumi/math/windows.hpp"
+
+namespace ayumi {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+int body_of(const RobotModel& model, const std::string& name) {
+  const int link = model.find_link(name);
+  return link < 0 ? -1 : model.links()[static_cast<size_t>(link)].body;
+}
+
+// Dofs that move one body and not the other.
+std::vector<int> joints_between(const RobotModel& model, int a, int b) {
+  std::vector<int> count(static_cast<size_t>(model.dof_count()), 0), result;
+  for (const int body : {a, b})
+    for (int i = body; i > 0; i = model.bodies()[static_cast<size_t>(i)].parent)
+      ++count[static_cast<size_t>(model.bodies()[static_cast<size_t>(i)].dof)];
+  for (int i = 0; i < model.dof_count(); ++i)
+    if (count[static_cast<size_t>(i)] == 1) result.push_back(i);
+  return result;
+}
+
+std::vector<int> joints_of(const RobotModel& model, const Finding& f) {
+  if (f.kind == "joint_position") return {model.find_dof(f.where)};
+  const size_t dash = f.where.find(" - ");
+  if (f.kind != "self_collision" || dash == std::string::npos) return {};
+  const int a = body_of(model, f.where.substr(0, dash));
+  const int b = body_of(model, f.where.substr(dash + 3));
+  return a < 0 || b < 0 ? std::vector<int>() : joints_between(model, a, b);
+}
+
+// What leads the joint from one end of a window to the other as a cubic, less where it is.
+class Bridge {
+ public:
+  Bridge(const CommandSeries& series, int dof, const TimeWindow& window)
+      : series_(series), dof_(dof) {
+    const double last = series.duration();
+    begin_ = std::lround(std::clamp(window.first, 0.0, last) / series.dt);
+    end_ = std::lround(std::clamp(window.second, 0.0, last) / series.dt);
+  }
+
+  double at(double t) const {
+    const long k = std::lround(t / series_.dt);
+    if (k <= begin_ || k >= end_) return 0;
+    const double length = static_cast<double>(end_ - begin_) * series_.dt;
+    const double s = static_cast<double>(k - begin_) / static_cast<double>(end_ - begin_);
+    const double q = s * s * (3 - 2 * s);
+    const double over = (1 - q) * angle(begin_) + q * angle(end_) +
+                        length * s * (1 - s) * ((1 - s) * speed(begin_) - s * speed(end_));
+    return over - angle(k);
+  }
+
+ private:
+  const RobotState& state(long k) const { return series_.samples[static_cast<size_t>(k)].state; }
+  double angle(long k) const { return state(k).theta[dof_]; }
+  double speed(long k) const { return state(k).dtheta[dof_]; }
+
+  const CommandSeries& series_;
+  int dof_;
+  long begin_ = 0, end_ = 0;
+};
+
+// Of soles and clearances: the sum of what violates them, and the worst.
+struct Violation {
+  double sum = 0, worst = 0;
+};
+
+Violation violation(const CorrectionProblem& problem, const VectorXd& x) {
+  const VectorXd g = problem.constraints(x);
+  Violation result;
+  for (const ConstraintBlock& block : problem.blocks()) {
+    if (block.group != ConstraintGroup::stance && block.group != ConstraintGroup::path &&
+        block.group != ConstraintGroup::swing && block.group != ConstraintGroup::clearance)
+      continue;
+    for (int i = block.row; i < block.row + block.rows; ++i) {
+      const double off = std::max({0.0, problem.lower()[i] - g[i], g[i] - problem.upper()[i]});
+      result.sum += off;
+      result.worst = std::max(result.worst, off);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+MatrixXd with_halved_knots(const MatrixXd& c) {
+  MatrixXd fine(2 * c.rows() - 3, c.cols());
+  for (Index i = 0; i < fine.rows(); ++i) {
+    const Index j = i / 2;
+    if (i % 2 == 0)
+      fine.row(i) = 0.5 * (c.row(j) + c.row(j + 1));
+    else
+      fine.row(i) = 0.125 * (c.row(j) + 6 * c.row(j + 1) + c.row(j + 2));
+  }
+  return fine;
+}
+
+MatrixXd bridge(const RobotModel& model, const CommandSeries& series,
+                const std::vector<Finding>& findings, double reach, double spacing, Index rows) {
+  std::map<int, std::vector<TimeWindow>> windows;
+  for (const Finding& f : findings) {
+    if (f.severity != Severity::error) continue;
+    for (const int dof : joints_of(model, f))
+      windows[dof].emplace_back(f.begin - reach, f.end + reach);
+  }
+  MatrixXd result = MatrixXd::Zero(rows, model.velocity_count());
+  for (const auto& [dof, of_joint] : windows)
+    for (const TimeWindow& window : merged(of_joint)) {
+      const Bridge over(series, dof, window);
+      for (Index i = 0; i < rows; ++i) {  // as near as control points come by their neighbours
+        const double t = static_cast<double>(i - 1) * spacing;
+        result(i, 6 + dof) += (8 * over.at(t) - over.at(t - spacing) - over.at(t + spacing)) / 6;
+      }
+    }
+  return result;
+}
+
+VectorXd start_of(const CorrectionProblem& problem, const Nlp& nlp, const RobotModel& model,
+                  const CommandSeries& series, const std::vector<Finding>& findings) {
+  constexpr double kFar = 0.01;                                               // [m], [rad]
+  constexpr double kReaches[] = {0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.6, 0.8};  // [s]
+  const CorrectionTrack track = problem.track(nlp.start);
+  VectorXd best = nlp.start;
+  Violation least = violation(problem, best);
+  if (least.worst < kFar) return best;
+  for (const double reach : kReaches) {
+    const VectorXd x = problem.point(
+        bridge(model, series, findings, reach, track.spacing, track.coefficients.rows()));
+    const Violation here = violation(problem, x);
+    if (here.sum >= least.sum) continue;
+    least = here;
+    best = x;
+  }
+  return best;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,130 @@
+// A joint between base and sole takes  -ratio (a . n - a . (p x f))  of the foot's wrench (f, n)
+// about the base origin, a its axis, p its place from there. A small rotation w of everything below
+// it about a point r away from p changes  a . m,  m = n - p x f,  by
+//   w . (a x m - (a . r) f + (r . f) a),
+// and a sliding joint's  a . f  by  w . (a x f). How the wrench is shared between two feet depends
+// on the ZMP alone, in pieces; its slope is taken by differences within a piece.
+#include "ayumi/repair/motor_torque.hpp"
+
+#include "ayumi/model/gravity.hpp"
+
+namespace ayumi {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+using FootWrenches = std::array<Vector6d, 2>;
+
+FootWrenches shared(const RobotModel& model, const CollocationPoint& instant, const Vector3d& base,
+                    const Vector6d& wrench) {
+  const GroundDemand use = ground_demand(instant.plane, plane_wrench(instant.plane, base, wrench),
+                                         0.02 * model.mass() * kGravity);
+  const Support support = instant.contact[0] ? (instant.contact[1] ? Support::both : Support::left)
+                          : instant.contact[1] ? Support::right
+                                               : Support::none;
+  return foot_wrenches(model, support, instant.ground, instant.plane, use, base, wrench);
+}
+
+// 6 x 9 by Side: by base position and wrench.
+std::array<Eigen::Matrix<double, 6, 9>, 2> sharing_slope(const RobotModel& model,
+                                                         const CollocationPoint& instant,
+                                                         const Vector3d& base,
+                                                         const Vector6d& wrench) {
+  std::array<Eigen::Matrix<double, 6, 9>, 2> slope;
+  for (auto& s : slope) s.setZero();
+  if (!(instant.contact[0] && instant.contact[1])) {
+    for (int s = 0; s < 2; ++s)
+      if (instant.contact[s]) slope[s].rightCols<6>().setIdentity();
+    return slope;
+  }
+  for (int i = 0; i < 9; ++i) {
+    const double h = i < 3 ? 1e-6 : 1e-5;  // [m]; [N], [N m]
+    Vector3d base_up = base, base_down = base;
+    Vector6d up = wrench, down = wrench;
+    if (i < 3) {
+      base_up[i] += h;
+      base_down[i] -= h;
+    } else {
+      up[i - 3] += h;
+      down[i - 3] -= h;
+    }
+    const FootWrenches a = shared(model, instant, base_up, up);
+    const FootWrenches b = shared(model, instant, base_down, down);
+    for (int s = 0; s < 2; ++s) slope[s].col(i) = (a[s] - b[s]) / (2 * h);
+  }
+  return slope;
+}
+
+// Gradient by a small rotation about a point `r` away from joint `i`'s place.
+Vector3d by_rotation(const Body& body, const Vector3d& axis, const Vector3d& r, const Vector3d& m,
+                     const Vector3d& f) {
+  if (body.prismatic) return axis.cross(f);
+  return axis.cross(m) - axis.dot(r) * f + r.dot(f) * axis;
+}
+
+// What the wrench of one foot takes from the torques: rows by the wrench, and its change with the
+// configuration at a constant wrench.
+void add_foot(const RobotModel& model, Side side, const Vector6d& wrench, const RobotData& data,
+              const Matrix3d& tangent, MatrixXd& by_wrench, MatrixXd& by_value) {
+  const Vector3d f = wrench.head<3>();
+  for (int i = model.sole(side).body; i > 0; i = model.bodies()[i].parent) {
+    const Body& body = model.bodies()[i];
+    const Vector3d &axis = data.axis[i], &p = data.position[i];
+    const Vector3d m = wrench.tail<3>() - p.cross(f);
+    Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
+    if (body.prismatic)
+      row.head<3>() = axis.transpose();
+    else
+      row << -axis.cross(p).transpose(), axis.transpose();
+    by_wrench.row(body.dof) -= body.ratio * row;
+    by_value.row(body.dof).segment<3>(3) -=
+        body.ratio * by_rotation(body, axis, p, m, f).transpose() * tangent;
+    for (int j = body.parent; j > 0; j = model.bodies()[j].parent) {
+      const Body& above = model.bodies()[j];
+      double slope = 0;
+      if (!above.prismatic)
+        slope = data.axis[j].dot(by_rotation(body, axis, p - data.position[j], m, f));
+      else if (!body.prismatic)
+        slope = -axis.dot(data.axis[j].cross(f));
+      by_value(body.dof, 6 + above.dof) -= body.ratio * above.ratio * slope;
+    }
+  }
+}
+
+}  // namespace
+
+void fill_motor_torques(const RobotModel& model, const CollocationPoint& instant,
+                        const VectorXd& force, const std::array<MatrixXd, 3>* force_by,
+                        const RobotData& data, PointState& state) {
+  const CorrectedMotion& m = state.motion;
+  const Vector3d& base = m.state.base.position;
+  const FootWrenches wrench = shared(model, instant, base, state.wrench);
+  state.torque = motor_torques(model, m.state, m.acceleration, force, wrench, data);
+  if (!force_by) return;
+  const int dof = model.dof_count();
+  for (int k = 0; k < 3; ++k) state.torque_by[k] = (*force_by)[k].bottomRows(dof);
+  const auto slope = sharing_slope(model, instant, base, state.wrench);
+  for (Side side : {Side::left, Side::right}) {
+    const int s = static_cast<int>(side);
+    if (!instant.contact[s]) continue;
+    MatrixXd by_wrench = MatrixXd::Zero(dof, 6);
+    add_foot(model, side, wrench[s], data, m.tangent, by_wrench, state.torque_by[0]);
+    for (int k = 0; k < 3; ++k)
+      state.torque_by[k] += by_wrench * slope[s].rightCols<6>() * state.wrench_by[k];
+    state.torque_by[0].leftCols<3>() += by_wrench * slope[s].leftCols<3>();
+  }
+  // Rotor inertia and viscous friction; dry friction within the ramp of its sign.
+  for (int i = 0; i < dof; ++i) {
+    const ServoDescription& servo = model.dofs()[i].servo;
+    state.torque_by[2](i, 6 + i) += servo.rotor_inertia;
+    state.torque_by[1](i, 6 + i) += servo.viscous;
+    if (std::abs(m.state.dtheta[i]) < kCoulombRate)
+      state.torque_by[1](i, 6 + i) += servo.coulomb / kCoulombRate;
+  }
+}
+
+}  // namespace ayumi

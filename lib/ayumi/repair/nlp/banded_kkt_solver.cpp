@@ -1,0 +1,391 @@
+// The face is that of the solver MA27, which Ipopt's loader takes from outside: analyse the
+// pattern, factor, solve. All memory is Ipopt's: `ikeep` (3 n) goes from analysis to factorization,
+// `iw` and `a` from there to the solution, and stay as they are from one factorization to the next,
+// so that nothing is kept here.
+//   ikeep  class or place of every unknown [n], width of the band (minus it once iw holds the
+//          plan), number of places
+//   iw     the same, number of nonzeros, then the plan: which nonzero goes where
+//   a      values of the nonzeros, pivots [n], values of the rows by group, the band
+// Rows that meet the same unknowns form a group, a dense matrix V: the band gets V' D V, D the
+// inverse pivots. The band is stored by columns, each as long as the width and a panel, so that
+// parts of it are dense matrices whose columns lie one less than that apart; what a panel holds
+// beyond the width is zero and stays so.
+#include "ayumi/repair/nlp/banded_kkt_solver.hpp"
+
+#include <coin/HSLLoader.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace ayumi {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Classes of unknowns that are eliminated alone; the others have a place >= 0 in the band.
+constexpr int kSlack = -1;  // has a single neighbour
+constexpr int kRow = -2;    // has slacks and places for neighbours
+
+struct Nonzeros {
+  int count;
+  const int *rows, *columns;
+  int first;  // index of the first row
+  int row(int k) const { return rows[k] - first; }
+  int column(int k) const { return columns[k] - first; }
+};
+
+struct Band {
+  static constexpr int kPanel = 32;  // columns factored at once
+  int width = 1, places = 0;         // farthest below the diagonal, columns that mean something
+  int columns() const { return (places + kPanel - 1) / kPanel * kPanel; }
+  int length() const { return width + kPanel; }  // of a stored column
+  Index size() const { return static_cast<Index>(columns()) * length(); }
+};
+
+// Multipliers are the last unknowns; two that look like rows and meet are a variable and one.
+std::vector<int> classes(int n, const Nonzeros& entries) {
+  constexpr int kNone = -1, kMany = -2;
+  std::vector<int> neighbour(n, kNone), result(n, 0);
+  auto meet = [&](int i, int j) {
+    neighbour[i] = neighbour[i] == kNone || neighbour[i] == j ? j : kMany;
+  };
+  for (int k = 0; k < entries.count; ++k) {
+    const int i = entries.row(k), j = entries.column(k);
+    if (i == j) continue;
+    meet(i, j);
+    meet(j, i);
+  }
+  for (int i = 0; i < n; ++i) {
+    const int j = neighbour[i];
+    if (j < i || result[i] == kRow || result[j] == kSlack) continue;
+    result[i] = kSlack;
+    result[j] = kRow;
+  }
+  for (int k = 0; k < entries.count; ++k) {
+    const int i = entries.row(k), j = entries.column(k);
+    if (i != j && result[i] == kRow && result[j] == kRow) result[std::min(i, j)] = 0;
+  }
+  return result;
+}
+
+// Calls use(row unknown, other unknown) for both sides of every nonzero off the diagonal.
+template <class Use>
+void for_sides(const Nonzeros& entries, const Use& use) {
+  for (int k = 0; k < entries.count; ++k) {
+    const int i = entries.row(k), j = entries.column(k);
+    if (i == j) continue;
+    use(i, j);
+    use(j, i);
+  }
+}
+
+// Puts places in order of the lowest unknown that each one meets in a row, which is time order
+// where the unknowns come in it, and returns the band.
+Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
+  place = classes(n, entries);
+  std::vector<int> low(n);
+  std::iota(low.begin(), low.end(), 0);
+  for (int i = 0; i < n; ++i)
+    if (place[i] == kRow) low[i] = n;
+  auto take_lower = [&](int i, int j) {  // a row from its unknowns, an unknown from others
+    if (place[i] != kSlack && place[j] >= 0) low[i] = std::min(low[i], j);
+  };
+  for_sides(entries, take_lower);
+  for_sides(entries, [&](int i, int j) {
+    if (place[i] >= 0 && place[j] == kRow) low[i] = std::min(low[i], low[j]);
+  });
+  std::vector<int> order;
+  for (int i = 0; i < n; ++i)
+    if (place[i] >= 0) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return low[i] < low[j]; });
+  Band band;
+  band.places = static_cast<int>(order.size());
+  for (int p = 0; p < band.places; ++p) place[order[p]] = p;
+
+  std::vector<int> first(n, n), last(n, -1);  // places that meet in a row
+  for_sides(entries, [&](int i, int j) {
+    if (place[j] < 0 || place[i] == kSlack) return;
+    first[i] = std::min(first[i], place[j]);
+    last[i] = std::max(last[i], place[j]);
+  });
+  for (int i = 0; i < n; ++i)
+    if (last[i] >= 0)
+      band.width =
+          std::max({band.width, last[i] - first[i],
+                    place[i] >= 0 ? std::max(place[i] - first[i], last[i] - place[i]) : 0});
+  return band;
+}
+
+// Which nonzero goes where, as integers one after another.
+struct Plan {
+  std::vector<int> diagonal;  // unknown, nonzero
+  std::vector<int> links;     // slack, its neighbour, nonzero
+  std::vector<int> inner;     // lower place, upper place, nonzero
+  std::vector<int> groups;    // numbers of rows and places, the rows, the places, their nonzeros
+                              // place by place
+};
+
+Plan plan(int n, const Nonzeros& entries, const int* place) {
+  Plan result;
+  std::vector<std::vector<std::pair<int, int>>> rows(n);  // place, nonzero
+  for (int k = 0; k < entries.count; ++k) {
+    const int i = entries.row(k), j = entries.column(k);
+    if (i == j)
+      result.diagonal.insert(result.diagonal.end(), {i, k});
+    else if (place[i] == kSlack || place[j] == kSlack)
+      result.links.insert(result.links.end(),
+                          {place[i] == kSlack ? i : j, place[i] == kSlack ? j : i, k});
+    else if (place[i] >= 0 && place[j] >= 0)
+      result.inner.insert(result.inner.end(),
+                          {std::max(place[i], place[j]), std::min(place[i], place[j]), k});
+    else
+      rows[place[i] == kRow ? i : j].emplace_back(place[place[i] == kRow ? j : i], k);
+  }
+  std::map<std::vector<int>, std::vector<int>> groups;  // rows by their places
+  for (int i = 0; i < n; ++i) {
+    if (rows[i].empty()) continue;
+    std::sort(rows[i].begin(), rows[i].end());
+    std::vector<int> places;
+    for (const auto& entry : rows[i]) places.push_back(entry.first);
+    groups[places].push_back(i);
+  }
+  for (const auto& [places, members] : groups) {
+    auto& out = result.groups;
+    out.insert(out.end(), {static_cast<int>(members.size()), static_cast<int>(places.size())});
+    out.insert(out.end(), members.begin(), members.end());
+    out.insert(out.end(), places.begin(), places.end());
+    for (size_t p = 0; p < places.size(); ++p)
+      for (const int i : members) out.push_back(rows[i][p].second);
+  }
+  return result;
+}
+
+// A part of the plan in Ipopt's memory: its length, then its integers.
+struct Part {
+  int count;
+  const int* at;
+  explicit Part(const int* begin) : count(*begin), at(begin + 1) {}
+  const int* end() const { return at + count; }
+};
+
+// Rows that meet the same places.
+struct Group {
+  int rows, places;
+  const int *row, *place, *nonzero;
+  double* values;  // rows x places
+  Map<MatrixXd> matrix() const { return {values, rows, places}; }
+};
+
+using Block = Map<MatrixXd, 0, Eigen::OuterStride<>>;
+
+// What factor and solve see of Ipopt's arrays.
+struct Factors {
+  int n;
+  const int* place;
+  Band band;
+  Part diagonal, links, inner, groups;
+  double *values, *pivot, *of_groups, *columns;
+
+  Factors(int size, double* a, const int* iw)
+      : n(size),
+        place(iw),
+        band{iw[n], iw[n + 1]},
+        diagonal(iw + n + 3),
+        links(diagonal.end()),
+        inner(links.end()),
+        groups(inner.end()),
+        values(a),
+        pivot(a + iw[n + 2]),
+        of_groups(pivot + n),
+        columns(of_groups + iw[n + 2]) {}
+
+  double& at(int i, int j) const { return columns[i + static_cast<Index>(j) * stride()]; }
+  Index stride() const { return band.length() - 1; }
+  Block block(int i, int j, int rows, int width) const {
+    return {&at(i, j), rows, width, Eigen::OuterStride<>(stride())};
+  }
+
+  template <class Use>
+  void for_groups(const Use& use) const {
+    double* next = of_groups;
+    for (const int* g = groups.at; g != groups.end();) {
+      const Group group{g[0], g[1], g + 2, g + 2 + g[0], g + 2 + g[0] + g[1], next};
+      use(group);
+      next += group.rows * group.places;
+      g = group.nonzero + group.rows * group.places;
+    }
+  }
+};
+
+// Pivots of slacks and rows; adds what concerns places alone to the band.
+void eliminate_slacks(const Factors& f) {
+  std::fill_n(f.pivot, f.n, 0.0);
+  for (const int* e = f.diagonal.at; e != f.diagonal.end(); e += 2) f.pivot[e[0]] += f.values[e[1]];
+  for (const int* e = f.inner.at; e != f.inner.end(); e += 3) f.at(e[0], e[1]) += f.values[e[2]];
+  std::vector<double> link(f.n, 0.0);  // of a slack to its neighbour; nonzeros may come in parts
+  std::vector<int> neighbour(f.n, -1);
+  for (const int* e = f.links.at; e != f.links.end(); e += 3) {
+    link[e[0]] += f.values[e[2]];
+    neighbour[e[0]] = e[1];
+  }
+  for (int i = 0; i < f.n; ++i)
+    if (neighbour[i] >= 0) f.pivot[neighbour[i]] -= link[i] * link[i] / f.pivot[i];
+  for (int i = 0; i < f.n; ++i)
+    if (f.place[i] >= 0) f.at(f.place[i], f.place[i]) += f.pivot[i];
+  for (int p = f.band.places; p < f.band.columns(); ++p) f.at(p, p) = 1;
+}
+
+// Adds  -v v' / pivot  of every row.
+void eliminate_rows(const Factors& f) {
+  MatrixXd scaled, sum;
+  f.for_groups([&](const Group& g) {
+    for (int k = 0; k < g.rows * g.places; ++k) g.values[k] = f.values[g.nonzero[k]];
+    const Map<MatrixXd> v = g.matrix();
+    scaled = v;
+    for (int r = 0; r < g.rows; ++r) scaled.row(r) /= -f.pivot[g.row[r]];
+    sum.resize(g.places, g.places);
+    if (g.places < 8)
+      sum.noalias() = scaled.transpose().lazyProduct(v);
+    else
+      sum.triangularView<Eigen::Lower>() = scaled.transpose() * v;
+    for (int j = 0; j < g.places; ++j) {
+      double* column = &f.at(0, g.place[j]);
+      column[g.place[j]] += sum(j, j);
+      for (int i = j + 1; i < g.places; ++i)  // a nonzero in parts meets itself twice
+        column[g.place[i]] += g.place[i] == g.place[j] ? 2 * sum(i, j) : sum(i, j);
+    }
+  });
+}
+
+bool factor_band(const Factors& f) {
+  const int count = f.band.columns(), panel = Band::kPanel;
+  for (int j = 0; j < count; j += panel) {
+    Block own = f.block(j, j, panel, panel);
+    Eigen::Ref<MatrixXd, 0, Eigen::OuterStride<>> in_place = own;
+    if (Eigen::LLT<decltype(in_place)>(in_place).info() != Eigen::Success) return false;
+    const int after = j + panel, rows = std::min(f.band.width, count - after);
+    if (rows <= 0) continue;
+    Block below = f.block(after, j, rows, panel);
+    own.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
+    Block rest = f.block(after, after, rows, rows);
+    rest.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+  }
+  return true;
+}
+
+void solve_band(const Factors& f, VectorXd& x) {
+  const int count = f.band.columns(), panel = Band::kPanel;
+  for (int j = 0; j < count; j += panel) {
+    auto own = x.segment(j, panel);
+    f.block(j, j, panel, panel).triangularView<Eigen::Lower>().solveInPlace(own);
+    const int rows = std::min(f.band.width, count - j - panel);
+    if (rows > 0) x.segment(j + panel, rows).noalias() -= f.block(j + panel, j, rows, panel) * own;
+  }
+  for (int j = count - panel; j >= 0; j -= panel) {
+    auto own = x.segment(j, panel);
+    const int rows = std::min(f.band.width, count - j - panel);
+    if (rows > 0)
+      own.noalias() -= f.block(j + panel, j, rows, panel).transpose() * x.segment(j + panel, rows);
+    f.block(j, j, panel, panel).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+  }
+}
+
+// ---- the face. Of `info`: 0 outcome (0 good, -5 singular), 4 and 5 lengths of a and iw, 14 the
+// number of negative pivots.
+
+void analyse(int* n, int* nz, const int* rows, const int* columns, int*, int*, int* ikeep, int*,
+             int* steps, int*, int*, double*, int* info, double*) {
+  const Nonzeros entries{*nz, rows, columns, 1};
+  std::vector<int> places;
+  const Band band = place(*n, entries, places);
+  std::copy(places.begin(), places.end(), ikeep);
+  ikeep[*n] = band.width;
+  ikeep[*n + 1] = band.places;
+  *steps = 1;
+  std::fill_n(info, 20, 0);
+  info[4] = static_cast<int>(2 * *nz + *n + band.size());
+  info[5] = 4 * (*n + *nz) + 8;
+}
+
+// Into `iw`, once after the analysis.
+void write_plan(int n, const Nonzeros& entries, int* ikeep, int* iw) {
+  std::copy_n(ikeep, n + 2, iw);
+  const Plan p = plan(n, entries, ikeep);
+  iw[n + 2] = entries.count;
+  int* out = iw + n + 3;
+  for (const std::vector<int>* part : {&p.diagonal, &p.links, &p.inner, &p.groups}) {
+    *out++ = static_cast<int>(part->size());
+    out = std::copy(part->begin(), part->end(), out);
+  }
+  ikeep[n] = -ikeep[n];
+}
+
+void factor(int* n, int* nz, const int* rows, const int* columns, double* a, int*, int* iw, int*,
+            int* ikeep, int*, int* front, int*, int*, double*, int* info) {
+  if (ikeep[*n] > 0) write_plan(*n, {*nz, rows, columns, 1}, ikeep, iw);
+  *front = 1;
+  std::fill_n(info, 20, 0);
+  const Factors f(*n, a, iw);
+  std::fill_n(f.columns, f.band.size(), 0.0);
+  eliminate_slacks(f);
+  for (int i = 0; i < *n; ++i) {
+    if (f.place[i] >= 0) continue;
+    if (f.pivot[i] == 0) info[0] = -5;
+    if (f.pivot[i] < 0) ++info[14];
+  }
+  if (info[0] != 0) return;
+  eliminate_rows(f);
+  if (!factor_band(f)) ++info[14];  // of the wrong inertia: Ipopt regularizes and comes again
+}
+
+void solve(int* n, double* a, int*, int* iw, int*, double*, int*, double* rhs, int*, int*, int*,
+           double*) {
+  const Factors f(*n, a, iw);
+  VectorXd x = VectorXd::Zero(f.band.columns()), row, met;
+  for (const int* e = f.links.at; e != f.links.end(); e += 3)
+    rhs[e[1]] -= f.values[e[2]] * rhs[e[0]] / f.pivot[e[0]];
+  for (int i = 0; i < *n; ++i) {
+    if (f.place[i] >= 0) x[f.place[i]] = rhs[i];
+    if (f.place[i] == kRow) rhs[i] /= f.pivot[i];
+  }
+  f.for_groups([&](const Group& g) {
+    row.resize(g.rows);
+    for (int r = 0; r < g.rows; ++r) row[r] = rhs[g.row[r]];
+    met.noalias() = g.matrix().transpose() * row;
+    for (int p = 0; p < g.places; ++p) x[g.place[p]] -= met[p];
+  });
+  solve_band(f, x);
+  f.for_groups([&](const Group& g) {
+    met.resize(g.places);
+    for (int p = 0; p < g.places; ++p) met[p] = x[g.place[p]];
+    row.noalias() = g.matrix() * met;
+    for (int r = 0; r < g.rows; ++r) rhs[g.row[r]] -= row[r] / f.pivot[g.row[r]];
+  });
+  for (int i = 0; i < *n; ++i)
+    if (f.place[i] >= 0) rhs[i] = x[f.place[i]];
+  for (const int* e = f.links.at; e != f.links.end(); e += 3)
+    rhs[e[0]] -= f.values[e[2]] * rhs[e[1]];
+  for (int i = 0; i < *n; ++i)
+    if (f.place[i] == kSlack) rhs[i] /= f.pivot[i];
+}
+
+void set_defaults(int*, double*) {}
+
+}  // namespace
+
+void register_condensed_solver() {
+  [[maybe_unused]] static const bool done = [] {
+    LSL_setMA27(analyse, factor, solve, set_defaults);
+    return true;
+  }();
+}
+
+}  // namespace ayumi

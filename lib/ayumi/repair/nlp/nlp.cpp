@@ -1,0 +1,245 @@
+#include "ayumi/repair/nlp/nlp.hpp"
+
+#include <algorithm>
+#include <coin/IpIpoptApplication.hpp>
+#include <coin/IpTNLP.hpp>
+#include <cstdlib>
+#include <ctime>
+#include <exception>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/repair/nlp/banded_kkt_solver.hpp"
+
+namespace ayumi {
+
+using Eigen::VectorXd;
+using Ipopt::Index;
+using Ipopt::Number;
+
+namespace {
+
+// Processor time of this thread: what else the machine does is no work of the solver [s].
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+VectorXd vector(const Number* values, Index n) { return Eigen::Map<const VectorXd>(values, n); }
+
+class Adapter : public Ipopt::TNLP {
+ public:
+  Adapter(const Nlp& nlp, const NlpOptions& options, const Progress& progress,
+          const std::string& stage)
+      : nlp_(nlp), options_(options), progress_(progress), stage_(stage) {}
+
+  NlpSolution solution;
+  std::exception_ptr thrown;  // by a callback; Ipopt must not see it
+
+  bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian,
+                    IndexStyleEnum& style) override {
+    n = static_cast<Index>(nlp_.start.size());
+    m = static_cast<Index>(nlp_.constraint_lower.size());
+    jacobian = nlp_.jacobian.size();
+    hessian = nlp_.hessian.size();
+    style = TNLP::C_STYLE;
+    return true;
+  }
+
+  bool get_bounds_info(Index n, Number* xl, Number* xu, Index m, Number* gl, Number* gu) override {
+    std::copy_n(nlp_.lower.data(), n, xl);
+    std::copy_n(nlp_.upper.data(), n, xu);
+    std::copy_n(nlp_.constraint_lower.data(), m, gl);
+    std::copy_n(nlp_.constraint_upper.data(), m, gu);
+    return true;
+  }
+
+  bool get_starting_point(Index n, bool, Number* x, bool, Number*, Number*, Index, bool,
+                          Number*) override {
+    std::copy_n(nlp_.start.data(), n, x);
+    return true;
+  }
+
+  bool eval_f(Index n, const Number* x, bool, Number& value) override {
+    return guarded([&] { value = nlp_.objective(vector(x, n)); });
+  }
+
+  bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
+    return guarded([&] {
+      VectorXd g = VectorXd::Zero(n);
+      nlp_.gradient(vector(x, n), g);
+      std::copy_n(g.data(), n, gradient);
+    });
+  }
+
+  bool eval_g(Index n, const Number* x, bool, Index m, Number* values) override {
+    return guarded([&] {
+      VectorXd g = VectorXd::Zero(m);
+      nlp_.constraints(vector(x, n), g);
+      std::copy_n(g.data(), m, values);
+      note(vector(x, n), g);
+    });
+  }
+
+  bool eval_jac_g(Index n, const Number* x, bool, Index, Index count, Index* rows, Index* columns,
+                  Number* values) override {
+    if (!values) return structure(nlp_.jacobian, rows, columns);
+    return guarded([&] {
+      VectorXd v = VectorXd::Zero(count);
+      nlp_.jacobian_values(vector(x, n), v);
+      std::copy_n(v.data(), count, values);
+    });
+  }
+
+  bool eval_h(Index n, const Number* x, bool, Number scale, Index m, const Number* multipliers,
+              bool, Index count, Index* rows, Index* columns, Number* values) override {
+    if (!values) return structure(nlp_.hessian, rows, columns);
+    return guarded([&] {
+      VectorXd v = VectorXd::Zero(count);
+      nlp_.hessian_values(vector(x, n), scale, vector(multipliers, m), v);
+      std::copy_n(v.data(), count, values);
+    });
+  }
+
+  bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number objective,
+                             Number infeasibility, Number, Number, Number, Number, Number, Number,
+                             Index, const Ipopt::IpoptData*,
+                             Ipopt::IpoptCalculatedQuantities*) override {
+    solution.iterations = iteration;
+    if (!progress_) return true;
+    return progress_({stage_, static_cast<double>(iteration) / options_.max_iterations,
+                      "iteration " + std::to_string(iteration) + ", violation " +
+                          text::brief(infeasibility, 2) + ", change " + text::brief(objective, 4)});
+  }
+
+  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*,
+                         const Number*, Index m, const Number* g, const Number*, Number value,
+                         const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    solution.x = vector(x, n);
+    solution.objective = value;
+    solution.violation = 0;
+    for (Index i = 0; i < m; ++i)
+      solution.violation = std::max(
+          {solution.violation, nlp_.constraint_lower[i] - g[i], g[i] - nlp_.constraint_upper[i]});
+    for (Index i = 0; i < n; ++i)
+      solution.violation =
+          std::max({solution.violation, nlp_.lower[i] - x[i], x[i] - nlp_.upper[i]});
+  }
+
+ private:
+  static bool structure(const SparsePattern& pattern, Index* rows, Index* columns) {
+    std::copy(pattern.rows.begin(), pattern.rows.end(), rows);
+    std::copy(pattern.columns.begin(), pattern.columns.end(), columns);
+    return true;
+  }
+
+  double violation(const VectorXd& g) const {
+    return std::max(
+        {0.0, (nlp_.constraint_lower - g).maxCoeff(), (g - nlp_.constraint_upper).maxCoeff()});
+  }
+
+  void note(const VectorXd& x, const VectorXd& g) {
+    if (!options_.least_violating || g.size() == 0 || !g.allFinite()) return;
+    const double size = violation(g);
+    if (size >= least_) return;
+    least_ = size;
+    *options_.least_violating = x;
+  }
+
+  template <class Work>
+  bool guarded(Work work) {
+    if (thrown) return false;
+    const double begin = thread_seconds();
+    try {
+      work();
+      solution.function_seconds += thread_seconds() - begin;
+      return true;
+    } catch (...) {
+      thrown = std::current_exception();
+      return false;
+    }
+  }
+
+  const Nlp& nlp_;
+  const NlpOptions& options_;
+  const Progress& progress_;
+  const std::string& stage_;
+  double least_ = kNoBound;  // violation of *options_.least_violating
+};
+
+bool has_equalities(const Nlp& nlp) {
+  return (nlp.constraint_lower.array() == nlp.constraint_upper.array()).any();
+}
+
+void set_linear_solver(Ipopt::OptionsList& list, bool condensed) {
+  list.SetStringValue("linear_solver", condensed ? "ma27" : "mumps");
+  if (!condensed) return;
+  register_condensed_solver();
+  list.SetStringValue("linear_system_scaling", "none");
+  list.SetNumericValue("ma27_la_init_factor", 1);  // it says exactly what it needs
+  list.SetNumericValue("ma27_liw_init_factor", 1);
+}
+
+void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
+  list.SetStringValue("sb", "yes");  // no banner: the library never prints
+  list.SetIntegerValue("print_level", 0);
+  list.SetStringValue("option_file_name", "");  // nothing is read from the working directory
+  list.SetStringValue("hessian_approximation", "exact");
+  list.SetStringValue("nlp_scaling_method", "none");  // the problems come scaled
+  list.SetStringValue("mu_strategy", "monotone");
+  list.SetNumericValue("mu_init", options.start_barrier);
+  list.SetNumericValue("mu_linear_decrease_factor", 0.05);  // Newton's steps follow
+  list.SetNumericValue("mu_superlinear_decrease_power", 1.8);
+  for (const char* name : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"})
+    list.SetNumericValue(name, options.start_push);
+  list.SetNumericValue("constr_mult_init_max", 0);  // no system to be solved for them before
+  list.SetNumericValue("tol", options.tolerance);
+  list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
+  list.SetIntegerValue("max_iter", options.max_iterations);
+  list.SetNumericValue("bound_relax_factor", 0);
+}
+
+NlpStatus status_of(Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case Ipopt::Solve_Succeeded:
+    case Ipopt::Solved_To_Acceptable_Level:
+    case Ipopt::Feasible_Point_Found:
+      return NlpStatus::solved;
+    case Ipopt::Infeasible_Problem_Detected:
+      return NlpStatus::infeasible;
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return NlpStatus::iteration_limit;
+    default:
+      return NlpStatus::failed;
+  }
+}
+
+}  // namespace
+
+double violation_at_start(const Nlp& nlp) {
+  VectorXd g(nlp.constraint_lower.size());
+  nlp.constraints(nlp.start, g);
+  return std::max((nlp.constraint_lower - g).maxCoeff(), (g - nlp.constraint_upper).maxCoeff());
+}
+
+NlpSolution solve(const Nlp& nlp, const NlpOptions& options, const Progress& progress,
+                  const std::string& stage) {
+  Ipopt::SmartPtr<Adapter> adapter = new Adapter(nlp, options, progress, stage);
+  Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
+  set_options(*application->Options(), options);
+  set_linear_solver(*application->Options(), !options.mumps && !has_equalities(nlp));
+  if (application->Initialize("") != Ipopt::Solve_Succeeded)
+    fail(ErrorCode::solver, "Ipopt does not start: is its MUMPS linear solver installed?");
+  const double begin = thread_seconds();
+  const Ipopt::ApplicationReturnStatus status =
+      application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(adapter)));
+  if (adapter->thrown) std::rethrow_exception(adapter->thrown);
+  if (status == Ipopt::User_Requested_Stop) throw Interrupted();
+  NlpSolution solution = adapter->solution;
+  solution.status = status_of(status);
+  solution.solver_seconds = thread_seconds() - begin - solution.function_seconds;
+  if (solution.x.size() == 0) solution.x = nlp.start;
+  return solution;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,213 @@
+#include "ayumi/repair/repair_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/demand/collision_scan.hpp"
+#include "ayumi/math/windows.hpp"
+#include "ayumi/motion/correction.hpp"
+#include "ayumi/repair/weighted_change.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kMarginBetween = 5e-4;  // of the ZMP, for what happens between constraints [m]
+constexpr double kKnotsOfFlight = 8;
+
+std::vector<bool> locked_dofs(const RobotModel& model, const std::vector<std::string>& names) {
+  std::vector<bool> locked(model.dof_count(), false);
+  for (const std::string& name : names) {
+    const int dof = model.find_dof(name);
+    if (dof < 0)
+      fail(ErrorCode::usage, "locked joint '" + name + "': the robot '" + model.name() +
+                                 "' has no such joint" + text::suggestion(name, model.dof_names()));
+    locked[dof] = true;
+  }
+  return locked;
+}
+
+void require_windows(const std::vector<std::pair<double, double>>& windows) {
+  for (const auto& [begin, end] : windows)
+    if (!(begin <= end) || !std::isfinite(begin) || !std::isfinite(end))
+      fail(ErrorCode::usage, "locked window " + text::exact(begin) + ".." + text::exact(end) +
+                                 " s: the end must not come before the beginning");
+}
+
+// Locked windows without length, at the samples nearest to them.
+std::vector<double> kept_instants(const std::vector<std::pair<double, double>>& windows,
+                                  const CommandSeries& series) {
+  std::set<long> samples;
+  for (const auto& [begin, end] : windows)
+    if (begin == end)
+      samples.insert(std::clamp(std::lround(begin / series.dt), 0L,
+                                static_cast<long>(series.samples.size()) - 1));
+  std::vector<double> times;
+  for (const long k : samples) times.push_back(static_cast<double>(k) * series.dt);
+  return times;
+}
+
+/// [s]; without a flight no bound.
+double shortest_flight(const CommandSeries& series) {
+  double shortest = kNoBound;
+  size_t first = 0;
+  for (size_t k = 0; k <= series.samples.size(); ++k) {
+    if (k < series.samples.size() && series.samples[k].support == Support::none) continue;
+    if (k > first) shortest = std::min(shortest, static_cast<double>(k - first) * series.dt);
+    first = k + 1;
+  }
+  return shortest;
+}
+
+}  // namespace
+
+double safe_margin(const RobotModel& model) {
+  double least = kNoBound;
+  for (Side side : {Side::left, Side::right}) {
+    const ConvexPolygon polygon(model.sole(side).polygon);
+    least = std::min(least, polygon.margin(polygon.centroid()));
+  }
+  return 0.9 * least;
+}
+
+bool flight_is_at_fault(const ConsistencyReport& report) {
+  return std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
+    return f.severity == Severity::error && (f.kind == "ballistic" || f.kind == "angular_momentum");
+  });
+}
+
+double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& report,
+                         double finest) {
+  constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
+  constexpr double kKnotsOfSlip = 10;          // soles in their places ask for all of what slipped
+  double spacing =
+      flight_is_at_fault(report) ? shortest_flight(series) / kKnotsOfFaultyFlight : kNoBound;
+  for (const Finding& f : report.findings)
+    if (f.kind == "foot_slip" && f.severity == Severity::error)
+      spacing = std::min(spacing, std::max((f.end - f.begin) / kKnotsOfSlip, finest));
+  return spacing;
+}
+
+std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
+                                                      double pad) {
+  std::vector<std::pair<double, double>> windows;
+  for (const Finding& f : findings)
+    if (f.severity == Severity::error || f.kind == "support_margin" || !f.follows_from.empty())
+      windows.emplace_back(f.begin - pad, f.end + pad);
+  return merged(std::move(windows));
+}
+
+CorrectionTrack trimmed(const CorrectionTrack& track) {
+  const Eigen::MatrixXd c = (track.coefficients * 1e9).array().round() / 1e9;
+  Eigen::Index first = c.rows(), last = -1;
+  for (Eigen::Index i = 0; i < c.rows(); ++i) {
+    if (c.row(i).isZero(0)) continue;
+    first = std::min(first, i);
+    last = i;
+  }
+  CorrectionTrack result;
+  result.spacing = track.spacing;
+  if (last < 0) {
+    result.coefficients.setZero(4, 6);
+    return result;
+  }
+  first = std::max<Eigen::Index>(0, first - 3);
+  last = std::min(c.rows() - 1, last + 3);
+  result.begin = track.begin + track.spacing * static_cast<double>(first);
+  std::vector<Eigen::Index> columns = {0, 1, 2, 3, 4, 5};
+  for (Eigen::Index j = 6; j < c.cols(); ++j) {
+    if (c.col(j).isZero(0)) continue;
+    columns.push_back(j);
+    result.joints.push_back(track.joints[j - 6]);
+  }
+  result.coefficients = c(Eigen::seq(first, last), columns);
+  return result;
+}
+
+// Only what moves is moved further; the first and last three points are zero or tied to each other.
+// Twice, for the second pass takes back the rounding of the first.
+CorrectionTrack kept_at(CorrectionTrack track, const std::vector<double>& times) {
+  Eigen::MatrixXd& c = track.coefficients;
+  const double end = track.begin + track.spacing * static_cast<double>(c.rows() - 3);
+  std::vector<double> inside;
+  for (const double t : times)
+    if (t > track.begin && t < end) inside.push_back(t);
+  if (inside.empty()) return track;
+  const auto count = static_cast<Eigen::Index>(inside.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count, c.rows()), free = all;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const SplineWeights weights = correction_weights(track, inside[static_cast<size_t>(i)]);
+    all.row(i).segment<4>(weights.first) = weights.value.transpose();
+  }
+  for (Eigen::Index row = 3; row < c.rows() - 3; ++row)
+    if (!c.row(row).isZero(0)) free.col(row) = all.col(row);
+  const auto solver = free.completeOrthogonalDecomposition();
+  for (int pass = 0; pass < 2; ++pass) c -= solver.solve(all * c);
+  return track;
+}
+
+CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
+                           const RepairOptions& options) {
+  require_windows(options.locked_windows);
+  CorrectionSpec spec;
+  spec.spacing = std::min(options.knot_spacing, shortest_flight(series) / kKnotsOfFlight);
+  spec.locked = locked_dofs(model, options.locked_joints);
+  spec.locked_feet = options.locked_feet;
+  for (const auto& window : options.locked_windows)
+    if (window.first < window.second) spec.locked_windows.push_back(window);
+  spec.kept_instants = kept_instants(options.locked_windows, series);
+  spec.weights = weight_factors(model, options.joint_weights);
+  spec.trust = options.trust;
+  spec.tolerance = tolerances(options.check, model, series);
+  spec.profile = options.check.profile;
+  spec.friction = options.check.friction;
+  const double least = tolerances(options.check)[static_cast<int>(Kind::support_margin)];
+  const double safe = options.trust == Trust::zmp ? least : safe_margin(model);
+  spec.safe_margin = options.zmp_margin.value_or(safe) + kMarginBetween;
+  spec.zmp_margin = std::min(spec.safe_margin, least + kMarginBetween);
+  spec.gentle_swings = options.safety > 0;
+  if (!spec.gentle_swings) spec.safe_margin = spec.zmp_margin;
+  return spec;
+}
+
+std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report) {
+  constexpr double kAround = 0.3;  // [s]
+  std::vector<TimeWindow> windows;
+  for (const Finding& f : report.findings)
+    if (f.severity == Severity::error &&
+        (f.kind == "cog_residual" || f.kind == "zmp_residual" || f.kind == "support_margin"))
+      windows.emplace_back(f.begin - kAround, f.end + kAround);
+  return windows;
+}
+
+void add_near_pairs(const RobotModel& model, const CommandSeries& series,
+                    const CollisionModel& collisions, std::vector<int>& pairs) {
+  constexpr double kNear = 0.005;  // [m]
+  std::set<int> near(pairs.begin(), pairs.end());
+  scan_clearance(model, series, collisions, kNear, [&](int pair, int, double clearance) {
+    if (clearance < kNear) near.insert(pair);
+  });
+  pairs.assign(near.begin(), near.end());
+}
+
+bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
+                const ConsistencyReport& report) {
+  for (const Finding& f : report.findings) {
+    if (f.severity != Severity::error || f.kind == "continuous_torque") continue;
+    const int dof = model.find_dof(f.where);
+    const bool joint =
+        dof >= 0 && spec.locked[dof] &&
+        (f.kind == "joint_position" || f.kind == "joint_speed" || f.kind == "servo_step");
+    const bool window = within(spec.locked_windows, f.at);
+    const bool instant =
+        is_of_posture(f) && std::any_of(spec.kept_instants.begin(), spec.kept_instants.end(),
+                                        [&](const double t) { return t >= f.begin && t <= f.end; });
+    if (joint || window || instant) return true;
+  }
+  return false;
+}
+
+}  // namespace ayumi

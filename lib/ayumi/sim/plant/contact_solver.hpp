@@ -1,0 +1,70 @@
+#pragma once
+// The contact problem of one time step: impulses that keep points from sinking in, with exact
+// Coulomb cones. docs/theory.md, "Contact and servo integration".
+
+#include <Eigen/Dense>
+#include <array>
+#include <vector>
+
+#include "ayumi/dynamics/kernels/tree_kernels.hpp"
+
+namespace ayumi {
+
+/// For contact i (rows 3i..3i+2: normal, tangent 1, tangent 2) find the impulse l and the shifted
+/// velocity u = A l + b with
+///   0 <= u_n  perpendicular to  l_n >= 0,
+///   |l_t| <= mu l_n;  u_t = 0 where the inequality is strict, else l_t = -s u_t with s >= 0.
+/// A is the Delassus matrix with the compliance of each contact added on its diagonal (symmetric
+/// positive definite), so the solution does not depend on how many points share a load.
+struct ContactProblem {
+  Eigen::MatrixXd A;             ///< 3n x 3n [1/kg]
+  Eigen::VectorXd b;             ///< 3n [m/s]
+  std::vector<double> friction;  ///< n
+};
+
+struct ContactSolution {
+  int iterations = 0;   ///< sweeps
+  double residual = 0;  ///< largest change of a shifted velocity in the last sweep or test [m/s]
+};
+
+/// Block Gauss-Seidel with the exact solution of each 3x3 contact, sped up by Newton steps on all
+/// closed contacts. Keeps its workspace: it allocates nothing once it has met its largest problem.
+class ContactSolver {
+ public:
+  /// Room for n contacts; matrices and vectors below have 3n rows until the next resize().
+  void resize(int n);
+
+  using Matrix = Eigen::Map<Eigen::MatrixXd>;
+  using Vector = Eigen::Map<Eigen::VectorXd>;
+  int size() const { return n_; }
+  Matrix A() { return Matrix(store_[0].data(), 3 * n_, 3 * n_); }
+  Vector b() { return Vector(store_[1].data(), 3 * n_); }
+  Vector impulse() { return Vector(store_[2].data(), 3 * n_); }  ///< start, then answer [N s]
+  Eigen::Map<const Eigen::VectorXd> impulse() const { return {store_[2].data(), 3 * n_}; }
+  std::vector<double>& friction() { return friction_; }  ///< n
+
+  /// Stops when a sweep changes no shifted velocity by more than `tolerance` [m/s].
+  ContactSolution solve(double tolerance = 1e-10, int max_iterations = 500);
+
+ private:
+  double sweep(Vector impulse, double share = 1.0);
+  double wrong_by(Vector impulse, double tolerance);
+  double newton_alone(int& sweeps, double tolerance);
+  bool newton_step();
+  bool stick_together(int rows);
+  bool stick_and_slide(int rows);
+  bool sticks(int i, const Eigen::Vector3d& l, const Eigen::Vector3d& u) const;
+
+  const kernels::Kernels* kernels_ = &kernels::best_kernels();
+  int n_ = 0;
+  // A, b, impulse, candidate, Newton matrix, Newton right side, velocities, first impulse.
+  std::array<std::vector<double>, 8> store_;
+  std::vector<double> friction_;
+  std::vector<int> closed_;
+};
+
+/// The same for one problem; `impulse` (3n) is the start and receives the answer.
+ContactSolution solve_contacts(const ContactProblem& problem, Eigen::VectorXd& impulse,
+                               double tolerance = 1e-10, int max_iterations = 500);
+
+}  // namespace ayumi

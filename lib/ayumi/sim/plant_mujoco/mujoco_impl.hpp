@@ -1,0 +1,103 @@
+#pragma once
+// What the MuJoCo plant is made of. Seen within plant_mujoco only.
+
+#include <array>
+#include <optional>
+
+#include "ayumi/sim/ground.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_model.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
+
+namespace ayumi {
+
+using MujocoData = std::unique_ptr<mjData, void (*)(mjData*)>;
+
+inline void set_quaternion(mjtNum* to, const Eigen::Quaterniond& q) {
+  to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
+}
+
+struct MujocoPlant::Impl {
+  Impl(const RobotModel& robot, const ActuatorLimits& actuators, const World& ground_world,
+       int steps_per_step)
+      : steps(steps_per_step),
+        model(&robot),
+        limits(actuators),
+        world(ground_world),
+        ground(ground_world),
+        points(contact_points(robot)) {
+    // Its points are small balls, fixed to their bodies: a cylinder rolls on its eight corners.
+    std::erase_if(points, [](const ContactPoint& point) { return point.rim > 0; });
+    build(false);
+  }
+  Impl(const Impl& o)
+      : steps(o.steps),
+        model(o.model),
+        limits(o.limits),
+        world(o.world),
+        ground(o.ground),
+        points(o.points),
+        m(mj_copyModel(nullptr, o.m.get()), mj_deleteModel),
+        d(mj_copyData(nullptr, o.m.get(), o.d.get()), mj_deleteData),
+        bumps(o.bumps),
+        velocity(o.velocity),
+        body(o.body),
+        point_of(o.point_of),
+        plate(o.plate),
+        floor_id(o.floor_id),
+        loaded(o.loaded),
+        carried(o.carried),
+        floor(o.floor),
+        rates(o.rates),
+        state(o.state),
+        data(o.data),
+        report(o.report) {}
+
+  void build(bool with_bumps);
+  void set_inertias();
+  void find_indices();
+  void read_state();
+  void take_input(const StepInput& input);
+  void load(const std::vector<CarriedMass>& payloads);
+  void take_joints(const StepInput& input);
+  void take_bumps(const std::vector<Bump>& now);
+  void place_floor();
+  void set_friction();
+  void move_ground(double dt);
+  void apply(const ExternalWrench& w);
+  void check_input(const Eigen::VectorXd& targets, const StepInput& input, double dt) const;
+  void limit_torques();
+  void account(double dt);
+  void step(const Eigen::VectorXd& targets, const StepInput& input, double h);
+  void begin_report();
+  void finish_report();
+  void report_servos();
+  void report_contacts();
+  void report_contact(int index, const mjContact& contact, int geom, double sign);
+  void share_among_cells(int side, const Eigen::Vector3d& at, const Eigen::Vector3d& force);
+  const RobotModel& moving() const { return loaded ? *loaded : *model; }
+
+  int steps;  // of MuJoCo per step of the plant
+  const RobotModel* model;
+  ActuatorLimits limits;
+  World world;
+  Ground ground;
+  std::vector<ContactPoint> points;
+  MujocoModel m{nullptr, mj_deleteModel};
+  MujocoData d{nullptr, mj_deleteData};
+  bool bumps = false;               // the model has room for them
+  std::vector<int> velocity, body;  // MuJoCo's index of each dof and body
+  std::vector<int> point_of;        // geom -> point; -1: the ground, -2 - side: a plate
+  std::array<int, 2> plate = {-1, -1};
+  int floor_id = 0;
+  std::optional<RobotModel> loaded;
+  std::vector<CarriedMass> carried;
+  FloorPose floor;            // of the last step
+  std::vector<double> rates;  // at which bumps rise
+  RobotState state;
+  RobotData data{*model};
+  StepReport report;
+  std::vector<double> weights;   // workspace, as what follows
+  Eigen::VectorXd before, mean;  // rates of a step
+};
+
+}  // namespace ayumi

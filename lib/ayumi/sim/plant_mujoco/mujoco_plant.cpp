@@ -1,0 +1,310 @@
+// Servo: torque = clamp(kp (target - theta)) - kd dtheta, the damping as implicit joint damping.
+// MuJoCo's free joint has its angular velocity in body axes.
+#include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/sim/payload.hpp"
+#include "ayumi/sim/plant_interface.hpp"
+#include "ayumi/sim/plant_mujoco/mujoco_impl.hpp"
+#include "ayumi/sim/servo.hpp"
+#include "ayumi/sim/step_check.hpp"
+
+namespace ayumi {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+// What stands in the input when t of the step has passed.
+StepInput later(StepInput input, double t) {
+  if (input.floor) {
+    FloorPose& floor = *input.floor;
+    floor.pose.translation() += t * floor.velocity;
+    floor.pose.linear() =
+        exp_rotation(t * floor.angular_velocity).toRotationMatrix() * floor.pose.linear();
+  }
+  for (Bump& bump : input.bumps) bump.block.height += t * bump.rate;
+  return input;
+}
+
+}  // namespace
+
+void MujocoPlant::Impl::build(bool with_bumps) {
+  bumps = with_bumps;
+  m = mujoco_model(*model, points, limits, world, bumps);
+  MujocoData next(mj_makeData(m.get()), mj_deleteData);
+  if (d) {  // the same robot goes on
+    mju_copy(next->qpos, d->qpos, m->nq);
+    mju_copy(next->qvel, d->qvel, m->nv);
+    mju_copy(next->qacc_warmstart, d->qacc_warmstart, m->nv);
+    next->time = d->time;
+  }
+  d = std::move(next);
+  find_indices();
+  set_inertias();
+  mj_forward(m.get(), d.get());
+}
+
+void MujocoPlant::Impl::set_inertias() {
+  const std::vector<Body>& bodies = moving().bodies();
+  for (size_t i = 0; i < bodies.size(); ++i) {
+    set_inertia(bodies[i].inertia, body[i], m.get());
+    m->body_sameframe[body[i]] = 0;
+    m->body_simple[body[i]] = 0;
+    if (bodies[i].parent < 0) continue;
+    Eigen::Map<Vector3d>(m->body_pos + 3 * body[i]) = bodies[i].placement.translation();
+    set_quaternion(m->body_quat + 4 * body[i], Quaterniond(bodies[i].placement.linear()));
+  }
+  for (int i = 0; i < m->nv; ++i) m->dof_simplenum[i] = 0;
+  const MujocoData scratch(mj_makeData(m.get()), mj_deleteData);
+  mj_setConst(m.get(), scratch.get());
+}
+
+void MujocoPlant::Impl::find_indices() {
+  body.clear();
+  velocity.clear();
+  for (size_t i = 0; i < model->bodies().size(); ++i)
+    body.push_back(mujoco_id(m.get(), mjOBJ_BODY, "body" + std::to_string(i)));
+  for (int j = 0; j < model->dof_count(); ++j)
+    velocity.push_back(m->jnt_dofadr[mujoco_id(m.get(), mjOBJ_JOINT, "joint" + std::to_string(j))]);
+  floor_id = mujoco_id(m.get(), mjOBJ_BODY, "floor");
+  point_of.assign(static_cast<size_t>(m->ngeom), -1);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const int geom = mujoco_id(m.get(), mjOBJ_GEOM, "point" + std::to_string(i));
+    point_of[static_cast<size_t>(geom)] = static_cast<int>(i);
+    if (points[i].side >= 0)
+      report.soles[points[i].side].resize(static_cast<size_t>(points[i].vertex) + 1);
+  }
+  for (int side = 0; side < 2; ++side) {
+    plate[side] = mujoco_id(m.get(), mjOBJ_GEOM, "plate" + std::to_string(side));
+    if (plate[side] >= 0) point_of[static_cast<size_t>(plate[side])] = -2 - side;
+  }
+}
+
+void MujocoPlant::Impl::read_state() {
+  state.base.position = Eigen::Map<const Vector3d>(d->qpos);
+  state.base.attitude = Quaterniond(d->qpos[3], d->qpos[4], d->qpos[5], d->qpos[6]).normalized();
+  state.base_velocity = Eigen::Map<const Vector3d>(d->qvel);
+  state.base_angular_velocity = state.base.attitude * Eigen::Map<const Vector3d>(d->qvel + 3);
+  for (int j = 0; j < model->dof_count(); ++j) {
+    const int column = velocity[static_cast<size_t>(j)];
+    state.theta[j] = d->qpos[column + 1];  // one quaternion before it
+    state.dtheta[j] = d->qvel[column];
+  }
+  update_velocities(moving(), state, data);
+}
+
+void MujocoPlant::Impl::apply(const ExternalWrench& w) {
+  const int id = body[static_cast<size_t>(w.body < 0 ? model->trunk_body() : w.body)];
+  const Vector3d point = w.body < 0 ? data.cog : w.point;
+  const Vector3d at = Eigen::Map<const Vector3d>(d->xipos + 3 * id);
+  Eigen::Map<Vector3d>(d->xfrc_applied + 6 * id) += w.force;
+  Eigen::Map<Vector3d>(d->xfrc_applied + 6 * id + 3) += w.torque + (point - at).cross(w.force);
+}
+
+// A motor cannot push a joint beyond its speed limit, as in Plant.
+void MujocoPlant::Impl::limit_torques() {
+  for (int j = 0; j < model->dof_count(); ++j) {
+    if (!m->actuator_forcelimited[j]) continue;
+    for (int end = 0; end < 2; ++end) {
+      const double direction = end == 0 ? -1.0 : 1.0;
+      m->actuator_forcerange[2 * j + end] =
+          direction * available_torque(limits, j, state.dtheta[j], direction);
+    }
+  }
+}
+
+// At the mean rates of the step. MuJoCo has contacts, end stops and dry friction in one.
+void MujocoPlant::Impl::account(double dt) {
+  const auto of = [&](const mjtNum* v) { return Eigen::Map<const VectorXd>(v, m->nv); };
+  mean = 0.5 * (before + of(d->qvel));
+  report.work.servos += dt * of(d->qfrc_actuator).dot(mean);
+  report.work.joints += dt * of(d->qfrc_passive).dot(mean);
+  report.work.contacts += dt * of(d->qfrc_constraint).dot(mean);
+  before.setZero();
+  for (const int id : body)
+    mj_applyFT(m.get(), d.get(), d->xfrc_applied + 6 * id, d->xfrc_applied + 6 * id + 3,
+               d->xipos + 3 * id, id, before.data());
+  report.work.outside += dt * before.dot(mean);
+}
+
+// Forces are summed over MuJoCo's steps, then divided by their number.
+void MujocoPlant::Impl::begin_report() {
+  report.torque.setZero();
+  report.work = Work{};
+  report.contact_iterations = 0;
+  report.max_penetration = 0;
+  report.body_contact = false;
+  for (std::vector<SoleForce>& sole : report.soles)
+    for (SoleForce& cell : sole) cell = SoleForce{};
+}
+
+void MujocoPlant::Impl::finish_report() {
+  report.torque /= steps;
+  for (std::vector<SoleForce>& sole : report.soles)
+    for (SoleForce& cell : sole) cell.force /= steps;
+}
+
+void MujocoPlant::Impl::report_servos() {
+  report.saturated.clear();
+  for (int j = 0; j < model->dof_count(); ++j) {
+    const double drive = d->actuator_force[j];
+    report.torque[j] += drive;
+    if (m->actuator_forcelimited[j] &&
+        (drive <= m->actuator_forcerange[2 * j] || drive >= m->actuator_forcerange[2 * j + 1]))
+      report.saturated.push_back(j);
+  }
+}
+
+void MujocoPlant::Impl::check_input(const VectorXd& targets, const StepInput& input,
+                                    double dt) const {
+  check_step(*model, targets, input, dt, d->time);
+  if (input.bumps.size() > kMujocoBumps)
+    fail(ErrorCode::bad_pattern, "the MuJoCo plant has room for " + std::to_string(kMujocoBumps) +
+                                     " bumps at once, not " + std::to_string(input.bumps.size()) +
+                                     "; use Ayumi's own plant");
+}
+
+// What there is in this step besides pushes.
+void MujocoPlant::Impl::take_input(const StepInput& input) {
+  ground.set(input);
+  load(input.payloads);
+  take_joints(input);
+  for (const ExternalWrench& w : input.wrenches) apply(w);
+}
+
+void MujocoPlant::Impl::load(const std::vector<CarriedMass>& payloads) {
+  if (payloads == carried) return;
+  carried = payloads;
+  loaded.reset();
+  if (!payloads.empty()) loaded.emplace(with_payloads(*model, payloads));
+  set_inertias();
+  data = RobotData(moving());
+  update_velocities(moving(), state, data);
+}
+
+void MujocoPlant::Impl::take_joints(const StepInput& input) {
+  for (int j = 0; j < model->dof_count(); ++j) {
+    const ServoDescription& servo = model->dofs()[static_cast<size_t>(j)].servo;
+    const JointFault fault =
+        input.joints.empty() ? JointFault{} : input.joints[static_cast<size_t>(j)];
+    m->actuator_gainprm[mjNGAIN * j] = fault.gain * servo.kp;
+    m->actuator_biasprm[mjNBIAS * j + 1] = -fault.gain * servo.kp;
+    m->actuator_biasprm[mjNBIAS * j + 2] = -fault.gain * servo.kd;
+    const int column = velocity[static_cast<size_t>(j)];
+    m->dof_frictionloss[column] = servo.coulomb + fault.coulomb;
+    m->dof_damping[column] = servo.viscous + fault.viscous;
+    d->ctrl[j] -= fault.encoder;
+  }
+}
+
+void MujocoPlant::Impl::take_bumps(const std::vector<Bump>& now) {
+  if (!now.empty() && !bumps) build(true);
+  if (!bumps) return;
+  rates.assign(static_cast<size_t>(m->ngeom), 0.0);
+  for (int i = 0; i < kMujocoBumps; ++i) {
+    const bool there = i < static_cast<int>(now.size());
+    const Bump* bump = there ? &now[static_cast<size_t>(i)] : nullptr;
+    set_bump(bump, i, m.get());
+    for (int part = 0; there && part < 9; ++part)
+      rates[static_cast<size_t>(bump_geom(m.get(), i, part))] = bump->rate;
+  }
+}
+
+MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits, const World& world,
+                         int steps) {
+  if (static_cast<int>(model.bodies().size()) != model.dof_count() + 1)
+    fail(ErrorCode::bad_model, model.name() + ": the MuJoCo plant knows no mimic joints");
+  for (const Dof& dof : model.dofs())
+    if (dof.servo.kp <= 0 && !model.description().servos.contains(dof.name))
+      fail(ErrorCode::bad_model,
+           model.name() + ": joint " + dof.name + " has no servo (kp); give it one in the sidecar");
+  check_world(model, world);
+  impl_ = std::make_unique<Impl>(model, limits, world, steps);
+  impl_->report.torque = VectorXd::Zero(model.dof_count());
+  set_state(model.rest_state());
+}
+
+MujocoPlant::~MujocoPlant() = default;
+MujocoPlant::MujocoPlant(const MujocoPlant& other) : impl_(new Impl(*other.impl_)) {}
+MujocoPlant& MujocoPlant::operator=(const MujocoPlant& other) {
+  impl_ = std::make_unique<Impl>(*other.impl_);
+  return *this;
+}
+MujocoPlant::MujocoPlant(MujocoPlant&&) noexcept = default;
+MujocoPlant& MujocoPlant::operator=(MujocoPlant&&) noexcept = default;
+
+const RobotState& MujocoPlant::state() const { return impl_->state; }
+const RobotData& MujocoPlant::data() const { return impl_->data; }
+
+void MujocoPlant::set_state(const RobotState& s) {
+  check_state(*impl_->model, s);
+  mjData* d = impl_->d.get();
+  mj_resetData(impl_->m.get(), d);
+  impl_->place_floor();
+  impl_->floor = FloorPose{};
+  impl_->state = s;
+  Eigen::Map<Vector3d>(d->qpos) = s.base.position;
+  set_quaternion(d->qpos + 3, s.base.attitude);
+  Eigen::Map<Vector3d>(d->qvel) = s.base_velocity;
+  Eigen::Map<Vector3d>(d->qvel + 3) = s.base.attitude.conjugate() * s.base_angular_velocity;
+  for (int j = 0; j < impl_->model->dof_count(); ++j) {
+    const int column = impl_->velocity[static_cast<size_t>(j)];
+    d->qpos[column + 1] = s.theta[j];
+    d->qvel[column] = s.dtheta[j];
+  }
+  mj_forward(impl_->m.get(), d);
+  update_velocities(impl_->moving(), s, impl_->data);
+}
+
+const StepReport& MujocoPlant::step(const VectorXd& targets, const StepInput& input, double dt) {
+  Impl& p = *impl_;
+  p.check_input(targets, input, dt);
+  p.begin_report();
+  const double h = dt / p.steps;
+  const bool moves = input.floor || !input.bumps.empty();
+  for (int i = 0; i < p.steps; ++i)
+    p.step(targets, i > 0 && moves ? later(input, i * h) : input, h);
+  if (!p.state.theta.allFinite() || !p.state.base.position.allFinite())
+    fail(ErrorCode::internal, p.model->name() + ": MuJoCo left the finite numbers " +
+                                  text::fixed(p.d->time, 3) + " s after its start");
+  p.finish_report();
+  return p.report;
+}
+
+void MujocoPlant::Impl::step(const VectorXd& targets, const StepInput& input, double h) {
+  take_bumps(input.bumps);
+  m->opt.timestep = h;
+  limit_torques();
+  Eigen::Map<VectorXd>(d->ctrl, m->nu) = targets;
+  Eigen::Map<VectorXd>(d->xfrc_applied, 6 * m->nbody).setZero();
+  take_input(input);
+  place_floor();
+  set_friction();
+  before = Eigen::Map<const VectorXd>(d->qvel, m->nv);
+  mj_step1(m.get(), d.get());
+  move_ground(h);
+  mj_step2(m.get(), d.get());
+  account(h);
+  read_state();
+  report.contact_iterations = std::max(report.contact_iterations, static_cast<int>(d->solver_iter));
+  report_servos();
+  report_contacts();
+}
+
+PlantKind mujoco_plant_kind(int steps) {
+  return {"mujoco",
+          [steps](const RobotModel& model, const ActuatorLimits& limits, const World& world) {
+            return AnyPlant(MujocoPlant(model, limits, world, steps));
+          }};
+}
+
+}  // namespace ayumi

@@ -1,0 +1,149 @@
+#include "ayumi/check/table_safety.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "tests/support/bus_robot.hpp"
+
+namespace ayumi {
+namespace {
+
+constexpr double kDegree = EIGEN_PI / 180;
+
+ReferenceTrajectory still(size_t rows, const Eigen::Vector3d& degrees) {
+  ReferenceTrajectory table;
+  table.joints = {"a", "b", "c"};
+  for (size_t k = 0; k < rows; ++k) {
+    ReferenceRow row;
+    row.theta = degrees * kDegree;
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+TEST(ExportSafety, RampLeavesThePostureAndArrivesAtRest) {
+  const RobotModel robot = test::bus_robot();
+  const SafeTable safe = make_safe(robot, still(10, {30, 20, 0}), {});
+  EXPECT_TRUE(safe.report.safe);
+  EXPECT_EQ(safe.first, 2000u);
+  EXPECT_DOUBLE_EQ(safe.report.ramp, 2.0);
+  EXPECT_DOUBLE_EQ(safe.report.hold, 0.5);
+  ASSERT_EQ(safe.table.rows.size(), 2000u + 10 + 500);
+  const auto a = [&](size_t k) { return safe.table.rows[k].theta[0] / kDegree; };
+  EXPECT_NEAR(a(0), 10, 1e-12);
+  EXPECT_NEAR(a(1), 10, 1e-6);     // starts at rest
+  EXPECT_NEAR(a(1000), 20, 1e-9);  // half way at half time
+  EXPECT_NEAR(a(1999), 30, 1e-6);  // arrives at rest
+  EXPECT_EQ(a(2000), a(2509));
+  // Peak speed of the minimum jerk: 1.875 distance / duration.
+  EXPECT_NEAR((a(1001) - a(999)) / 0.002, 1.875 * 20 / 2.0, 1e-3);
+}
+
+TEST(ExportSafety, RampGrowsWithTheDistance) {
+  const RobotModel robot = test::bus_robot();
+  SafetyOptions options;
+  options.ramp = 0.01;
+  const SafeTable safe = make_safe(robot, still(2, {80, 0, 0}), options);
+  EXPECT_TRUE(safe.report.safe);
+  EXPECT_GT(safe.report.ramp, 1.875 * 70 * kDegree / 2.38 - 1e-9);
+  EXPECT_LE(safe.report.max_step_ratio, 0.55);
+  EXPECT_EQ(safe.report.worst_joint, "a");
+}
+
+TEST(ExportSafety, FindsTheStepThatIsTooLarge) {
+  const RobotModel robot = test::bus_robot();
+  ReferenceTrajectory table = still(10, {10, 0, 0});
+  for (size_t k = 5; k < 10; ++k) table.rows[k].theta[1] = 61.2 / 209 * kDegree;
+  const SafetyReport report = make_safe(robot, table, {}).report;
+  EXPECT_FALSE(report.safe);
+  ASSERT_EQ(report.violations.size(), 1u);
+  const SafetyViolation& found = report.violations[0];
+  EXPECT_EQ(found.kind, "step");
+  EXPECT_EQ(found.joint, "b");
+  EXPECT_DOUBLE_EQ(found.t, 2.005);
+  EXPECT_EQ(found.value, 61);
+  EXPECT_EQ(found.limit, 57);
+  EXPECT_EQ(text_of(found), "b at 2.005 s: step 61 counts, limit 57 (1 row)");
+}
+
+TEST(ExportSafety, FindsThePositionBeyondTheSoftLimit) {
+  RobotDescription description = test::bus_description();
+  description.soft_limit_margin = 1 * kDegree;
+  const RobotModel robot(description);
+  const SafetyReport report = make_safe(robot, still(10, {10, 89.5, 0}), {}).report;
+  ASSERT_EQ(report.violations.size(), 1u);
+  EXPECT_EQ(report.violations[0].kind, "position");
+  EXPECT_EQ(report.violations[0].joint, "b");
+  EXPECT_NEAR(report.violations[0].limit, 89 * kDegree, 1e-12);
+  EXPECT_NEAR(report.min_limit_margin, -0.5 * kDegree, 1e-12);
+  EXPECT_EQ(report.margin_joint, "b");
+}
+
+TEST(ExportSafety, FindsMovingEnds) {
+  const RobotModel robot = test::bus_robot();
+  ReferenceTrajectory table = still(10, {10, 0, 0});
+  for (size_t k = 0; k < 10; ++k) table.rows[k].theta[2] = 0.0002 * static_cast<double>(k);
+  const SafetyReport report = make_safe(robot, table, {}).report;
+  ASSERT_EQ(report.violations.size(), 2u);
+  EXPECT_EQ(report.violations[0].kind, "start_speed");
+  EXPECT_EQ(report.violations[1].kind, "end_speed");
+  EXPECT_NEAR(report.start_speed, 0.2, 1e-9);
+  EXPECT_NEAR(report.end_speed, 0.2, 1e-9);
+}
+
+TEST(ExportSafety, RefusesAnotherRobotsTable) {
+  const RobotModel robot = test::bus_robot();
+  ReferenceTrajectory table = still(1, {0, 0, 0});
+  table.joints[2] = "d";
+  try {
+    make_safe(robot, table, {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "the joint table has no column for joint 'c' of robot 'bus'");
+  }
+  table = still(0, {0, 0, 0});
+  EXPECT_THROW(make_safe(robot, table, {}), Error);
+}
+
+// At exactly the speed limit, and at the position limits, rounding alone must not break a limit.
+TEST(ExportSafety, RoundingKeepsTheLimitsThatTheMotionKeeps) {
+  const RobotModel robot = test::bus_robot();
+  ReferenceTrajectory table = still(1, {0, 0, 0});
+  table.rows.clear();
+  const double step = 57.0 / 209 * kDegree;
+  double x = 0.3 * step;
+  double direction = 1;
+  for (int k = 0; k < 5000; ++k) {
+    ReferenceRow row;
+    row.theta = Eigen::Vector3d(x, x, -18 * kDegree + 1e-12);
+    table.rows.push_back(row);
+    if (x + direction * step > 1.5 || x + direction * step < -0.3) direction = -direction;
+    x += direction * step * (k % 7 == 0 ? 0.93 : 1.0);
+  }
+  const Eigen::VectorXd limits = count_step_limits(robot, table.dt, {});
+  EXPECT_EQ(limits, Eigen::Vector3d::Constant(57));
+  const Eigen::MatrixXi counts = encoder_counts(robot, table, limits);
+  for (Eigen::Index k = 0; k < counts.rows(); ++k) {
+    EXPECT_GE(counts(k, 2), -18 * 209);
+    for (int dof = 0; dof < 3; ++dof) {
+      const double scale = dof == 1 ? -209 : 209;
+      const double exact = table.rows[static_cast<size_t>(k)].theta[dof] / kDegree * scale;
+      EXPECT_LT(std::abs(counts(k, dof) - exact), 1);
+      if (k > 0) {
+        EXPECT_LE(std::abs(counts(k, dof) - counts(k - 1, dof)), 57);
+      }
+    }
+  }
+}
+
+TEST(ExportSafety, SpeedLimitOfTheProfileCountsWhereItIsLower) {
+  RobotDescription description = test::bus_description();
+  description.profiles[0].speed["c"] = 2.0;
+  const RobotModel robot(description);
+  // 2 rad/s = 114.59 deg/s = 23.95 counts/ms
+  EXPECT_EQ(count_step_limits(robot, 0.001, {}), Eigen::Vector3d(57, 57, 23));
+  EXPECT_EQ(count_step_limits(robot, 0.002, {}), Eigen::Vector3d(114, 114, 47));
+}
+
+}  // namespace
+}  // namespace ayumi

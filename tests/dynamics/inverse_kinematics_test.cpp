@@ -1,0 +1,125 @@
+#include "ayumi/dynamics/inverse_kinematics.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/dynamics/kinematics.hpp"
+#include "tests/support/biped.hpp"
+#include "tests/support/random_robot.hpp"
+
+namespace ayumi {
+namespace {
+
+constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
+
+// What a random posture near home reaches is asked back from the home posture.
+void expect_round_trip(const RobotModel& model, unsigned seed) {
+  test::Random random(seed);
+  const InverseKinematics ik(model, model.posture());
+  RobotData data(model);
+  for (int trial = 0; trial < 50; ++trial) {
+    RobotState wanted = model.rest_state();
+    wanted.base.position = random.vector(2.0);
+    wanted.base.attitude = exp_rotation(random.vector(1.0));
+    wanted.theta += random.vector(model.dof_count(), 0.25);
+    update_positions(model, wanted, data);
+    PostureTarget target;
+    for (const Side side : kSides)
+      target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
+    target.cog = data.cog;
+    target.trunk = data.rotation[model.trunk_body()];
+
+    RobotState state = wanted;  // joints that are not solved stay
+    for (const Side side : kSides)
+      for (const int dof : ik.leg(side)) state.theta[dof] = model.posture()[dof];
+    state.base = BasePose{};
+    const PostureSolution solution = ik.solve(target, state, data);
+    ASSERT_TRUE(solution.reached) << "trial " << trial << " error " << solution.error;
+    EXPECT_FALSE(solution.knee_flipped);
+    update_positions(model, state, data);
+    for (const Side side : kSides)
+      EXPECT_LT(
+          (sole_pose(model, data, side).matrix() - target.feet[static_cast<int>(side)].matrix())
+              .cwiseAbs()
+              .maxCoeff(),
+          1e-10);
+    EXPECT_LT((data.cog - target.cog).norm(), 1e-10);
+    EXPECT_LT((data.rotation[model.trunk_body()] - target.trunk).norm(), 1e-10);
+    EXPECT_LT((state.theta - wanted.theta).norm(), 1e-8);  // the same branch
+  }
+}
+
+TEST(InverseKinematics, MeetsRandomTargets) { expect_round_trip(test::biped(), 1); }
+
+TEST(InverseKinematics, TrunkAboveAWaistJoint) {
+  expect_round_trip(test::biped({.waist = true}), 2);
+}
+
+// A seventh joint in each leg: reached as well, by damped least squares.
+TEST(InverseKinematics, SevenJointLegs) {
+  RobotDescription robot = test::biped_description();
+  for (const std::string s : {"l_", "r_"}) {
+    for (JointDescription& joint : robot.joints)
+      if (joint.name == s + "hip_pitch") joint.child = s + "hip3";
+    robot.links.push_back(test::box_link(s + "hip3", 0.05, {0, 0, 0}, {0.02, 0.02, 0.02}));
+    robot.joints.push_back(
+        test::hinge(s + "thigh_twist", s + "hip3", s + "thigh", {0, 0, 0}, {0, 0, 1}, -1, 1));
+  }
+  const RobotModel model(robot);
+  const InverseKinematics ik(model, model.posture());
+  EXPECT_EQ(ik.leg(Side::left).size(), 7u);
+  RobotData data(model);
+  RobotState state = model.rest_state();
+  update_positions(model, state, data);
+  PostureTarget target;
+  for (const Side side : kSides) target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
+  target.cog = data.cog + Eigen::Vector3d(0.01, 0.02, -0.01);
+  target.feet[0].translation() += Eigen::Vector3d(0.03, 0.01, 0.02);
+  target.trunk = rpy_to_matrix({0, 0, 0.1});
+  const PostureSolution solution = ik.solve(target, state, data);
+  EXPECT_TRUE(solution.reached);
+  EXPECT_LT(solution.error, 1e-10);
+}
+
+TEST(InverseKinematics, SolvesLegsOnly) {
+  const RobotModel model = test::biped({.waist = true});
+  const InverseKinematics ik(model, model.posture());
+  EXPECT_FALSE(ik.solves(model.find_dof("waist")));
+  EXPECT_FALSE(ik.solves(model.find_dof("l_shoulder")));
+  EXPECT_TRUE(ik.solves(model.find_dof("l_knee")));
+  EXPECT_EQ(ik.leg(Side::right).size(), 6u);
+}
+
+TEST(InverseKinematics, TellsWhichFootIsHowFarAway) {
+  const RobotModel model = test::biped();
+  const InverseKinematics ik(model, model.posture());
+  RobotData data(model);
+  RobotState state = model.rest_state();
+  update_positions(model, state, data);
+  PostureTarget target;
+  for (const Side side : kSides) target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
+  target.cog = data.cog;
+  target.feet[1].translation().z() -= 0.3;
+  const PostureSolution solution = ik.solve(target, state, data);
+  EXPECT_FALSE(solution.reached);
+  EXPECT_EQ(solution.foot, Side::right);
+  EXPECT_GT(solution.missing, 0.15);
+  EXPECT_LT(solution.missing, 0.3);
+}
+
+TEST(InverseKinematics, StraightReferenceBendsTheKneesForward) {
+  const RobotModel model = test::biped();
+  const InverseKinematics ik(model, model.posture("zero"));
+  RobotData data(model);
+  RobotState state = model.rest_state("home");
+  update_positions(model, state, data);
+  PostureTarget target;
+  for (const Side side : kSides) target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
+  target.cog = data.cog;
+  RobotState from = model.rest_state("zero");
+  from.theta = ik.start();
+  ASSERT_TRUE(ik.solve(target, from, data).reached);
+  EXPECT_LT((from.theta - state.theta).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace ayumi

@@ -1,0 +1,136 @@
+// What an author gets wrong is told with file, place and remedy.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "tests/support/biped.hpp"
+
+namespace ayumi {
+namespace {
+
+// The message sample() fails with after `change`, "" when it does not fail.
+std::string message_of(const std::function<void(Pattern&)>& change) {
+  const RobotModel model = test::biped();
+  WalkParameters p;
+  p.steps = 1;
+  Pattern pattern = walk_pattern(model, p);
+  pattern.file = "walk.json";
+  for (Keyframe& key : pattern.keyframes) key.place = "walk.json: /" + key.place;
+  change(pattern);
+  try {
+    sample(model, pattern, {.dt = 0.005});
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_pattern) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+void expect_words(const std::string& message, const std::vector<std::string>& words) {
+  for (const std::string& word : words)
+    EXPECT_NE(message.find(word), std::string::npos)
+        << "'" << message << "' lacks '" << word << "'";
+}
+
+TEST(SampleErrors, UnchangedIsFine) {
+  EXPECT_EQ(message_of([](Pattern&) {}), "");
+}
+
+TEST(SampleErrors, UnknownJoint) {
+  expect_words(message_of([](Pattern& p) { p.keyframes[1].joints["l_shouldr"] = 0.1; }),
+               {"walk.json: /keyframes/1", "l_shouldr", "did you mean 'l_shoulder'"});
+}
+
+TEST(SampleErrors, JointThatDoesNotMove) {
+  expect_words(message_of([](Pattern& p) { p.keyframes[1].joints["waist"] = 0.1; }),
+               {"/keyframes/1", "waist", "does not move"});
+}
+
+TEST(SampleErrors, MimicJoint) {
+  RobotDescription robot = test::biped_description();
+  for (JointDescription& joint : robot.joints)
+    if (joint.name == "r_shoulder") joint.mimic = "l_shoulder";
+  const RobotModel model(robot);
+  Pattern pattern = stand_pattern(model, 1);
+  pattern.keyframes[0].joints["r_shoulder"] = 0.1;
+  try {
+    sample(model, pattern);
+    FAIL();
+  } catch (const Error& error) {
+    expect_words(error.what(), {"keyframes/0", "r_shoulder", "follows 'l_shoulder'"});
+  }
+}
+
+TEST(SampleErrors, UnknownPosture) {
+  expect_words(message_of([](Pattern& p) { p.keyframes[0].posture = "squatt"; }),
+               {"/keyframes/0", "squatt", "did you mean 'squat'", "known:"});
+  expect_words(message_of([](Pattern& p) { p.default_posture = "hme"; }),
+               {"walk.json: defaults/posture", "hme"});
+}
+
+TEST(SampleErrors, TimesOutOfOrder) {
+  expect_words(message_of([](Pattern& p) { p.keyframes[2].t = p.keyframes[1].t; }),
+               {"/keyframes/2", "times must increase"});
+  expect_words(message_of([](Pattern& p) { p.phases[2].until = p.phases[1].until; }),
+               {"walk.json: phases/2", "times must increase"});
+}
+
+TEST(SampleErrors, KeysBeyondTheEnd) {
+  expect_words(message_of([](Pattern& p) { p.keyframes.back().t = 99; }),
+               {"/keyframes/", "99 s", "beyond the end of the last phase"});
+}
+
+TEST(SampleErrors, NotANumber) {
+  expect_words(message_of([](Pattern& p) { p.keyframes[1].joints["l_shoulder"] = NAN; }),
+               {"/keyframes/1", "not a finite number"});
+  expect_words(message_of([](Pattern& p) { p.phases[1].swing->to.position.x() = INFINITY; }),
+               {"phases/1", "not finite"});
+}
+
+TEST(SampleErrors, SwingOfASupportingFoot) {
+  expect_words(message_of([](Pattern& p) { p.phases[1].support = Support::both; }),
+               {"phases/1", "right foot swings while it carries"});
+}
+
+TEST(SampleErrors, FlightNeedsMore) {
+  expect_words(message_of([](Pattern& p) { p.phases[2].support = Support::none; }),
+               {"phases/2", "flight", "key of cog height at lift-off and at touchdown"});
+  expect_words(message_of([](Pattern& p) { p.phases[0].support = Support::none; }),
+               {"phases/0", "a phase on the ground before and after"});
+}
+
+TEST(SampleErrors, FootOutOfReach) {
+  const std::string message =
+      message_of([](Pattern& p) { p.phases[1].swing->to.position.x() = 0.35; });
+  expect_words(message, {"walk.json: phases/", "t = ", "foot is out of reach by", " mm",
+                         "lower the COG height"});
+}
+
+TEST(SampleErrors, CogTooHigh) {
+  expect_words(message_of([](Pattern& p) { p.cog_height = 0.5; }),
+               {"phases/0", "t = 0.000 s", "out of reach"});
+}
+
+TEST(SampleErrors, WeightThatChanges) {
+  expect_words(message_of([](Pattern& p) {
+                 p.keyframes[0].weights["l_knee"] = 2;
+                 p.keyframes[1].weights["l_knee"] = 3;
+               }),
+               {"/keyframes/1", "l_knee", "whole pattern"});
+}
+
+TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
+  expect_words(message_of([](Pattern& p) {
+                 for (Phase& phase : p.phases) phase.swing.reset();
+                 Foothold foot;
+                 foot.position = {0.05, 0.05, 0};
+                 p.keyframes[1].feet[0] = foot;
+               }),
+               {"phases/0", "left foot", "while it carries"});
+}
+
+}  // namespace
+}  // namespace ayumi

@@ -1,0 +1,93 @@
+#include "ayumi/plot/push_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+
+namespace ayumi {
+namespace {
+
+PushMap four_directions() {
+  PushMap map;
+  map.title = "walk";
+  map.laws = {"dtad"};
+  map.remarks = {"walking: dtad worst 1.02 B"};
+  PushMapPhase phase;
+  phase.name = "standing";
+  for (int i = 0; i < 4; ++i) phase.direction.push_back(i * M_PI / 2);
+  phase.bound = {2, 3, 2, 3};
+  phase.curves = {{{1, 1, 1, 1}}, {{2, 4, 1, 2}, {false, true, false, false}}};
+  map.phases = {phase, phase};
+  return map;
+}
+
+std::vector<DrawnPath> paths(const Drawing& drawing, double width) {
+  std::vector<DrawnPath> found;
+  for (const auto& item : drawing.items)
+    if (const auto* path = std::get_if<DrawnPath>(&item))
+      if (path->width == width) found.push_back(*path);
+  return found;
+}
+
+bool has_text(const Drawing& drawing, const std::string& wanted) {
+  return std::any_of(drawing.items.begin(), drawing.items.end(), [&](const auto& item) {
+    const auto* text = std::get_if<DrawnText>(&item);
+    return text && text->text == wanted;
+  });
+}
+
+TEST(PushMap, ForwardIsUpAndLengthsAreImpulses) {
+  const std::vector<DrawnPath> curves = paths(draw_push_map(four_directions()), 1.8);
+  ASSERT_EQ(curves.size(), 4u) << "open loop and one law in two panels";
+  const std::vector<Eigen::Vector2d>& open = curves[0].points;
+  const Eigen::Vector2d center = (open[0] + open[2]) / 2;
+  const double unit = (open[0] - center).norm();  // of 1 N s
+  const std::vector<Eigen::Vector2d>& law = curves[1].points;
+  EXPECT_NEAR((law[0] - (center + Eigen::Vector2d(0, -2 * unit))).norm(), 0, 1e-9);  // forward
+  EXPECT_NEAR((law[1] - (center + Eigen::Vector2d(-4 * unit, 0))).norm(), 0, 1e-9);  // left
+  EXPECT_NEAR((law[3] - (center + Eigen::Vector2d(2 * unit, 0))).norm(), 0, 1e-9);   // right
+}
+
+TEST(PushMap, SaysWhatItShows) {
+  const Drawing drawing = draw_push_map(four_directions());
+  for (const char* text :
+       {"walk", "standing", "capture bound B", "open loop", "dtad", "forward", "left",
+        "walking: dtad worst 1.02 B", "N s, through the COG; hollow: the largest tried"})
+    EXPECT_TRUE(has_text(drawing, text)) << text;
+  for (const auto& item : drawing.items)
+    if (const auto* path = std::get_if<DrawnPath>(&item)) {
+      for (const Eigen::Vector2d& p : path->points)
+        EXPECT_TRUE(p.x() >= 0 && p.x() <= drawing.width && p.y() >= 0 && p.y() <= drawing.height);
+    }
+}
+
+TEST(PushMap, LongRemarksFit) {
+  PushMap map = four_directions();
+  map.remarks.push_back(std::string(200, 'x'));
+  EXPECT_GT(draw_push_map(map).width, text_width(map.remarks.back(), 11));
+}
+
+TEST(PushMap, RefusesWhatItCannotDraw) {
+  const auto message = [](const PushMap& map) -> std::string {
+    try {
+      draw_push_map(map);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message({}).find("there is no phase to draw"), std::string::npos);
+  PushMap map = four_directions();
+  map.phases[1].curves[1].impulse.pop_back();
+  EXPECT_NE(message(map).find("standing: a curve has not one value per direction"),
+            std::string::npos);
+  map = four_directions();
+  map.laws = {"a", "b", "c", "d", "e"};
+  EXPECT_NE(message(map).find("more than four"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ayumi

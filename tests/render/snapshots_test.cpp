@@ -1,0 +1,113 @@
+#include "ayumi/render/snapshots.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "tests/render/box_robot.hpp"
+
+namespace ayumi::test {
+namespace {
+
+Image tile(int width, int height, std::uint8_t value) {
+  return {width, height, std::vector<std::uint8_t>(size_t(3) * width * height, value)};
+}
+
+StripOptions small(int count) {
+  StripOptions options;
+  options.clip.picture.width = 64;
+  options.clip.picture.height = 48;
+  options.count = count;
+  options.columns = 2;
+  return options;
+}
+
+/// Part of a sheet.
+Image cut(const Image& sheet, int left, int top, int width, int height) {
+  Image out = tile(width, height, 0);
+  for (int y = 0; y < height; ++y)
+    std::copy_n(sheet.pixel(left, top + y), 3 * width, out.pixel(0, y));
+  return out;
+}
+
+TEST(Strip, TilesLieInReadingOrder) {
+  const Image sheet = draw_sheet({tile(4, 3, 10), tile(4, 3, 20), tile(4, 3, 30)}, 2);
+  EXPECT_EQ(sheet.width, 8);
+  EXPECT_EQ(sheet.height, 6);
+  EXPECT_EQ(*sheet.pixel(0, 0), 10);
+  EXPECT_EQ(*sheet.pixel(7, 2), 20);
+  EXPECT_EQ(*sheet.pixel(3, 5), 30);
+  EXPECT_EQ(*sheet.pixel(4, 3), 255) << "white where no tile is left";
+  EXPECT_EQ(draw_sheet({tile(4, 3, 10)}, 9).width, 4) << "no more columns than tiles";
+}
+
+TEST(Strip, ShowsEvenlySpacedInstants) {
+  const RobotModel model = box_robot();
+  const SimulationLog log = box_run(model);
+  const Image strip = draw_strip(model, log, small(3));
+  EXPECT_EQ(strip.width, 128);
+  EXPECT_EQ(strip.height, 96);
+  ClipRenderer renderer(model, log, small(3).clip);
+  EXPECT_EQ(cut(strip, 0, 0, 64, 48).rgb, renderer.frame(0).rgb);
+  EXPECT_EQ(cut(strip, 64, 0, 64, 48).rgb, renderer.frame(0.5).rgb);
+  EXPECT_EQ(cut(strip, 0, 48, 64, 48).rgb, renderer.frame(1).rgb);
+}
+
+TEST(Strip, ChosenInstantsAreHeldWithinTheRun) {
+  const RobotModel model = box_robot();
+  const SimulationLog log = box_run(model);
+  StripOptions options = small(0);
+  options.times = {-1, 99};
+  const Image strip = draw_strip(model, log, options);
+  ClipRenderer renderer(model, log, options.clip);
+  EXPECT_EQ(cut(strip, 0, 0, 64, 48).rgb, renderer.frame(0).rgb);
+  EXPECT_EQ(cut(strip, 64, 0, 64, 48).rgb, renderer.frame(1).rgb);
+}
+
+TEST(Strip, SeveralInstantsInOnePicture) {
+  const RobotModel model = box_robot();
+  SimulationLog log = box_run(model);
+  for (size_t k = 0; k < log.samples.size(); ++k)  // two metres sideways
+    log.samples[k].state.base.position.y() = log.samples[k].cog.y() = 0.004 * double(k);
+  StripOptions options = small(3);
+  options.one_picture = true;
+  options.clip.picture = {.width = 240, .height = 90, .shadow = false, .ground = false};
+  options.clip.camera.view = "front";
+  options.clip.overlay = no_marks();
+  const Image all = draw_strip(model, log, options);
+  ASSERT_EQ(all.width, 240);
+  // Walking to the right of the picture: three robots, further left the earlier and the lighter.
+  options.count = 1;
+  options.times = {99};
+  const Image last = draw_strip(model, log, options);
+  options.times = {0, 0.5, 1};
+  std::array<int, 3> change = {0, 0, 0};
+  for (int x = 0; x < 240; ++x)
+    for (int y = 0; y < 90; ++y)
+      for (int c = 0; c < 3; ++c) {
+        int& most = change[size_t(x / 80)];
+        most = std::max(most, std::abs(int(all.pixel(x, y)[c]) - int(last.pixel(x, y)[c])));
+      }
+  EXPECT_EQ(change[2], 0) << "the last one stands alone on the right";
+  EXPECT_GT(change[1], 60) << "the middle one is there";
+  EXPECT_GT(change[0], 40) << "and the first";
+  EXPECT_LT(change[0], 0.85 * change[1]) << "lighter";
+}
+
+TEST(Strip, NothingAndTooMuchAreRefused) {
+  const RobotModel model = box_robot();
+  const SimulationLog log = box_run(model);
+  EXPECT_THROW(draw_strip(model, log, small(0)), Error);
+  EXPECT_THROW(draw_sheet({}, 3), Error);
+  StripOptions one = small(0);
+  one.one_picture = true;
+  EXPECT_THROW(draw_strip(model, log, one), Error);
+  try {
+    draw_sheet(std::vector<Image>(5, tile(4000, 1, 0)), 5);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("16384 pixels"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace ayumi::test

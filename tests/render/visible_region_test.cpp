@@ -1,0 +1,122 @@
+#include "ayumi/render/visible_region.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ayumi::test {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr int kWidth = 320, kHeight = 200;
+constexpr double kAspect = double(kWidth) / kHeight;
+
+Camera camera_at(const Vector3d& eye) {
+  Camera camera;
+  camera.eye = eye;
+  return camera;
+}
+
+Eigen::Matrix4f clip_of(const Camera& camera) {
+  return (projection_matrix(camera, kAspect) * view_matrix(camera)).cast<float>();
+}
+
+Ground level_ground(double height) {
+  Ground ground;
+  ground.origin = {0, 0, height};
+  ground.u = Vector3d::UnitX();
+  ground.v = Vector3d::UnitY();
+  ground.normal = Vector3d::UnitZ();
+  return ground;
+}
+
+TEST(VisibleRegion, HoldsEveryPointOfABoxAndLittleMore) {
+  const Camera camera = camera_at({2, -1, 0.7});
+  const AlignedBox3d box(Vector3d(-0.1, -0.2, -0.1), Vector3d(0.2, 0.1, 0.3));
+  VisibleRegion region(clip_of(camera), kWidth, kHeight);
+  region.add(box, Isometry3d::Identity());
+  const PixelBox seen = region.pixels();
+  Eigen::AlignedBox2d exact;
+  for (int i = 0; i < 8; ++i) {
+    const Vector3d p =
+        project(camera, kWidth, kHeight, box.corner(static_cast<AlignedBox3d::CornerType>(i)));
+    exact.extend(Eigen::Vector2d(p.x(), kHeight - p.y()));
+  }
+  EXPECT_NEAR(seen.x, exact.min().x() - 2, 1.01);
+  EXPECT_NEAR(seen.y, exact.min().y() - 2, 1.01);
+  EXPECT_NEAR(seen.x + seen.width, exact.max().x() + 3, 1.01);
+  EXPECT_NEAR(seen.y + seen.height, exact.max().y() + 3, 1.01);
+}
+
+TEST(VisibleRegion, StaysInThePictureAndTakesItWholeForWhatIsBehindTheCamera) {
+  const Camera camera = camera_at({2, 0, 0.3});
+  VisibleRegion outside(clip_of(camera), kWidth, kHeight);
+  EXPECT_EQ(outside.pixels().width, 0);
+  outside.add(Vector3d(0, 500, 0));
+  EXPECT_EQ(outside.pixels().width * outside.pixels().height, 0);
+  VisibleRegion behind(clip_of(camera), kWidth, kHeight);
+  behind.add(Vector3d(3, 0, 0));
+  EXPECT_EQ(behind.pixels().width, kWidth);
+  EXPECT_EQ(behind.pixels().height, kHeight);
+}
+
+TEST(VisibleRegion, WhatIsAroundMakesThePictureWhole) {
+  for (const PixelBox& inner :
+       {PixelBox{10, 20, 100, 50}, PixelBox{}, PixelBox{0, 0, kWidth, kHeight}}) {
+    int pixels = inner.width * inner.height;
+    for (const PixelBox& box : around(inner, kWidth, kHeight)) pixels += box.width * box.height;
+    EXPECT_EQ(pixels, kWidth * kHeight);
+  }
+}
+
+// By a second route: rays of single pixels, from the bottom upwards.
+TEST(GroundHeight, IsWhereTheFirstRowLeavesTheSquare) {
+  for (const Vector3d& eye : {Vector3d(2, -2, 1), Vector3d(1.5, 0.2, 0.35), Vector3d(0.1, 0, 3)}) {
+    const Camera camera = camera_at(eye);
+    const Eigen::Matrix4d back =
+        (projection_matrix(camera, kAspect) * view_matrix(camera)).inverse();
+    const Ground plane = level_ground(-0.2);
+    const Eigen::Vector2d center(0.3, -0.1);
+    const double reach = 20;
+    const auto sees_ground = [&](double x, double y) {
+      const Vector3d p = (back * Eigen::Vector4d(x, y, 0, 1)).hnormalized();
+      const Vector3d ray = p - eye;
+      const double along = (plane.origin.z() - eye.z()) / ray.z();
+      const Vector3d at = eye + along * ray;
+      return along > 0 && std::abs(at.x() - center.x()) < reach &&
+             std::abs(at.y() - center.y()) < reach;
+    };
+    double first = 1;
+    for (int row = 0; row < 2000 && first == 1; ++row) {
+      const double y = -1 + row / 1000.0;
+      for (int i = -20; i <= 20; ++i)
+        if (!sees_ground(i / 20.0, y)) first = y;
+    }
+    EXPECT_NEAR(ground_height(camera, kAspect, plane, center, reach), first, 2e-3);
+  }
+}
+
+TEST(GroundHeight, IsTheBottomSeenFromBelow) {
+  EXPECT_EQ(ground_height(camera_at({2, 0, -1}), kAspect, level_ground(0), {0, 0}, 10), -1);
+}
+
+TEST(Covered, BoundsWhatIsNotZero) {
+  constexpr int kSize = 64;
+  std::vector<std::uint8_t> image(size_t(kSize) * kSize);
+  EXPECT_TRUE(covered(image, kSize).isZero());
+  image[size_t(20) * kSize + 12] = 1;
+  image[size_t(30) * kSize + 8] = 200;
+  const Eigen::Vector4f part = covered(image, kSize);
+  EXPECT_FLOAT_EQ(part[0] - part[2], 2.0f * 7 / kSize - 1);
+  EXPECT_FLOAT_EQ(part[0] + part[2], 2.0f * 14 / kSize - 1);
+  EXPECT_FLOAT_EQ(part[1] - part[3], 2.0f * 19 / kSize - 1);
+  EXPECT_FLOAT_EQ(part[1] + part[3], 2.0f * 32 / kSize - 1);
+  image.assign(image.size(), 1);
+  EXPECT_TRUE(covered(image, kSize).isApprox(Eigen::Vector4f(0, 0, 1, 1)));
+}
+
+}  // namespace
+}  // namespace ayumi::test

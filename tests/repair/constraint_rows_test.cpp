@@ -1,0 +1,326 @@
+// Every kind of row of the repair's program, on two robots, walking and jumping: its derivatives
+// against central differences, and its number against what the check says of the same motion.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "ayumi/demand/motion_demand.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/differentiate.hpp"
+#include "ayumi/repair/correction_problem.hpp"
+#include "tests/support/random_robot.hpp"
+#include "tests/support/robot_motions.hpp"
+
+using namespace ayumi;
+using namespace ayumi::test;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+// Turns an arm until two bodies are only 2.5 to 4.5 mm apart, in all samples.
+void bring_near(const RobotModel& model, const CollisionModel& collisions, CommandSeries& series) {
+  RobotData data(model);
+  for (int i = 0; i < model.dof_count(); ++i) {
+    bool arm = true;
+    for (const Side side : {Side::left, Side::right})
+      for (const int leg : model.leg(side)) arm = arm && leg != i;
+    for (double angle = -1.5; arm && angle < 1.5; angle += 0.002) {
+      RobotState state = series.samples.front().state;
+      state.theta[i] += angle;
+      update_positions(model, state, data);
+      double least = 1;
+      for (const CollisionModel::Pair& pair : collisions.pairs())
+        least = std::min(least, collisions.clearance(pair, data, 0.01));
+      if (least < 0.0025 || least > 0.0045) continue;
+      for (CommandSample& s : series.samples) s.state.theta[i] += angle;
+      return;
+    }
+  }
+  ADD_FAILURE() << "no arm comes near";
+}
+
+// Waves in all joints and in the base, so that soles slip and sink and no residual is zero.
+void disturb(const RobotModel& model, CommandSeries& series) {
+  Random random(3);
+  const VectorXd share = random.vector(model.velocity_count(), 0.004);
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const double s = static_cast<double>(k) / static_cast<double>(series.samples.size() - 1);
+    const VectorXd wave = share * std::pow(std::sin(M_PI * s), 4) * std::sin(20 * s);
+    RobotState& state = series.samples[k].state;
+    state.theta += wave.tail(model.dof_count());
+    state.base.position += 0.1 * wave.head<3>();
+    state.base.attitude = exp_rotation(Vector3d(wave.segment<3>(3))) * state.base.attitude;
+  }
+  fill_rates(series.samples, series.dt, true);
+}
+
+class ConstraintRows : public testing::TestWithParam<RobotMotion> {
+ protected:
+  const RobotModel& model = bundled_robot(GetParam().robot);
+  const bool jumps = GetParam().motion == "jump";
+  const CollisionModel collisions = CollisionModel(model);
+  CommandSeries series = [this] {
+    CommandSeries result = sample(model, pattern_of(GetParam()), {.dt = jumps ? 0.001 : 0.004});
+    bring_near(model, collisions, result);
+    disturb(model, result);
+    return result;
+  }();
+
+  // Everything has rows.
+  CorrectionSpec spec(Trust trust) const {
+    CorrectionSpec s;
+    s.windows = {{0, series.duration()}};
+    s.spacing = jumps ? 0.03 : 0.05;
+    s.watched_share = 0;
+    s.friction = 0.3;
+    s.trust = trust;
+    s.locked_feet = {true, false};
+    s.collisions = &collisions;
+    s.kept_instants = {0.4 * series.duration(), 0.5 * series.duration()};
+    for (int i = 0; i < static_cast<int>(collisions.pairs().size()); ++i) s.near_pairs.push_back(i);
+    return s;
+  }
+};
+
+struct Tally {
+  int rows = 0, kinks = 0;
+  double worst = 0;  // of the others
+};
+
+// The Jacobian against central differences along a way, relative where the derivative is above one.
+// Where the differences of two widths disagree there is a kink between them: dry friction turns its
+// sign, a foot begins to bear, nearest points jump to another corner.
+void compare(const CorrectionProblem& problem, const VectorXd& x, const VectorXd& way,
+             std::map<ConstraintGroup, Tally>& tallies) {
+  const Nlp nlp = problem.nlp();
+  VectorXd values(nlp.jacobian.size()), told = VectorXd::Zero(problem.constraint_count());
+  nlp.jacobian_values(x, values);
+  for (int i = 0; i < nlp.jacobian.size(); ++i)
+    told[nlp.jacobian.rows[i]] += values[i] * way[nlp.jacobian.columns[i]];
+  const auto difference = [&](double h) {
+    return VectorXd((problem.constraints(x + h * way) - problem.constraints(x - h * way)) /
+                    (2 * h));
+  };
+  // Nearest points are found to 1e-10 m, which a short way would magnify.
+  for (const bool clearance : {false, true}) {
+    const double h = clearance ? 1e-4 : 1e-6;
+    const VectorXd wide = difference(2 * h), narrow = difference(h);
+    const VectorXd slope = (4 * narrow - wide) / 3;
+    for (const ConstraintBlock& b : problem.blocks()) {
+      if ((b.group == ConstraintGroup::clearance) != clearance) continue;
+      Tally& tally = tallies[b.group];
+      for (int row = b.row; row < b.row + b.rows; ++row) {
+        const double size = std::max(1.0, std::abs(told[row]));
+        const double off = std::abs(slope[row] - told[row]) / size;
+        const bool kink = std::abs(narrow[row] - wide[row]) / size > 1e-6;
+        ++tally.rows;
+        tally.kinks += kink && off > 1e-6;
+        if (!kink) tally.worst = std::max(tally.worst, off);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEST_P(ConstraintRows, DerivativesAgainstCentralDifferences) {
+  std::map<ConstraintGroup, Tally> tallies;
+  Random random(11);
+  for (const Trust trust : {Trust::cog, Trust::zmp, Trust::posture}) {
+    const CorrectionProblem problem(model, series, spec(trust));
+    for (const double size : {0.0005, 0.002})
+      for (int way = 0; way < 3; ++way)
+        compare(problem, random.vector(problem.variable_count(), size),
+                random.vector(problem.variable_count(), 1), tallies);
+  }
+  std::set<ConstraintGroup> all;
+  for (int i = 0; i <= static_cast<int>(ConstraintGroup::capture); ++i)
+    all.insert(static_cast<ConstraintGroup>(i));
+  if (!jumps) {
+    all.erase(ConstraintGroup::flight);
+    all.erase(ConstraintGroup::unilateral);  // the ground is never light in a walk
+  }
+  for (const ConstraintGroup group : all) {
+    ASSERT_TRUE(tallies.contains(group)) << name_of(group) << " has no rows";
+    const Tally& tally = tallies[group];
+    EXPECT_GE(tally.rows, 12) << name_of(group);
+    EXPECT_LT(tally.worst, 1e-6) << name_of(group);
+    EXPECT_LE(tally.kinks, 0.005 * tally.rows) << name_of(group) << ", " << tally.rows << " rows";
+  }
+}
+
+// At every sample, with no correction: what the program bounds is what the check tells.
+TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
+  std::map<std::string, double> most, told;
+  const auto raise = [&most](const std::string& name, double value) {
+    most[name] = std::max(most.try_emplace(name, value).first->second, value);
+  };
+  const double weight = model.mass() * kGravity;
+  CheckOptions options;
+  options.friction = 0.3;
+  for (CommandSample& s : series.samples) s.cog += Vector3d(0.001, -0.002, 0.0005);
+  const CheckSummary summary = check_consistency(model, series, options).summary;
+  const ContactPlan plan = contact_plan(series);
+  std::set<int> near;
+  RobotData data(model);
+  for (size_t k = 0; k < series.samples.size(); k += 20) {
+    update_positions(model, series.samples[k].state, data);
+    for (const int i : spec(Trust::cog).near_pairs)
+      if (collisions.clearance(collisions.pairs()[static_cast<size_t>(i)], data, 0.1) < 0.006)
+        near.insert(i);
+  }
+  std::vector<Trust> trusts = {Trust::cog, Trust::zmp};
+  if (!jumps) trusts.push_back(Trust::posture);  // for its capture rows
+  for (const Trust trust : trusts) {
+    CorrectionSpec all = spec(trust);
+    all.near_pairs.assign(near.begin(), near.end());
+    all.free_ends = {true, true};
+    all.spacing = 50 * series.dt;
+    all.instants_per_knot = 50;
+    const CorrectionProblem problem(model, series, all);
+    const VectorXd g = problem.constraints(VectorXd::Zero(problem.variable_count()));
+    MotionDynamics motion(model, series, plan);
+    std::vector<Vector3d> turning(series.samples.size(), Vector3d::Constant(std::nan("")));
+    for (const ConstraintBlock& b : problem.blocks()) {
+      const CollocationPoint& instant = problem.instants()[static_cast<size_t>(b.instant)];
+      const int k = instant.sample;
+      const VectorXd rows = g.segment(b.row, b.rows);
+      const GroundDemand use = motion.at(k).use;
+      const double light = use.normal_force / weight;
+      switch (b.group) {
+        case ConstraintGroup::support:
+          // f_n (distance of the ZMP inside the edges - margin) / (m g); the program's margin.
+          if (!use.has_zmp) break;
+          EXPECT_NEAR(rows.minCoeff() / light + problem.safety(b.instant) + all.zmp_margin,
+                      use.margin, 1e-10)
+              << k;
+          break;
+        case ConstraintGroup::unilateral:
+          EXPECT_NEAR(rows[0], light, 1e-12);
+          break;
+        case ConstraintGroup::friction: {
+          const double size = all.share * 0.3 * 0.98 * light - rows[0];  // rounded by 1e-4
+          if (use.has_zmp) raise("friction", std::sqrt(size * size - 1e-8) / (0.3 * light));
+          break;
+        }
+        case ConstraintGroup::yaw: {
+          const double yaw = std::abs(rows[1] - rows[0]) / 2;
+          const double resists = (rows[0] + rows[1]) / 2 / all.share;
+          if (use.margin > 0.002) raise("yaw", yaw / resists);
+          break;
+        }
+        case ConstraintGroup::flight:
+          raise("ballistic", rows.head<3>().norm() * kGravity);
+          turning[static_cast<size_t>(k)] = rows.tail<3>() * weight;
+          break;
+        case ConstraintGroup::zmp:
+          if (use.has_zmp) raise("zmp", (rows / light).norm());
+          break;
+        case ConstraintGroup::stance: {
+          // The rotation error is sin(angle) times the axis.
+          const Vector3d e = rows.tail<3>();
+          const Eigen::Matrix3d R =
+              exp_rotation(Vector3d(e.normalized() * std::asin(e.norm()))).toRotationMatrix();
+          const Eigen::Isometry3d& at = instant.ground[static_cast<size_t>(b.item)];
+          const Vector3d normal = at.linear().col(2);
+          double gap = -1, low = 1, way = 0;
+          for (const Vector2d& v : model.sole(static_cast<Side>(b.item)).polygon) {
+            const Vector3d arm = at.linear() * Vector3d(v.x(), v.y(), 0);
+            const Vector3d off = rows.head<3>() + R * arm - arm;
+            gap = std::max(gap, normal.dot(off));
+            low = std::min(low, normal.dot(off));
+            way = std::max(way, (off - normal.dot(off) * normal).norm());
+          }
+          raise("float", gap);
+          raise("penetration", -low);
+          if (low <= 0.0003) raise("slip", way);
+          break;
+        }
+        case ConstraintGroup::path:
+          EXPECT_LT(rows.norm(), 1e-9);
+          break;
+        case ConstraintGroup::swing:
+          raise("penetration", -rows.minCoeff());
+          break;
+        case ConstraintGroup::pose:
+          EXPECT_EQ(rows.norm(), 0);
+          break;
+        case ConstraintGroup::landing:  // of no figure of the check
+        case ConstraintGroup::foot_clearance:
+          break;
+        case ConstraintGroup::position: {
+          const Dof& dof = model.dofs()[static_cast<size_t>(b.item)];
+          const double half = 0.5 * (dof.upper - dof.lower) - model.description().soft_limit_margin;
+          raise("position", std::abs(rows[0] - 0.5 * (dof.lower + dof.upper)) / half);
+          break;
+        }
+        case ConstraintGroup::speed:
+          raise("speed", std::abs(rows[0]));
+          break;
+        case ConstraintGroup::acceleration:
+          raise("acceleration", std::abs(rows[0] / b.scale));
+          break;
+        case ConstraintGroup::torque:
+          raise("torque", std::abs(rows[0]));
+          break;
+        case ConstraintGroup::clearance:
+          raise("overlap", -rows.minCoeff());
+          break;
+        case ConstraintGroup::cog:
+          raise("cog", rows.norm());
+          break;
+        case ConstraintGroup::capture: {
+          // By the momentum of the links; the command is a plain shift aside.
+          const CommandSample& s = series.samples[static_cast<size_t>(k)];
+          const double omega = std::sqrt(kGravity / (s.cog.z() - s.zmp.z()));
+          update_positions(model, s.state, data);
+          update_velocities(model, s.state, data);
+          const Vector3d off = data.cog - s.cog + (data.dcog - s.dcog) / omega;
+          EXPECT_NEAR((off.head<2>() - rows.head<2>()).norm(), 0, 1e-12) << k;
+          if (use.has_zmp) raise("zmp", (rows.tail<2>() / light).norm());
+          break;
+        }
+      }
+    }
+    for (size_t k = 2; k + 2 < turning.size(); ++k) {  // the check takes a mean of five
+      Vector3d sum = Vector3d::Zero();
+      int count = 0;
+      for (size_t i = k - 2; i <= k + 2; ++i)
+        if (turning[i].allFinite()) sum += turning[i], ++count;
+      if (count > 0 && turning[k].allFinite()) raise("momentum", sum.norm() / count);
+    }
+  }
+  told = {{"friction", summary.max_friction_ratio},
+          {"yaw", summary.max_yaw_ratio},
+          {"zmp", summary.max_zmp_residual},
+          {"float", summary.max_foot_float},
+          {"penetration", summary.max_foot_penetration},
+          {"slip", summary.max_foot_slip},
+          {"position", summary.max_joint_position_ratio},
+          {"speed", summary.max_joint_speed_ratio},
+          {"acceleration", summary.max_joint_acceleration},
+          {"torque", summary.max_torque_ratio},
+          {"overlap", -summary.min_self_clearance},
+          {"cog", summary.max_cog_residual}};
+  if (jumps) told["ballistic"] = summary.max_ballistic_residual;
+  if (summary.min_self_clearance < 0) {  // ends are less deep inside than shapes have to be parted
+    EXPECT_GT(most["overlap"], 0);
+    EXPECT_LE(most["overlap"], told["overlap"] + 1e-9);
+    told.erase("overlap");
+  }
+  for (const auto& [name, value] : told)
+    EXPECT_NEAR(most[name], value, 1e-9 * std::max(1.0, std::abs(value))) << name;
+  if (!jumps) return;
+  // About the commanded COG here, about the posture's there, 2.3 mm apart.
+  EXPECT_NEAR(most["momentum"], summary.max_momentum_rate,
+              0.0025 * model.mass() * most["ballistic"] + 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Motions, ConstraintRows, robot_motions(), name_of_case);

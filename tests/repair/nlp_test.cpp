@@ -1,0 +1,61 @@
+#include "ayumi/repair/nlp/nlp.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace ayumi;
+using Eigen::Vector2d;
+using Eigen::VectorXd;
+
+namespace {
+
+// min (x0 - 2)^2 + (x1 - 1)^2 on a disc: the point (2, 1) / sqrt 5 for radius 1.
+Nlp disc(double radius2) {
+  Nlp nlp;
+  nlp.start = VectorXd::Zero(2);
+  nlp.lower = VectorXd::Constant(2, -kNoBound);
+  nlp.upper = VectorXd::Constant(2, kNoBound);
+  nlp.constraint_lower = VectorXd::Constant(1, -kNoBound);
+  nlp.constraint_upper = VectorXd::Constant(1, radius2);
+  nlp.jacobian.add(0, 0);
+  nlp.jacobian.add(0, 1);
+  nlp.hessian.add(0, 0);
+  nlp.hessian.add(1, 1);
+  nlp.objective = [](const VectorXd& x) { return (x - Vector2d(2, 1)).squaredNorm(); };
+  nlp.gradient = [](const VectorXd& x, VectorXd& g) { g = 2 * (x - Vector2d(2, 1)); };
+  nlp.constraints = [](const VectorXd& x, VectorXd& g) { g[0] = x.squaredNorm(); };
+  nlp.jacobian_values = [](const VectorXd& x, VectorXd& v) { v = 2 * x; };
+  nlp.hessian_values = [](const VectorXd&, double scale, const VectorXd& multipliers, VectorXd& v) {
+    v.setConstant(2 * scale + 2 * multipliers[0]);
+  };
+  return nlp;
+}
+
+}  // namespace
+
+TEST(Nlp, NearestPointOfADisc) {
+  const NlpSolution s = solve(disc(1));
+  EXPECT_EQ(s.status, NlpStatus::solved);
+  EXPECT_LT((s.x - Vector2d(2, 1) / std::sqrt(5)).norm(), 1e-6);
+  EXPECT_LT(s.violation, 1e-7);
+  EXPECT_GT(s.iterations, 1);
+}
+
+TEST(Nlp, ImpossibleConstraintIsInfeasible) {
+  EXPECT_EQ(solve(disc(-1)).status, NlpStatus::infeasible);
+}
+
+TEST(Nlp, ProgressHearsEveryIterationAndStops) {
+  int heard = 0;
+  auto count = [&](const ProgressEvent& e) {
+    EXPECT_EQ(e.stage, "disc");
+    return ++heard < 3;
+  };
+  EXPECT_THROW(solve(disc(1), {}, count, "disc"), Interrupted);
+  EXPECT_EQ(heard, 3);
+}
+
+TEST(Nlp, ErrorsOfTheFunctionsComeThrough) {
+  Nlp nlp = disc(1);
+  nlp.objective = [](const VectorXd&) -> double { fail(ErrorCode::internal, "broken"); };
+  EXPECT_THROW(solve(nlp), Error);
+}

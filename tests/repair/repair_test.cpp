@@ -1,0 +1,276 @@
+#include "ayumi/repair/repair.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/repair/correction_problem.hpp"
+#include "tests/support/limited_biped.hpp"
+#include "tests/support/random_robot.hpp"
+#include "tests/support/walk.hpp"
+#include "tests/support/weighted_change.hpp"
+
+using namespace ayumi;
+using namespace ayumi::test;
+
+namespace {
+
+double hill(double t, double center, double width) {
+  const double s = (t - center) / width;
+  return std::abs(s) < 0.5 ? std::pow(std::cos(M_PI * s), 4) : 0;
+}
+
+double middle_of_step(int n, const WalkShape& w = {}) {
+  return w.lead + n * w.period + 0.5 * (w.period - w.double_support);
+}
+
+const CommandSeries& good_walk() {
+  static const CommandSeries series = walk(limited_biped());
+  return series;
+}
+
+// The trunk jerks back in one step, and the ZMP leaves the sole before the toes by about 10 mm.
+CommandSeries zmp_outside() {
+  CommandSeries series = good_walk();
+  RobotData data(limited_biped());
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    CommandSample& s = series.samples[k];
+    s.state.base.position.x() -= 0.0145 * hill(k * series.dt, middle_of_step(3), 0.5);
+    place_legs(limited_biped(), s.feet, s.state, data);
+  }
+  complete_series(limited_biped(), series);
+  return series;
+}
+
+void expect_repaired(const RepairResult& r) {
+  ASSERT_EQ(r.status, RepairStatus::repaired) << (r.reasons.empty() ? "" : r.reasons.front());
+  EXPECT_TRUE(r.check.consistent);
+  EXPECT_LE(r.constraint_violation, 1e-6);
+  EXPECT_TRUE(r.reasons.empty());
+}
+
+RobotModel hoap1_with(const std::function<void(RobotDescription&)>& change) {
+  RobotDescription d = load_robot_description(AYUMI_SOURCE_DIR "/robots/hoap1");
+  change(d);
+  return RobotModel(d);
+}
+
+// Joint limits 2 degrees inside what the walk needs, left and right: every step breaks them.
+RobotModel hoap1_with_tight(const std::string& joint, const CommandSeries& series) {
+  return hoap1_with([&](RobotDescription& d) {
+    const RobotModel model(d);
+    for (JointDescription& j : d.joints) {
+      if (j.name != "l_" + joint && j.name != "r_" + joint) continue;
+      j.upper = -1e9;
+      for (const CommandSample& s : series.samples)
+        j.upper = std::max(j.upper, s.state.theta[model.find_dof(j.name)]);
+      j.upper -= 2 * M_PI / 180;
+    }
+  });
+}
+
+CommandSeries hoap1_walk() {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  return sample(model, walk_pattern(model, {}));
+}
+
+}  // namespace
+
+TEST(Repair, ConsistentStaysAsItIs) {
+  const RepairResult r = repair(limited_biped(), good_walk());
+  EXPECT_EQ(r.status, RepairStatus::already_consistent);
+  EXPECT_EQ(r.correction.coefficients.size(), 0);
+  EXPECT_EQ(r.max_joint_change, 0);
+}
+
+TEST(Repair, ZmpComesInsideAndNothingChangesTwice) {
+  const CommandSeries series = zmp_outside();
+  ASSERT_LT(check_consistency(limited_biped(), series).summary.min_zmp_margin, -0.005);
+  const RepairResult r = repair(limited_biped(), series);
+  expect_repaired(r);
+  EXPECT_GT(r.check.summary.min_zmp_margin, 0.0019);
+  EXPECT_NEAR(r.at, middle_of_step(3), 0.3);
+  // Only the time around the fault moves.
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    if (std::abs(k * series.dt - middle_of_step(3)) < 0.8) continue;
+    ASSERT_EQ(r.series.samples[k].state.theta, series.samples[k].state.theta);
+  }
+  const RepairResult again = repair(limited_biped(), r.series);
+  EXPECT_EQ(again.status, RepairStatus::already_consistent);
+}
+
+// Random motions of the same control points that stay feasible cost more.
+TEST(Repair, NothingNearbyIsCheaper) {
+  const CommandSeries series = zmp_outside();
+  RepairOptions options;
+  options.zmp_margin = 0.002;
+  const RepairResult r = repair(limited_biped(), series, options);
+  expect_repaired(r);
+  const double least = weighted_change(limited_biped(), series, r.correction);
+  Random random(11);
+  int feasible = 0;
+  for (int i = 0; i < 200 && feasible < 20; ++i) {
+    CorrectionTrack other = r.correction;
+    const double scale = random.uniform(0.2, 1.5);
+    for (Eigen::Index row = 3; row < other.coefficients.rows() - 3; ++row)
+      for (Eigen::Index column = 6; column < other.coefficients.cols(); ++column) {
+        const std::string& joint = other.joints[column - 6];
+        const bool arm = joint.find("shoulder") == 2 || joint.find("elbow") == 2;
+        if (arm) other.coefficients(row, column) += 0.002 * random.uniform();
+      }
+    other.coefficients *= scale;
+    const CommandSeries moved = apply_correction(limited_biped(), series, other);
+    const ConsistencyReport report = check_consistency(limited_biped(), moved);
+    // As far inside as the repair had to be: its program keeps 2.5 mm.
+    if (!report.consistent || report.summary.min_zmp_margin < 0.0025) continue;
+    ++feasible;
+    EXPECT_GE(weighted_change(limited_biped(), series, other), 0.999 * least) << "scale " << scale;
+  }
+  EXPECT_GE(feasible, 20);
+}
+
+TEST(Repair, LockedJointsStayToTheBit) {
+  const CommandSeries series = zmp_outside();
+  RepairOptions options;
+  options.locked_joints = {"l_elbow", "r_elbow", "l_shoulder_pitch"};
+  const RepairResult r = repair(limited_biped(), series, options);
+  expect_repaired(r);
+  for (const std::string& joint : options.locked_joints) {
+    const int dof = limited_biped().find_dof(joint);
+    for (size_t k = 0; k < series.samples.size(); ++k)
+      ASSERT_EQ(r.series.samples[k].state.theta[dof], series.samples[k].state.theta[dof]);
+  }
+  options.locked_joints = {"l_elbw"};
+  EXPECT_THROW(repair(limited_biped(), series, options), Error);
+}
+
+TEST(Repair, CommandedQuantitiesAloneNeedNoMotion) {
+  CommandSeries series = good_walk();
+  for (CommandSample& s : series.samples) s.fz *= 1.1;
+  const RepairResult r = repair(limited_biped(), series);
+  expect_repaired(r);
+  EXPECT_EQ(r.iterations, 0);
+  EXPECT_EQ(r.max_joint_change, 0);
+  EXPECT_LT(r.check.summary.max_fz_residual, 1e-9);
+}
+
+TEST(Repair, SlippingFootStandsStill) {
+  CommandSeries series = good_walk();
+  RobotData data(limited_biped());
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    CommandSample& s = series.samples[k];
+    auto feet = s.feet;
+    feet[0].translation().x() += 0.005 * hill(k * series.dt, middle_of_step(2), 0.4);
+    place_legs(limited_biped(), feet, s.state, data);
+  }
+  complete_series(limited_biped(), series);
+  const RepairResult r = repair(limited_biped(), series);
+  expect_repaired(r);
+  EXPECT_LT(r.check.summary.max_foot_slip, 0.001);
+}
+
+TEST(Repair, Hoap1KneesInEveryStep) {
+  const CommandSeries series = hoap1_walk();
+  const RobotModel model = hoap1_with_tight("knee", series);
+  const ConsistencyReport before = check_consistency(model, series);
+  ASSERT_FALSE(before.consistent);
+  ASSERT_GE(before.findings.size(), 8u);
+  const RepairResult r = repair(model, series);
+  expect_repaired(r);
+  EXPECT_GE(r.max_joint_change, 2 * M_PI / 180);
+  EXPECT_LT(r.max_joint_change, 3 * M_PI / 180);
+  EXPECT_GT(r.check.summary.min_zmp_margin, 0.02);
+  RecordProperty("variables", r.variables);
+  RecordProperty("constraints", r.constraints);
+  RecordProperty("iterations", r.iterations);
+}
+
+TEST(Repair, Hoap1SlipperyGround) {
+  RepairOptions options;
+  options.check.friction = 0.10;
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  expect_repaired(repair(model, hoap1_walk(), options));
+}
+
+TEST(Repair, Hoap1FastKnees) {
+  const CommandSeries series = hoap1_walk();
+  const RobotModel model = hoap1_with([](RobotDescription& d) {
+    for (auto& [joint, speed] : d.profiles[0].speed)
+      if (joint.ends_with("knee")) speed = 3.2;
+  });
+  ASSERT_FALSE(check_consistency(model, series).consistent);
+  expect_repaired(repair(model, series));
+}
+
+// The walk begins and ends with the knee beyond its limit: the posture there moves as well.
+TEST(Repair, AFaultyFirstPostureIsMovedToo) {
+  RobotDescription d = limited_biped_description();
+  const int knee = limited_biped().find_dof("l_knee");
+  const double first = good_walk().samples[0].state.theta[knee];
+  for (JointDescription& joint : d.joints)
+    if (joint.name == "l_knee") joint.upper = first - 0.03;
+  d.postures["home"]["l_knee"] = first - 0.1;
+  const RobotModel model(d);
+  const RepairResult r = repair(model, good_walk());
+  expect_repaired(r);
+  for (const CommandSample* s : {&r.series.samples.front(), &r.series.samples.back()}) {
+    EXPECT_LE(s->state.theta[knee], first - 0.03);
+    EXPECT_LT(s->state.dtheta.norm(), 1e-6);
+  }
+}
+
+TEST(Repair, WhatHasNoSolutionIsRefusedWithReasons) {
+  RobotDescription d = limited_biped_description();
+  double highest = 0;
+  const int knee = limited_biped().find_dof("l_knee");
+  for (const CommandSample& s : good_walk().samples)
+    highest = std::max(highest, s.state.theta[knee]);
+  for (JointDescription& joint : d.joints)
+    if (joint.name == "l_knee") joint.upper = highest - 0.03;
+  RepairOptions options;
+  for (const JointDescription& joint : d.joints) options.locked_joints.push_back(joint.name);
+  options.max_iterations = 30;
+  const RepairResult r = repair(RobotModel(d), good_walk(), options);
+  EXPECT_NE(r.status, RepairStatus::repaired);
+  ASSERT_FALSE(r.reasons.empty());
+}
+
+TEST(Repair, StopsWhenTold) {
+  int calls = 0;
+  const Progress stop = [&](const ProgressEvent& e) {
+    EXPECT_EQ(e.stage, "repair round 1");
+    return ++calls < 3;
+  };
+  EXPECT_THROW(repair(limited_biped(), zmp_outside(), {}, stop), Interrupted);
+}
+
+TEST(Repair, SameResultTwice) {
+  const CommandSeries series = zmp_outside();
+  const RepairResult a = repair(limited_biped(), series), b = repair(limited_biped(), series);
+  EXPECT_EQ(a.correction.coefficients, b.correction.coefficients);
+}
+
+TEST(Repair, JointBeyondItsLimitToTheEndIsBroughtBackThereToo) {
+  CommandSeries series = good_walk();
+  const int arm = limited_biped().find_dof("l_shoulder_pitch");
+  ASSERT_GE(arm, 0);
+  const double limit = series.samples[0].state.theta[arm] + 0.2;
+  RobotDescription d = limited_biped_description();
+  for (JointDescription& joint : d.joints)
+    if (joint.name == "l_shoulder_pitch") joint.upper = limit;
+  const RobotModel model(d);
+  // A slow ramp to 0.05 rad beyond the limit, held to the end.
+  const double over = 0.25;
+  const double T = 0.8 * series.duration();
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const double s = std::min(1.0, k * series.dt / T);
+    series.samples[k].state.theta[arm] += over * s * s * s * (10 - 15 * s + 6 * s * s);
+  }
+  complete_series(model, series);
+  const RepairResult r = repair(model, series);
+  ASSERT_EQ(r.status, RepairStatus::repaired);
+  EXPECT_LE(r.series.samples.back().state.theta[arm], model.dofs()[arm].upper);
+  EXPECT_LT(std::abs(r.series.samples.back().state.dtheta[arm]), 1e-6);
+}
