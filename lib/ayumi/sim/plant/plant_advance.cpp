@@ -1,4 +1,4 @@
-// How a step's velocities move the robot. docs/theory.md, "The base" and "Pivoting".
+// How a step's velocities move the robot. docs/theory_plant.md, "The base" and "Pivoting".
 #include <algorithm>
 #include <cmath>
 
