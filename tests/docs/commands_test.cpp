@@ -1,7 +1,7 @@
 // Every command in an `sh` block of README.md, CONTRIBUTING.md and docs/*.md can be pasted: a page
 // runs from top to bottom in one scratch folder that looks like the project's, with the program on
 // the PATH. A comment `# exit code N` marks a command that is meant to fail. Links between pages
-// lead to files that exist.
+// lead to files and headings that exist.
 
 #include <cctype>
 #include <regex>
@@ -123,13 +123,38 @@ TEST_P(Pages, CommandsCanBePasted) {
   EXPECT_EQ(output.exit_code, 0) << output.err.substr(last == std::string::npos ? 0 : last);
 }
 
-TEST_P(Pages, LinksLeadToFiles) {
+/// Names by which links can point at the headings of a page: lower case, blanks as hyphens, without
+/// punctuation.
+std::vector<std::string> anchors_of(const std::string& page) {
+  std::vector<std::string> anchors;
+  std::istringstream lines(page);
+  std::string line;
+  while (std::getline(lines, line)) {
+    if (line.rfind('#', 0) != 0) continue;
+    std::string anchor;
+    for (const char c : line.substr(std::min(line.size(), line.find_first_not_of("# ")))) {
+      const auto u = static_cast<unsigned char>(c);
+      if (c == ' ') anchor += '-';
+      if (std::isalnum(u) || c == '-' || c == '_' || u >= 0x80)
+        anchor += static_cast<char>(std::tolower(u));
+    }
+    anchors.push_back(anchor);
+  }
+  return anchors;
+}
+
+TEST_P(Pages, LinksLeadToFilesAndHeadings) {
   const std::string text = contents(page());
-  const std::regex link("\\]\\(([^)#\\s]+)(#[^)]*)?\\)");
+  const std::regex link("\\]\\(([^)#\\s]*)(#([^)]*))?\\)");
   for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
-    const std::string target = (*it)[1];
+    const std::string target = (*it)[1], anchor = (*it)[3];
     if (target.find("://") != std::string::npos) continue;
-    EXPECT_TRUE(fs::exists(page().parent_path() / target)) << GetParam() << ": " << target;
+    const fs::path file = target.empty() ? page() : page().parent_path() / target;
+    ASSERT_TRUE(fs::exists(file)) << GetParam() << ": " << target;
+    if (anchor.empty() || file.extension() != ".md") continue;
+    const std::vector<std::string> anchors = anchors_of(contents(file));
+    EXPECT_NE(std::find(anchors.begin(), anchors.end(), anchor), anchors.end())
+        << GetParam() << ": no heading of " << file.filename() << " is named " << anchor;
   }
 }
 
