@@ -15,7 +15,7 @@ namespace ayumi {
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / EIGEN_PI;
-constexpr double kSlack = 1e-6;  // counts; rounding of degrees and radians
+constexpr double kCountSlack = 1e-6;  // counts; rounding of degrees and radians
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kLargestCount = 32767;  // 16 bit signed
 
@@ -36,7 +36,7 @@ Range count_limits(const RobotModel& model, const Dof& dof) {
   const Range soft = soft_limits(model, dof);
   const double scale = counts_per_radian(dof);
   const double a = soft.lower * scale, b = soft.upper * scale;
-  return {std::ceil(std::min(a, b) - kSlack), std::floor(std::max(a, b) + kSlack)};
+  return {std::ceil(std::min(a, b) - kCountSlack), std::floor(std::max(a, b) + kCountSlack)};
 }
 
 // Columns of the table in the robot's joint order.
@@ -185,7 +185,7 @@ void judge_rows(const RobotModel& model, const ReferenceTrajectory& table,
   }
 }
 
-double minimum_jerk(double s) { return s * s * s * (10 + s * (6 * s - 15)); }
+double ramp_share(double s) { return s * s * s * (10 + s * (6 * s - 15)); }
 
 // Long enough that the peak of the minimum jerk, 1.875 distance / duration, stays below half the
 // speed any joint may have.
@@ -287,7 +287,7 @@ SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& referenc
   for (size_t k = 0; k < result.first; ++k) {
     ReferenceRow row = reference.rows.front();
     const double s = static_cast<double>(k) / static_cast<double>(result.first);
-    row.theta = from + minimum_jerk(s) * (target - from);
+    row.theta = from + ramp_share(s) * (target - from);
     result.table.rows.push_back(row);
   }
   result.table.rows.insert(result.table.rows.end(), reference.rows.begin(), reference.rows.end());

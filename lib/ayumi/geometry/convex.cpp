@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kTouch = 1e-10;      // nearer than this they meet [m]
 constexpr double kTolerance = 1e-12;  // relative, of squared distance
-constexpr int kSteps = 200;
+constexpr int kGjkSteps = 200;
 
 double sign(double x) { return x < 0 ? -1 : 1; }
 
@@ -170,7 +170,7 @@ class Polytope {
 
   ConvexPair expand() {
     int nearest = 0;
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kGjkSteps; ++step) {
       nearest = nearest_face();
       const Face face = faces_[nearest];
       const Vertex w = sets_.vertex(face.normal);
@@ -274,7 +274,7 @@ ConvexPair convex_pair(const ConvexCore& a, const Isometry3d& pose_a, const Conv
   Vector3d nearest = pose_a.translation() - pose_b.translation();
   Simplex simplex{{sets.vertex(nearest.norm() > 0 ? Vector3d(-nearest) : Vector3d::UnitX())}, {1}};
   nearest = simplex.vertices[0].d;
-  for (int step = 0; step < kSteps && nearest.norm() > kTouch; ++step) {
+  for (int step = 0; step < kGjkSteps && nearest.norm() > kTouch; ++step) {
     const Vertex w = sets.vertex(-nearest);
     const double square = nearest.squaredNorm();
     if (square - nearest.dot(w.d) <= kTolerance * square) break;

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
+constexpr std::array<Side, 2> kBothSides = {Side::left, Side::right};
 
 // In the first double support: the foot that carries alone first.
 Side first_anchor(const FootPlan& feet) {
@@ -119,10 +119,10 @@ void fill_feet_from_joints(CommandSeries& series, const RobotModel& model) {
   std::array<std::vector<Isometry3d>, 2> soles;
   for (const CommandSample& sample : series.samples) {
     update_positions(model, sample.state, data);
-    for (const Side side : kSides)
+    for (const Side side : kBothSides)
       soles[static_cast<int>(side)].push_back(sole_pose(model, data, side));
   }
-  for (const Side side : kSides) {
+  for (const Side side : kBothSides) {
     const auto carries = [&](int k) { return supports(series.samples[k].support, side); };
     const std::vector<Isometry3d>& own = soles[static_cast<int>(side)];
     for (int k = 0; k < count;) {
@@ -147,7 +147,7 @@ void fill_feet(const SampleJob& job, CommandSeries& series) {
     CommandSample& sample = series.samples[k];
     sample.support = job.feet.support(k * job.dt);
     if (!planned) continue;
-    for (const Side side : kSides)
+    for (const Side side : kBothSides)
       sample.feet[static_cast<int>(side)] = job.feet.pose(side, k * job.dt);
   }
   if (!planned) fill_feet_from_joints(series, job.model);
@@ -160,7 +160,7 @@ void fill_commands(const SampleJob& job, CommandSeries& series) {
     const double t = k * job.dt;
     CommandSample& sample = series.samples[k];
     sample.zmp.setZero();
-    for (const Side side : kSides)
+    for (const Side side : kBothSides)
       if (supports(sample.support, side) || sample.support == Support::none)
         sample.zmp.z() +=
             (sample.support == Support::left || sample.support == Support::right ? 1.0 : 0.5) *

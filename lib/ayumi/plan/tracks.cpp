@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kInstant = 1e-9;  // times nearer than this are the same [s]
+constexpr double kSameTime = 1e-9;  // times nearer than this are the same [s]
 
 using Keys = std::vector<TrackKey>;
 
@@ -89,7 +89,7 @@ void KeyReader::read(const Keyframe& key) {
   const Interpolation way = key.interpolation.value_or(pattern.interpolation);
   if (!std::isfinite(key.t) || key.t < 0)
     complain(key, "time " + text::exact(key.t) + " s; key times are 0 or later");
-  if (key.t > feet.duration() + kInstant)
+  if (key.t > feet.duration() + kSameTime)
     complain(key, "time " + text::exact(key.t) + " s lies beyond the end of the last phase, " +
                       text::exact(feet.duration()) + " s; move the key or add a phase");
   read_joints(key, way);
@@ -106,7 +106,7 @@ void KeyReader::read(const Keyframe& key) {
     for (int i = 0; i < 3; ++i) add(torso[i], key, (*key.torso)[i], 0, way);
 }
 
-bool same(double a, double b) { return std::abs(a - b) < kInstant; }
+bool same(double a, double b) { return std::abs(a - b) < kSameTime; }
 
 // A flight between keys of a coordinate at its lift-off and its touchdown is a parabola, and so the
 // motion before and after meets its rate and acceleration. Keys on the way are the author's own.
@@ -299,7 +299,7 @@ PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const
 std::array<Track, 3> default_zmp(const FootPlan& feet) {
   std::array<Keys, 3> keys;
   const auto add = [&](double t, const Vector3d& point) {
-    if (!keys[0].empty() && t <= keys[0].back().t + kInstant) t = keys[0].back().t + 1e-3;
+    if (!keys[0].empty() && t <= keys[0].back().t + kSameTime) t = keys[0].back().t + 1e-3;
     for (int i = 0; i < 3; ++i) keys[i].push_back({t, point[i], Interpolation::minimum_jerk});
   };
   constexpr double kShift = 0.45;  // of the weight at both ends of the motion [s]

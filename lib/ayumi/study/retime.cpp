@@ -27,10 +27,10 @@ struct Trial {
   bool of_posture = false;
 };
 
-class Search {
+class PaceSearch {
  public:
-  Search(const RobotModel& model, const Pattern& pattern, const RetimeOptions& options,
-         const Progress& progress)
+  PaceSearch(const RobotModel& model, const Pattern& pattern, const RetimeOptions& options,
+             const Progress& progress)
       : model_(model), pattern_(pattern), options_(options), progress_(progress) {}
 
   FastestPace run() {
@@ -154,7 +154,7 @@ class Search {
 
 FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
                          const RetimeOptions& options, const Progress& progress) {
-  return Search(model, pattern, options, progress).run();
+  return PaceSearch(model, pattern, options, progress).run();
 }
 
 }  // namespace ayumi

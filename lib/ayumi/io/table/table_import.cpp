@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kRadiansPerDegree = EIGEN_PI / 180;
 
-[[noreturn]] void stop(const std::string& file, const std::string& reason) {
+[[noreturn]] void refuse_table(const std::string& file, const std::string& reason) {
   fail(ErrorCode::bad_file, file + ": " + reason);
 }
 
@@ -69,7 +69,7 @@ void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
   const double most = table.values.col(i).cwiseAbs().maxCoeff();
   if (degrees && !made.prismatic) table.values.col(i) *= kRadiansPerDegree;
   if (!degrees && !made.prismatic && made.limited && most > kNoAngle)
-    stop(file, "column '" + column + "' reaches " + text::brief(most) +
+    refuse_table(file, "column '" + column + "' reaches " + text::brief(most) +
                    " rad, which no joint does: give --unit deg where angles are in degrees");
   column = theta_column(joint);
 }
@@ -81,13 +81,13 @@ void rename_columns(NumberTable& table, const RobotModel& model, const ImportOpt
   for (size_t i = 0; i < table.columns.size(); ++i)
     if (std::find(table.columns.begin() + static_cast<std::ptrdiff_t>(i) + 1, table.columns.end(),
                   table.columns[i]) != table.columns.end())
-      stop(file, "the column '" + table.columns[i] + "' is given twice");
+      refuse_table(file, "the column '" + table.columns[i] + "' is given twice");
 }
 
 void add_time(NumberTable& table, const ImportOptions& options, const std::string& file) {
   if (table.find("t[s]") >= 0) return;
   if (!(options.rate > 0))
-    stop(file, "no time column (t[s], t, time); give --rate HZ when the rows are evenly spaced");
+    refuse_table(file, "no time column (t[s], t, time); give --rate HZ when the rows are evenly spaced");
   table.columns.insert(table.columns.begin(), "t[s]");
   const auto old = table.values;
   table.values.resize(old.rows(), old.cols() + 1);
@@ -107,11 +107,11 @@ void even_out(NumberTable& table, std::vector<std::string>& filled, const std::s
   for (Eigen::Index k = 1; k < rows; ++k) {
     steps.push_back(t[k] - t[k - 1]);
     if (!(steps.back() > 0))
-      stop(file, "data row " + std::to_string(k + 1) + ": time " + text::brief(t[k]) +
+      refuse_table(file, "data row " + std::to_string(k + 1) + ": time " + text::brief(t[k]) +
                      " s does not come after " + text::brief(t[k - 1]) +
                      " s of the row before; times must increase");
   }
-  if (steps.empty()) stop(file, "one row is no motion");
+  if (steps.empty()) refuse_table(file, "one row is no motion");
   std::nth_element(steps.begin(), steps.begin() + static_cast<long>(steps.size() / 2), steps.end());
   double dt = steps[steps.size() / 2];
   const double rate = std::round(1 / dt);
@@ -154,7 +154,7 @@ std::vector<BasePose> bases_of(const NumberTable& table, const TableLayout& layo
     Eigen::Vector4d q;
     for (int i = 0; i < 4; ++i) q[i] = table.values(k, layout.base[3 + i]);
     if (std::abs(q.norm() - 1) > 0.01)
-      stop(file, "data row " + std::to_string(k + 1) + ": base.qw...qz has length " +
+      refuse_table(file, "data row " + std::to_string(k + 1) + ": base.qw...qz has length " +
                      text::brief(q.norm()) + ", a unit quaternion (w, x, y, z) is needed");
     BasePose base;
     base.position = {table.values(k, layout.base[0]), table.values(k, layout.base[1]),
@@ -181,13 +181,13 @@ std::vector<Support> supports_of(const NumberTable& table, const TableLayout& la
 
 void fill_theta(const NumberTable& table, const TableLayout& layout, const RobotModel& model,
                 const std::string& file, ImportedMotion& result) {
-  if (layout.joints.empty()) stop(file, "no column is a joint of '" + model.name() + "'");
+  if (layout.joints.empty()) refuse_table(file, "no column is a joint of '" + model.name() + "'");
   result.motion.theta = model.posture().transpose().replicate(table.values.rows(), 1);
   std::vector<char> told(static_cast<size_t>(model.dof_count()), 0);
   for (size_t j = 0; j < layout.joints.size(); ++j) {
     const int dof = model.find_dof(layout.joints[j]);
     if (dof < 0)
-      stop(file, "'" + model.name() + "' has no joint '" + layout.joints[j] + "'" +
+      refuse_table(file, "'" + model.name() + "' has no joint '" + layout.joints[j] + "'" +
                      text::suggestion(layout.joints[j], model.dof_names()));
     result.motion.theta.col(dof) = table.values.col(layout.theta[j]);
     told[static_cast<size_t>(dof)] = 1;
