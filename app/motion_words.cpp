@@ -14,15 +14,16 @@ namespace {
 constexpr size_t kJointsTold = 8, kJointsDrawn = 4, kSpeedsDrawn = 2;
 constexpr double kTold = 0.005 * EIGEN_PI / 180;  // what would be 0.00 deg is no move for people
 
-std::string mm(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
+std::string millimetres(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 std::string seconds(double t) { return text::fixed(t, 3) + " s"; }
 
 std::string joint_words(const RobotModel& model, const JointChange& j) {
   const bool slides = model.dofs()[model.find_dof(j.joint)].prismatic;
   const std::string sign = j.most > 0 ? "+" : "";
   return j.joint + " by " + sign +
-         (slides ? mm(j.most) : text::fixed(j.most * 180 / EIGEN_PI, 2) + " deg") + " at " +
-         seconds(j.at) + " (" + text::fixed(j.begin, 2) + "-" + text::fixed(j.end, 2) + " s)";
+         (slides ? millimetres(j.most) : text::fixed(j.most * 180 / EIGEN_PI, 2) + " deg") +
+         " at " + seconds(j.at) + " (" + text::fixed(j.begin, 2) + "-" + text::fixed(j.end, 2) +
+         " s)";
 }
 
 std::string largest(const std::string& what, const LargestChange& change,
@@ -33,7 +34,7 @@ std::string largest(const std::string& what, const LargestChange& change,
 }  // namespace
 
 std::string margin_words(double margin) {
-  return mm(std::abs(margin)) + (margin < 0 ? " outside" : " inside") + " the support";
+  return millimetres(std::abs(margin)) + (margin < 0 ? " outside" : " inside") + " the support";
 }
 
 std::string motion_words(const RobotModel& model, const MotionChange& change,
@@ -50,15 +51,15 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
   if (told == kJointsTold && rest > 0)
     out += "        and " + std::to_string(rest) + " joints by less\n";
   if (change.cog.size > 5e-5 || change.foot.size > 5e-5)
-    out += "  " + largest("COG", change.cog, mm(change.cog.size)) + "; " +
-           largest("a foot", change.foot, mm(change.foot.size)) + "\n";
+    out += "  " + largest("COG", change.cog, millimetres(change.cog.size)) + "; " +
+           largest("a foot", change.foot, millimetres(change.foot.size)) + "\n";
   if (change.zmp.size > 5e-5 || change.fz.size > 0.05)
-    out += "  " + largest("commanded ZMP", change.zmp, mm(change.zmp.size)) + "; " +
+    out += "  " + largest("commanded ZMP", change.zmp, millimetres(change.zmp.size)) + "; " +
            largest("f_z", change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
   return out + "  ZMP " + margin_words(before.summary.min_zmp_margin) + " before, " +
          margin_words(after.summary.min_zmp_margin) + " after; COG off its command by " +
-         mm(before.summary.max_cog_residual) + " before, " + mm(after.summary.max_cog_residual) +
-         " after\n";
+         millimetres(before.summary.max_cog_residual) + " before, " +
+         millimetres(after.summary.max_cog_residual) + " after\n";
 }
 
 std::string cost_words(const WeightedChange& cost) {

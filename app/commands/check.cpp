@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CheckCommand {
   std::vector<std::string> patterns, tolerances;
   PatternOptions input;
   bool list_tolerances = false, watch = false;
@@ -55,7 +55,7 @@ ActuatorNeed own_need(const PatternInput& input, CheckOptions judged) {
                        check_consistency(input.model, input.series, judged));
 }
 
-Json check_one(const Context& context, const Options& options, const std::string& file) {
+Json check_one(const Context& context, const CheckCommand& options, const std::string& file) {
   const auto begin = std::chrono::steady_clock::now();
   const PatternInput input = load_pattern(context, file, options.input);
   const CheckOptions judged = check_options(input, options.tolerances);
@@ -112,7 +112,7 @@ std::vector<fs::path> watched_files(const std::string& file, const Stamps& befor
 }
 
 // A file that is being written may be half there: its mistake is told and the next change awaited.
-void check_once(Context& context, const Options& options, const std::string& file) {
+void check_once(Context& context, const CheckCommand& options, const std::string& file) {
   try {
     const Json json = check_one(context, options, file);
     context.print_json(json.dump());
@@ -136,7 +136,7 @@ void await_return(const std::string& file) {
 }
 
 // Until Ctrl-C.
-void watch(Context& context, const Options& options) {
+void watch(Context& context, const CheckCommand& options) {
   if (options.patterns.size() != 1) fail(ErrorCode::usage, "check --watch: name one PATTERN");
   const std::string& file = options.patterns.front();
   if (file == "-")
@@ -151,7 +151,7 @@ void watch(Context& context, const Options& options) {
   }
 }
 
-void check(Context& context, const Options& options) {
+void check(Context& context, const CheckCommand& options) {
   if (options.list_tolerances) {
     print_tolerances(context);
     return;
@@ -182,7 +182,7 @@ void add_check(CLI::App& app, Context& context) {
       "  ayumi check walk.json --profile hoap1-strong --tolerance support_margin=0.01\n"
       "  ayumi check a.json b.json --json\n  ayumi check walk.json --watch\n  ayumi check "
       "--tolerances");
-  static Options options;
+  static CheckCommand options;
   command->add_option("PATTERN", options.patterns, "pattern files");
   command
       ->add_option("--tolerance", options.tolerances, "of one kind of finding, over the pattern's")

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct DiffCommand {
   std::string a, b, plot;
   std::vector<std::string> weights;
   std::optional<double> safety;
@@ -47,7 +47,7 @@ std::string side_words(const std::string& file, const PatternInput& input,
 }
 
 // Weighed as a repair of A would.
-WeightedChange weighted(const Options& options, const PatternInput& a, const PatternInput& b,
+WeightedChange weighted(const DiffCommand& options, const PatternInput& a, const PatternInput& b,
                         const ConsistencyReport& check_a) {
   RepairOptions repair = wished_options(a.pattern);
   repair.check = check_options(a);
@@ -64,7 +64,7 @@ std::string label_of(const std::string& file) {
   return std::filesystem::path(file).stem().string();
 }
 
-void diff(Context& context, const Options& options) {
+void diff(Context& context, const DiffCommand& options) {
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
   const PatternInput a = load_pattern(context, options.a, options.input);
   const PatternInput b = load_pattern(context, options.b, options.input);
@@ -120,7 +120,7 @@ void add_diff(CLI::App& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi diff walk.json repaired.json\n"
       "  ayumi diff walk.json repaired.json --plot moved.svg --json");
-  static Options options;
+  static DiffCommand options;
   command->add_option("A", options.a, "pattern file")->required();
   command->add_option("B", options.b, "pattern file, as it became")->required();
   command->add_option("--plot", options.plot, "both against time, .svg or .png")->type_name("F");

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct EditCommand {
   std::string pattern, out;
   std::vector<std::string> patterns;  // of concat and blend
   double over = 0;                    // [s]
@@ -52,7 +52,7 @@ struct Result {
   ConsistencyReport report;
 };
 
-Result check_edited(const Context& context, const Options& options, const PatternInput& input,
+Result check_edited(const Context& context, const EditCommand& options, const PatternInput& input,
                     const Pattern& edited) {
   Result result;
   result.series = sample(input.model, edited, {.dt = input.series.dt}, context.progress());
@@ -61,7 +61,7 @@ Result check_edited(const Context& context, const Options& options, const Patter
   return result;
 }
 
-void write_edited(Context& context, const Options& options, const Pattern& edited,
+void write_edited(Context& context, const EditCommand& options, const Pattern& edited,
                   const Result& result, const std::string& words, Json json) {
   refuse_overwriting(context, options.out);
   if (edited.table) refuse_overwriting(context, table_beside(options.out));
@@ -77,12 +77,12 @@ void write_edited(Context& context, const Options& options, const Pattern& edite
   context.exit_code = result.report.consistent ? 0 : 1;
 }
 
-PatternInput load(const Context& context, const Options& options) {
+PatternInput load(const Context& context, const EditCommand& options) {
   refuse_overwriting(context, options.out);
   return load_pattern(context, options.pattern, options.input);
 }
 
-void bake(Context& context, const Options& options) {
+void bake(Context& context, const EditCommand& options) {
   const PatternInput input = load(context, options);
   const Pattern edited =
       baked(input.model, input.pattern, input.series, table_beside(options.out).string());
@@ -90,7 +90,7 @@ void bake(Context& context, const Options& options) {
                Json{{"rows", input.series.samples.size()}});
 }
 
-void mirror(Context& context, const Options& options) {
+void mirror(Context& context, const EditCommand& options) {
   const PatternInput input = load(context, options);
   const Pattern edited = mirrored(input.model, input.pattern);
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
@@ -125,7 +125,8 @@ Json in_json(double scale, const ConsistencyReport& before, const ForceRange& fo
   return json;
 }
 
-FastestPace limits_of(const Context& context, const Options& options, const PatternInput& input) {
+FastestPace limits_of(const Context& context, const EditCommand& options,
+                      const PatternInput& input) {
   RetimeOptions retime;
   retime.check = check_options(input, options.tolerances);
   retime.dt = input.series.dt;
@@ -141,7 +142,7 @@ FastestPace limits_of(const Context& context, const Options& options, const Patt
   return pace;
 }
 
-void retime(Context& context, const Options& options) {
+void retime(Context& context, const EditCommand& options) {
   if (options.to_limits == (options.scale != 0))
     fail(ErrorCode::usage, "edit retime: give either --scale S or --to-limits");
   const PatternInput input = load(context, options);
@@ -159,7 +160,7 @@ void retime(Context& context, const Options& options) {
 }
 
 // Patterns one after the other; the table of what is joined so far is only in memory.
-void join(Context& context, const Options& options) {
+void join(Context& context, const EditCommand& options) {
   if (options.patterns.size() < 2)
     fail(ErrorCode::usage, "edit concat, edit blend: two patterns or more, in their order");
   refuse_overwriting(context, options.out);
@@ -181,7 +182,7 @@ void join(Context& context, const Options& options) {
                check_edited(context, options, input, input.pattern), "", Json{{"joins_s", joins}});
 }
 
-void ramp(Context& context, const Options& options) {
+void ramp(Context& context, const EditCommand& options) {
   if (options.ramps.in <= 0 && options.ramps.out <= 0)
     fail(ErrorCode::usage, "edit ramp: one of --from and --back must be above 0");
   const PatternInput input = load(context, options);
@@ -191,7 +192,7 @@ void ramp(Context& context, const Options& options) {
                Json{{"in_s", options.ramps.in}, {"out_s", options.ramps.out}});
 }
 
-void add_edit_options(CLI::App& command, Options& options) {
+void add_edit_options(CLI::App& command, EditCommand& options) {
   command.add_option("-o,--out", options.out, "pattern file to write")->required()->type_name("F");
   command
       .add_option("--tolerance", options.tolerances, "of one kind of finding, over the pattern's")
@@ -201,7 +202,7 @@ void add_edit_options(CLI::App& command, Options& options) {
 }
 
 CLI::App& add_join_of(CLI::App& parent, const std::string& name, const std::string& what,
-                      Options& options) {
+                      EditCommand& options) {
   CLI::App* command = parent.add_subcommand(name, what);
   command->add_option("PATTERN", options.patterns, "pattern files, in their order")->required();
   add_edit_options(*command, options);
@@ -209,7 +210,7 @@ CLI::App& add_join_of(CLI::App& parent, const std::string& name, const std::stri
 }
 
 CLI::App& add_edit_of(CLI::App& parent, const std::string& name, const std::string& what,
-                      Options& options) {
+                      EditCommand& options) {
   CLI::App* command = parent.add_subcommand(name, what);
   command->add_option("PATTERN", options.pattern, "pattern file")->required();
   add_edit_options(*command, options);
@@ -232,7 +233,7 @@ void add_edit(CLI::App& app, Context& context) {
       "  ayumi edit concat step.json walk.json -o both.json\n"
       "  ayumi edit blend squat.json sway.json --over 0.8 -o both.json\n"
       "  ayumi edit ramp imported.json --from 1.5 --back 1.5 -o from_home.json");
-  static Options options;
+  static EditCommand options;
   add_edit_of(*command, "bake", "the motion as a dense table of theta, COG, ZMP, f_z and base",
               options)
       .callback([&context] { bake(context, options); });

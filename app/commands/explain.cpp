@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct ExplainCommand {
   std::string equation, run, log, robot;
   std::vector<std::string> gains;
 };
@@ -78,7 +78,7 @@ struct Numbers {
   double t = 0;
 };
 
-Numbers numbers_of(const Context& context, const Equation& e, const Options& options) {
+Numbers numbers_of(const Context& context, const Equation& e, const ExplainCommand& options) {
   const Place place = place_of(options.run);
   const SimulationLog log = read_run_log(place.run, options.log);
   if (log.samples.empty()) fail(ErrorCode::bad_file, place.run + ": the log has no samples");
@@ -103,7 +103,7 @@ Numbers numbers_of(const Context& context, const Equation& e, const Options& opt
   return result;
 }
 
-void explain(Context& context, const Options& options) {
+void explain(Context& context, const ExplainCommand& options) {
   const Equation& e = find_equation(options.equation);
   std::string out = heading(e) + "\n" + wrapped(e.words);
   Json json = {{"equation", e.number}, {"formula", e.formula}, {"words", e.words}};
@@ -128,7 +128,7 @@ void add_explain(CLI::App& app, Context& context) {
       "  ayumi explain 14 out/hoap1_walk@3.05\n"
       "  ayumi explain 14 out/hoap1_walk@3.05 --log open_loop\n"
       "Gains are those of the robot, unless --gain names those of the run's pattern.");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExplainCommand>();
   command->add_option("EQ", options->equation, "number of the equation, 1 to 29")->required();
   command->add_option("RUN@t", options->run, "a RUN folder or log file, and a time [s]");
   command->add_option("--log", options->log, "which log of the RUN, e.g. open_loop");

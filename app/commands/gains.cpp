@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kMostKa = 20;   // looked for
 constexpr double kShown = 1e-3;  // decays below this share of omega are not told as modes
 
-struct Options {
+struct GainsCommand {
   std::string robot;
   std::vector<double> poles, time_constants;
   double frequency = 0, damping = 0;
@@ -48,7 +48,7 @@ struct Design {
   std::vector<Reach> reaches;
 };
 
-void read_wishes(Options& options) {
+void read_wishes(GainsCommand& options) {
   const int ways = !options.poles.empty() + !options.time_constants.empty() +
                    (options.frequency != 0 || options.damping != 0);
   if (ways > 1)
@@ -95,7 +95,7 @@ std::vector<Reach> reaches(const RobotModel& model) {
   return result;
 }
 
-Design design(const RobotModel& model, Options options) {
+Design design(const RobotModel& model, GainsCommand options) {
   read_wishes(options);
   Design d;
   const CommandSample first = sample(model, stand_pattern(model, 0.01)).samples.front();
@@ -196,7 +196,7 @@ Json json_of(const RobotModel& model, const Design& d) {
           {"recoverable", reach}};
 }
 
-void print_gains(Context& context, const Options& options) {
+void print_gains(Context& context, const GainsCommand& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
   const Design d = design(model, options);
   context.print(report(model, d));
@@ -213,7 +213,7 @@ void add_gains(CLI::App& app, Context& context) {
       "  ayumi gains hoap1 --time-constants 0.16,0.64 --absorb 0.6 --return-time 0.1\n"
       "  ayumi gains hoap1 --frequency 1 --damping 1 --latency 0.005\n"
       "An unstable choice is refused with the mode that grows.");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GainsCommand>();
   command->add_option("ROBOT", options->robot, "robot")->required();
   command->add_option("--poles", options->poles, "two real poles of the COG, e.g. -6.3,-1.6 [1/s]")
       ->delimiter(',')

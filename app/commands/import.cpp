@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct ImportCommand {
   std::string file, robot, out;
   ImportOptions import;
 };
@@ -31,7 +31,7 @@ Json json_of(const FootContact& contact) {
           {"yaw_rad", place.rpy.z()}};
 }
 
-void tell(const Context& context, const Options& options, const ImportedMotion& imported,
+void tell(const Context& context, const ImportCommand& options, const ImportedMotion& imported,
           const GroundedMotion& motion) {
   const double duration = motion.pattern.duration();
   std::string words = options.out + ": " + text::fixed(duration, 3) + " s from " +
@@ -53,7 +53,7 @@ void tell(const Context& context, const Options& options, const ImportedMotion& 
        imported.filled}}.dump(2));
 }
 
-void import_motion(const Context& context, const Options& options) {
+void import_motion(const Context& context, const ImportCommand& options) {
   refuse_overwriting(context, options.out);
   refuse_overwriting(context, table_beside(options.out));
   const RobotModel model = load_robot(options.robot, robot_search(context));
@@ -79,7 +79,7 @@ void add_import(CLI::App& app, Context& context) {
       "  ayumi import m03.csv --robot examples/hoap3/robot.json --robot-path hoap3_description "
       "-o m03.json\n"
       "  ayumi import angles.csv --robot hoap1 --unit deg --rate 200 -o angles.json");
-  static Options options;
+  static ImportCommand options;
   static std::string unit = "rad";
   command->add_option("FILE", options.file, "sequence or table; - reads standard input")
       ->required();

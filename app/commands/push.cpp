@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct PushCommand {
   std::string pattern, out, map;
   PatternOptions input;
   std::vector<std::string> controllers, gains;
@@ -33,7 +33,8 @@ struct Options {
   PushOptions push;
 };
 
-std::vector<ControllerSpec> chosen_controllers(const PatternInput& input, const Options& options) {
+std::vector<ControllerSpec> chosen_controllers(const PatternInput& input,
+                                               const PushCommand& options) {
   std::vector<ControllerSpec> specs;
   for (const std::string& name : options.controllers) {
     if (name == "none") continue;  // open loop is always there
@@ -53,7 +54,7 @@ std::vector<ControllerSpec> chosen_controllers(const PatternInput& input, const 
 }
 
 PushOptions push_options(const Context& context, const PatternInput& input,
-                         const Options& options) {
+                         const PushCommand& options) {
   PushOptions push = options.push;
   push.threads = context.threads;
   push.simulate.profile = input.profile;
@@ -100,7 +101,7 @@ Json study_json(const PatternInput& input, const PushOptions& push) {
           {"seed", push.simulate.seed}};
 }
 
-std::string padded(const std::string& text, size_t width) {
+std::string push_cell(const std::string& text, size_t width) {
   return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
 }
 
@@ -153,7 +154,7 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
     out += row->phase.name + ", push at " + text::fixed(row->phase.at, 3) + " s\n";
     const auto line = [&](const std::string& label, const auto& cell) {
       out += "  " + label + std::string(label.size() < kLabel ? kLabel - label.size() : 1, ' ');
-      for (size_t i = 0; i < directions; ++i) out += padded(cell(row[i]), kCell);
+      for (size_t i = 0; i < directions; ++i) out += push_cell(cell(row[i]), kCell);
       out += "\n";
     };
     line("direction, deg",
@@ -218,7 +219,7 @@ Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, do
           {"wall_s", wall}};
 }
 
-void find_limits(Context& context, const Options& options) {
+void find_limits(Context& context, const PushCommand& options) {
   if (!options.map.empty()) {
     const std::string type = std::filesystem::path(options.map).extension().string();
     if (type != ".svg" && type != ".png")
@@ -262,7 +263,7 @@ void add_push(CLI::App& app, Context& context) {
       "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
       "A study that was stopped goes on from its results file. The pattern's own pushes are left "
       "out.");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
   command->add_option("PATTERN", options->pattern, "pattern file")->required();
   command

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct RepairCommand {
   std::string pattern, out, trust, plot;
   std::vector<std::string> locked, weights, tolerances;
   bool baked = false;
@@ -46,7 +46,7 @@ std::vector<std::string> marks(const RepairResult& result) {
 
 // The author's text as it is but for the correction; parameters given on the command line, or
 // relative names that would break in another folder, make it a text of our own.
-void write_repaired(const Context& context, const Options& options, const PatternInput& input,
+void write_repaired(const Context& context, const RepairCommand& options, const PatternInput& input,
                     const RepairResult& result) {
   Pattern corrected = input.pattern;
   const bool unchanged = result.status == RepairStatus::already_consistent;
@@ -81,7 +81,7 @@ std::vector<std::string> file_locks(const RepairWishes& wishes) {
   return words;
 }
 
-std::string steering_words(const Options& options, const Pattern& pattern) {
+std::string steering_words(const RepairCommand& options, const Pattern& pattern) {
   std::string out;
   std::vector<std::string> kept = file_locks(pattern.repair);
   kept.insert(kept.end(), options.locked.begin(), options.locked.end());
@@ -91,8 +91,8 @@ std::string steering_words(const Options& options, const Pattern& pattern) {
   return out;
 }
 
-std::string in_words(const Options& options, const PatternInput& input, const RepairResult& result,
-                     double wall) {
+std::string in_words(const RepairCommand& options, const PatternInput& input,
+                     const RepairResult& result, double wall) {
   const RobotModel& model = input.model;
   std::string out = options.pattern + ": " +
                     (result.partial ? "stopped, partial" : name_of(result.status)) + "\n";
@@ -160,7 +160,7 @@ nlohmann::ordered_json in_json(const PassingPace& pace) {
 }
 
 // Where to see what moved.
-std::string see_words(const Options& options, const RepairResult& result) {
+std::string see_words(const RepairCommand& options, const RepairResult& result) {
   if (result.status == RepairStatus::already_consistent || options.baked) return "";
   return "  see it: ayumi diff " + options.pattern + " " + options.out +
          " --plot moved.svg; ayumi preview " + options.out + " --ghost " + options.pattern +
@@ -168,7 +168,7 @@ std::string see_words(const Options& options, const RepairResult& result) {
 }
 
 // A pattern that cannot even be sampled may pass with other values of its parameters.
-PatternInput load(const Context& context, const Options& options) {
+PatternInput load(const Context& context, const RepairCommand& options) {
   try {
     return load_pattern(context, options.pattern, options.input);
   } catch (const Error& error) {
@@ -190,7 +190,7 @@ Trust trust_of(const std::string& word) {
 }
 
 // The pattern's wishes, with the command line's locks beside them and its other words over them.
-RepairOptions repair_options(const Options& options, const PatternInput& input) {
+RepairOptions repair_options(const RepairCommand& options, const PatternInput& input) {
   RepairOptions repair = wished_options(input.pattern);
   repair.check = check_options(input, options.tolerances);
   if (!options.trust.empty()) repair.trust = trust_of(options.trust);
@@ -213,7 +213,7 @@ int exit_code_of(const RepairResult& result) {
              : 4;
 }
 
-void repair_pattern(Context& context, Options options) {
+void repair_pattern(Context& context, RepairCommand options) {
   if (options.pattern == "-")
     fail(ErrorCode::usage,
          "repair writes the author's text with a correction over it: give the pattern as a file");
@@ -268,7 +268,7 @@ void add_repair(CLI::App& app, Context& context) {
       "What moved, afterwards:\n"
       "  ayumi diff walk.json repaired.json --plot moved.svg\n"
       "  ayumi preview repaired.json --ghost walk.json -o moved.mp4");
-  static Options options;
+  static RepairCommand options;
   command->add_option("PATTERN", options.pattern, "pattern file")->required();
   command->add_option("-o,--out", options.out, "pattern file to write")->required()->type_name("F");
   command

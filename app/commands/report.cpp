@@ -16,14 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ReportCommand {
   std::string input, output, robot, push;
   ReportOptions report;
   double max_megabytes = 8;
   bool no_replay = false;
 };
 
-void report_run(Options options, Context& context) {
+void report_run(ReportCommand options, Context& context) {
   refuse_overwriting(context, options.output);
   if (!is_run_folder(options.input))
     fail(ErrorCode::bad_file, options.input +
@@ -52,7 +52,7 @@ void report_run(Options options, Context& context) {
 }  // namespace
 
 void add_report(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportCommand>();
   CLI::App* command = app.add_subcommand("report", "one HTML page of a run: verdict, replay, loci");
   command->add_option("run", options->input, "a RUN folder")->required()->type_name("RUN");
   command->add_option("-o,--out", options->output, ".html")->required()->type_name("FILE");

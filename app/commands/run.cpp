@@ -36,7 +36,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct RunCommand {
   std::vector<std::string> patterns;
   std::string out;
   PatternOptions input;
@@ -90,7 +90,7 @@ class Workshop {
 
 class MainJob {
  public:
-  MainJob(Context& context, const Options& options, const fs::path& target)
+  MainJob(Context& context, const RunCommand& options, const fs::path& target)
       : context_(context), options_(options), target_(target) {}
 
   /// Returns whether check and closed loop are good.
@@ -112,7 +112,7 @@ class MainJob {
   void write_report(const RobotModel& model, const std::string& title);
 
   Context& context_;
-  const Options& options_;
+  const RunCommand& options_;
   fs::path target_;
   std::optional<Workshop>
       workshop_;  // opened when the input has been read: bad input leaves nothing
@@ -274,7 +274,7 @@ bool MainJob::run(const std::string& file) {
   return consistent && stands;
 }
 
-void run_patterns(Context& context, const Options& options) {
+void run_patterns(Context& context, const RunCommand& options) {
   const bool several = options.patterns.size() > 1;
   std::vector<fs::path> targets;
   for (const std::string& pattern : options.patterns) {
@@ -306,7 +306,7 @@ void add_run(CLI::App& app, Context& context) {
       "Examples:\n  ayumi run patterns/hoap1_walk.json -o out/\n"
       "  ayumi run walk.json --repair -o out/walk\n"
       "  ayumi run a.json b.json -o out/ --no-pictures --json");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunCommand>();
   command->add_option("PATTERN", options->patterns, "pattern files")->required();
   command->add_option("-o,--out", options->out, "folder for the results")
       ->type_name("DIR")

@@ -14,13 +14,13 @@ namespace ayumi::app {
 
 namespace {
 
-struct Options {
+struct SimulateCommand {
   std::string pattern, out;
   PatternOptions input;
   SimulationChoice choice;
 };
 
-void simulate_pattern(Context& context, const Options& options) {
+void simulate_pattern(Context& context, const SimulateCommand& options) {
   if (!options.out.empty()) refuse_overwriting(context, options.out);
   const PatternInput input = load_pattern(context, options.pattern, options.input);
   const auto begin = std::chrono::steady_clock::now();
@@ -53,7 +53,7 @@ void add_simulate(CLI::App& app, Context& context) {
       "Examples:\n  ayumi simulate patterns/hoap1_walk.json -o out/walk\n"
       "  ayumi simulate walk.json --controller none --scenario none\n"
       "  ayumi simulate walk.json --profile hoap1-strong --gain ka=1 --json");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateCommand>();
   command->add_option("PATTERN", options->pattern, "pattern file")->required();
   command->add_option("-o,--out", options->out, "folder for the run")->type_name("DIR");
   add_pattern_options(*command, options->input);

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct TuneCommand {
   std::string pattern;
   PatternOptions input;
   std::vector<std::string> start;
@@ -43,7 +43,7 @@ std::string line(const std::string& label, const TuneFigures& f) {
          std::to_string(f.pushes) + " + unpushed " + text::fixed(f.unpushed, 4) + "\n";
 }
 
-void tune(Context& context, Options& options) {
+void tune(Context& context, TuneCommand& options) {
   const PatternInput input = load_pattern(context, options.pattern, options.input);
   TuneOptions& t = options.tune;
   t.threads = context.threads;
@@ -91,7 +91,7 @@ void add_tune(CLI::App& app, Context& context) {
       "The objective, smaller is better: mean over the pushes of omega times the integral of\n"
       "|xi - cmd xi| / z over 1.2 s, 10 for a push that fells the robot, plus the mean of\n"
       "|ZMP - ref ZMP| / z of the unpushed pattern. Gains with an unstable loop are left out.");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TuneCommand>();
   TuneOptions& t = options->tune;
   command->add_option("PATTERN", options->pattern, "pattern file")->required();
   add_pattern_options(*command, options->input);
