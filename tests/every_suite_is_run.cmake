@@ -1,0 +1,14 @@
+# Compares the suites of a test program with those that CTest runs: -DPROGRAM= -DSUITES=a;b;c
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE output
+                COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "(^|\n)[A-Za-z0-9_/]+\\." found "${output}")
+foreach(suite ${found})
+  string(REGEX REPLACE "[\n.]" "" suite "${suite}")
+  # Prefix/Suite of value-parametrized suites, Suite/0 of typed ones.
+  string(REGEX REPLACE "/[0-9]+$" "" suite "${suite}")
+  string(REGEX REPLACE "^.*/" "" suite "${suite}")
+  if(NOT suite IN_LIST SUITES)
+    message(FATAL_ERROR "${PROGRAM}: the suite '${suite}' is not run by CTest; write its TEST "
+                        "macros at the beginning of a line")
+  endif()
+endforeach()

@@ -1,0 +1,3 @@
+# Suites that are left out of `ctest -L quick`: each takes more than two seconds alone.
+set(ayumi_slow_suites
+)
