@@ -35,7 +35,7 @@ std::string percent(double ratio) { return text::fixed(100 * ratio, 0) + " %"; }
 std::string check_table(const ConsistencyReport& report) {
   std::string out;
   for (const Finding& f : report.findings)
-    out += "  " + padded(name_of(f.severity), 8) + padded(f.kind, 19) + f.where + ", " +
+    out += "  " + padded(name_of(f.severity), 8) + padded(name_of(f.kind), 19) + f.where + ", " +
            seconds(f) + ": " + quantity(f.worst, f.unit) + ", limit " + quantity(f.limit, f.unit) +
            "\n" + std::string(10, ' ') + f.hint + "\n";
   const CheckSummary& s = report.summary;
@@ -56,9 +56,9 @@ std::string check_table(const ConsistencyReport& report) {
 
 std::string tolerance_table() {
   std::string out;
-  for (const FindingKind& kind : finding_kinds())
-    out += padded(kind.kind, 20) + padded(text::brief(kind.tolerance) + " " + kind.unit, 14) +
-           kind.meaning + "\n";
+  for (const FindingSpec& spec : finding_specs())
+    out += padded(name_of(spec.kind), 20) +
+           padded(text::brief(spec.tolerance) + " " + spec.unit, 14) + spec.meaning + "\n";
   return out;
 }
 

@@ -30,8 +30,8 @@ bool choose_profile(const Context& context, const RobotModel& model, Pattern& pa
   }
   if (report.consistent) return true;
   const Finding& first = report.findings.front();
-  context.print("`ayumi check` finds it inconsistent: " + first.kind + " " + first.where + " at " +
-                text::fixed(first.at, 3) + " s: " + first.hint + "\n");
+  context.print(std::string("`ayumi check` finds it inconsistent: ") + name_of(first.kind) + " " +
+                first.where + " at " + text::fixed(first.at, 3) + " s: " + first.hint + "\n");
   return false;
 }
 

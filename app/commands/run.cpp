@@ -128,8 +128,9 @@ std::string check_text(const ConsistencyReport& report) {
           report.profile;
   for (const Finding& finding : report.findings)
     if (finding.severity == Severity::error)
-      text += "\n            " + finding.kind + " at " + text::fixed(finding.at, 3) + " s, " +
-              finding.where + ": " + text::brief(finding.worst) + " " + finding.unit + ", limit " +
+      text += std::string("\n            ") + name_of(finding.kind) + " at " +
+              text::fixed(finding.at, 3) + " s, " + finding.where + ": " +
+              text::brief(finding.worst) + " " + finding.unit + ", limit " +
               text::brief(finding.limit) + "; " + finding.hint;
   return text;
 }

@@ -57,7 +57,8 @@ TEST(Consequence, OfAnArmHeldInTheWayAreItsJumps) {
   });
   e = errors_of(p);
   EXPECT_TRUE(e.kinds.count("self_collision") && e.kinds.count("joint_speed")) << e.told;
-  for (const Finding& f : e.all) EXPECT_TRUE(f.kind != "joint_speed" || f.where == "r_elbow");
+  for (const Finding& f : e.all)
+    EXPECT_TRUE(f.kind != FindingKind::joint_speed || f.where == "r_elbow");
 }
 
 // Elsewhere for most of its contact: what it began and ended with is its place.

@@ -75,8 +75,8 @@ void expect_alone(const Motion& motion, const Pattern& pattern, const std::set<s
   bool found = false;
   for (const Finding& f : r.findings) {
     if (f.severity != Severity::error) continue;
-    told << f.kind << " " << f.where << " at " << f.at << " worst " << f.worst << "\n";
-    EXPECT_TRUE(kinds.count(f.kind)) << told.str();
+    told << name_of(f.kind) << " " << f.where << " at " << f.at << " worst " << f.worst << "\n";
+    EXPECT_TRUE(kinds.count(name_of(f.kind))) << told.str();
     const bool then = at < 0 || std::abs(f.at - at) <= 2.01 * pattern.table->dt;
     found = found || (then && f.where.find(where) != std::string::npos);
   }
@@ -99,7 +99,7 @@ double way_outside(const Motion& motion) {
 TEST(FaultsOnPatterns, NoneWherePatternsAreSound) {
   for (const Motion& m : motions())
     for (const Finding& f : report_of(m.pattern).findings)
-      EXPECT_EQ(f.severity, Severity::info) << m.name << " " << f.kind;
+      EXPECT_EQ(f.severity, Severity::info) << m.name << " " << name_of(f.kind);
 }
 
 TEST(FaultsOnPatterns, CogAndForceCommands) {
@@ -202,7 +202,7 @@ TEST(FaultsOnPatterns, ContactTooEarlyOnASlowWalk) {
   const ConsistencyReport r = report_of(p);
   ASSERT_FALSE(r.findings.empty());
   const Finding& f = r.findings.front();
-  EXPECT_EQ(f.kind, "foot_float");
+  EXPECT_EQ(f.kind, FindingKind::foot_float);
   EXPECT_NEAR(f.at, landing, 0.002);
   EXPECT_LT(f.worst, 0.3e-3);
   EXPECT_NE(f.hint.find("still coming down"), std::string::npos) << f.hint;

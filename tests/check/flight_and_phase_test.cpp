@@ -69,8 +69,8 @@ TEST(Consequence, OfALongFlightThatIsNotFreeIsTheCogInItsMiddle) {
   });
   int free = 0;
   for (const Finding& f : report_of(robot, p).findings) {
-    EXPECT_FALSE(f.kind == "cog_residual" && f.severity == Severity::error) << f.at;
-    free += f.kind == "ballistic" && f.severity == Severity::error;
+    EXPECT_FALSE(f.kind == FindingKind::cog_residual && f.severity == Severity::error) << f.at;
+    free += f.kind == FindingKind::ballistic && f.severity == Severity::error;
   }
   EXPECT_EQ(free, 1);
 }

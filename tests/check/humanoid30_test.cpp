@@ -53,8 +53,8 @@ TEST_P(Generated, PatternsAreConsistent) {
         sway_pattern(model, forward), squat_pattern(model, squat_defaults(model))}) {
     const ConsistencyReport report = check_consistency(model, sample(model, pattern));
     EXPECT_TRUE(report.consistent)
-        << GetParam() << ", " << pattern.name << ": " << report.findings.front().kind << " "
-        << report.findings.front().where;
+        << GetParam() << ", " << pattern.name << ": " << name_of(report.findings.front().kind)
+        << " " << report.findings.front().where;
   }
 }
 

@@ -46,21 +46,21 @@ ConsistencyReport report_of(const Pattern& pattern) { return test::report_of(hoa
 std::string print(const ConsistencyReport& r) {
   std::ostringstream out;
   for (const Finding& f : r.findings)
-    out << name_of(f.severity) << " " << f.kind << " " << f.where << " " << f.begin << ".." << f.end
-        << " at " << f.at << " worst " << f.worst << " <- " << f.follows_from << "\n";
+    out << name_of(f.severity) << " " << name_of(f.kind) << " " << f.where << " " << f.begin << ".."
+        << f.end << " at " << f.at << " worst " << f.worst << " <- " << f.follows_from << "\n";
   return out.str();
 }
 
 Kinds error_kinds(const ConsistencyReport& r) {
   Kinds kinds;
   for (const Finding& f : r.findings)
-    if (f.severity == Severity::error) kinds.insert(f.kind);
+    if (f.severity == Severity::error) kinds.insert(name_of(f.kind));
   return kinds;
 }
 
 const Finding& first(const ConsistencyReport& r, const std::string& kind) {
   for (const Finding& f : r.findings)
-    if (f.kind == kind && f.severity == Severity::error) return f;
+    if (name_of(f.kind) == kind && f.severity == Severity::error) return f;
   static const Finding none;
   ADD_FAILURE() << "no error " << kind << "\n" << print(r);
   return none;
@@ -329,7 +329,7 @@ TEST(PlantedFault, ForceInFlight) {
 // The limit of moments in flight grows with the robot, unless it was set; then it may be smaller.
 TEST(PlantedFault, MomentsInFlightAreJudgedByTheRobotOrByWhatWasSet) {
   const CommandSeries series = sample(hoap1(), jump());
-  const int kind = static_cast<int>(Kind::angular_momentum);
+  const FindingKind kind = FindingKind::angular_momentum;
   const double height = series.samples[0].cog.z(), weight = hoap1().mass() * kGravity;
   CheckOptions options;
   options.profile = jump().profile;

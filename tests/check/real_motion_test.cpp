@@ -121,7 +121,8 @@ TEST(RealMotion, FujitsuWalkShiftsItsWeightAsMeasured) {
   const ConsistencyReport r = check_consistency(model, series);
   EXPECT_LT(r.summary.max_joint_acceleration, 100);
   for (const Finding& f : r.findings)
-    EXPECT_FALSE(f.severity == Severity::error && f.kind == "joint_torque") << f.where << f.at;
+    EXPECT_FALSE(f.severity == Severity::error && f.kind == FindingKind::joint_torque)
+        << f.where << f.at;
   // Steps alternate, and no foot stays where it was.
   EXPECT_GE(motion.contacts.size(), 12u);
   for (size_t i = 3; i < motion.contacts.size(); ++i)
@@ -136,7 +137,8 @@ TEST(RealMotion, SideStepIsFlaggedAtItsJump) {
   EXPECT_FALSE(r.consistent);
   bool found = false;
   for (const Finding& f : r.findings) {
-    if (f.severity != Severity::error || (f.kind != "joint_speed" && f.kind != "servo_step"))
+    if (f.severity != Severity::error ||
+        (f.kind != FindingKind::joint_speed && f.kind != FindingKind::servo_step))
       continue;
     if (f.where != "L_LFE_L_KN_joint" || std::abs(f.at - 2 * 1252.5e-3) > 0.006) continue;
     found = true;
@@ -274,7 +276,7 @@ TEST(HoapImport, AWalkRoundedToCountsPassesTheCheck) {
   const GroundedMotion motion = grounded(hoap1(), read(text).motion, "t.csv");
   const ConsistencyReport r = check_consistency(hoap1(), sample(hoap1(), motion.pattern));
   for (const Finding& f : r.findings)
-    EXPECT_NE(f.severity, Severity::error) << f.kind << " " << f.where << " at " << f.at;
+    EXPECT_NE(f.severity, Severity::error) << name_of(f.kind) << " " << f.where << " at " << f.at;
   EXPECT_LT(r.summary.max_foot_float, 5e-5);
   // Swings end with (1 - s)^3: the last hundredth of a millimetre of them is rest.
   ASSERT_EQ(motion.pattern.phases.size(), walk.phases.size());

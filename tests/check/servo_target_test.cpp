@@ -36,8 +36,8 @@ TEST(ServoTarget, StepsBeyondTheSpeedLimitAreToldAsExportTellsThem) {
     const double most = largest_step_of_export(series);
     double told = 0;
     for (const Finding& f : report_of(hoap1(), pattern).findings) {
-      EXPECT_NE(f.severity, Severity::error) << f.kind;
-      if (f.kind != "servo_step") continue;
+      EXPECT_NE(f.severity, Severity::error) << name_of(f.kind);
+      if (f.kind != FindingKind::servo_step) continue;
       EXPECT_EQ(f.severity, Severity::warning);
       EXPECT_NE(f.hint.find("`export` refuses"), std::string::npos) << f.hint;
       told = std::max(told, std::abs(f.worst / f.limit));
@@ -67,7 +67,8 @@ TEST(ServoTarget, OfAJointThatIsTooFastIsNotToldTwice) {
   const ConsistencyReport r = report_of(hoap1(), pattern);
   for (const Finding& speed : r.findings)
     for (const Finding& step : r.findings)
-      if (speed.kind == "joint_speed" && step.kind == "servo_step" && speed.where == step.where) {
+      if (speed.kind == FindingKind::joint_speed && step.kind == FindingKind::servo_step &&
+          speed.where == step.where) {
         EXPECT_TRUE(step.at < speed.begin || step.at > speed.end) << step.at;
       }
   EXPECT_FALSE(r.consistent);

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 TEST(ResultsJson, CheckHasTheKeysOfTheCommandLine) {
   ConsistencyReport report;
   report.profile = "hoap1";
-  report.findings = {{.kind = "support_margin",
+  report.findings = {{.kind = FindingKind::support_margin,
                       .severity = Severity::error,
                       .begin = 1,
                       .end = 2,

@@ -29,13 +29,13 @@ const Pattern& table_walk() {
 std::string kinds(const ConsistencyReport& report) {
   std::string out;
   for (const Finding& f : report.findings)
-    if (f.severity == Severity::error) out += f.kind + " " + f.where + ", ";
+    if (f.severity == Severity::error) out += std::string(name_of(f.kind)) + " " + f.where + ", ";
   return out;
 }
 
 bool finds(const ConsistencyReport& report, const std::string& kind) {
   return std::any_of(report.findings.begin(), report.findings.end(),
-                     [&](const Finding& f) { return f.kind == kind; });
+                     [&](const Finding& f) { return name_of(f.kind) == kind; });
 }
 
 class Faults : public testing::Test {
@@ -259,7 +259,7 @@ TEST_F(Faults, ReasonsNameJointTimeRatioAndTimeNeeded) {
   const RepairResult r = repair(hoap1(), series, options);
   EXPECT_NE(r.status, RepairStatus::repaired);
   const auto speed = std::find_if(r.obstacles.begin(), r.obstacles.end(), [](const Obstacle& o) {
-    return o.finding.kind == "joint_speed";
+    return o.finding.kind == FindingKind::joint_speed;
   });
   ASSERT_NE(speed, r.obstacles.end());
   const Obstacle& first = *speed;

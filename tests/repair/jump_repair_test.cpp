@@ -38,7 +38,7 @@ class JumpRepair : public testing::Test {
     options.check.profile = pattern.profile;
     const ConsistencyReport before = check_consistency(hoap1(), series, options.check);
     EXPECT_TRUE(std::any_of(before.findings.begin(), before.findings.end(), [&](const Finding& f) {
-      return f.severity == Severity::error && f.kind == kind;
+      return f.severity == Severity::error && name_of(f.kind) == kind;
     }));
     const RepairResult r = repair(hoap1(), series, options);
     EXPECT_EQ(r.status, RepairStatus::repaired) << (r.reasons.empty() ? "" : r.reasons[0]);

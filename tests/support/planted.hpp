@@ -55,10 +55,10 @@ inline Errors errors_of(const Pattern& pattern) {
   Errors errors;
   std::ostringstream told;
   for (const Finding& f : report_of(hoap1(), pattern).findings) {
-    told << name_of(f.severity) << " " << f.kind << " " << f.where << " at " << f.at << " worst "
-         << f.worst << " <- " << f.follows_from << "\n";
+    told << name_of(f.severity) << " " << name_of(f.kind) << " " << f.where << " at " << f.at
+         << " worst " << f.worst << " <- " << f.follows_from << "\n";
     if (f.severity != Severity::error) continue;
-    errors.kinds.insert(f.kind);
+    errors.kinds.insert(name_of(f.kind));
     errors.all.push_back(f);
   }
   errors.told = told.str();

@@ -10,16 +10,14 @@ namespace ayumi {
 
 namespace {
 
-bool of_actuators(const Finding& f) {
-  return f.severity == Severity::error && (f.kind == "joint_speed" || f.kind == "joint_torque" ||
-                                           f.kind == "servo_step" || f.kind == "continuous_torque");
-}
+constexpr FindingKind kOfActuators[] = {FindingKind::joint_torque, FindingKind::continuous_torque,
+                                        FindingKind::joint_speed, FindingKind::servo_step};
 
-// The finding of this kind that is furthest beyond its limit.
-const Finding* worst(const ConsistencyReport& report, const std::string& kind) {
+// The error of this kind that is furthest beyond its limit.
+const Finding* worst(const ConsistencyReport& report, FindingKind kind) {
   const Finding* found = nullptr;
   for (const Finding& f : report.findings)
-    if (of_actuators(f) && f.kind == kind &&
+    if (f.severity == Severity::error && f.kind == kind &&
         (!found || std::abs(f.worst / f.limit) > std::abs(found->worst / found->limit)))
       found = &f;
   return found;
@@ -27,13 +25,13 @@ const Finding* worst(const ConsistencyReport& report, const std::string& kind) {
 
 std::vector<std::string> missing(const ConsistencyReport& report) {
   std::vector<std::string> parts;
-  for (const std::string kind :
-       {"joint_torque", "continuous_torque", "joint_speed", "servo_step"}) {
+  for (const FindingKind kind : kOfActuators) {
     const Finding* f = worst(report, kind);
     if (!f) continue;
     parts.push_back(text::brief(std::abs(f->worst), 3) + " " + f->unit +
-                    (kind == "continuous_torque" ? " lasting" : "") + " at " + f->where + " at " +
-                    text::fixed(f->at, 2) + " s (has " + text::brief(std::abs(f->limit), 3) + ")");
+                    (kind == FindingKind::continuous_torque ? " lasting" : "") + " at " + f->where +
+                    " at " + text::fixed(f->at, 2) + " s (has " +
+                    text::brief(std::abs(f->limit), 3) + ")");
   }
   return parts;
 }

@@ -39,34 +39,39 @@ constexpr double kReturn = 0.1;  // of a displacement, as good as back in its pl
 constexpr int kEdge = 5;         // around lift-off and landing, a jump of the path shows
 constexpr int kStencil = 3;      // samples that one jump spoils by differences
 
-bool is_foot(Kind k) {
-  return k == Kind::foot_slip || k == Kind::foot_penetration || k == Kind::foot_float;
+bool is_foot(FindingKind k) {
+  return k == FindingKind::foot_slip || k == FindingKind::foot_penetration ||
+         k == FindingKind::foot_float;
 }
-
-bool is_displaced(const Violation& v) { return is_foot(v.kind) && !still_stands(v); }
 
 // What the motion asks of ground and motors: all of it comes from accelerations.
 bool is_need(const Violation& v) {
   switch (v.kind) {
-    case Kind::friction:
-    case Kind::unilateral:
-    case Kind::yaw_moment:
-    case Kind::ballistic:
-    case Kind::angular_momentum:
-    case Kind::joint_torque:
-    case Kind::continuous_torque:
+    case FindingKind::friction:
+    case FindingKind::unilateral:
+    case FindingKind::yaw_moment:
+    case FindingKind::ballistic:
+    case FindingKind::angular_momentum:
+    case FindingKind::joint_torque:
+    case FindingKind::continuous_torque:
       return true;
     default:
-      return v.kind == Kind::support_margin && v.item == 0;  // of the motion, not the command
+      return v.kind == FindingKind::support_margin &&
+             v.item == 0;  // of the motion, not the command
   }
 }
 
-bool is_flight(Kind k) { return k == Kind::ballistic || k == Kind::angular_momentum; }
+bool is_flight(FindingKind k) {
+  return k == FindingKind::ballistic || k == FindingKind::angular_momentum;
+}
 
-bool is_rate(Kind k) { return k == Kind::joint_speed || k == Kind::servo_step; }
+bool is_rate(FindingKind k) {
+  return k == FindingKind::joint_speed || k == FindingKind::servo_step;
+}
 
-bool is_residual(Kind k) {
-  return k == Kind::cog_residual || k == Kind::zmp_residual || k == Kind::fz_residual;
+bool is_residual(FindingKind k) {
+  return k == FindingKind::cog_residual || k == FindingKind::zmp_residual ||
+         k == FindingKind::fz_residual;
 }
 
 class Causes {
@@ -76,17 +81,18 @@ class Causes {
 
   void run() {
     one_foot();
-    posture(Kind::joint_position);
+    posture(FindingKind::joint_position);
     leaps();
-    edges(Kind::foot_slip);
-    edges(Kind::foot_float);
-    edges(Kind::foot_penetration);
+    edges(FindingKind::foot_slip);
+    edges(FindingKind::foot_float);
+    edges(FindingKind::foot_penetration);
     held_joints();
-    posture(Kind::foot_float);
-    posture(Kind::foot_slip);
+    posture(FindingKind::foot_float);
+    posture(FindingKind::foot_slip);
     moved_command_in_flight();
     flight();
-    for (const Kind kind : {Kind::foot_penetration, Kind::self_collision, Kind::servo_step})
+    for (const FindingKind kind :
+         {FindingKind::foot_penetration, FindingKind::self_collision, FindingKind::servo_step})
       posture(kind);
     moved_phase();
     haste();
@@ -120,9 +126,9 @@ class Causes {
                  : i < j;
     };
     for (int i = 0; i < count(); ++i) {
-      if (!is_displaced(of(i)) || !open(i)) continue;
+      if (!is_foot(of(i).kind) || !open(i)) continue;
       for (int j = 0; j < count() && open(i); ++j)
-        if (j != i && is_displaced(of(j)) && of(j).item == of(i).item && open(j) &&
+        if (j != i && is_foot(of(j).kind) && of(j).item == of(i).item && open(j) &&
             around(windows_[i], slack()).touches(windows_[j]) && larger(j, i))
           windows_[i].cause = j;
     }
@@ -192,23 +198,24 @@ class Causes {
            displacement_around(pass_, windows_[i]).contains(windows_[j]);
   }
 
-  void posture(Kind kind) {
+  void posture(FindingKind kind) {
     for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != kind || !open(i) || still_stands(of(i))) continue;
-      const bool limit = kind == Kind::joint_position;
-      const bool joint = limit || kind == Kind::servo_step;
+      if (of(i).kind != kind || !open(i)) continue;
+      const bool limit = kind == FindingKind::joint_position;
+      const bool joint = limit || kind == FindingKind::servo_step;
       const bool places_feet = joint && in_a_leg(of(i).item);
       blame(i, limit ? episode_of_joint(i) : episode(i), [&](int j) {
         const Violation& v = of(j);
         if (is_asked_for(pass_, v)) return false;
         if (is_foot(kind) && is_flight(v.kind)) return near_displacement(i, v.sample);
-        if (is_foot(kind) && v.kind == Kind::cog_residual) return moves_cog(pass_, of(i), v);
+        if (is_foot(kind) && v.kind == FindingKind::cog_residual) return moves_cog(pass_, of(i), v);
         if (is_need(v) || is_residual(v.kind)) return true;
-        if (places_feet && is_foot(v.kind)) return true;
-        if (limit && v.kind == Kind::self_collision)
+        if (places_feet && (is_foot(v.kind) || v.kind == FindingKind::contact_ends_early))
+          return true;
+        if (limit && v.kind == FindingKind::self_collision)
           return touches_by_limits(pass_, v) ||
                  (hangs_on(pass_, v, of(i).item) && wrong_angle(i).contains(windows_[j]));
-        if (is_foot(kind) && v.kind == Kind::self_collision) return touches_by_foot(i, j);
+        if (is_foot(kind) && v.kind == FindingKind::self_collision) return touches_by_foot(i, j);
         if (!joint || !is_rate(v.kind) || v.item != of(i).item) return false;
         return !limit || !jumps(v) || comes_back(pass_, v.item, around(wrong_angle(i), kStencil));
       });
@@ -219,7 +226,7 @@ class Causes {
   // there and back.
   void held_joints() {
     for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != Kind::self_collision || !open(i)) continue;
+      if (of(i).kind != FindingKind::self_collision || !open(i)) continue;
       for (int dof = 0; dof < pass_.model.dof_count(); ++dof) {
         if (!sets_distance(pass_, of(i), dof)) continue;
         const Span held = held_around(windows_[i], dof);
@@ -244,9 +251,9 @@ class Causes {
   }
 
   // A foot in a wrong place, held between two jumps of the same joint, there and back.
-  void edges(Kind kind) {
+  void edges(FindingKind kind) {
     for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != kind || !open(i) || still_stands(of(i))) continue;
+      if (of(i).kind != kind || !open(i)) continue;
       const int there = windows_[i].first, back = windows_[i].last + 1;
       const bool foot = stands_before_and_after(windows_[i]);
       const Span edges = {there - kStencil, back + kStencil};
@@ -262,25 +269,28 @@ class Causes {
   // its other end follows from it, and what is asked of the samples where a foot that still stands
   // is not counted.
   void moved_phase() {
-    const auto blame_phases = [&](int i, const auto& follows) {
-      if (of(i).kind == Kind::foot_float && open(i))
-        blame(i, around(moved_phases(pass_, of(i)), kStencil), follows);
-    };
+    const auto phases = [&](int i) { return around(moved_phases(pass_, of(i)), kStencil); };
     for (int i = 0; i < count(); ++i)
-      if (!still_stands(of(i))) blame_phases(i, [&](int j) { return still_stands(of(j)); });
-    for (int i = 0; i < count(); ++i)
-      blame_phases(i, [&](int j) {
-        const bool asks = is_need(of(j)) || of(j).kind == Kind::support_margin;
+      if (of(i).kind == FindingKind::foot_float && open(i))
+        blame(i, phases(i), [&](int j) { return of(j).kind == FindingKind::contact_ends_early; });
+    for (int i = 0; i < count(); ++i) {
+      const bool phase =
+          of(i).kind == FindingKind::foot_float || of(i).kind == FindingKind::contact_ends_early;
+      if (!phase || !open(i)) continue;
+      blame(i, phases(i), [&](int j) {
+        const bool asks = is_need(of(j)) || of(j).kind == FindingKind::support_margin;
         return asks && uncounted_foot_stands(pass_, of(j).sample);
       });
+    }
   }
 
   // No sole can give the moment of a ZMP outside it: the leg torques found for it are no fact.
   void support() {
     for (int i = 0; i < count(); ++i)
-      if (of(i).kind == Kind::support_margin && of(i).item == 0 && open(i))
-        blame(i, around(windows_[i], kStencil),
-              [&](int j) { return of(j).kind == Kind::joint_torque && in_a_leg(of(j).item); });
+      if (of(i).kind == FindingKind::support_margin && of(i).item == 0 && open(i))
+        blame(i, around(windows_[i], kStencil), [&](int j) {
+          return of(j).kind == FindingKind::joint_torque && in_a_leg(of(j).item);
+        });
   }
 
   bool flies(int k) const {
@@ -291,36 +301,37 @@ class Causes {
   // beyond the flight too, a COG key is wrong rather than the flight.
   void moved_command_in_flight() {
     for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != Kind::cog_residual || !open(i)) continue;
+      if (of(i).kind != FindingKind::cog_residual || !open(i)) continue;
       const Span off = deviation_around(pass_, windows_[i]);
       if (flies(off.first + kStencil) && flies(off.last - kStencil)) continue;
-      blame(i, off,
-            [&](int j) { return of(j).kind == Kind::ballistic && of(j).item == kCommandFalls; });
+      blame(i, off, [&](int j) {
+        return of(j).kind == FindingKind::ballistic && of(j).item == kCommandFalls;
+      });
     }
   }
 
   // Soles that are off their place only where the flight leaps out of the ground or into it.
   void leaps() {
     for (int i = 0; i < count(); ++i) {
-      if (of(i).kind != Kind::ballistic || of(i).item != kMotionLeaps || !open(i)) continue;
+      if (of(i).kind != FindingKind::ballistic || of(i).item != kMotionLeaps || !open(i)) continue;
       const Span beside = around(windows_[i], kEdge);
-      blame(i, beside, [&](int j) { return is_displaced(of(j)) && beside.contains(windows_[j]); });
+      blame(i, beside, [&](int j) { return is_foot(of(j).kind) && beside.contains(windows_[j]); });
     }
   }
 
   // Of what makes a flight unfree one finding is told: a force before a moment.
   void flight() {
-    for (const Kind kind : {Kind::ballistic, Kind::angular_momentum}) {
+    for (const FindingKind kind : {FindingKind::ballistic, FindingKind::angular_momentum}) {
       for (const int i : by_excess(kind)) {
         if (!open(i)) continue;
         Span whole = around(windows_[i]);
         while (flies(whole.first - 1)) --whole.first;
         while (flies(whole.last + 1)) ++whole.last;
         blame(i, whole, [&](int j) {
-          if (of(j).kind == Kind::joint_torque) return holds_in_free_flight(pass_, of(j));
-          return is_flight(of(j).kind) || of(j).kind == Kind::foot_penetration;
+          if (of(j).kind == FindingKind::joint_torque) return holds_in_free_flight(pass_, of(j));
+          return is_flight(of(j).kind) || of(j).kind == FindingKind::foot_penetration;
         });
-        if (kind == Kind::ballistic) beside_flight(i, whole);
+        if (kind == FindingKind::ballistic) beside_flight(i, whole);
       }
     }
   }
@@ -334,12 +345,13 @@ class Causes {
     }
     const Span near = around(whole, kEdge), here = around(windows_[i], kStencil);
     blame(i, near, [&](int j) {
-      if (of(j).kind != Kind::fz_residual && of(j).kind != Kind::cog_residual) return false;
+      if (of(j).kind != FindingKind::fz_residual && of(j).kind != FindingKind::cog_residual)
+        return false;
       return near.contains(windows_[j]) || here.touches(windows_[j]);
     });
   }
 
-  std::vector<int> by_excess(Kind kind) const {
+  std::vector<int> by_excess(FindingKind kind) const {
     std::vector<int> result;
     for (int i = 0; i < count(); ++i)
       if (of(i).kind == kind && open(i)) result.push_back(i);
@@ -350,7 +362,7 @@ class Causes {
 
   // The worst joint of every motion between two rests speaks for it.
   void haste() {
-    for (const Kind kind : {Kind::joint_speed, Kind::joint_torque}) {
+    for (const FindingKind kind : {FindingKind::joint_speed, FindingKind::joint_torque}) {
       std::vector<Span> told;
       for (const int i : by_excess(kind)) {
         if (std::any_of(told.begin(), told.end(),
@@ -359,9 +371,10 @@ class Causes {
         told.push_back(motion_around(pass_, of(i).sample));
         blame(i, told.back(), [&](int j) {
           const Violation& v = of(j);
-          const bool follows = (is_need(v) && v.kind != Kind::joint_torque) ||
-                               v.kind == Kind::zmp_residual || v.kind == Kind::fz_residual ||
-                               v.kind == Kind::servo_step;
+          const bool follows = (is_need(v) && v.kind != FindingKind::joint_torque) ||
+                               v.kind == FindingKind::zmp_residual ||
+                               v.kind == FindingKind::fz_residual ||
+                               v.kind == FindingKind::servo_step;
           return follows && pace_.mends(of(i), of(j));
         });
       }
@@ -371,21 +384,21 @@ class Causes {
   // The coefficient that the worst place needs would also keep the foot from turning: the lever of
   // what resists a turn is a lower bound.
   void ground() {
-    for (const int i : by_excess(Kind::friction)) {
+    for (const int i : by_excess(FindingKind::friction)) {
       const double more = of(i).value / of(i).limit;
       blame(i, {0, pass_.count()}, [&](int j) {
-        return of(j).kind == Kind::yaw_moment && of(j).value <= kTwist * more * of(j).limit;
+        return of(j).kind == FindingKind::yaw_moment && of(j).value <= kTwist * more * of(j).limit;
       });
     }
   }
 
   void command() {
-    for (const int i : by_excess(Kind::cog_residual))
+    for (const int i : by_excess(FindingKind::cog_residual))
       blame(i, episode(i), [&](int j) {
-        return of(j).kind == Kind::zmp_residual || of(j).kind == Kind::fz_residual;
+        return of(j).kind == FindingKind::zmp_residual || of(j).kind == FindingKind::fz_residual;
       });
-    for (const int i : by_excess(Kind::support_margin))
-      blame(i, around(windows_[i]), [&](int j) { return of(j).kind == Kind::zmp_residual; });
+    for (const int i : by_excess(FindingKind::support_margin))
+      blame(i, around(windows_[i]), [&](int j) { return of(j).kind == FindingKind::zmp_residual; });
   }
 
   CheckPass& pass_;

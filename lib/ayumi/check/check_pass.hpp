@@ -16,10 +16,10 @@ struct CheckPass {
   CheckPass& operator=(const CheckPass&) = delete;
 
   int count() const { return static_cast<int>(series.samples.size()); }
-  double tolerance(Kind kind) const { return tolerance_of[static_cast<int>(kind)]; }
+  double tolerance(FindingKind kind) const { return tolerance_of[kind]; }
 
   /// Notes a violation; `excess` orders the samples of a finding, `detail` is carried along.
-  void add(Kind kind, int item, int sample, double value, double limit, double excess,
+  void add(FindingKind kind, int item, int sample, double value, double limit, double excess,
            int detail = 0, Severity severity = Severity::error) {
     windows.add({kind, item, sample, severity, value, limit, excess, detail});
   }
@@ -29,7 +29,7 @@ struct CheckPass {
 
   const RobotModel& model;
   const CommandSeries& series;
-  const std::array<double, kKindCount> tolerance_of;
+  const Tolerances tolerance_of;
   const double friction;
   const ActuatorLimits& limits;
   const ContactPlan plan;

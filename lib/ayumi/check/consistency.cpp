@@ -43,37 +43,33 @@ namespace {
 
 // Of the numbers of a finding: where a tolerance is a share, the finding tells the whole.
 std::string unit_of(const RobotModel& model, const Violation& v) {
-  const bool prismatic = v.kind >= Kind::joint_position && v.kind <= Kind::servo_step &&
-                         model.dofs()[v.item].prismatic;
+  const bool prismatic = v.kind >= FindingKind::joint_position &&
+                         v.kind <= FindingKind::servo_step && model.dofs()[v.item].prismatic;
   switch (v.kind) {
-    case Kind::fz_residual:
-    case Kind::unilateral:
+    case FindingKind::fz_residual:
+    case FindingKind::unilateral:
       return "N";
-    case Kind::foot_float:
-      return still_stands(v) ? "s" : "m";
-    case Kind::joint_position:
-    case Kind::servo_step:
+    case FindingKind::joint_position:
+    case FindingKind::servo_step:
       return prismatic ? "m" : "rad";
-    case Kind::joint_speed:
+    case FindingKind::joint_speed:
       return prismatic ? "m/s" : "rad/s";
-    case Kind::joint_acceleration:
+    case FindingKind::joint_acceleration:
       return prismatic ? "m/s^2" : "rad/s^2";
-    case Kind::joint_torque:
-    case Kind::continuous_torque:
+    case FindingKind::joint_torque:
+    case FindingKind::continuous_torque:
       return prismatic ? "N" : "N m";
     default:
-      return finding_kinds()[static_cast<int>(v.kind)].unit;
+      return finding_specs()[static_cast<size_t>(v.kind)].unit;
   }
 }
-
-std::string kind_name(const Violation& v) { return finding_kinds()[static_cast<int>(v.kind)].kind; }
 
 Finding finding_of(const CheckPass& pass, const std::vector<FindingWindow>& windows,
                    const FindingWindow& window) {
   const Violation& v = window.worst;
   const double dt = pass.series.dt;
   Finding f;
-  f.kind = kind_name(v);
+  f.kind = v.kind;
   f.severity = v.severity;
   f.begin = window.first * dt;
   f.end = window.last * dt;
@@ -81,14 +77,17 @@ Finding finding_of(const CheckPass& pass, const std::vector<FindingWindow>& wind
   f.worst = v.value;
   f.limit = v.limit;
   f.unit = unit_of(pass.model, v);
-  f.where = where_text(pass.model, pass.collisions.pairs(), v);
-  f.hint = hint_text(pass.model, window, dt, pass.friction);
+  f.place = place_of(pass.collisions.pairs(), v);
+  f.where = where_text(pass.model, f.place);
+  const Advice advice = advice_for(pass.model, window, dt, pass.friction);
+  f.remedy = advice.remedy;
+  f.hint = advice.remedy + advice.or_repair;
   if (window.cause >= 0) {
     const Violation& cause = windows[window.cause].worst;
-    f.follows_from = kind_name(cause) + " " +
-                     where_text(pass.model, pass.collisions.pairs(), cause) + " at " +
+    f.follows_from = std::string(name_of(cause.kind)) + " " +
+                     where_text(pass.model, place_of(pass.collisions.pairs(), cause)) + " at " +
                      text::fixed(cause.sample * dt, 3) + " s";
-    f.hint = "follows from " + f.follows_from + ": mend that first";
+    f.hint = f.remedy = "follows from " + f.follows_from + ": mend that first";
   }
   return f;
 }
@@ -100,7 +99,7 @@ void excuse_spikes(const CheckPass& pass, std::vector<FindingWindow>& windows) {
   constexpr double kSmall = 3;      // times the limit
   for (FindingWindow& w : windows) {
     const double lasts = (w.last - w.first + 1) * pass.series.dt;
-    if (w.worst.kind == Kind::zmp_residual && lasts < kShort - 1e-9 &&
+    if (w.worst.kind == FindingKind::zmp_residual && lasts < kShort - 1e-9 &&
         w.worst.value <= kSmall * w.worst.limit)
       w.worst.severity = Severity::warning;
   }

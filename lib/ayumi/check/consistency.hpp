@@ -6,24 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/limits/finding.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
-
-enum class Severity { error, warning, info };
-const char* name_of(Severity severity);
-
-struct Finding {
-  std::string kind;  ///< one of finding_kinds()
-  Severity severity = Severity::error;
-  double begin = 0, end = 0, at = 0;  ///< window and worst instant [s]
-  double worst = 0, limit = 0;        ///< in `unit`
-  std::string unit;                   ///< "m", "N", "rad", "rad/s", "N m", "1", ...
-  std::string where;                  ///< joint, foot or axis
-  std::string hint;                   ///< what to do about it
-  std::string follows_from = {};      ///< the error that causes this one; "" when it stands alone
-};
 
 struct CheckSummary {
   double min_zmp_margin = 0;            ///< distance inside the support polygon [m]
@@ -64,11 +51,12 @@ struct CheckOptions {
 };
 
 /// All kinds with their default tolerance and unit, in the order of docs/cli.md.
-struct FindingKind {
-  std::string kind, unit, meaning;
+struct FindingSpec {
+  FindingKind kind = FindingKind::cog_residual;
+  std::string unit, meaning;
   double tolerance = 0;
 };
-const std::vector<FindingKind>& finding_kinds();
+const std::vector<FindingSpec>& finding_specs();
 
 /// Throws Error(usage) for an unknown tolerance name.
 ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries& series,

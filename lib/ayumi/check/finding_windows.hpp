@@ -11,7 +11,7 @@ namespace ayumi {
 
 /// One sample of one kind at one item (joint, foot, pair, ...).
 struct Violation {
-  Kind kind = Kind::cog_residual;
+  FindingKind kind = FindingKind::cog_residual;
   int item = 0;  ///< meaning depends on the kind
   int sample = 0;
   Severity severity = Severity::error;
@@ -23,13 +23,8 @@ struct Violation {
 /// Detail of a servo step that is one of the target with its lead, not of the posture.
 inline constexpr int kServoTarget = 1;
 
-/// Added to the foot (item) of a foot_float that is none in space: the sole stands when its contact
-/// has ended. Its numbers are times [s].
-inline constexpr int kStillStands = 2;
-inline bool still_stands(const Violation& v) {
-  return v.kind == Kind::foot_float && v.item >= kStillStands;
-}
-inline Side foot_of(const Violation& v) { return static_cast<Side>(v.item % kStillStands); }
+/// The foot of a violation whose item is one.
+inline Side foot_of(const Violation& v) { return static_cast<Side>(v.item); }
 
 /// Item of a ballistic finding: of the motion, of the command, or of the motion where it leaps as
 /// the flight begins or ends.

@@ -21,9 +21,9 @@ void check_landing(CheckPass& pass, Side side, const ContactInterval& contact) {
   const double way = contact.sole.linear().col(2).dot(place(k) - place(k - 1));
   const double speed = -way / pass.series.dt;
   raise_to(pass.summary.max_landing_speed, speed);
-  const double limit = pass.tolerance(Kind::landing_speed);
+  const double limit = pass.tolerance(FindingKind::landing_speed);
   if (speed > limit)
-    pass.add(Kind::landing_speed, static_cast<int>(side), k, speed, limit, speed, 0,
+    pass.add(FindingKind::landing_speed, static_cast<int>(side), k, speed, limit, speed, 0,
              Severity::warning);
 }
 
@@ -32,36 +32,38 @@ void check_landing(CheckPass& pass, Side side, const ContactInterval& contact) {
 // sole may float by, so this is told by how it moves.
 void check_contact_edge(CheckPass& pass, Side side, const ContactInterval& contact, bool lands) {
   const int k = lands ? contact.first : contact.last;
-  const double limit = kRunOnShare * pass.tolerance(Kind::foot_float);
+  const double limit = kRunOnShare * pass.tolerance(FindingKind::foot_float);
   const RunOn run = swing_run_on(pass.model, pass.series, side, contact, lands);
   raise_to(pass.summary.max_foot_float, run.height);
   if (run.height <= limit) return;
-  pass.windows.add({Kind::foot_float, static_cast<int>(side), k, Severity::error, run.height, limit,
-                    run.height, lands ? run.samples : -run.samples},
+  pass.windows.add({FindingKind::foot_float, static_cast<int>(side), k, Severity::error, run.height,
+                    limit, run.height, lands ? run.samples : -run.samples},
                    lands ? k : k - run.samples, lands ? k + run.samples : k);
 }
 
 // The other way round: a foot that is said to swing and still stands.
 void check_lift(CheckPass& pass, Side side, const ContactInterval& contact,
                 const ContactInterval& swing) {
-  constexpr double kLate = 0.030;  // [s]
+  const double limit = pass.tolerance(FindingKind::contact_ends_early);
   const double late =
       pass.series.dt * samples_after_contact(pass.model, pass.series, side, contact, swing);
-  if (late <= kLate) return;
-  pass.add(Kind::foot_float, static_cast<int>(side) + kStillStands, contact.last, late, kLate,
-           late);
+  if (late > limit)
+    pass.add(FindingKind::contact_ends_early, static_cast<int>(side), contact.last, late, limit,
+             late);
 }
 
 bool in_place(const CheckPass& pass, int foot, int k) {
   const SoleError& e = pass.soles[foot][k];
-  return e.gap <= pass.tolerance(Kind::foot_float) && e.slip <= pass.tolerance(Kind::foot_slip);
+  return e.gap <= pass.tolerance(FindingKind::foot_float) &&
+         e.slip <= pass.tolerance(FindingKind::foot_slip);
 }
 
 // A foot in the air does not slip: it floats. But one that leaves its place and comes back to it
 // in one contact is displaced, whatever its height meanwhile.
 void check_supporting_foot(CheckPass& pass, Side side, const ContactInterval& contact) {
   const int foot = static_cast<int>(side);
-  const double high = pass.tolerance(Kind::foot_float), far = pass.tolerance(Kind::foot_slip);
+  const double high = pass.tolerance(FindingKind::foot_float),
+               far = pass.tolerance(FindingKind::foot_slip);
   int first = contact.first, last = contact.last;
   while (first <= last && !in_place(pass, foot, first)) ++first;
   while (last > first && !in_place(pass, foot, last)) --last;
@@ -69,19 +71,19 @@ void check_supporting_foot(CheckPass& pass, Side side, const ContactInterval& co
     const SoleError& e = pass.soles[foot][k];
     raise_to(pass.summary.max_foot_float, e.gap);
     if (k == contact.first && k > 0) check_contact_edge(pass, side, contact, true);
-    if (e.gap > high) pass.add(Kind::foot_float, foot, k, e.gap, high, e.gap);
+    if (e.gap > high) pass.add(FindingKind::foot_float, foot, k, e.gap, high, e.gap);
     if (e.lowest > high && (k < first || k > last)) continue;
     raise_to(pass.summary.max_foot_slip, e.slip);
-    if (e.slip > far) pass.add(Kind::foot_slip, foot, k, e.slip, far, e.slip);
+    if (e.slip > far) pass.add(FindingKind::foot_slip, foot, k, e.slip, far, e.slip);
   }
 }
 
 void check_depth(CheckPass& pass, int foot) {
-  const double deep = pass.tolerance(Kind::foot_penetration);
+  const double deep = pass.tolerance(FindingKind::foot_penetration);
   for (int k = 0; k < pass.count(); ++k) {
     const double depth = pass.soles[foot][k].penetration;
     raise_to(pass.summary.max_foot_penetration, depth);
-    if (depth > deep) pass.add(Kind::foot_penetration, foot, k, depth, deep, depth);
+    if (depth > deep) pass.add(FindingKind::foot_penetration, foot, k, depth, deep, depth);
   }
 }
 

@@ -8,6 +8,8 @@ namespace ayumi {
 
 namespace {
 
+const std::string kOrRepair = ", or repair";
+
 std::string mm(double metres) { return text::fixed(1000 * std::abs(metres), 1) + " mm"; }
 
 std::string fine_mm(double metres) { return text::fixed(1000 * metres, 2) + " mm"; }
@@ -27,21 +29,22 @@ std::string servo_target_hint(const RobotModel& model, const Violation& v) {
          dof.name + " less here";
 }
 
-std::string joint_hint(const RobotModel& model, const Violation& v) {
+Advice joint_hint(const RobotModel& model, const Violation& v) {
   const std::string joint = model.dofs()[v.item].name;
   const double ratio = std::abs(v.value / v.limit);
   switch (v.kind) {
-    case Kind::joint_position:
-      return "move " + joint + " back by " + text::fixed(std::abs(v.value - v.limit), 3) +
-             " rad in this window, or repair";
-    case Kind::joint_speed:
+    case FindingKind::joint_position:
+      return {"move " + joint + " back by " + text::fixed(std::abs(v.value - v.limit), 3) +
+                  " rad in this window",
+              kOrRepair};
+    case FindingKind::joint_speed:
       return slow_down(ratio) + " or let " + joint + " swing through a smaller angle";
-    case Kind::joint_acceleration:
+    case FindingKind::joint_acceleration:
       return "smooth " + joint + " here: a longer segment or minimum_jerk interpolation";
-    case Kind::joint_torque:
+    case FindingKind::joint_torque:
       return "lower the load on " + joint + ": " + slow_down(std::sqrt(ratio)) +
              " where inertia is the cause, or straighten the leg where weight is";
-    case Kind::continuous_torque:
+    case FindingKind::continuous_torque:
       return joint + " gets too hot when this goes on: rest it, or straighten the leg";
     default:
       if (v.detail == kServoTarget) return servo_target_hint(model, v);
@@ -59,18 +62,19 @@ std::string contact_edge_hint(const Violation& v, const std::string& foot, doubl
                             " when its contact ends: end it " + time + " earlier";
 }
 
-std::string foot_hint(const Violation& v, double dt) {
+Advice foot_hint(const Violation& v, double dt) {
   const std::string foot = name_of(foot_of(v));
   switch (v.kind) {
-    case Kind::foot_slip:
-      return "the " + foot + " sole moves " + mm(v.value) +
-             " while it supports: keep the foot still, or repair";
-    case Kind::foot_penetration:
-      return "raise the " + foot + " sole by " + mm(v.value) + ", or repair";
-    case Kind::foot_float:
-      if (still_stands(v))
-        return "the " + foot + " sole stands still for " + text::fixed(v.value, 3) +
-               " s after its contact ends: end it that much later";
+    case FindingKind::foot_slip:
+      return {
+          "the " + foot + " sole moves " + mm(v.value) + " while it supports: keep the foot still",
+          kOrRepair};
+    case FindingKind::foot_penetration:
+      return {"raise the " + foot + " sole by " + mm(v.value), kOrRepair};
+    case FindingKind::contact_ends_early:
+      return "the " + foot + " sole stands still for " + text::fixed(v.value, 3) +
+             " s after its contact ends: end it that much later";
+    case FindingKind::foot_float:
       if (v.detail != 0) return contact_edge_hint(v, foot, dt);
       return "the " + foot + " sole is " + mm(v.value) +
              " above the ground while it should support: begin its contact later or end it "
@@ -81,22 +85,22 @@ std::string foot_hint(const Violation& v, double dt) {
   }
 }
 
-std::string ground_hint(const Violation& v, double friction) {
+Advice ground_hint(const Violation& v, double friction) {
   switch (v.kind) {
-    case Kind::support_margin: {
+    case FindingKind::support_margin: {
       const std::string whose = v.item == 0 ? "the ZMP of the motion" : "the commanded ZMP";
       if (v.value < 0)
-        return whose + " is " + mm(v.value) +
-               " outside the support: move the COG that much less, "
-               "give the step more time, or repair";
+        return {whose + " is " + mm(v.value) +
+                    " outside the support: move the COG that much less, give the step more time",
+                kOrRepair};
       return whose + " is only " + mm(v.value) + " inside the support, the margin asked for is " +
              mm(v.limit);
     }
-    case Kind::friction:
+    case FindingKind::friction:
       return "needs a friction coefficient of " + text::fixed(v.value * friction, 2) + ", has " +
              text::fixed(friction, 2) + ": " + slow_down(std::sqrt(v.value)) +
              " or take shorter steps";
-    case Kind::unilateral:
+    case FindingKind::unilateral:
       return "the ground cannot pull: lower the COG with less than free fall, or plan a flight "
              "phase";
     default:
@@ -107,75 +111,90 @@ std::string ground_hint(const Violation& v, double friction) {
 
 }  // namespace
 
-std::string where_text(const RobotModel& model, const std::vector<CollisionModel::Pair>& pairs,
-                       const Violation& v) {
+Place place_of(const std::vector<CollisionModel::Pair>& pairs, const Violation& v) {
   switch (v.kind) {
-    case Kind::cog_residual:
-    case Kind::zmp_residual:
-    case Kind::point_mass_gap:
-    case Kind::ballistic:
-    case Kind::angular_momentum:
-      return axis_name(v.detail);
-    case Kind::fz_residual:
-      return "z";
-    case Kind::support_margin:
-    case Kind::friction:
-    case Kind::unilateral:
-    case Kind::yaw_moment:
-      return name_of(static_cast<Support>(v.detail));
-    case Kind::foot_slip:
-    case Kind::foot_penetration:
-    case Kind::foot_float:
-    case Kind::landing_speed:
-      return name_of(foot_of(v));
-    case Kind::self_collision:
-      return model.bodies()[pairs[v.item].a].name + " - " + model.bodies()[pairs[v.item].b].name;
+    case FindingKind::cog_residual:
+    case FindingKind::zmp_residual:
+    case FindingKind::point_mass_gap:
+    case FindingKind::ballistic:
+    case FindingKind::angular_momentum:
+      return AxisPlace{v.detail};
+    case FindingKind::fz_residual:
+      return AxisPlace{2};
+    case FindingKind::support_margin:
+    case FindingKind::friction:
+    case FindingKind::unilateral:
+    case FindingKind::yaw_moment:
+      return SupportPlace{static_cast<Support>(v.detail)};
+    case FindingKind::foot_slip:
+    case FindingKind::foot_penetration:
+    case FindingKind::foot_float:
+    case FindingKind::contact_ends_early:
+    case FindingKind::landing_speed:
+      return FootPlace{foot_of(v)};
+    case FindingKind::self_collision:
+      return BodyPairPlace{pairs[v.item].a, pairs[v.item].b};
     default:
-      return model.dofs()[v.item].name;
+      return JointPlace{v.item};
   }
 }
 
-std::string hint_text(const RobotModel& model, const FindingWindow& window, double dt,
-                      double friction) {
+std::string where_text(const RobotModel& model, const Place& place) {
+  struct Words {
+    const RobotModel& model;
+    std::string operator()(std::monostate) const { return ""; }
+    std::string operator()(const JointPlace& p) const { return model.dofs()[p.dof].name; }
+    std::string operator()(const FootPlace& p) const { return name_of(p.side); }
+    std::string operator()(const AxisPlace& p) const { return axis_name(p.axis); }
+    std::string operator()(const SupportPlace& p) const { return name_of(p.support); }
+    std::string operator()(const BodyPairPlace& p) const {
+      return model.bodies()[p.a].name + " - " + model.bodies()[p.b].name;
+    }
+  };
+  return std::visit(Words{model}, place);
+}
+
+Advice advice_for(const RobotModel& model, const FindingWindow& window, double dt,
+                  double friction) {
   const Violation& v = window.worst;
   switch (v.kind) {
-    case Kind::cog_residual:
-      return "the posture's COG is " + mm(v.value) + " from the commanded one, most along " +
-             axis_name(v.detail) +
-             ": change the COG key or the posture, or repair (which keeps "
-             "the posture)";
-    case Kind::zmp_residual:
-      return "the motion's own ZMP is " + mm(v.value) + " from the commanded one, most along " +
-             axis_name(v.detail) +
-             ": change the ZMP key or the motion, or repair (which keeps "
-             "the motion)";
-    case Kind::fz_residual:
-      return "the motion needs " + text::fixed(std::abs(v.value), 1) + " N " +
-             (v.value > 0 ? "more" : "less") + " than the commanded f_z: leave f_z out, or repair";
-    case Kind::point_mass_gap:
+    case FindingKind::cog_residual:
+      return {"the posture's COG is " + mm(v.value) + " from the commanded one, most along " +
+                  axis_name(v.detail) + ": change the COG key or the posture",
+              kOrRepair + " (which keeps the posture)"};
+    case FindingKind::zmp_residual:
+      return {"the motion's own ZMP is " + mm(v.value) + " from the commanded one, most along " +
+                  axis_name(v.detail) + ": change the ZMP key or the motion",
+              kOrRepair + " (which keeps the motion)"};
+    case FindingKind::fz_residual:
+      return {"the motion needs " + text::fixed(std::abs(v.value), 1) + " N " +
+                  (v.value > 0 ? "more" : "less") + " than the commanded f_z: leave f_z out",
+              kOrRepair};
+    case FindingKind::point_mass_gap:
       return "the mass-concentrated model is " + mm(v.value) + " off here: judge by the full model";
-    case Kind::ballistic:
+    case FindingKind::ballistic:
       if (v.item == kMotionLeaps)
         return "the COG leaps by " + mm(v.value * dt * dt) +
                " where the flight begins or ends: nothing can throw it like that";
       return "the COG must fall freely for the " +
              text::fixed((window.last - window.first) * dt, 3) +
              " s of flight: leave the COG keys of the flight out";
-    case Kind::angular_momentum:
+    case FindingKind::angular_momentum:
       return "nothing can turn the robot in flight: keep its angular momentum, let arms and legs "
              "move against each other";
-    case Kind::self_collision:
+    case FindingKind::self_collision:
       return v.value < 0 ? "these bodies overlap by " + mm(v.value) + ": keep them apart"
                          : "only " + mm(v.value) + " between these bodies";
-    case Kind::foot_slip:
-    case Kind::foot_penetration:
-    case Kind::foot_float:
-    case Kind::landing_speed:
+    case FindingKind::foot_slip:
+    case FindingKind::foot_penetration:
+    case FindingKind::foot_float:
+    case FindingKind::contact_ends_early:
+    case FindingKind::landing_speed:
       return foot_hint(v, dt);
-    case Kind::support_margin:
-    case Kind::friction:
-    case Kind::unilateral:
-    case Kind::yaw_moment:
+    case FindingKind::support_margin:
+    case FindingKind::friction:
+    case FindingKind::unilateral:
+    case FindingKind::yaw_moment:
       return ground_hint(v, friction);
     default:
       return joint_hint(model, v);

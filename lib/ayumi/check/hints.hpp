@@ -6,12 +6,19 @@
 
 namespace ayumi {
 
-/// Joint, foot, axis or pair of bodies of a violation.
-std::string where_text(const RobotModel& model, const std::vector<CollisionModel::Pair>& pairs,
-                       const Violation& violation);
+Place place_of(const std::vector<CollisionModel::Pair>& pairs, const Violation& violation);
 
-/// What to do, one sentence. `friction` is the coefficient the check used.
-std::string hint_text(const RobotModel& model, const FindingWindow& window, double dt,
-                      double friction);
+/// The place in words: joint, foot, axis, support or pair of bodies.
+std::string where_text(const RobotModel& model, const Place& place);
+
+/// What to do, one sentence in two parts: by hand, and the advice to use `repair` (may be empty).
+struct Advice {
+  Advice(std::string remedy, std::string or_repair = "")
+      : remedy(std::move(remedy)), or_repair(std::move(or_repair)) {}
+  Advice(const char* remedy) : remedy(remedy) {}
+  std::string remedy, or_repair;
+};
+/// `friction` is the coefficient the check used.
+Advice advice_for(const RobotModel& model, const FindingWindow& window, double dt, double friction);
 
 }  // namespace ayumi

@@ -25,8 +25,9 @@ int largest_axis(const Vector3d& v) {
   return axis;
 }
 
-void check_vector(CheckPass& pass, Kind kind, int k, const Vector3d& residual, double& maximum,
-                  Severity severity = Severity::error, int item = 0, double allowance = 1) {
+void check_vector(CheckPass& pass, FindingKind kind, int k, const Vector3d& residual,
+                  double& maximum, Severity severity = Severity::error, int item = 0,
+                  double allowance = 1) {
   const double size = residual.norm();
   raise_to(maximum, size);
   const double limit = allowance * pass.tolerance(kind);
@@ -37,27 +38,27 @@ void check_vector(CheckPass& pass, Kind kind, int k, const Vector3d& residual, d
 void check_vertical_force(CheckPass& pass, int k, double needed) {
   const double residual = needed - pass.series.samples[k].fz;
   raise_to(pass.summary.max_fz_residual, std::abs(residual));
-  const double limit = pass.tolerance(Kind::fz_residual) * pass.weight;
+  const double limit = pass.tolerance(FindingKind::fz_residual) * pass.weight;
   if (std::abs(residual) > limit)
-    pass.add(Kind::fz_residual, 0, k, residual, limit, std::abs(residual));
+    pass.add(FindingKind::fz_residual, 0, k, residual, limit, std::abs(residual));
 }
 
 void check_zmp_command(CheckPass& pass, int k, const SampleDynamics& motion) {
   const CommandSample& s = pass.series.samples[k];
   // Where the ground hardly pushes, a ZMP error is hardly a moment.
   const double light = kLightShare * pass.weight / std::max(s.fz, 1e-3 * pass.weight);
-  check_vector(pass, Kind::zmp_residual, k, motion.use.zmp_world - s.zmp,
+  check_vector(pass, FindingKind::zmp_residual, k, motion.use.zmp_world - s.zmp,
                pass.summary.max_zmp_residual, Severity::error, 0, std::max(1.0, light));
   const Vector3d point_mass = pendulum_zmp(pass.dynamics.data().cog, motion.ddcog, s.zmp.z());
-  check_vector(pass, Kind::point_mass_gap, k, point_mass - s.zmp, pass.summary.max_point_mass_gap,
-               Severity::info);
+  check_vector(pass, FindingKind::point_mass_gap, k, point_mass - s.zmp,
+               pass.summary.max_point_mass_gap, Severity::info);
 }
 
 void check_margin(CheckPass& pass, int k, int whose, double margin) {
-  const double wanted = pass.tolerance(Kind::support_margin);
+  const double wanted = pass.tolerance(FindingKind::support_margin);
   if (margin >= wanted - kRounding) return;
   const bool outside = margin < -kRounding;
-  pass.add(Kind::support_margin, whose, k, margin, outside ? 0 : wanted, -margin,
+  pass.add(FindingKind::support_margin, whose, k, margin, outside ? 0 : wanted, -margin,
            static_cast<int>(pass.series.samples[k].support),
            outside ? Severity::error : Severity::warning);
 }
@@ -70,7 +71,7 @@ void check_margins(CheckPass& pass, int k, const GroundDemand& use) {
   const Vector3d command = plane.frame.inverse() * s.zmp;
   const double command_margin = plane.polygon.margin(command.head<2>());
   // The commanded ZMP tells something of its own only where the motion's ZMP is another one.
-  if ((use.zmp_world - s.zmp).norm() > pass.tolerance(Kind::zmp_residual) &&
+  if ((use.zmp_world - s.zmp).norm() > pass.tolerance(FindingKind::zmp_residual) &&
       command_margin < -kRounding)
     check_margin(pass, k, 1, command_margin);
 }
@@ -80,24 +81,24 @@ void check_grip(CheckPass& pass, int k, const GroundDemand& use) {
   const double grip = pass.friction * use.normal_force;
   const double ratio = use.tangential_force / grip;
   raise_to(pass.summary.max_friction_ratio, ratio);
-  const double most = pass.tolerance(Kind::friction);
-  if (ratio > most) pass.add(Kind::friction, 0, k, ratio, most, ratio, support);
+  const double most = pass.tolerance(FindingKind::friction);
+  if (ratio > most) pass.add(FindingKind::friction, 0, k, ratio, most, ratio, support);
   // Nothing resists turning where the foot slides anyway, and a ZMP outside has no lever: both
   // are told above.
-  if (ratio >= 1 || use.margin <= pass.tolerance(Kind::support_margin)) return;
+  if (ratio >= 1 || use.margin <= pass.tolerance(FindingKind::support_margin)) return;
   const double lever = torsional_friction_arm(pass.dynamics.plane().polygon, use.zmp);
   const double yaw = std::abs(use.yaw_moment) / (grip * lever);
   raise_to(pass.summary.max_yaw_ratio, yaw);
-  const double most_yaw = pass.tolerance(Kind::yaw_moment);
-  if (yaw > most_yaw) pass.add(Kind::yaw_moment, 0, k, yaw, most_yaw, yaw, support);
+  const double most_yaw = pass.tolerance(FindingKind::yaw_moment);
+  if (yaw > most_yaw) pass.add(FindingKind::yaw_moment, 0, k, yaw, most_yaw, yaw, support);
 }
 
 void check_ground(CheckPass& pass, int k, const SampleDynamics& motion) {
   const GroundDemand& use = motion.use;
-  const double least = pass.tolerance(Kind::unilateral) * pass.weight;
+  const double least = pass.tolerance(FindingKind::unilateral) * pass.weight;
   if (use.normal_force < least) {
     const bool pulls = use.normal_force < 0;
-    pass.add(Kind::unilateral, 0, k, use.normal_force, pulls ? 0 : least, -use.normal_force,
+    pass.add(FindingKind::unilateral, 0, k, use.normal_force, pulls ? 0 : least, -use.normal_force,
              static_cast<int>(pass.series.samples[k].support),
              pulls ? Severity::error : Severity::warning);
   }
@@ -116,10 +117,10 @@ Vector3d commanded_acceleration(const CommandSeries& series, int k) {
 
 void check_flight(CheckPass& pass, int k, const SampleDynamics& motion) {
   const Vector3d gravity(0, 0, -kGravity);
-  check_vector(pass, Kind::ballistic, k, motion.ddcog - gravity,
+  check_vector(pass, FindingKind::ballistic, k, motion.ddcog - gravity,
                pass.summary.max_ballistic_residual);
   if (k >= 2 && k + 2 < pass.count())
-    check_vector(pass, Kind::ballistic, k, commanded_acceleration(pass.series, k) - gravity,
+    check_vector(pass, FindingKind::ballistic, k, commanded_acceleration(pass.series, k) - gravity,
                  pass.summary.max_ballistic_residual, Severity::error, kCommandFalls);
   pass.flight_moment[k] = motion.moment;
 }
@@ -160,24 +161,24 @@ void check_position(CheckPass& pass, int k, int i) {
   raise_to(pass.summary.max_joint_position_ratio,
            std::abs(theta - 0.5 * (lower + upper)) / std::max(half, 1e-9));
   const double beyond = std::max(lower - theta, theta - upper);
-  if (beyond > pass.tolerance(Kind::joint_position))
-    pass.add(Kind::joint_position, i, k, theta, theta > upper ? upper : lower, beyond);
+  if (beyond > pass.tolerance(FindingKind::joint_position))
+    pass.add(FindingKind::joint_position, i, k, theta, theta > upper ? upper : lower, beyond);
 }
 
 void check_joint_rates(CheckPass& pass, int k, int i) {
   const CommandSample& s = pass.series.samples[k];
   const double limit = pass.limits.speed[i], speed = s.state.dtheta[i];
   if (std::isfinite(limit)) {
-    const double ratio = std::abs(speed) / limit, most = pass.tolerance(Kind::joint_speed);
+    const double ratio = std::abs(speed) / limit, most = pass.tolerance(FindingKind::joint_speed);
     raise_to(pass.summary.max_joint_speed_ratio, ratio);
-    if (ratio > most) pass.add(Kind::joint_speed, i, k, speed, most * limit, ratio);
+    if (ratio > most) pass.add(FindingKind::joint_speed, i, k, speed, most * limit, ratio);
   }
   const double acceleration = s.acceleration[6 + i];
   raise_to(pass.summary.max_joint_acceleration, std::abs(acceleration));
-  const double most = pass.tolerance(Kind::joint_acceleration);
+  const double most = pass.tolerance(FindingKind::joint_acceleration);
   if (std::abs(acceleration) <= most) return;
   pass.rough[k] = true;
-  pass.add(Kind::joint_acceleration, i, k, acceleration, most, std::abs(acceleration), 0,
+  pass.add(FindingKind::joint_acceleration, i, k, acceleration, most, std::abs(acceleration), 0,
            Severity::warning);
 }
 
@@ -188,9 +189,10 @@ void check_torques(CheckPass& pass, int k, const VectorXd& torque) {
     const double given = std::min(std::abs(torque[i]), limit);
     pass.square_sum(i, k + 1) = pass.square_sum(i, k) + given * given;
     if (!std::isfinite(limit)) continue;
-    const double ratio = std::abs(torque[i]) / limit, most = pass.tolerance(Kind::joint_torque);
+    const double ratio = std::abs(torque[i]) / limit,
+                 most = pass.tolerance(FindingKind::joint_torque);
     raise_to(pass.summary.max_torque_ratio, ratio);
-    if (ratio > most) pass.add(Kind::joint_torque, i, k, torque[i], most * limit, ratio);
+    if (ratio > most) pass.add(FindingKind::joint_torque, i, k, torque[i], most * limit, ratio);
   }
 }
 
@@ -199,7 +201,7 @@ void check_sample(CheckPass& pass, int k) {
   pass.cog[k] = pass.dynamics.data().cog;
   const Vector3d deviation = pass.cog[k] - pass.series.samples[k].cog;
   pass.cog_deviation[k] = deviation.norm();
-  check_vector(pass, Kind::cog_residual, k, deviation, pass.summary.max_cog_residual);
+  check_vector(pass, FindingKind::cog_residual, k, deviation, pass.summary.max_cog_residual);
   const bool known = !pass.at_flight_edge(k), flight = pass.dynamics.plane().empty();
   if (known) check_vertical_force(pass, k, flight ? 0 : motion.wrench[2]);
   if (known && flight) check_flight(pass, k, motion);

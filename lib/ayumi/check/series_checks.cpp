@@ -14,17 +14,17 @@ constexpr double kRefineBelow = 0.010;  // clearance that is worth every sample 
 
 void note_clearance(CheckPass& pass, int pair, int k, double clearance) {
   pass.summary.min_self_clearance = std::min(pass.summary.min_self_clearance, clearance);
-  const double wanted = pass.tolerance(Kind::self_collision);
+  const double wanted = pass.tolerance(FindingKind::self_collision);
   if (clearance < wanted)
-    pass.add(Kind::self_collision, pair, k, clearance, clearance < 0 ? 0 : wanted, -clearance, 0,
-             clearance < 0 ? Severity::error : Severity::warning);
+    pass.add(FindingKind::self_collision, pair, k, clearance, clearance < 0 ? 0 : wanted,
+             -clearance, 0, clearance < 0 ? Severity::error : Severity::warning);
 }
 
 }  // namespace
 
 void check_angular_momentum(CheckPass& pass) {
   constexpr int kMean = 2;  // samples to either side
-  const double limit = pass.tolerance(Kind::angular_momentum);
+  const double limit = pass.tolerance(FindingKind::angular_momentum);
   const auto flies = [&](int k) {
     return k >= 0 && k < pass.count() && pass.series.samples[k].support == Support::none &&
            !pass.at_flight_edge(k);
@@ -43,7 +43,7 @@ void check_angular_momentum(CheckPass& pass) {
     raise_to(pass.summary.max_momentum_rate, size);
     int axis = 0;
     mean.cwiseAbs().maxCoeff(&axis);
-    if (size > limit) pass.add(Kind::angular_momentum, 0, k, size, limit, size, axis);
+    if (size > limit) pass.add(FindingKind::angular_momentum, 0, k, size, limit, size, axis);
   }
 }
 
@@ -62,14 +62,14 @@ void check_leaps(CheckPass& pass) {
     int axis = 0;
     leap.cwiseAbs().maxCoeff(&axis);
     if (size > limit)
-      pass.add(Kind::ballistic, kMotionLeaps, flies(k) ? k : k - 1, size, limit, size, axis);
+      pass.add(FindingKind::ballistic, kMotionLeaps, flies(k) ? k : k - 1, size, limit, size, axis);
   }
 }
 
 void check_servo_steps(CheckPass& pass) {
   const double period = pass.model.description().servo_period, dt = pass.series.dt;
   const int ticks = std::max(1, static_cast<int>(std::lround(period / dt)));
-  const double most = pass.tolerance(Kind::servo_step);
+  const double most = pass.tolerance(FindingKind::servo_step);
   for (int k = ticks; k < pass.count(); ++k) {
     const RobotState& from = pass.series.samples[k - ticks].state;
     const RobotState& to = pass.series.samples[k].state;
@@ -81,7 +81,7 @@ void check_servo_steps(CheckPass& pass) {
       const double planned = std::max(std::abs(from.dtheta[i]), std::abs(to.dtheta[i]));
       // Half a percent: the mean speed of a tick is not the speed at its ends.
       if (ratio > 1.005 * most && planned <= limit)
-        pass.add(Kind::servo_step, i, k, step, most * allowed, ratio);
+        pass.add(FindingKind::servo_step, i, k, step, most * allowed, ratio);
     }
   }
 }
@@ -90,7 +90,7 @@ void check_servo_targets(CheckPass& pass) {
   const double period = pass.model.description().servo_period, dt = pass.series.dt;
   const int ticks = std::max(1, static_cast<int>(std::lround(period / dt)));
   const Eigen::VectorXd lead = servo_lead(pass.model);
-  const double most = pass.tolerance(Kind::servo_step);
+  const double most = pass.tolerance(FindingKind::servo_step);
   const auto target = [&](int k, int i) {
     const RobotState& s = pass.series.samples[k].state;
     return s.theta[i] + lead[i] * s.dtheta[i];
@@ -105,7 +105,7 @@ void check_servo_targets(CheckPass& pass) {
       const double step = target(k, i) - target(k - ticks, i), ratio = std::abs(step) / allowed;
       if (ratio > 1.005)
         pass.targets.add(
-            {Kind::servo_step, i, k, Severity::warning, step, allowed, ratio, kServoTarget});
+            {FindingKind::servo_step, i, k, Severity::warning, step, allowed, ratio, kServoTarget});
     }
   }
 }
@@ -114,7 +114,7 @@ void check_continuous_torque(CheckPass& pass) {
   const int whole = static_cast<int>(std::lround(pass.limits.thermal_window / pass.series.dt));
   const int window = std::clamp(whole, 1, pass.count());
   const Severity severity = pass.count() >= whole ? Severity::error : Severity::warning;
-  const double most = pass.tolerance(Kind::continuous_torque);
+  const double most = pass.tolerance(FindingKind::continuous_torque);
   for (int i = 0; i < pass.model.dof_count(); ++i) {
     const double limit = pass.limits.continuous_torque[i];
     if (!std::isfinite(limit)) continue;
@@ -123,13 +123,14 @@ void check_continuous_torque(CheckPass& pass) {
       const double rms = std::sqrt(std::max(0.0, mean));
       raise_to(pass.summary.max_continuous_torque_ratio, rms / limit);
       if (rms > most * limit)
-        pass.add(Kind::continuous_torque, i, end - 1, rms, most * limit, rms / limit, 0, severity);
+        pass.add(FindingKind::continuous_torque, i, end - 1, rms, most * limit, rms / limit, 0,
+                 severity);
     }
   }
 }
 
 void check_self_collision(CheckPass& pass) {
-  const double near = pass.tolerance(Kind::self_collision) + kRefineBelow;
+  const double near = pass.tolerance(FindingKind::self_collision) + kRefineBelow;
   scan_clearance(
       pass.model, pass.series, pass.collisions, near,
       [&pass](int pair, int k, double clearance) { note_clearance(pass, pair, k, clearance); });

@@ -58,25 +58,25 @@ bool SlowerPace::ground_holds(const Violation& v, double pace) {
   const CommandSample& s = pass_.series.samples[v.sample];
   const double limit = std::abs(v.limit);
   switch (v.kind) {
-    case Kind::zmp_residual:
+    case FindingKind::zmp_residual:
       return now.use.has_zmp && (now.use.zmp_world - s.zmp).norm() <= limit;
-    case Kind::fz_residual:
+    case FindingKind::fz_residual:
       return std::abs(now.wrench[2] - s.fz) <= limit;
-    case Kind::support_margin:
+    case FindingKind::support_margin:
       return now.use.has_zmp && now.use.margin >= -kRounding;
-    case Kind::unilateral:
+    case FindingKind::unilateral:
       return now.use.normal_force >= 0;
-    case Kind::friction:
+    case FindingKind::friction:
       return now.use.tangential_force <= limit * pass_.friction * now.use.normal_force;
-    case Kind::yaw_moment:
+    case FindingKind::yaw_moment:
       return std::abs(now.use.yaw_moment) <=
              limit * pass_.friction * now.use.normal_force *
                  torsional_friction_arm(pass_.dynamics.plane().polygon, now.use.zmp);
-    case Kind::ballistic:
+    case FindingKind::ballistic:
       return flight_is_free(v.sample, pace, limit);
-    case Kind::angular_momentum:
+    case FindingKind::angular_momentum:
       return now.moment.norm() <= limit &&
-             flight_is_free(v.sample, pace, pass_.tolerance(Kind::ballistic));
+             flight_is_free(v.sample, pace, pass_.tolerance(FindingKind::ballistic));
     default:
       return false;
   }
@@ -85,12 +85,12 @@ bool SlowerPace::ground_holds(const Violation& v, double pace) {
 // Whether the worst sample of a finding is sound when the path is played at this pace.
 bool SlowerPace::holds(const Violation& v, double pace) {
   switch (v.kind) {
-    case Kind::joint_speed:
-    case Kind::servo_step:
+    case FindingKind::joint_speed:
+    case FindingKind::servo_step:
       return std::abs(v.value) * pace <= std::abs(v.limit);
-    case Kind::joint_torque:
+    case FindingKind::joint_torque:
       return std::abs(pass_.dynamics.at(v.sample, pace).torque[v.item]) <= std::abs(v.limit);
-    case Kind::continuous_torque:
+    case FindingKind::continuous_torque:
       return rms_holds(v, pace);
     default:
       return ground_holds(v, pace);
@@ -105,9 +105,9 @@ bool SlowerPace::rough_near(int sample) const {
 }
 
 bool SlowerPace::mends(const Violation& cause, const Violation& v) {
-  const bool flies = v.kind == Kind::ballistic || v.kind == Kind::angular_momentum;
-  if (!flies && rough_near(v.sample)) return v.kind != Kind::servo_step;
-  const double step = v.kind == Kind::continuous_torque ? kCoarseStep : kStep;
+  const bool flies = v.kind == FindingKind::ballistic || v.kind == FindingKind::angular_momentum;
+  if (!flies && rough_near(v.sample)) return v.kind != FindingKind::servo_step;
+  const double step = v.kind == FindingKind::continuous_torque ? kCoarseStep : kStep;
   for (double pace = step; pace > kSlowest; pace *= step)
     if (holds(cause, pace) && holds(v, pace)) return true;
   return false;

@@ -64,16 +64,16 @@ bool moves_cog(const CheckPass& pass, const Violation& foot, const Violation& co
   const SoleError e = sole_error(pass.model.sole(side), sole, place);
   const double way = std::max({e.slip, e.penetration, e.gap});
   const double left = (place * (sole.inverse() * data.cog) - s.cog).norm();
-  return cog.value <= way || left <= pass.tolerance(Kind::cog_residual);
+  return cog.value <= way || left <= pass.tolerance(FindingKind::cog_residual);
 }
 
 bool is_asked_for(CheckPass& pass, const Violation& v) {
-  if (v.kind != Kind::support_margin) return false;
+  if (v.kind != FindingKind::support_margin) return false;
   const Eigen::Vector3d zmp = pass.dynamics.at(v.sample).use.zmp_world;
   const Eigen::Vector3d& command = pass.series.samples[v.sample].zmp;
   const SupportPlane& plane = pass.dynamics.plane();
   const Eigen::Vector3d inside = plane.frame.inverse() * command;
-  return (zmp - command).norm() <= pass.tolerance(Kind::zmp_residual) &&
+  return (zmp - command).norm() <= pass.tolerance(FindingKind::zmp_residual) &&
          plane.polygon.margin(inside.head<2>()) < -kRounding;
 }
 
@@ -87,7 +87,8 @@ bool uncounted_foot_stands(const CheckPass& pass, int k) {
       if (next < 0 || next >= static_cast<int>(pass.plan.intervals[s].size())) continue;
       const SoleError e = sole_error(pass.model.sole(side), sole_pose(pass.model, data, side),
                                      pass.plan.intervals[s][next].sole);
-      if (e.gap <= pass.tolerance(Kind::foot_float) && e.slip <= pass.tolerance(Kind::foot_slip))
+      if (e.gap <= pass.tolerance(FindingKind::foot_float) &&
+          e.slip <= pass.tolerance(FindingKind::foot_slip))
         return true;
     }
   }

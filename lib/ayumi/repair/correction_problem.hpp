@@ -50,7 +50,7 @@ struct CorrectionSpec {
   const CollisionModel* collisions = nullptr;  ///< null: clearances are not watched
   std::vector<int> near_pairs;                 ///< of bodies that are watched
   std::string profile;
-  std::array<double, kKindCount> tolerance = tolerances({});  ///< of the check, by Kind
+  Tolerances tolerance = tolerances({});  ///< of the check
   double friction = 0.8;
   double zmp_margin = 0.002;   ///< least distance of the ZMP inside the support [m]
   double safe_margin = 0;      ///< the same where the motion's own is less than the least [m]
@@ -136,7 +136,7 @@ class CorrectionProblem {
   void measure_capture();
   void place_capture_block(int instant);
   Eigen::Matrix<double, 2, 6> planned_zmp_rows(int instant) const;
-  double tolerance(Kind kind) const { return spec_.tolerance[static_cast<int>(kind)]; }
+  double tolerance(FindingKind kind) const { return spec_.tolerance[kind]; }
   std::vector<const CommandSample*> watched(int instant) const;
   void place_jacobian();
   void place_objective();

@@ -134,8 +134,8 @@ void CorrectionProblem::place_flight_block(int instant) {
   kept << own.head<3>(), mean;
   offset.tail<3>() = own.tail<3>() - mean;
   const double weight = model_.mass() * kGravity;
-  const double most[] = {tolerance(Kind::ballistic) / kGravity,
-                         tolerance(Kind::angular_momentum) / weight};
+  const double most[] = {tolerance(FindingKind::ballistic) / kGravity,
+                         tolerance(FindingKind::angular_momentum) / weight};
   for (int part : {0, 1}) {
     const double used = kept.segment<3>(3 * part).norm() / most[part];
     kept.segment<3>(3 * part) *= used > kShare ? 0.0 : 1.0;
@@ -151,7 +151,7 @@ void CorrectionProblem::place_flight_block(int instant) {
 void CorrectionProblem::place_friction(int instant) {
   ConstraintBlock block =
       block_of(ConstraintGroup::friction, instant, 0, 1, 1 / (model_.mass() * kGravity));
-  block.factor = spec_.share * tolerance(Kind::friction) * spec_.friction *
+  block.factor = spec_.share * tolerance(FindingKind::friction) * spec_.friction *
                  (spec_.at_limits ? 1 : kInsideCone);
   add_block(std::move(block), 0, kNoBound);
 }
@@ -192,10 +192,10 @@ void CorrectionProblem::place_ground_blocks(int instant) {
     rows(0, 2) = 1;
     add(ConstraintGroup::unilateral, rows, spec_.force_share, kNoBound);
   }
-  if (most_grip > spec_.watched_share * tolerance(Kind::friction)) place_friction(instant);
-  if (lever > 0 && most_yaw > spec_.watched_share * tolerance(Kind::yaw_moment)) {
+  if (most_grip > spec_.watched_share * tolerance(FindingKind::friction)) place_friction(instant);
+  if (lever > 0 && most_yaw > spec_.watched_share * tolerance(FindingKind::yaw_moment)) {
     ConstraintBlock block = block_of(ConstraintGroup::yaw, instant, 0, 2, 1 / weight);
-    block.factor = spec_.share * tolerance(Kind::yaw_moment) * lever;
+    block.factor = spec_.share * tolerance(FindingKind::yaw_moment) * lever;
     add_block(std::move(block), 0, kNoBound);
   }
 }
@@ -214,9 +214,9 @@ void CorrectionProblem::soften_landing(int instant, Side side) {
   if (std::min(landed, left) >= kMoment) return;
   const Eigen::Isometry3d& sole = at.path[static_cast<int>(side)];
   const SoleError error = sole_error(model_.sole(side), sole, contact.sole);
-  const double used = std::max({error.gap / tolerance(Kind::foot_float),
-                                error.penetration / tolerance(Kind::foot_penetration),
-                                error.slip / tolerance(Kind::foot_slip)});
+  const double used = std::max({error.gap / tolerance(FindingKind::foot_float),
+                                error.penetration / tolerance(FindingKind::foot_penetration),
+                                error.slip / tolerance(FindingKind::foot_slip)});
   Vector6d own = std::min(1.0, kShare / std::max(used, 1e-9)) * sole_deviation(sole, contact.sole);
   // A sole over its place has not landed yet: that is what is to be mended.
   const Eigen::Vector3d normal = contact.sole.linear().col(2);
@@ -231,7 +231,8 @@ double CorrectionProblem::sole_angle(Side side) const {
   constexpr double kShare = 0.6;  // of what a corner may be off
   double reach = 0;
   for (const Eigen::Vector2d& v : model_.sole(side).polygon) reach = std::max(reach, v.lpNorm<1>());
-  const double off = std::min(tolerance(Kind::foot_float), tolerance(Kind::foot_penetration));
+  const double off =
+      std::min(tolerance(FindingKind::foot_float), tolerance(FindingKind::foot_penetration));
   return std::min(spec_.sole_angle, kShare * off / reach);
 }
 
@@ -252,9 +253,10 @@ void CorrectionProblem::place_foot_blocks(int instant) {
     const int s = static_cast<int>(side);
     if (instants_[instant].contact[s]) {
       const double share = instants_[instant].at_knot ? spec_.sole_at_knots : 1;
-      const double slack = share * std::min({spec_.sole_position, 0.2 * tolerance(Kind::foot_slip),
-                                             0.2 * tolerance(Kind::foot_penetration),
-                                             0.2 * tolerance(Kind::foot_float)});
+      const double slack =
+          share * std::min({spec_.sole_position, 0.2 * tolerance(FindingKind::foot_slip),
+                            0.2 * tolerance(FindingKind::foot_penetration),
+                            0.2 * tolerance(FindingKind::foot_float)});
       add_block(block_of(ConstraintGroup::stance, instant, s, 6), -slack, slack);
       const double angle = share * sole_angle(side);
       lower_.tail<3>().setConstant(-angle);
@@ -278,7 +280,7 @@ void CorrectionProblem::place_joint_blocks(int instant) {
     if (!spec_.locked.empty() && spec_.locked[i]) continue;
     const Dof& dof = model_.dofs()[i];
     const double lower = dof.lower + soft, upper = dof.upper - soft;
-    const double fastest = limits.speed[i] * tolerance(Kind::joint_speed);
+    const double fastest = limits.speed[i] * tolerance(FindingKind::joint_speed);
     double position = 0, speed = 0, acceleration = 0;
     for (const CommandSample* sample : watched(instant)) {
       const double theta = sample->state.theta[i];
@@ -295,7 +297,7 @@ void CorrectionProblem::place_joint_blocks(int instant) {
                 spec_.share);
     // No rougher than a motion that is rough already: that is told, but no fault.
     const double own = std::abs(watched(instant)[0]->acceleration[6 + i]);
-    const double roughest = std::max(tolerance(Kind::joint_acceleration), own);
+    const double roughest = std::max(tolerance(FindingKind::joint_acceleration), own);
     if (acceleration > spec_.watched_share * roughest)
       add_block(block_of(ConstraintGroup::acceleration, instant, i, 1, 1 / roughest), -1, 1);
   }
@@ -303,7 +305,7 @@ void CorrectionProblem::place_joint_blocks(int instant) {
 
 void CorrectionProblem::place_torque_blocks(int instant) {
   const Eigen::VectorXd most =
-      model_.limits(spec_.profile).peak_torque * tolerance(Kind::joint_torque);
+      model_.limits(spec_.profile).peak_torque * tolerance(FindingKind::joint_torque);
   RobotData data(model_);
   Eigen::VectorXd ratio = Eigen::VectorXd::Zero(model_.dof_count());
   for (const CommandSample* sample : watched(instant)) {
@@ -339,11 +341,12 @@ void CorrectionProblem::place_command_blocks(int instant) {
   constexpr double kShare = 0.25;  // of what the check allows
   if (spec_.trust == Trust::cog)
     add_block(block_of(ConstraintGroup::cog, instant, 0, 3),
-              -kShare * tolerance(Kind::cog_residual), kShare * tolerance(Kind::cog_residual));
+              -kShare * tolerance(FindingKind::cog_residual),
+              kShare * tolerance(FindingKind::cog_residual));
   if (spec_.trust != Trust::zmp || at.plane.empty() || !at.known) return;
   ConstraintBlock block = block_of(ConstraintGroup::zmp, instant, 0, 2);
   block.wrench_rows = planned_zmp_rows(instant);
-  const double slack = kShare * tolerance(Kind::zmp_residual);
+  const double slack = kShare * tolerance(FindingKind::zmp_residual);
   add_block(std::move(block), -slack, slack);
 }
 

@@ -16,9 +16,17 @@ namespace {
 constexpr double kSlowest = 8;  // more is not called a matter of time
 
 bool told_as_ratio(const Finding& f) {
-  static const std::vector<std::string> kinds = {"friction",     "yaw_moment",        "joint_speed",
-                                                 "joint_torque", "continuous_torque", "servo_step"};
-  return std::find(kinds.begin(), kinds.end(), f.kind) != kinds.end();
+  switch (f.kind) {
+    case FindingKind::friction:
+    case FindingKind::yaw_moment:
+    case FindingKind::joint_speed:
+    case FindingKind::joint_torque:
+    case FindingKind::continuous_torque:
+    case FindingKind::servo_step:
+      return true;
+    default:
+      return false;
+  }
 }
 
 // The window and a little around it; contacts are those of the whole motion at every sample.
@@ -69,52 +77,58 @@ std::string window_text(const Finding& f) {
 }
 
 std::string mm(double metres) { return text::fixed(1000 * std::abs(metres), 1) + " mm"; }
+std::string ms(double seconds) { return text::fixed(1000 * seconds, 0) + " ms"; }
 std::string degrees(double radians) {
   return text::fixed(std::abs(radians) * 180 / EIGEN_PI, 1) + " deg";
 }
 
 std::string what(const Finding& f, double excess) {
   const std::string ratio = text::fixed(std::ceil(100 * excess - 1e-9) / 100, 2);
-  if (f.kind == "joint_speed") return f.where + " speed reaches " + ratio + " of its limit";
-  if (f.kind == "joint_torque") return f.where + " torque reaches " + ratio + " of its limit";
-  if (f.kind == "continuous_torque")
+  if (f.kind == FindingKind::joint_speed)
+    return f.where + " speed reaches " + ratio + " of its limit";
+  if (f.kind == FindingKind::joint_torque)
+    return f.where + " torque reaches " + ratio + " of its limit";
+  if (f.kind == FindingKind::continuous_torque)
     return f.where + " torque, over the motor's thermal window, reaches " + ratio +
            " of its lasting limit";
-  if (f.kind == "servo_step")
+  if (f.kind == FindingKind::servo_step)
     return f.where + " steps " + ratio + " times what one servo period allows";
-  if (f.kind == "joint_position")
+  if (f.kind == FindingKind::joint_position)
     return f.where + " goes " + (f.unit == "m" ? mm(excess) : degrees(excess)) +
            " beyond its limit";
-  if (f.kind == "support_margin")
+  if (f.kind == FindingKind::support_margin)
     return "the ZMP is " + mm(excess) + " outside the support (" + f.where + ")";
-  if (f.kind == "friction")
+  if (f.kind == FindingKind::friction)
     return "the motion needs " + ratio + " of the friction there is (" + f.where + ")";
-  if (f.kind == "yaw_moment")
+  if (f.kind == FindingKind::yaw_moment)
     return "the foot would turn: " + ratio + " of the yaw moment friction resists (" + f.where +
            ")";
-  if (f.kind == "unilateral") return "the ground would have to pull (" + f.where + ")";
-  if (f.kind == "foot_slip") return "the " + f.where + " foot slips " + mm(f.worst);
-  if (f.kind == "foot_float")
+  if (f.kind == FindingKind::unilateral) return "the ground would have to pull (" + f.where + ")";
+  if (f.kind == FindingKind::foot_slip) return "the " + f.where + " foot slips " + mm(f.worst);
+  if (f.kind == FindingKind::foot_float)
     return "the " + f.where + " foot stands " + mm(f.worst) + " in the air";
-  if (f.kind == "foot_penetration")
+  if (f.kind == FindingKind::contact_ends_early)
+    return "the " + f.where + " foot stands in its place for " + ms(f.worst) +
+           " after its contact has ended";
+  if (f.kind == FindingKind::foot_penetration)
     return "the " + f.where + " foot is " + mm(f.worst) + " in the ground";
-  if (f.kind == "self_collision") return f.where + " overlap by " + mm(f.worst);
-  if (f.kind == "ballistic") return "the COG does not fall freely in flight";
-  if (f.kind == "angular_momentum") return "the angular momentum changes in flight";
-  if (f.kind == "cog_residual") return "the posture is " + mm(f.worst) + " from the trusted COG";
-  if (f.kind == "zmp_residual") return "the motion is " + mm(f.worst) + " from the trusted ZMP";
-  return f.kind + " of " + f.where + " is " + text::brief(f.worst) + " against " +
-         text::brief(f.limit) + " " + f.unit;
+  if (f.kind == FindingKind::self_collision) return f.where + " overlap by " + mm(f.worst);
+  if (f.kind == FindingKind::ballistic) return "the COG does not fall freely in flight";
+  if (f.kind == FindingKind::angular_momentum) return "the angular momentum changes in flight";
+  if (f.kind == FindingKind::cog_residual)
+    return "the posture is " + mm(f.worst) + " from the trusted COG";
+  if (f.kind == FindingKind::zmp_residual)
+    return "the motion is " + mm(f.worst) + " from the trusted ZMP";
+  return std::string(name_of(f.kind)) + " of " + f.where + " is " + text::brief(f.worst) +
+         " against " + text::brief(f.limit) + " " + f.unit;
 }
 
 }  // namespace
 
 bool is_matter_of_time(const Finding& f) {
-  const bool of_command = f.kind.ends_with("_residual");
-  const bool of_place =
-      f.kind.starts_with("foot_") || f.kind == "joint_position" || f.kind == "self_collision";
-  const bool of_mean = f.kind == "continuous_torque";  // the window is the motor's
-  return !of_command && !of_place && !of_mean;
+  const bool of_command = f.kind == FindingKind::zmp_residual || f.kind == FindingKind::fz_residual;
+  const bool of_mean = f.kind == FindingKind::continuous_torque;  // the window is the motor's
+  return !of_command && !is_of_posture(f) && !of_mean;
 }
 
 double total_excess(const ConsistencyReport& report) {
@@ -125,7 +139,7 @@ double total_excess(const ConsistencyReport& report) {
     o.finding = f;
     o.excess = excess_of(f);
     o.is_ratio = told_as_ratio(f);
-    double& w = worst[{f.kind, f.where}];
+    double& w = worst[{name_of(f.kind), f.where}];
     w = std::max(w, rank(o));
   }
   double sum = 0;
@@ -140,7 +154,7 @@ std::string remedy(const Obstacle& o) {
     return "that window needs to be " + text::fixed(std::ceil(10 * o.time_factor - 1e-9) / 10, 1) +
            " times longer";
   return (is_matter_of_time(o.finding) ? "slowing that window down does not help: " : "") +
-         o.finding.hint.substr(0, o.finding.hint.find(", or repair"));
+         o.finding.remedy;
 }
 
 // What of its time is locked, in words; empty: nothing.
@@ -187,7 +201,7 @@ std::vector<Obstacle> obstacles(const RobotModel& model, const CommandSeries& se
     o.finding = f;
     o.excess = excess_of(f);
     o.is_ratio = told_as_ratio(f);
-    const auto found = worst.try_emplace({f.kind, f.where}, o).first;
+    const auto found = worst.try_emplace({name_of(f.kind), f.where}, o).first;
     if (o.excess > found->second.excess) found->second = o;
   }
   std::vector<Obstacle> result;

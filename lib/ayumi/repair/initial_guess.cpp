@@ -15,11 +15,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-int body_of(const RobotModel& model, const std::string& name) {
-  const int link = model.find_link(name);
-  return link < 0 ? -1 : model.links()[static_cast<size_t>(link)].body;
-}
-
 // Dofs that move one body and not the other.
 std::vector<int> joints_between(const RobotModel& model, int a, int b) {
   std::vector<int> count(static_cast<size_t>(model.dof_count()), 0), result;
@@ -32,12 +27,9 @@ std::vector<int> joints_between(const RobotModel& model, int a, int b) {
 }
 
 std::vector<int> joints_of(const RobotModel& model, const Finding& f) {
-  if (f.kind == "joint_position") return {model.find_dof(f.where)};
-  const size_t dash = f.where.find(" - ");
-  if (f.kind != "self_collision" || dash == std::string::npos) return {};
-  const int a = body_of(model, f.where.substr(0, dash));
-  const int b = body_of(model, f.where.substr(dash + 3));
-  return a < 0 || b < 0 ? std::vector<int>() : joints_between(model, a, b);
+  if (f.kind == FindingKind::joint_position) return {dof_of(f)};
+  const BodyPairPlace* bodies = std::get_if<BodyPairPlace>(&f.place);
+  return bodies ? joints_between(model, bodies->a, bodies->b) : std::vector<int>();
 }
 
 // What leads the joint from one end of a window to the other as a cubic, less where it is.

@@ -34,6 +34,8 @@ const char* name_of(RepairStatus status) {
 
 namespace {
 
+using FoundAt = std::pair<FindingKind, std::string>;  // kind and place
+
 constexpr int kRounds = 8;
 constexpr size_t kReasons = 6;  // told at most
 constexpr double kPad = 0.5;    // free time around a finding, doubled when it is not enough [s]
@@ -77,7 +79,7 @@ class Repair {
     flight_ = flight_is_at_fault(result_.check);
     spec_.spacing =
         std::min(spec_.spacing, spacing_of_faults(series_, result_.check, kFinest * series_.dt));
-    if (locked_out(model_, spec_, result_.check))
+    if (locked_out(spec_, result_.check))
       last_status_ = NlpStatus::infeasible;
     else
       solve_rounds();
@@ -130,14 +132,14 @@ class Repair {
   // are too far apart: soles in their places ask for more than a coarse spline can follow.
   void refine(int round) {
     if (result_.check.consistent) return;
-    std::set<std::string> errors;
+    std::set<FoundAt> errors;
     bool again = round + 2 == kRounds || last_status_ != NlpStatus::solved;
     for (const Finding& f : result_.check.findings) {
       if (f.severity != Severity::error) continue;
-      errors.insert(f.kind + f.where);
-      again = again || errors_.contains(f.kind + f.where);
+      errors.emplace(f.kind, f.where);
+      again = again || errors_.contains({f.kind, f.where});
     }
-    errors_ = last_status_ == NlpStatus::solved ? errors : std::set<std::string>();
+    errors_ = last_status_ == NlpStatus::solved ? errors : std::set<FoundAt>();
     if (!again || halvings_ == kHalvings || track_.spacing < kFinest * series_.dt) return;
     ++halvings_;
     errors_.clear();
@@ -204,7 +206,7 @@ class Repair {
     const auto& findings = result_.check.findings;
     return result_.check.consistent &&
            std::none_of(findings.begin(), findings.end(), [](const Finding& f) {
-             return f.kind == "support_margin" && f.severity == Severity::warning;
+             return f.kind == FindingKind::support_margin && f.severity == Severity::warning;
            });
   }
 
@@ -228,7 +230,7 @@ class Repair {
   // end says of a mean over many ticks is no fault of that posture.
   void free_ends() {
     for (const Finding& f : result_.check.findings) {
-      if (f.severity != Severity::error || f.kind == "continuous_torque") continue;
+      if (f.severity != Severity::error || f.kind == FindingKind::continuous_torque) continue;
       if (f.begin < spec_.spacing) spec_.free_ends[0] = true;
       if (f.end > series_.duration() - spec_.spacing) spec_.free_ends[1] = true;
     }
@@ -371,7 +373,7 @@ class Repair {
   CorrectionSpec spec_, asked_;               // now and of the first round
   std::optional<CorrectionProblem> problem_;  // of the last round
   std::deque<CommandSeries> seen_;            // results of earlier rounds
-  std::set<std::string> errors_;              // left over by the last round, where it was solved
+  std::set<FoundAt> errors_;                  // left over by the last round, where it was solved
   int halvings_ = 0;                          // of the knots' spacing
   bool flight_ = false;                       // one is at fault
   Eigen::VectorXd least_violating_;

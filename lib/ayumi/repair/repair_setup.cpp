@@ -75,7 +75,8 @@ double safe_margin(const RobotModel& model) {
 
 bool flight_is_at_fault(const ConsistencyReport& report) {
   return std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
-    return f.severity == Severity::error && (f.kind == "ballistic" || f.kind == "angular_momentum");
+    return f.severity == Severity::error &&
+           (f.kind == FindingKind::ballistic || f.kind == FindingKind::angular_momentum);
   });
 }
 
@@ -86,7 +87,7 @@ double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& r
   double spacing =
       flight_is_at_fault(report) ? shortest_flight(series) / kKnotsOfFaultyFlight : kNoBound;
   for (const Finding& f : report.findings)
-    if (f.kind == "foot_slip" && f.severity == Severity::error)
+    if (f.kind == FindingKind::foot_slip && f.severity == Severity::error)
       spacing = std::min(spacing, std::max((f.end - f.begin) / kKnotsOfSlip, finest));
   return spacing;
 }
@@ -95,7 +96,8 @@ std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>
                                                       double pad) {
   std::vector<std::pair<double, double>> windows;
   for (const Finding& f : findings)
-    if (f.severity == Severity::error || f.kind == "support_margin" || !f.follows_from.empty())
+    if (f.severity == Severity::error || f.kind == FindingKind::support_margin ||
+        !f.follows_from.empty())
       windows.emplace_back(f.begin - pad, f.end + pad);
   return merged(std::move(windows));
 }
@@ -164,7 +166,7 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   spec.tolerance = tolerances(options.check, model, series);
   spec.profile = options.check.profile;
   spec.friction = options.check.friction;
-  const double least = tolerances(options.check)[static_cast<int>(Kind::support_margin)];
+  const double least = tolerances(options.check)[FindingKind::support_margin];
   const double safe = options.trust == Trust::zmp ? least : safe_margin(model);
   spec.safe_margin = options.zmp_margin.value_or(safe) + kMarginBetween;
   spec.zmp_margin = std::min(spec.safe_margin, least + kMarginBetween);
@@ -178,7 +180,8 @@ std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report) {
   std::vector<TimeWindow> windows;
   for (const Finding& f : report.findings)
     if (f.severity == Severity::error &&
-        (f.kind == "cog_residual" || f.kind == "zmp_residual" || f.kind == "support_margin"))
+        (f.kind == FindingKind::cog_residual || f.kind == FindingKind::zmp_residual ||
+         f.kind == FindingKind::support_margin))
       windows.emplace_back(f.begin - kAround, f.end + kAround);
   return windows;
 }
@@ -193,14 +196,13 @@ void add_near_pairs(const RobotModel& model, const CommandSeries& series,
   pairs.assign(near.begin(), near.end());
 }
 
-bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
-                const ConsistencyReport& report) {
+bool locked_out(const CorrectionSpec& spec, const ConsistencyReport& report) {
   for (const Finding& f : report.findings) {
-    if (f.severity != Severity::error || f.kind == "continuous_torque") continue;
-    const int dof = model.find_dof(f.where);
-    const bool joint =
-        dof >= 0 && spec.locked[dof] &&
-        (f.kind == "joint_position" || f.kind == "joint_speed" || f.kind == "servo_step");
+    if (f.severity != Severity::error || f.kind == FindingKind::continuous_torque) continue;
+    const int dof = dof_of(f);
+    const bool joint = dof >= 0 && spec.locked[dof] &&
+                       (f.kind == FindingKind::joint_position ||
+                        f.kind == FindingKind::joint_speed || f.kind == FindingKind::servo_step);
     const bool window = within(spec.locked_windows, f.at);
     const bool instant =
         is_of_posture(f) && std::any_of(spec.kept_instants.begin(), spec.kept_instants.end(),

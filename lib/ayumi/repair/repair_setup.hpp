@@ -39,7 +39,6 @@ double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& r
 
 /// Whether a joint that may not move is beyond its limits, or something is wrong at a time that may
 /// not change, with the posture at an instant: then there is nothing to solve.
-bool locked_out(const RobotModel& model, const CorrectionSpec& spec,
-                const ConsistencyReport& report);
+bool locked_out(const CorrectionSpec& spec, const ConsistencyReport& report);
 
 }  // namespace ayumi

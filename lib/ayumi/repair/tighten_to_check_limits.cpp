@@ -12,7 +12,7 @@ constexpr double kHair = 1e-6;  // of a limit, for rounding
 }  // namespace
 
 CorrectionSpec at_limits(const CorrectionSpec& spec, const CorrectionSpec& asked, double safety) {
-  auto tolerance = [&](Kind kind) { return spec.tolerance[static_cast<int>(kind)]; };
+  auto tolerance = [&](FindingKind kind) { return spec.tolerance[kind]; };
   const bool safe = spec.safe_margin > spec.zmp_margin;  // was to be had
   CorrectionSpec limits = spec;
   limits.zmp_margin = asked.zmp_margin;
@@ -22,9 +22,9 @@ CorrectionSpec at_limits(const CorrectionSpec& spec, const CorrectionSpec& asked
   limits.at_limits = true;
   limits.joint_margin = kHair;
   limits.share = 1 - kHair;
-  limits.force_share = tolerance(Kind::unilateral);
+  limits.force_share = tolerance(FindingKind::unilateral);
   if (safety > 0) return limits;
-  limits.joint_margin = kHair - tolerance(Kind::joint_position);
+  limits.joint_margin = kHair - tolerance(FindingKind::joint_position);
   limits.force_share = kHair;
   limits.clearance = kHair;
   limits.gentle_swings = false;

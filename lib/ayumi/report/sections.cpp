@@ -105,7 +105,7 @@ Table finding_table(const ConsistencyReport& check) {
                  {"kind", "severity", "where", "when [s]", "worst", "limit", "what to do"},
                  {}};
   for (const Finding& f : check.findings)
-    table.rows.push_back({escaped(f.kind),
+    table.rows.push_back({escaped(name_of(f.kind)),
                           f.severity == Severity::error ? marked(false, ayumi::name_of(f.severity))
                                                         : ayumi::name_of(f.severity),
                           escaped(f.where),

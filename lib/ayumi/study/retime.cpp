@@ -130,14 +130,15 @@ class PaceSearch {
     const Finding* told = nullptr;
     for (const Finding& f : check.findings) {
       if (f.severity != Severity::error) continue;
-      if (f.kind == "joint_speed")
+      if (f.kind == FindingKind::joint_speed)
         trial.too_quick = std::max(trial.too_quick, std::abs(f.worst) / f.limit);
       if (!told || (is_of_posture(f) && !trial.of_posture)) told = &f;
       trial.of_posture = is_of_posture(*told);
     }
-    reason_ = told->kind + " " + told->where + " at " + text::fixed(told->at, 3) + " s of " +
-              text::fixed(duration, 3) + " s: " + text::brief(told->worst) + " " + told->unit +
-              ", limit " + text::brief(told->limit);
+    reason_ = std::string(name_of(told->kind)) + " " + told->where + " at " +
+              text::fixed(told->at, 3) + " s of " + text::fixed(duration, 3) +
+              " s: " + text::brief(told->worst) + " " + told->unit + ", limit " +
+              text::brief(told->limit);
     trial.reason = reason_;
     return trial;
   }

@@ -22,7 +22,7 @@ OrderedJson largest(const LargestChange& change, const char* unit) {
 }
 
 OrderedJson obstacle_json(const Obstacle& o) {
-  return {{"kind", o.finding.kind},
+  return {{"kind", name_of(o.finding.kind)},
           {"where", o.finding.where},
           {"begin_s", figure(o.finding.begin)},
           {"end_s", figure(o.finding.end)},

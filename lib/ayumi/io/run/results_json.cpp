@@ -21,7 +21,7 @@ OrderedJson figure(double value, bool exists = true) {
 }
 
 OrderedJson json_of(const Finding& f) {
-  return {{"kind", f.kind},
+  return {{"kind", name_of(f.kind)},
           {"severity", name_of(f.severity)},
           {"begin_s", f.begin},
           {"end_s", f.end},

@@ -21,7 +21,7 @@ Severity severity_of(const JsonNode& node) {
 
 Finding finding_of(const JsonNode& node) {
   Finding f;
-  f.kind = node.at("kind").string();
+  f.kind = *finding_kind(node.at("kind").one_of(finding_kind_names()));
   f.severity = severity_of(node.at("severity"));
   f.begin = node.at("begin_s").number();
   f.end = node.at("end_s").number();

@@ -1,0 +1,45 @@
+#include "ayumi/limits/finding.hpp"
+
+#include <algorithm>
+
+namespace ayumi {
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::error:
+      return "error";
+    case Severity::warning:
+      return "warning";
+    default:
+      return "info";
+  }
+}
+
+const std::vector<std::string>& finding_kind_names() {
+  static const std::vector<std::string> names = {
+      "cog_residual",       "zmp_residual",       "fz_residual",       "point_mass_gap",
+      "support_margin",     "friction",           "unilateral",        "yaw_moment",
+      "ballistic",          "angular_momentum",   "foot_slip",         "foot_penetration",
+      "foot_float",         "contact_ends_early", "joint_position",    "joint_speed",
+      "joint_acceleration", "joint_torque",       "continuous_torque", "servo_step",
+      "self_collision",     "landing_speed"};
+  return names;
+}
+
+const char* name_of(FindingKind kind) {
+  return finding_kind_names()[static_cast<size_t>(kind)].c_str();
+}
+
+std::optional<FindingKind> finding_kind(std::string_view name) {
+  const std::vector<std::string>& names = finding_kind_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<FindingKind>(found - names.begin());
+}
+
+int dof_of(const Finding& finding) {
+  const JointPlace* joint = std::get_if<JointPlace>(&finding.place);
+  return joint ? joint->dof : -1;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,106 @@
+#pragma once
+// A finding is what the check says about a motion: of what kind it is, where and when it occurs,
+// how large it is, and what to do about it. Kind and place are typed; their texts are for people
+// only.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "ayumi/model/robot_description.hpp"
+#include "ayumi/motion/command_series.hpp"
+
+namespace ayumi {
+
+enum class Severity { error, warning, info };
+const char* name_of(Severity severity);
+
+/// In the order of docs/cli.md.
+enum class FindingKind {
+  cog_residual,
+  zmp_residual,
+  fz_residual,
+  point_mass_gap,
+  support_margin,
+  friction,
+  unilateral,
+  yaw_moment,
+  ballistic,
+  angular_momentum,
+  foot_slip,
+  foot_penetration,
+  foot_float,
+  contact_ends_early,
+  joint_position,
+  joint_speed,
+  joint_acceleration,
+  joint_torque,
+  continuous_torque,
+  servo_step,
+  self_collision,
+  landing_speed,
+};
+inline constexpr int kFindingKindCount = 22;
+
+/// The name in JSON files, option values and texts.
+const char* name_of(FindingKind kind);
+/// The kind of that name, or nothing.
+std::optional<FindingKind> finding_kind(std::string_view name);
+/// All names, in the order of the enum.
+const std::vector<std::string>& finding_kind_names();
+
+/// One value for every kind of finding.
+template <typename Value>
+class ByFindingKind {
+ public:
+  Value& operator[](FindingKind kind) { return values_[static_cast<size_t>(kind)]; }
+  const Value& operator[](FindingKind kind) const { return values_[static_cast<size_t>(kind)]; }
+  auto begin() { return values_.begin(); }
+  auto end() { return values_.end(); }
+  auto begin() const { return values_.begin(); }
+  auto end() const { return values_.end(); }
+
+ private:
+  std::array<Value, kFindingKindCount> values_ = {};
+};
+
+/// Where in the robot a finding occurs.
+struct JointPlace {
+  int dof = 0;
+};
+struct FootPlace {
+  Side side = Side::left;
+};
+struct AxisPlace {
+  int axis = 0;  ///< 0, 1, 2: x, y, z of the world
+};
+struct SupportPlace {
+  Support support = Support::both;
+};
+struct BodyPairPlace {
+  int a = 0, b = 0;  ///< indices into RobotModel::bodies()
+};
+/// std::monostate: not known, as in a finding that was read from a file.
+using Place =
+    std::variant<std::monostate, JointPlace, FootPlace, AxisPlace, SupportPlace, BodyPairPlace>;
+
+struct Finding {
+  FindingKind kind = FindingKind::cog_residual;
+  Severity severity = Severity::error;
+  double begin = 0, end = 0, at = 0;  ///< window and worst sample [s]
+  double worst = 0, limit = 0;        ///< in `unit`
+  std::string unit;                   ///< "m", "N", "rad", "rad/s", "N m", "s", "1", ...
+  std::string where;                  ///< `place` in words: joint, foot, axis, support, bodies
+  std::string hint;                   ///< what to do about it
+  std::string follows_from = {};      ///< the error that causes this one; "" when it stands alone
+  std::string remedy = {};            ///< the hint without the advice to use `repair`
+  Place place = {};
+};
+
+/// The dof of a finding at a joint, -1 of any other.
+int dof_of(const Finding& finding);
+
+}  // namespace ayumi

@@ -1,0 +1,46 @@
+// What stands in the way of a repair, in words: each kind of finding in its own unit.
+
+#include "ayumi/repair/infeasibility_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/planted.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using namespace planted;
+
+// A foot whose contact ends 60 ms before the foot leaves the ground: milliseconds, not millimetres.
+TEST(InfeasibilityReport, NamesTheTimeForWhichAFootStandsOn) {
+  Pattern pattern = walk();
+  pattern.phases[2].until -= 0.060;
+  const CommandSeries series = sample(hoap1(), pattern);
+  RepairOptions options;
+  options.locked_windows = {{0, 10}};
+  const ConsistencyReport report = check_consistency(hoap1(), series, options.check);
+  const std::vector<Obstacle> found = obstacles(hoap1(), series, report, options);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].finding.kind, FindingKind::contact_ends_early);
+  EXPECT_EQ(found[0].finding.unit, "s");
+  EXPECT_NEAR(found[0].finding.worst, 0.060, 0.005);
+  EXPECT_EQ(found[0].text.find("in the air"), std::string::npos) << found[0].text;
+  EXPECT_EQ(found[0].text.find(" mm"), std::string::npos) << found[0].text;
+  EXPECT_NE(found[0].text.find(" ms after its contact has ended"), std::string::npos)
+      << found[0].text;
+  EXPECT_NE(found[0].text.find("that window is locked; unlock it"), std::string::npos)
+      << found[0].text;
+}
+
+// Findings know the bodies, joints and feet that they speak of, apart from their words.
+TEST(InfeasibilityReport, PlacesAreTyped) {
+  Finding at_joint, at_bodies;
+  at_joint.place = JointPlace{3};
+  at_bodies.place = BodyPairPlace{4, 7};
+  at_bodies.where = "no - bodies - of this name";
+  EXPECT_EQ(dof_of(at_joint), 3);
+  EXPECT_EQ(dof_of(at_bodies), -1);
+}
+
+}  // namespace
+}  // namespace ayumi::test
