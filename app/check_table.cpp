@@ -38,27 +38,30 @@ std::string check_table(const ConsistencyReport& report) {
     out += "  " + padded(name_of(f.severity), 8) + padded(name_of(f.kind), 19) + f.where + ", " +
            seconds(f) + ": " + quantity(f.worst, f.unit) + ", limit " + quantity(f.limit, f.unit) +
            "\n" + std::string(10, ' ') + f.hint + "\n";
-  const CheckSummary& s = report.summary;
-  out += "  ZMP " + mm(std::abs(s.min_zmp_margin)) +
-         (s.min_zmp_margin < 0 ? " outside" : " inside") + " the support; residuals COG " +
-         mm(s.max_cog_residual) + ", ZMP " + mm(s.max_zmp_residual) + ", f_z " +
-         text::fixed(s.max_fz_residual, 2) + " N; point mass off by " + mm(s.max_point_mass_gap) +
-         "\n";
-  out += "  of the limits: position " + percent(s.max_joint_position_ratio) + ", speed " +
-         percent(s.max_joint_speed_ratio) + ", torque " + percent(s.max_torque_ratio) +
-         ", continuous " + percent(s.max_continuous_torque_ratio) + ", friction " +
-         percent(s.max_friction_ratio) + ", yaw " + percent(s.max_yaw_ratio) + "\n";
-  out += "  feet: slip " + mm(s.max_foot_slip) + ", into the ground " + mm(s.max_foot_penetration) +
-         ", above it in contact " + mm(s.max_foot_float) + "; bodies " + mm(s.min_self_clearance) +
+  const auto at = [&](FindingKind kind) { return report.summary[kind]; };
+  const double margin = at(FindingKind::support_margin);
+  out += "  ZMP " + mm(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
+         " the support; residuals COG " + mm(at(FindingKind::cog_residual)) + ", ZMP " +
+         mm(at(FindingKind::zmp_residual)) + ", f_z " +
+         text::fixed(at(FindingKind::fz_residual), 2) + " N; point mass off by " +
+         mm(at(FindingKind::point_mass_gap)) + "\n";
+  std::vector<std::string> shares;
+  for (const FindingSpec* spec : summary_figures())
+    if (spec->figure.share_name)
+      shares.push_back(std::string(spec->figure.share_name) + " " + percent(at(spec->kind)));
+  out += "  of the limits: " + text::join(shares, ", ") + "\n";
+  out += "  feet: slip " + mm(at(FindingKind::foot_slip)) + ", into the ground " +
+         mm(at(FindingKind::foot_penetration)) + ", above it in contact " +
+         mm(at(FindingKind::foot_float)) + "; bodies " + mm(at(FindingKind::self_collision)) +
          " apart\n";
   return out;
 }
 
 std::string tolerance_table() {
   std::string out;
-  for (const FindingSpec& spec : finding_specs())
-    out += padded(name_of(spec.kind), 20) +
-           padded(text::brief(spec.tolerance) + " " + spec.unit, 14) + spec.meaning + "\n";
+  for (const FindingSpec* spec : finding_specs())
+    out += padded(name_of(spec->kind), 20) +
+           padded(text::brief(spec->tolerance) + " " + spec->unit, 14) + spec->meaning + "\n";
   return out;
 }
 

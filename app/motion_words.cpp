@@ -56,10 +56,11 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
   if (change.zmp.size > 5e-5 || change.fz.size > 0.05)
     out += "  " + largest("commanded ZMP", change.zmp, millimetres(change.zmp.size)) + "; " +
            largest("f_z", change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
-  return out + "  ZMP " + margin_words(before.summary.min_zmp_margin) + " before, " +
-         margin_words(after.summary.min_zmp_margin) + " after; COG off its command by " +
-         millimetres(before.summary.max_cog_residual) + " before, " +
-         millimetres(after.summary.max_cog_residual) + " after\n";
+  return out + "  ZMP " + margin_words(before.summary[FindingKind::support_margin]) + " before, " +
+         margin_words(after.summary[FindingKind::support_margin]) +
+         " after; COG off its command by " +
+         millimetres(before.summary[FindingKind::cog_residual]) + " before, " +
+         millimetres(after.summary[FindingKind::cog_residual]) + " after\n";
 }
 
 std::string cost_words(const WeightedChange& cost) {

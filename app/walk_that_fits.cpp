@@ -7,7 +7,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/check/finding_kinds.hpp"
+#include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
 
 namespace ayumi::app {

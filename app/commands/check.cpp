@@ -32,11 +32,11 @@ struct CheckCommand {
 void print_tolerances(const Context& context) {
   context.print(tolerance_table());
   Json kinds = Json::array();
-  for (const FindingSpec& spec : finding_specs())
-    kinds.push_back({{"kind", name_of(spec.kind)},
-                     {"tolerance", spec.tolerance},
-                     {"unit", spec.unit},
-                     {"meaning", spec.meaning}});
+  for (const FindingSpec* spec : finding_specs())
+    kinds.push_back({{"kind", name_of(spec->kind)},
+                     {"tolerance", spec->tolerance},
+                     {"unit", spec->unit},
+                     {"meaning", spec->meaning}});
   context.print_json(Json{{"tolerances", kinds}}.dump(2));
 }
 

@@ -37,7 +37,7 @@ Json side_json(const std::string& file, const PatternInput& input,
   return {{"pattern", file},
           {"duration_s", input.series.duration()},
           {"verdict", report.consistent ? "consistent" : "inconsistent"},
-          {"min_zmp_margin_m", report.summary.min_zmp_margin}};
+          {"min_zmp_margin_m", report.summary[FindingKind::support_margin]}};
 }
 
 std::string side_words(const std::string& file, const PatternInput& input,

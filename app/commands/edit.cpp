@@ -108,8 +108,8 @@ std::string in_words(double scale, const ConsistencyReport& before, const ForceR
   if (pace)
     out += pace->bounded ? "  faster breaks " + pace->limited_by + "\n"
                          : "  nothing limits it down to this scale\n";
-  return out + "  ZMP margin " + mm(before.summary.min_zmp_margin) + " mm before, " +
-         mm(after.report.summary.min_zmp_margin) + " mm now; f_z " + newtons(force_before) +
+  return out + "  ZMP margin " + mm(before.summary[FindingKind::support_margin]) + " mm before, " +
+         mm(after.report.summary[FindingKind::support_margin]) + " mm now; f_z " + newtons(force_before) +
          " before, " + newtons(force) + " now\n";
 }
 
@@ -118,8 +118,8 @@ Json in_json(double scale, const ConsistencyReport& before, const ForceRange& fo
   const ForceRange force = force_range(after.series);
   Json json = {{"scale", scale}};
   if (pace) json["limited_by"] = pace->bounded ? Json(pace->limited_by) : Json(nullptr);
-  json["zmp_margin_m"] = {{"before", before.summary.min_zmp_margin},
-                          {"after", after.report.summary.min_zmp_margin}};
+  json["zmp_margin_m"] = {{"before", before.summary[FindingKind::support_margin]},
+                          {"after", after.report.summary[FindingKind::support_margin]}};
   json["fz_N"] = {{"before", {force_before.least, force_before.most}},
                   {"after", {force.least, force.most}}};
   return json;

@@ -121,7 +121,7 @@ TEST(SecondRouteOfClearance, ByPointsOnTheBodies) {
       s.state = model.rest_state();
       for (int i = 0; i < model.dof_count(); ++i) s.state.theta[i] += random.uniform(-0.3, 0.3);
       s.acceleration.setZero(model.velocity_count());
-      const double told = check_consistency(model, series).summary.min_self_clearance;
+      const double told = check_consistency(model, series).summary[FindingKind::self_collision];
       const auto shapes = placed_shapes(model, s.state);
       double least = 1e9;
       for (const CollisionModel::Pair& pair : collisions.pairs())

@@ -119,7 +119,7 @@ TEST(RealMotion, FujitsuWalkShiftsItsWeightAsMeasured) {
   EXPECT_GT(inside, 0.95 * single);
   // Rounded counts are no accelerations: the motors could have done what they did.
   const ConsistencyReport r = check_consistency(model, series);
-  EXPECT_LT(r.summary.max_joint_acceleration, 100);
+  EXPECT_LT(r.summary[FindingKind::joint_acceleration], 100);
   for (const Finding& f : r.findings)
     EXPECT_FALSE(f.severity == Severity::error && f.kind == FindingKind::joint_torque)
         << f.where << f.at;
@@ -277,7 +277,7 @@ TEST(HoapImport, AWalkRoundedToCountsPassesTheCheck) {
   const ConsistencyReport r = check_consistency(hoap1(), sample(hoap1(), motion.pattern));
   for (const Finding& f : r.findings)
     EXPECT_NE(f.severity, Severity::error) << name_of(f.kind) << " " << f.where << " at " << f.at;
-  EXPECT_LT(r.summary.max_foot_float, 5e-5);
+  EXPECT_LT(r.summary[FindingKind::foot_float], 5e-5);
   // Swings end with (1 - s)^3: the last hundredth of a millimetre of them is rest.
   ASSERT_EQ(motion.pattern.phases.size(), walk.phases.size());
   for (size_t i = 0; i < walk.phases.size(); ++i) {

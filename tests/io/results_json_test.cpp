@@ -25,8 +25,8 @@ TEST(ResultsJson, CheckHasTheKeysOfTheCommandLine) {
                       .unit = "m",
                       .where = "left",
                       .hint = "move the ZMP \"in\""}};
-  report.summary.min_zmp_margin = -0.003;
-  report.summary.min_self_clearance = std::numeric_limits<double>::infinity();
+  report.summary[FindingKind::support_margin] = -0.003;
+  report.summary[FindingKind::self_collision] = std::numeric_limits<double>::infinity();
   const Json json = Json::parse(check_json(report));
   EXPECT_EQ(json.at("verdict"), "inconsistent");
   const Json& finding = json.at("findings").at(0);

@@ -297,20 +297,20 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
       if (count > 0 && turning[k].allFinite()) raise("momentum", sum.norm() / count);
     }
   }
-  told = {{"friction", summary.max_friction_ratio},
-          {"yaw", summary.max_yaw_ratio},
-          {"zmp", summary.max_zmp_residual},
-          {"float", summary.max_foot_float},
-          {"penetration", summary.max_foot_penetration},
-          {"slip", summary.max_foot_slip},
-          {"position", summary.max_joint_position_ratio},
-          {"speed", summary.max_joint_speed_ratio},
-          {"acceleration", summary.max_joint_acceleration},
-          {"torque", summary.max_torque_ratio},
-          {"overlap", -summary.min_self_clearance},
-          {"cog", summary.max_cog_residual}};
-  if (jumps) told["ballistic"] = summary.max_ballistic_residual;
-  if (summary.min_self_clearance < 0) {  // ends are less deep inside than shapes have to be parted
+  told = {{"friction", summary[FindingKind::friction]},
+          {"yaw", summary[FindingKind::yaw_moment]},
+          {"zmp", summary[FindingKind::zmp_residual]},
+          {"float", summary[FindingKind::foot_float]},
+          {"penetration", summary[FindingKind::foot_penetration]},
+          {"slip", summary[FindingKind::foot_slip]},
+          {"position", summary[FindingKind::joint_position]},
+          {"speed", summary[FindingKind::joint_speed]},
+          {"acceleration", summary[FindingKind::joint_acceleration]},
+          {"torque", summary[FindingKind::joint_torque]},
+          {"overlap", -summary[FindingKind::self_collision]},
+          {"cog", summary[FindingKind::cog_residual]}};
+  if (jumps) told["ballistic"] = summary[FindingKind::ballistic];
+  if (summary[FindingKind::self_collision] < 0) {  // ends are less deep inside than shapes have to be parted
     EXPECT_GT(most["overlap"], 0);
     EXPECT_LE(most["overlap"], told["overlap"] + 1e-9);
     told.erase("overlap");
@@ -319,7 +319,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
     EXPECT_NEAR(most[name], value, 1e-9 * std::max(1.0, std::abs(value))) << name;
   if (!jumps) return;
   // About the commanded COG here, about the posture's there, 2.3 mm apart.
-  EXPECT_NEAR(most["momentum"], summary.max_momentum_rate,
+  EXPECT_NEAR(most["momentum"], summary[FindingKind::angular_momentum],
               0.0025 * model.mass() * most["ballistic"] + 1e-9);
 }
 

@@ -228,9 +228,9 @@ TEST(CorrectionProblem, RowsAreTheFiguresOfTheCheck) {
     if (b.group == ConstraintGroup::cog) cog = std::max(cog, size);
   }
   const CheckSummary summary = check_consistency(model, series).summary;
-  EXPECT_NEAR(torque, summary.max_torque_ratio, 1e-9);
-  EXPECT_NEAR(speed, summary.max_joint_speed_ratio, 1e-9);
-  EXPECT_NEAR(cog, summary.max_cog_residual, 1e-9);
+  EXPECT_NEAR(torque, summary[FindingKind::joint_torque], 1e-9);
+  EXPECT_NEAR(speed, summary[FindingKind::joint_speed], 1e-9);
+  EXPECT_NEAR(cog, summary[FindingKind::cog_residual], 1e-9);
 }
 
 TEST(CorrectionProblem, JacobianInFlightAndOnASlope) {

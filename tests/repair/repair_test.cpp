@@ -87,10 +87,10 @@ TEST(Repair, ConsistentStaysAsItIs) {
 
 TEST(Repair, ZmpComesInsideAndNothingChangesTwice) {
   const CommandSeries series = zmp_outside();
-  ASSERT_LT(check_consistency(limited_biped(), series).summary.min_zmp_margin, -0.005);
+  ASSERT_LT(check_consistency(limited_biped(), series).summary[FindingKind::support_margin], -0.005);
   const RepairResult r = repair(limited_biped(), series);
   expect_repaired(r);
-  EXPECT_GT(r.check.summary.min_zmp_margin, 0.0019);
+  EXPECT_GT(r.check.summary[FindingKind::support_margin], 0.0019);
   EXPECT_NEAR(r.at, middle_of_step(3), 0.3);
   // Only the time around the fault moves.
   for (size_t k = 0; k < series.samples.size(); ++k) {
@@ -124,7 +124,7 @@ TEST(Repair, NothingNearbyIsCheaper) {
     const CommandSeries moved = apply_correction(limited_biped(), series, other);
     const ConsistencyReport report = check_consistency(limited_biped(), moved);
     // As far inside as the repair had to be: its program keeps 2.5 mm.
-    if (!report.consistent || report.summary.min_zmp_margin < 0.0025) continue;
+    if (!report.consistent || report.summary[FindingKind::support_margin] < 0.0025) continue;
     ++feasible;
     EXPECT_GE(weighted_change(limited_biped(), series, other), 0.999 * least) << "scale " << scale;
   }
@@ -153,7 +153,7 @@ TEST(Repair, CommandedQuantitiesAloneNeedNoMotion) {
   expect_repaired(r);
   EXPECT_EQ(r.iterations, 0);
   EXPECT_EQ(r.max_joint_change, 0);
-  EXPECT_LT(r.check.summary.max_fz_residual, 1e-9);
+  EXPECT_LT(r.check.summary[FindingKind::fz_residual], 1e-9);
 }
 
 TEST(Repair, SlippingFootStandsStill) {
@@ -168,7 +168,7 @@ TEST(Repair, SlippingFootStandsStill) {
   complete_series(limited_biped(), series);
   const RepairResult r = repair(limited_biped(), series);
   expect_repaired(r);
-  EXPECT_LT(r.check.summary.max_foot_slip, 0.001);
+  EXPECT_LT(r.check.summary[FindingKind::foot_slip], 0.001);
 }
 
 TEST(Repair, Hoap1KneesInEveryStep) {
@@ -181,7 +181,7 @@ TEST(Repair, Hoap1KneesInEveryStep) {
   expect_repaired(r);
   EXPECT_GE(r.max_joint_change, 2 * M_PI / 180);
   EXPECT_LT(r.max_joint_change, 3 * M_PI / 180);
-  EXPECT_GT(r.check.summary.min_zmp_margin, 0.02);
+  EXPECT_GT(r.check.summary[FindingKind::support_margin], 0.02);
   RecordProperty("variables", r.variables);
   RecordProperty("constraints", r.constraints);
   RecordProperty("iterations", r.iterations);

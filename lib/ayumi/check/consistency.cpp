@@ -2,72 +2,55 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/causes.hpp"
-#include "ayumi/check/check_pass.hpp"
-#include "ayumi/check/hints.hpp"
-#include "ayumi/model/gravity.hpp"
+#include "ayumi/check/attribution.hpp"
+#include "ayumi/limits/judged_motion.hpp"
 
 namespace ayumi {
 
-CheckPass::CheckPass(const RobotModel& model, const CommandSeries& series,
-                     const CheckOptions& options)
-    : model(model),
-      series(series),
-      tolerance_of(tolerances(options, model, series)),
-      friction(options.friction),
-      limits(model.limits(options.profile)),
-      plan(contact_plan(series)),
-      collisions(model),
-      dynamics(model, series, plan),
-      weight(model.mass() * kGravity),
-      windows(static_cast<int>(std::lround(kWindowGap / series.dt))),
-      targets(static_cast<int>(std::lround(kWindowGap / series.dt))),
-      square_sum(Eigen::MatrixXd::Zero(model.dof_count(), count() + 1)),
-      flight_moment(count(), Eigen::Vector3d::Zero()),
-      cog(count(), Eigen::Vector3d::Zero()),
-      cog_deviation(count(), 0.0),
-      soles{std::vector<SoleError>(count()), std::vector<SoleError>(count())},
-      rough(count(), 0) {
-  summary.min_zmp_margin = std::numeric_limits<double>::infinity();
-  summary.min_self_clearance = std::numeric_limits<double>::infinity();
-}
-
-bool CheckPass::at_flight_edge(int k) const { return ayumi::at_flight_edge(series, k); }
-
 namespace {
 
-// Of the numbers of a finding: where a tolerance is a share, the finding tells the whole.
-std::string unit_of(const RobotModel& model, const Violation& v) {
-  const bool prismatic = v.kind >= FindingKind::joint_position &&
-                         v.kind <= FindingKind::servo_step && model.dofs()[v.item].prismatic;
-  switch (v.kind) {
-    case FindingKind::fz_residual:
-    case FindingKind::unilateral:
-      return "N";
-    case FindingKind::joint_position:
-    case FindingKind::servo_step:
-      return prismatic ? "m" : "rad";
-    case FindingKind::joint_speed:
-      return prismatic ? "m/s" : "rad/s";
-    case FindingKind::joint_acceleration:
-      return prismatic ? "m/s^2" : "rad/s^2";
-    case FindingKind::joint_torque:
-    case FindingKind::continuous_torque:
-      return prismatic ? "N" : "N m";
-    default:
-      return finding_specs()[static_cast<size_t>(v.kind)].unit;
+// Inverse dynamics of every sample in order of time, then what takes the whole motion to see.
+void judge(JudgedMotion& motion) {
+  for (int k = 0; k < motion.count(); ++k) {
+    const SampleDynamics& demand = motion.dynamics.at(k);
+    motion.cog[k] = motion.dynamics.data().cog;
+    const JudgedSample sample = {k, motion.series.samples[k], demand, !motion.at_flight_edge(k),
+                                 motion.dynamics.plane().empty()};
+    for (const Limit* limit : limits())
+      if (limit->judge_sample) limit->judge_sample(motion, sample);
+  }
+  for (const Limit* limit : limits())
+    if (limit->judge_motion) limit->judge_motion(motion);
+}
+
+// Where acceleration bends, as beside a flight, the ZMP of single samples is thrown: for less than
+// kSpikeTime a moment of up to kSpikeSize times the limit turns nothing. It becomes a warning. Source
+// of both: docs/attribution.md.
+constexpr double kSpikeTime = 0.005;  // [s]
+constexpr double kSpikeSize = 3;      // times the limit
+
+void excuse_spikes(const JudgedMotion& motion, std::vector<FindingWindow>& windows) {
+  for (FindingWindow& w : windows) {
+    const double lasts = (w.last - w.first + 1) * motion.series.dt;
+    if (w.worst.kind == FindingKind::zmp_residual && lasts < kSpikeTime - 1e-9 &&
+        w.worst.value <= kSpikeSize * w.worst.limit)
+      w.worst.severity = Severity::warning;
   }
 }
 
-Finding finding_of(const CheckPass& pass, const std::vector<FindingWindow>& windows,
+std::string place_text(const JudgedMotion& motion, const Violation& v) {
+  return where_text(motion.model, spec_of(v.kind).place(motion, v));
+}
+
+Finding finding_of(const JudgedMotion& motion, const std::vector<FindingWindow>& windows,
                    const FindingWindow& window) {
   const Violation& v = window.worst;
-  const double dt = pass.series.dt;
+  const FindingSpec& spec = spec_of(v.kind);
+  const double dt = motion.series.dt;
   Finding f;
   f.kind = v.kind;
   f.severity = v.severity;
@@ -76,48 +59,35 @@ Finding finding_of(const CheckPass& pass, const std::vector<FindingWindow>& wind
   f.at = v.sample * dt;
   f.worst = v.value;
   f.limit = v.limit;
-  f.unit = unit_of(pass.model, v);
-  f.place = place_of(pass.collisions.pairs(), v);
-  f.where = where_text(pass.model, f.place);
-  const Advice advice = advice_for(pass.model, window, dt, pass.friction);
+  f.unit = spec.finding_unit ? spec.finding_unit(motion, v) : spec.unit;
+  f.place = spec.place(motion, v);
+  f.where = place_text(motion, v);
+  const Advice advice = spec.advice(motion, window);
   f.remedy = advice.remedy;
   f.hint = advice.remedy + advice.or_repair;
   if (window.cause >= 0) {
     const Violation& cause = windows[window.cause].worst;
-    f.follows_from = std::string(name_of(cause.kind)) + " " +
-                     where_text(pass.model, place_of(pass.collisions.pairs(), cause)) + " at " +
+    f.follows_from = std::string(name_of(cause.kind)) + " " + place_text(motion, cause) + " at " +
                      text::fixed(cause.sample * dt, 3) + " s";
     f.hint = f.remedy = "follows from " + f.follows_from + ": mend that first";
   }
   return f;
 }
 
-// Where acceleration bends, as beside a flight, the ZMP of single samples is thrown: for less than
-// 5 ms a moment of that size turns nothing. Told as a warning.
-void excuse_spikes(const CheckPass& pass, std::vector<FindingWindow>& windows) {
-  constexpr double kShort = 0.005;  // [s]
-  constexpr double kSmall = 3;      // times the limit
-  for (FindingWindow& w : windows) {
-    const double lasts = (w.last - w.first + 1) * pass.series.dt;
-    if (w.worst.kind == FindingKind::zmp_residual && lasts < kShort - 1e-9 &&
-        w.worst.value <= kSmall * w.worst.limit)
-      w.worst.severity = Severity::warning;
-  }
-}
-
-ConsistencyReport report_of(CheckPass& pass) {
-  std::vector<FindingWindow> windows = pass.windows.finish();
-  excuse_spikes(pass, windows);
-  explain(pass, windows);
-  const std::vector<FindingWindow> targets = pass.targets.finish();
+ConsistencyReport report_of(JudgedMotion& motion) {
+  std::vector<FindingWindow> windows = motion.windows.finish();
+  excuse_spikes(motion, windows);
+  mark_consequences(motion, windows);
+  const std::vector<FindingWindow> targets = motion.targets.finish();
   windows.insert(windows.end(), targets.begin(), targets.end());
   ConsistencyReport report;
-  report.profile = pass.limits.name;
-  report.summary = pass.summary;
-  if (!std::isfinite(report.summary.min_zmp_margin)) report.summary.min_zmp_margin = 0;
-  if (!std::isfinite(report.summary.min_self_clearance)) report.summary.min_self_clearance = 0;
+  report.profile = motion.limits.name;
+  report.summary = motion.summary;
+  for (const FindingSpec* spec : summary_figures())  // nothing was near the limit at any time
+    if (spec->figure.least && !std::isfinite(report.summary[spec->kind]))
+      report.summary[spec->kind] = 0;
   for (const FindingWindow& window : windows)
-    report.findings.push_back(finding_of(pass, windows, window));
+    report.findings.push_back(finding_of(motion, windows, window));
   std::stable_sort(report.findings.begin(), report.findings.end(),
                    [](const Finding& a, const Finding& b) {
                      return std::tie(a.severity, a.begin) < std::tie(b.severity, b.begin);
@@ -138,16 +108,9 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
   if (series.samples.empty())
     fail(ErrorCode::bad_pattern, "the command series is empty: nothing to check");
   if (!(series.dt > 0)) fail(ErrorCode::usage, "the command series has no sample time");
-  CheckPass pass(model, series, options);
-  check_samples(pass);
-  check_feet(pass);
-  check_angular_momentum(pass);
-  check_leaps(pass);
-  check_servo_steps(pass);
-  check_servo_targets(pass);
-  check_continuous_torque(pass);
-  check_self_collision(pass);
-  return report_of(pass);
+  JudgedMotion motion(model, series, options);
+  judge(motion);
+  return report_of(motion);
 }
 
 }  // namespace ayumi

@@ -16,13 +16,9 @@ const char* name_of(Severity severity) {
 }
 
 const std::vector<std::string>& finding_kind_names() {
-  static const std::vector<std::string> names = {
-      "cog_residual",       "zmp_residual",       "fz_residual",       "point_mass_gap",
-      "support_margin",     "friction",           "unilateral",        "yaw_moment",
-      "ballistic",          "angular_momentum",   "foot_slip",         "foot_penetration",
-      "foot_float",         "contact_ends_early", "joint_position",    "joint_speed",
-      "joint_acceleration", "joint_torque",       "continuous_torque", "servo_step",
-      "self_collision",     "landing_speed"};
+#define AYUMI_NAME(kind, limit) #kind,
+  static const std::vector<std::string> names = {AYUMI_FINDING_KINDS(AYUMI_NAME)};
+#undef AYUMI_NAME
   return names;
 }
 

@@ -10,7 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "ayumi/model/robot_description.hpp"
+#include "ayumi/limits/limit_table.hpp"
+#include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
@@ -18,32 +19,15 @@ namespace ayumi {
 enum class Severity { error, warning, info };
 const char* name_of(Severity severity);
 
-/// In the order of docs/cli.md.
+/// In the order of limit_table.hpp.
 enum class FindingKind {
-  cog_residual,
-  zmp_residual,
-  fz_residual,
-  point_mass_gap,
-  support_margin,
-  friction,
-  unilateral,
-  yaw_moment,
-  ballistic,
-  angular_momentum,
-  foot_slip,
-  foot_penetration,
-  foot_float,
-  contact_ends_early,
-  joint_position,
-  joint_speed,
-  joint_acceleration,
-  joint_torque,
-  continuous_torque,
-  servo_step,
-  self_collision,
-  landing_speed,
+#define AYUMI_ENUMERATOR(kind, limit) kind,
+  AYUMI_FINDING_KINDS(AYUMI_ENUMERATOR)
+#undef AYUMI_ENUMERATOR
 };
-inline constexpr int kFindingKindCount = 22;
+#define AYUMI_COUNT(kind, limit) +1
+inline constexpr int kFindingKindCount = AYUMI_FINDING_KINDS(AYUMI_COUNT);
+#undef AYUMI_COUNT
 
 /// The name in JSON files, option values and texts.
 const char* name_of(FindingKind kind);

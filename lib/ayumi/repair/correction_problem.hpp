@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "ayumi/check/finding_kinds.hpp"
+#include "ayumi/limits/limit.hpp"
 #include "ayumi/demand/contact_plan.hpp"
 #include "ayumi/math/windows.hpp"
 #include "ayumi/repair/correction_constraints.hpp"

@@ -90,7 +90,7 @@ void CorrectionProblem::place_margins() {
         inverse_dynamics(model_, sample.state, sample.acceleration, data).head<6>();
     const GroundDemand use =
         ground_demand(at.plane, plane_wrench(at.plane, sample.state.base.position, wrench),
-                      0.02 * model_.mass() * kGravity);
+                      kContactThreshold * model_.mass() * kGravity);
     own.push_back(at.plane.empty() || !at.known ? kNoBound : use.has_zmp ? use.margin : 0);
   }
   const double safe = std::max(spec_.safe_margin, spec_.zmp_margin);
@@ -178,7 +178,7 @@ void CorrectionProblem::place_ground_blocks(int instant) {
     const Vector6d wrench =
         plane_wrench(plane, sample->state.base.position,
                      inverse_dynamics(model_, sample->state, sample->acceleration, data).head<6>());
-    const GroundDemand use = ground_demand(plane, wrench, 0.02 * weight);
+    const GroundDemand use = ground_demand(plane, wrench, kContactThreshold * weight);
     least_force = std::min(least_force, use.normal_force);
     if (!use.has_zmp) continue;
     const double grip = spec_.friction * use.normal_force;

@@ -15,20 +15,6 @@ namespace {
 
 constexpr double kSlowest = 8;  // more is not called a matter of time
 
-bool told_as_ratio(const Finding& f) {
-  switch (f.kind) {
-    case FindingKind::friction:
-    case FindingKind::yaw_moment:
-    case FindingKind::joint_speed:
-    case FindingKind::joint_torque:
-    case FindingKind::continuous_torque:
-    case FindingKind::servo_step:
-      return true;
-    default:
-      return false;
-  }
-}
-
 // The window and a little around it; contacts are those of the whole motion at every sample.
 CommandSeries slowed(const CommandSeries& series, const Finding& f, double factor) {
   CommandSeries part;
@@ -59,7 +45,7 @@ bool passes(const RobotModel& model, const CommandSeries& series, const Finding&
 }
 
 double excess_of(const Finding& f) {
-  if (told_as_ratio(f)) return std::abs(f.worst / f.limit);
+  if (spec_of(f.kind).is_ratio()) return std::abs(f.worst / f.limit);
   return std::abs(f.worst - f.limit);
 }
 
@@ -76,49 +62,8 @@ std::string window_text(const Finding& f) {
   return begin == end ? "at " + text::fixed(f.at, 3) + " s" : "at " + begin + "-" + end + " s";
 }
 
-std::string mm(double metres) { return text::fixed(1000 * std::abs(metres), 1) + " mm"; }
-std::string ms(double seconds) { return text::fixed(1000 * seconds, 0) + " ms"; }
-std::string degrees(double radians) {
-  return text::fixed(std::abs(radians) * 180 / EIGEN_PI, 1) + " deg";
-}
-
 std::string what(const Finding& f, double excess) {
-  const std::string ratio = text::fixed(std::ceil(100 * excess - 1e-9) / 100, 2);
-  if (f.kind == FindingKind::joint_speed)
-    return f.where + " speed reaches " + ratio + " of its limit";
-  if (f.kind == FindingKind::joint_torque)
-    return f.where + " torque reaches " + ratio + " of its limit";
-  if (f.kind == FindingKind::continuous_torque)
-    return f.where + " torque, over the motor's thermal window, reaches " + ratio +
-           " of its lasting limit";
-  if (f.kind == FindingKind::servo_step)
-    return f.where + " steps " + ratio + " times what one servo period allows";
-  if (f.kind == FindingKind::joint_position)
-    return f.where + " goes " + (f.unit == "m" ? mm(excess) : degrees(excess)) +
-           " beyond its limit";
-  if (f.kind == FindingKind::support_margin)
-    return "the ZMP is " + mm(excess) + " outside the support (" + f.where + ")";
-  if (f.kind == FindingKind::friction)
-    return "the motion needs " + ratio + " of the friction there is (" + f.where + ")";
-  if (f.kind == FindingKind::yaw_moment)
-    return "the foot would turn: " + ratio + " of the yaw moment friction resists (" + f.where +
-           ")";
-  if (f.kind == FindingKind::unilateral) return "the ground would have to pull (" + f.where + ")";
-  if (f.kind == FindingKind::foot_slip) return "the " + f.where + " foot slips " + mm(f.worst);
-  if (f.kind == FindingKind::foot_float)
-    return "the " + f.where + " foot stands " + mm(f.worst) + " in the air";
-  if (f.kind == FindingKind::contact_ends_early)
-    return "the " + f.where + " foot stands in its place for " + ms(f.worst) +
-           " after its contact has ended";
-  if (f.kind == FindingKind::foot_penetration)
-    return "the " + f.where + " foot is " + mm(f.worst) + " in the ground";
-  if (f.kind == FindingKind::self_collision) return f.where + " overlap by " + mm(f.worst);
-  if (f.kind == FindingKind::ballistic) return "the COG does not fall freely in flight";
-  if (f.kind == FindingKind::angular_momentum) return "the angular momentum changes in flight";
-  if (f.kind == FindingKind::cog_residual)
-    return "the posture is " + mm(f.worst) + " from the trusted COG";
-  if (f.kind == FindingKind::zmp_residual)
-    return "the motion is " + mm(f.worst) + " from the trusted ZMP";
+  if (const auto text = spec_of(f.kind).obstacle) return text(f, excess);
   return std::string(name_of(f.kind)) + " of " + f.where + " is " + text::brief(f.worst) +
          " against " + text::brief(f.limit) + " " + f.unit;
 }
@@ -126,9 +71,9 @@ std::string what(const Finding& f, double excess) {
 }  // namespace
 
 bool is_matter_of_time(const Finding& f) {
-  const bool of_command = f.kind == FindingKind::zmp_residual || f.kind == FindingKind::fz_residual;
-  const bool of_mean = f.kind == FindingKind::continuous_torque;  // the window is the motor's
-  return !of_command && !is_of_posture(f) && !of_mean;
+  if (f.kind == FindingKind::continuous_torque) return false;  // the window is the motor's
+  const LimitClass limit_class = spec_of(f.kind).limit_class;
+  return limit_class == LimitClass::rate || limit_class == LimitClass::force;
 }
 
 double total_excess(const ConsistencyReport& report) {
@@ -138,7 +83,7 @@ double total_excess(const ConsistencyReport& report) {
     Obstacle o;
     o.finding = f;
     o.excess = excess_of(f);
-    o.is_ratio = told_as_ratio(f);
+    o.is_ratio = spec_of(f.kind).is_ratio();
     double& w = worst[{name_of(f.kind), f.where}];
     w = std::max(w, rank(o));
   }
@@ -200,7 +145,7 @@ std::vector<Obstacle> obstacles(const RobotModel& model, const CommandSeries& se
     Obstacle o;
     o.finding = f;
     o.excess = excess_of(f);
-    o.is_ratio = told_as_ratio(f);
+    o.is_ratio = spec_of(f.kind).is_ratio();
     const auto found = worst.try_emplace({name_of(f.kind), f.where}, o).first;
     if (o.excess > found->second.excess) found->second = o;
   }

@@ -64,13 +64,13 @@ class Bridge {
 };
 
 // Of soles and clearances: the sum of what violates them, and the worst.
-struct Violation {
+struct RowViolation {
   double sum = 0, worst = 0;
 };
 
-Violation violation(const CorrectionProblem& problem, const VectorXd& x) {
+RowViolation violation(const CorrectionProblem& problem, const VectorXd& x) {
   const VectorXd g = problem.constraints(x);
-  Violation result;
+  RowViolation result;
   for (const ConstraintBlock& block : problem.blocks()) {
     if (block.group != ConstraintGroup::stance && block.group != ConstraintGroup::path &&
         block.group != ConstraintGroup::swing && block.group != ConstraintGroup::clearance)
@@ -124,12 +124,12 @@ VectorXd start_of(const CorrectionProblem& problem, const Nlp& nlp, const RobotM
   constexpr double kReaches[] = {0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.6, 0.8};  // [s]
   const CorrectionTrack track = problem.track(nlp.start);
   VectorXd best = nlp.start;
-  Violation least = violation(problem, best);
+  RowViolation least = violation(problem, best);
   if (least.worst < kFar) return best;
   for (const double reach : kReaches) {
     const VectorXd x = problem.point(
         bridge(model, series, findings, reach, track.spacing, track.coefficients.rows()));
-    const Violation here = violation(problem, x);
+    const RowViolation here = violation(problem, x);
     if (here.sum >= least.sum) continue;
     least = here;
     best = x;

@@ -22,7 +22,7 @@ using FootWrenches = std::array<Vector6d, 2>;
 FootWrenches shared(const RobotModel& model, const CollocationPoint& instant, const Vector3d& base,
                     const Vector6d& wrench) {
   const GroundDemand use = ground_demand(instant.plane, plane_wrench(instant.plane, base, wrench),
-                                         0.02 * model.mass() * kGravity);
+                                         kContactThreshold * model.mass() * kGravity);
   const Support support = instant.contact[0] ? (instant.contact[1] ? Support::both : Support::left)
                           : instant.contact[1] ? Support::right
                                                : Support::none;

@@ -115,16 +115,12 @@ Table finding_table(const ConsistencyReport& check) {
   return table;
 }
 
-Table summary_table(const CheckSummary& s) {
-  return {"Figures of the check",
-          {},
-          {{"least ZMP margin", figure(1e3 * s.min_zmp_margin, "mm")},
-           {"largest COG residual", figure(1e3 * s.max_cog_residual, "mm")},
-           {"largest ZMP residual", figure(1e3 * s.max_zmp_residual, "mm")},
-           {"largest joint speed", figure(100 * s.max_joint_speed_ratio, "% of the limit")},
-           {"largest torque", figure(100 * s.max_torque_ratio, "% of the limit")},
-           {"largest friction use", figure(100 * s.max_friction_ratio, "% of the cone")},
-           {"least clearance of the links", figure(1e3 * s.min_self_clearance, "mm")}}};
+Table summary_table(const CheckSummary& summary) {
+  Table table = {"Figures of the check", {}, {}};
+  for (const FindingSpec* spec : summary_figures())
+    table.rows.push_back({spec->figure.label,
+                          figure(spec->figure.scale * summary[spec->kind], spec->figure.unit)});
+  return table;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/finding_kinds.hpp"
+#include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
 
 namespace ayumi {

@@ -35,27 +35,11 @@ OrderedJson json_of(const Finding& f) {
            f.follows_from.empty() ? OrderedJson(nullptr) : OrderedJson(f.follows_from)}};
 }
 
-OrderedJson json_of(const CheckSummary& s) {
-  return {{"min_zmp_margin_m", figure(s.min_zmp_margin)},
-          {"max_cog_residual_m", figure(s.max_cog_residual)},
-          {"max_zmp_residual_m", figure(s.max_zmp_residual)},
-          {"max_fz_residual_N", figure(s.max_fz_residual)},
-          {"max_point_mass_gap_m", figure(s.max_point_mass_gap)},
-          {"max_joint_position_ratio", figure(s.max_joint_position_ratio)},
-          {"max_joint_speed_ratio", figure(s.max_joint_speed_ratio)},
-          {"max_joint_acceleration_rad_s2", figure(s.max_joint_acceleration)},
-          {"max_torque_ratio", figure(s.max_torque_ratio)},
-          {"max_continuous_torque_ratio", figure(s.max_continuous_torque_ratio)},
-          {"max_friction_ratio", figure(s.max_friction_ratio)},
-          {"max_yaw_ratio", figure(s.max_yaw_ratio)},
-          {"max_foot_slip_m", figure(s.max_foot_slip)},
-          {"max_foot_penetration_m", figure(s.max_foot_penetration)},
-          {"max_foot_float_m", figure(s.max_foot_float)},
-          {"max_landing_speed_m_s", figure(s.max_landing_speed)},
-          {"max_servo_step_ratio", figure(s.max_servo_step)},
-          {"max_ballistic_residual_m_s2", figure(s.max_ballistic_residual)},
-          {"max_momentum_rate_Nm", figure(s.max_momentum_rate)},
-          {"min_self_clearance_m", figure(s.min_self_clearance)}};
+OrderedJson json_of(const CheckSummary& summary) {
+  OrderedJson json = OrderedJson::object();
+  for (const FindingSpec* spec : summary_figures())
+    json[spec->figure.key] = figure(summary[spec->kind]);
+  return json;
 }
 
 OrderedJson json_of(const ConsistencyReport& report) {

@@ -34,21 +34,14 @@ Finding finding_of(const JsonNode& node) {
   return f;
 }
 
+// A run of an older version may lack figures that were added since.
 CheckSummary summary_of(const JsonNode& node) {
-  CheckSummary s;
-  const auto read = [&](const char* key, double& value) { value = figure(node.at(key)); };
-  read("min_zmp_margin_m", s.min_zmp_margin);
-  read("max_cog_residual_m", s.max_cog_residual);
-  read("max_zmp_residual_m", s.max_zmp_residual);
-  read("max_fz_residual_N", s.max_fz_residual);
-  read("max_joint_position_ratio", s.max_joint_position_ratio);
-  read("max_joint_speed_ratio", s.max_joint_speed_ratio);
-  read("max_torque_ratio", s.max_torque_ratio);
-  read("max_continuous_torque_ratio", s.max_continuous_torque_ratio);
-  read("max_friction_ratio", s.max_friction_ratio);
-  read("max_yaw_ratio", s.max_yaw_ratio);
-  read("min_self_clearance_m", s.min_self_clearance);
-  return s;
+  CheckSummary summary;
+  for (const FindingSpec* spec : summary_figures()) {
+    const auto value = node.find(spec->figure.key);
+    summary[spec->kind] = value ? figure(*value) : std::numeric_limits<double>::quiet_NaN();
+  }
+  return summary;
 }
 
 ConsistencyReport check_of(const JsonNode& node) {

@@ -1,4 +1,4 @@
-#include "ayumi/check/finding_windows.hpp"
+#include "ayumi/limits/violation.hpp"
 
 #include <algorithm>
 #include <tuple>

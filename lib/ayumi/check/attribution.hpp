@@ -1,0 +1,21 @@
+#pragma once
+// Attribution: one fault in a pattern shows in many figures. A finding that another one is enough to
+// bring about is a consequence of it: it becomes a warning that names its cause, so that errors are
+// what there is to correct. The rules are data, the rows of the table in docs/attribution.md.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "ayumi/limits/judged_motion.hpp"
+
+namespace ayumi {
+
+/// Sets `cause` and lowers the severity of every error that follows from another one. At least one
+/// error stays where there was one.
+void mark_consequences(JudgedMotion& motion, std::vector<FindingWindow>& windows);
+
+/// The rows in their order: cause, what follows from it, in which interval, under which condition.
+std::vector<std::array<std::string, 4>> attribution_table();
+
+}  // namespace ayumi

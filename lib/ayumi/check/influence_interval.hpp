@@ -1,0 +1,59 @@
+#pragma once
+// Influence intervals: how far one fault reaches in time, in samples, the last one included.
+
+#include "ayumi/limits/judged_motion.hpp"
+
+namespace ayumi {
+
+struct Interval {
+  int first = 0, last = 0;
+  bool touches(const Interval& other) const { return first <= other.last && last >= other.first; }
+  bool touches(const FindingWindow& w) const { return first <= w.last && last >= w.first; }
+  bool contains(const FindingWindow& w) const { return first <= w.first && w.last <= last; }
+  bool contains(int sample) const { return first <= sample && sample <= last; }
+};
+
+/// Samples that one jump of a joint spoils to either side by differences: rates and accelerations are
+/// fitted over two samples to either side (motion/differentiate.hpp), and a jump has two samples.
+inline constexpr int kDifferenceReach = 3;
+
+/// The window with `pad` samples on either side.
+Interval around(const FindingWindow& window, int pad = 0);
+inline Interval around(const Interval& interval, int pad) {
+  return {interval.first - pad, interval.last + pad};
+}
+
+/// The window, and what lies around it as far as the posture's COG is off the command.
+Interval deviation_around(const JudgedMotion& motion, const FindingWindow& window);
+
+/// The window of a foot's fault, and what lies around it in the same contact as far as the sole is
+/// out of its place by more than rounding.
+Interval displacement_around(const JudgedMotion& motion, const FindingWindow& window);
+
+/// The largest distance of a supporting sole from its place [m].
+double displacement(const JudgedMotion& motion, int foot, int sample);
+
+/// The excursion with which a joint goes beyond its limit in this window: from where it last turned
+/// back before it to where it turns back after it. One key that is wrong moves no more than that.
+Interval excursion_around(const JudgedMotion& motion, const FindingWindow& window);
+
+/// While an angle is wrong: its excursion, and as long as it moves the COG off the command.
+Interval wrong_angle_around(const JudgedMotion& motion, const FindingWindow& window);
+
+/// The flight of this window.
+Interval flight_around(const JudgedMotion& motion, const FindingWindow& window);
+
+/// From rest to rest (20 ms and more), around this sample.
+Interval motion_around(const JudgedMotion& motion, int sample);
+
+/// The phase in which a foot is said to stand too early or let go too early, and its time off the
+/// ground at that end of its contact.
+Interval moved_phases(const JudgedMotion& motion, const Violation& foot);
+
+/// The joint's largest step in this interval is undone by another one in it.
+bool comes_back(const JudgedMotion& motion, int dof, const Interval& interval);
+
+/// 50 ms: forces answer before and after a displacement does.
+int pad_samples(const JudgedMotion& motion);
+
+}  // namespace ayumi

@@ -1,0 +1,89 @@
+// In flight no moment acts, so the angular momentum L about the COG is constant: dL/dt = 0, where
+// dL/dt is the moment of the demanded ground wrench about the COG. The rate of a single sample holds
+// the rounding of differences, so the mean over five samples is judged.
+#include <algorithm>
+
+#include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/model/gravity.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+
+namespace {
+
+// Rate of the angular momentum in flight [N m]. Source: docs/attribution.md: legs that swing at
+// 1000 rad/s^2 leave 0.1 N m of rounding in single samples of a robot of 6 kg.
+constexpr double kMomentTolerance = 0.1;
+
+// The same as a share of weight times COG height, for larger robots. Source: docs/attribution.md; it
+// is 0.1 N m for a robot of 6 kg whose COG is 0.26 m high.
+constexpr double kMomentShare = 0.0065;
+
+constexpr int kMeanReach = 2;  // samples to either side; chosen: the reach of fill_rates()
+
+double least_moment_tolerance(const RobotModel& model, const CommandSeries& series) {
+  return kMomentShare * model.mass() * kGravity * series.samples.front().cog.z();
+}
+
+void note_moment(JudgedMotion& motion, const JudgedSample& s) {
+  if (s.known && s.flight) motion.flight_moment[s.k] = s.demand.moment;
+}
+
+void judge_angular_momentum(JudgedMotion& motion) {
+  const double limit = motion.tolerance(FindingKind::angular_momentum);
+  for (int k = 0; k < motion.count(); ++k) {
+    if (!motion.flies_freely(k)) continue;
+    Vector3d sum = Vector3d::Zero();
+    int samples = 0;
+    for (int i = k - kMeanReach; i <= k + kMeanReach; ++i) {
+      if (!motion.flies_freely(i)) continue;
+      sum += motion.flight_moment[i];
+      ++samples;
+    }
+    const Vector3d mean = sum / samples;
+    const double size = mean.norm();
+    motion.raise(FindingKind::angular_momentum, size);
+    if (size > limit)
+      motion.add(FindingKind::angular_momentum, 0, k, size, limit, size, largest_axis(mean));
+  }
+}
+
+bool angular_momentum_holds(JudgedMotion& motion, const Violation& v, double pace) {
+  return motion.dynamics.at(v.sample, pace).moment.norm() <= std::abs(v.limit) &&
+         flight_is_free(motion, v.sample, pace, motion.tolerance(FindingKind::ballistic));
+}
+
+Advice angular_momentum_advice(const JudgedMotion&, const FindingWindow&) {
+  return "nothing can turn the robot in flight: keep its angular momentum, let arms and legs move "
+         "against each other";
+}
+
+std::string angular_momentum_obstacle(const Finding&, double) {
+  return "the angular momentum changes in flight";
+}
+
+}  // namespace
+
+const Limit& angular_momentum_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::angular_momentum,
+                    .limit_class = LimitClass::force,
+                    .unit = "N m",
+                    .tolerance = kMomentTolerance,
+                    .meaning = "rate of the angular momentum about the COG in flight",
+                    .least_tolerance = least_moment_tolerance,
+                    .figure = {.key = "max_momentum_rate_Nm",
+                               .label = "largest rate of the angular momentum in flight",
+                               .unit = "N m",
+                               .line = 19},
+                    .place = axis_place,
+                    .advice = angular_momentum_advice,
+                    .obstacle = angular_momentum_obstacle,
+                    .holds_at = angular_momentum_holds}},
+      .judge_sample = note_moment,
+      .judge_motion = judge_angular_momentum};
+  return limit;
+}
+
+}  // namespace ayumi

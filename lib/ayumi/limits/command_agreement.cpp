@@ -1,0 +1,177 @@
+// A pattern commands COG, ZMP and f_z beside the posture; they have to be those of the motion:
+//   |COG of the posture - commanded COG|, |ZMP of the full model - commanded ZMP|, |f_z - commanded|.
+// The point mass gap is that between the ZMP of the mass-concentrated model, equations (14) and (15)
+// of the paper, and the commanded ZMP: how good that model is here, never an error. In flight nothing
+// pushes whatever the motion does: the commanded force must be zero.
+#include <algorithm>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/limits/judged_motion.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+
+namespace {
+
+// [m] Chosen: a hundredth of the COG's height of small humanoids (0.2 to 0.3 m).
+constexpr double kCogTolerance = 0.002;
+// [m] Chosen: a tenth of the width of small soles (5 cm), so that a ZMP planned with a safe margin
+// stays inside the support.
+constexpr double kZmpTolerance = 0.005;
+// Share of the weight. Chosen: the vertical acceleration of the COG is met to 5 % of g.
+constexpr double kForceTolerance = 0.05;
+// [m] Chosen: for information only, no verdict depends on it.
+constexpr double kPointMassTolerance = 0.02;
+
+// Share of the weight below which a ZMP error may be larger, in inverse proportion to the force: what
+// counts is its moment. Source: docs/attribution.md: legs that swing at 1000 rad/s^2 leave 0.1 N m of
+// rounding in single samples.
+constexpr double kLightShare = 0.25;
+constexpr double kLeastForceShare = 1e-3;  // of the weight, so that no force divides by zero
+
+// A ZMP error of less than 5 ms and of up to three times its limit is a warning. Source: docs/
+// attribution.md: where acceleration bends, as beside flights, the ZMP of single samples is thrown,
+// and a moment of that size turns nothing in that time. The judge applies it to whole windows.
+
+void judge_vertical_force(JudgedMotion& motion, const JudgedSample& s) {
+  const double residual = (s.flight ? 0 : s.demand.wrench[2]) - s.command.fz;
+  motion.raise(FindingKind::fz_residual, std::abs(residual));
+  const double limit = motion.tolerance(FindingKind::fz_residual) * motion.weight;
+  if (std::abs(residual) > limit)
+    motion.add(FindingKind::fz_residual, 0, s.k, residual, limit, std::abs(residual));
+}
+
+void judge_zmp(JudgedMotion& motion, const JudgedSample& s) {
+  const CommandSample& command = s.command;
+  const double light =
+      kLightShare * motion.weight / std::max(command.fz, kLeastForceShare * motion.weight);
+  judge_difference(motion, FindingKind::zmp_residual, s.k,
+                   s.demand.use.zmp_world - command.zmp, Severity::error, 0, std::max(1.0, light));
+  const Vector3d point_mass =
+      pendulum_zmp(motion.dynamics.data().cog, s.demand.ddcog, command.zmp.z());
+  judge_difference(motion, FindingKind::point_mass_gap, s.k, point_mass - command.zmp,
+                   Severity::info);
+}
+
+void judge_command(JudgedMotion& motion, const JudgedSample& s) {
+  const Vector3d deviation = motion.cog[s.k] - s.command.cog;
+  motion.cog_deviation[s.k] = deviation.norm();
+  judge_difference(motion, FindingKind::cog_residual, s.k, deviation);
+  if (s.known) judge_vertical_force(motion, s);
+  if (s.has_zmp()) judge_zmp(motion, s);
+}
+
+bool zmp_holds(JudgedMotion& motion, const Violation& v, double pace) {
+  const SampleDynamics& now = motion.dynamics.at(v.sample, pace);
+  return now.use.has_zmp && (now.use.zmp_world - motion.series.samples[v.sample].zmp).norm() <=
+                                std::abs(v.limit);
+}
+
+bool vertical_force_holds(JudgedMotion& motion, const Violation& v, double pace) {
+  return std::abs(motion.dynamics.at(v.sample, pace).wrench[2] -
+                  motion.series.samples[v.sample].fz) <= std::abs(v.limit);
+}
+
+const char* force_unit(const JudgedMotion&, const Violation&) { return "N"; }
+
+Place vertical_place(const JudgedMotion&, const Violation&) { return AxisPlace{2}; }
+
+Advice cog_advice(const JudgedMotion&, const FindingWindow& window) {
+  const Violation& v = window.worst;
+  return {"the posture's COG is " + in_mm(v.value) + " from the commanded one, most along " +
+              axis_name(v.detail) + ": change the COG key or the posture",
+          std::string(kOrRepair) + " (which keeps the posture)"};
+}
+
+Advice zmp_advice(const JudgedMotion&, const FindingWindow& window) {
+  const Violation& v = window.worst;
+  return {"the motion's own ZMP is " + in_mm(v.value) + " from the commanded one, most along " +
+              axis_name(v.detail) + ": change the ZMP key or the motion",
+          std::string(kOrRepair) + " (which keeps the motion)"};
+}
+
+Advice vertical_force_advice(const JudgedMotion&, const FindingWindow& window) {
+  const double value = window.worst.value;
+  return {"the motion needs " + text::fixed(std::abs(value), 1) + " N " +
+              (value > 0 ? "more" : "less") + " than the commanded f_z: leave f_z out",
+          kOrRepair};
+}
+
+Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
+  return "the mass-concentrated model is " + in_mm(window.worst.value) +
+         " off here: judge by the full model";
+}
+
+std::string cog_obstacle(const Finding& f, double) {
+  return "the posture is " + in_mm(f.worst) + " from the trusted COG";
+}
+
+std::string zmp_obstacle(const Finding& f, double) {
+  return "the motion is " + in_mm(f.worst) + " from the trusted ZMP";
+}
+
+}  // namespace
+
+const Limit& command_agreement_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::cog_residual,
+                    .limit_class = LimitClass::command,
+                    .unit = "m",
+                    .tolerance = kCogTolerance,
+                    .meaning = "COG of the posture from the commanded COG",
+                    .figure = {.key = "max_cog_residual_m",
+                               .label = "largest COG residual",
+                               .unit = "mm",
+                               .scale = 1e3,
+                               .line = 2},
+                    .place = axis_place,
+                    .advice = cog_advice,
+                    .obstacle = cog_obstacle},
+                   {.kind = FindingKind::zmp_residual,
+                    .limit_class = LimitClass::command,
+                    .unit = "m",
+                    .tolerance = kZmpTolerance,
+                    .meaning = "ZMP of the full model from the commanded ZMP",
+                    .figure = {.key = "max_zmp_residual_m",
+                               .label = "largest ZMP residual",
+                               .unit = "mm",
+                               .scale = 1e3,
+                               .line = 3},
+                    .place = axis_place,
+                    .advice = zmp_advice,
+                    .obstacle = zmp_obstacle,
+                    .holds_at = zmp_holds},
+                   {.kind = FindingKind::fz_residual,
+                    .limit_class = LimitClass::command,
+                    .unit = "m g",
+                    .tolerance = kForceTolerance,
+                    .meaning = "vertical force the motion needs from the commanded one, tolerance "
+                               "as a share of the weight",
+                    .figure = {.key = "max_fz_residual_N",
+                               .label = "largest vertical force residual",
+                               .unit = "N",
+                               .line = 4},
+                    .finding_unit = force_unit,
+                    .place = vertical_place,
+                    .advice = vertical_force_advice,
+                    .holds_at = vertical_force_holds},
+                   {.kind = FindingKind::point_mass_gap,
+                    .limit_class = LimitClass::command,
+                    .unit = "m",
+                    .tolerance = kPointMassTolerance,
+                    .meaning = "ZMP of the mass-concentrated model (14)(15) from the commanded "
+                               "ZMP; tells how good that model is here, never an error",
+                    .figure = {.key = "max_point_mass_gap_m",
+                               .label = "largest gap of the point mass",
+                               .unit = "mm",
+                               .scale = 1e3,
+                               .line = 5},
+                    .place = axis_place,
+                    .advice = point_mass_advice}},
+      .judge_sample = judge_command};
+  return limit;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,93 @@
+// In flight nothing pushes, so the COG of the motion falls freely, ddcog = (0, 0, -g), and so does
+// the commanded COG, whose acceleration is the fourth-order second difference
+//   (16 (c_-1 + c_1) - (c_-2 + c_2) - 30 c_0) / (12 dt^2)   (central differences, Taylor).
+// Speed may change where a flight begins or ends, position may not: the step of the COG between the
+// two samples beside the edge is the mean of the steps before and after it.
+#include "ayumi/base/text.hpp"
+#include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/model/gravity.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+
+namespace {
+
+// Acceleration of the COG from free fall [m/s^2]. Chosen: 5 % of g, as the tolerance of f_z.
+constexpr double kFallTolerance = 0.5;
+
+// Leap of the COG at the edge of a flight [m]. Source: docs/attribution.md ("Leaps"): a force of ten
+// times the weight bends the path by 0.04 mm at 1 kHz, so 1 mm is no force.
+constexpr double kLeap = 1e-3;
+
+// All five samples are in the same flight.
+Vector3d commanded_acceleration(const CommandSeries& series, int k) {
+  const auto cog = [&](int i) { return series.samples[i].cog; };
+  return (16 * (cog(k - 1) + cog(k + 1)) - (cog(k - 2) + cog(k + 2)) - 30 * cog(k)) /
+         (12 * series.dt * series.dt);
+}
+
+void judge_free_fall(JudgedMotion& motion, const JudgedSample& s) {
+  if (!s.known || !s.flight) return;
+  const Vector3d gravity(0, 0, -kGravity);
+  judge_difference(motion, FindingKind::ballistic, s.k, s.demand.ddcog - gravity);
+  if (s.k >= 2 && s.k + 2 < motion.count())
+    judge_difference(motion, FindingKind::ballistic, s.k,
+                     commanded_acceleration(motion.series, s.k) - gravity, Severity::error,
+                     kCommandFalls);
+}
+
+void judge_leaps(JudgedMotion& motion) {
+  const double dt = motion.series.dt, limit = kLeap / (dt * dt);
+  for (int k = 2; k + 1 < motion.count(); ++k) {
+    if (motion.flies(k) == motion.flies(k - 1)) continue;
+    const std::vector<Vector3d>& c = motion.cog;
+    const Vector3d beside = 0.5 * (c[k + 1] - c[k] + c[k - 1] - c[k - 2]);
+    const Vector3d leap = c[k] - c[k - 1] - beside;
+    const double size = leap.norm() / (dt * dt);
+    if (size > limit)
+      motion.add(FindingKind::ballistic, kMotionLeaps, motion.flies(k) ? k : k - 1, size, limit,
+                 size, largest_axis(leap));
+  }
+}
+
+bool free_fall_holds(JudgedMotion& motion, const Violation& v, double pace) {
+  return flight_is_free(motion, v.sample, pace, std::abs(v.limit));
+}
+
+Advice free_fall_advice(const JudgedMotion& motion, const FindingWindow& window) {
+  const double dt = motion.series.dt;
+  if (window.worst.item == kMotionLeaps)
+    return "the COG leaps by " + in_mm(window.worst.value * dt * dt) +
+           " where the flight begins or ends: nothing can throw it like that";
+  return "the COG must fall freely for the " + text::fixed((window.last - window.first) * dt, 3) +
+         " s of flight: leave the COG keys of the flight out";
+}
+
+std::string free_fall_obstacle(const Finding&, double) {
+  return "the COG does not fall freely in flight";
+}
+
+}  // namespace
+
+const Limit& free_fall_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::ballistic,
+                    .limit_class = LimitClass::force,
+                    .unit = "m/s^2",
+                    .tolerance = kFallTolerance,
+                    .meaning = "COG acceleration in flight from free fall",
+                    .figure = {.key = "max_ballistic_residual_m_s2",
+                               .label = "largest deviation from free fall",
+                               .unit = "m/s^2",
+                               .line = 18},
+                    .place = axis_place,
+                    .advice = free_fall_advice,
+                    .obstacle = free_fall_obstacle,
+                    .holds_at = free_fall_holds}},
+      .judge_sample = judge_free_fall,
+      .judge_motion = judge_leaps};
+  return limit;
+}
+
+}  // namespace ayumi

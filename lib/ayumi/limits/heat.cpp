@@ -1,0 +1,104 @@
+// A motor is heated by the square of its torque. In its thermal window T the root mean square stays
+// within the continuous torque of the actuator profile:
+//   sqrt(1/T sum tau^2 dt) <= continuous torque,
+// where a motor gives no more than its peak torque, so that no more than that heats it. A motion that
+// is shorter than T may be followed by rest: then it is a warning.
+#include <algorithm>
+
+#include "ayumi/limits/judged_motion.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Share of the continuous torque. A law, not a choice: the data sheet's figure is the largest one.
+constexpr double kWholeContinuousTorque = 1;
+
+// Samples of the window at which torques are evaluated at another pace. Chosen: attribution only asks
+// whether the mean holds, and each sample costs one inverse dynamics.
+constexpr int kThermalLooks = 100;
+
+void note_square_sum(JudgedMotion& motion, const JudgedSample& s) {
+  for (int i = 0; i < motion.model.dof_count(); ++i) {
+    const double torque = s.known ? s.demand.torque[i] : 0;
+    const double given = std::min(std::abs(torque), motion.limits.peak_torque[i]);
+    motion.square_sum(i, s.k + 1) = motion.square_sum(i, s.k) + given * given;
+  }
+}
+
+int thermal_samples(const JudgedMotion& motion) {
+  return static_cast<int>(std::lround(motion.limits.thermal_window / motion.series.dt));
+}
+
+void judge_heat(JudgedMotion& motion) {
+  const int whole = thermal_samples(motion);
+  const int window = std::clamp(whole, 1, motion.count());
+  const Severity severity = motion.count() >= whole ? Severity::error : Severity::warning;
+  const double most = motion.tolerance(FindingKind::continuous_torque);
+  for (int i = 0; i < motion.model.dof_count(); ++i) {
+    const double limit = motion.limits.continuous_torque[i];
+    if (!std::isfinite(limit)) continue;
+    for (int end = window; end <= motion.count(); ++end) {
+      const double mean = (motion.square_sum(i, end) - motion.square_sum(i, end - window)) / window;
+      const double rms = std::sqrt(std::max(0.0, mean));
+      motion.raise(FindingKind::continuous_torque, rms / limit);
+      if (rms > most * limit)
+        motion.add(FindingKind::continuous_torque, i, end - 1, rms, most * limit, rms / limit, 0,
+                   severity);
+    }
+  }
+}
+
+bool heat_holds(JudgedMotion& motion, const Violation& v, double pace) {
+  const int length = std::clamp(thermal_samples(motion), 1, v.sample + 1);
+  double sum = 0;
+  for (int n = 0; n < kThermalLooks; ++n) {
+    const int k = v.sample - static_cast<int>(static_cast<long>(n) * length / kThermalLooks);
+    const double torque = std::min(std::abs(motion.dynamics.at(k, pace).torque[v.item]),
+                                   motion.limits.peak_torque[v.item]);
+    sum += torque * torque;
+  }
+  return std::sqrt(sum / kThermalLooks) <= v.limit;
+}
+
+const char* heat_unit(const JudgedMotion& motion, const Violation& v) {
+  return joint_unit(motion, v, "N m", "N");
+}
+
+Advice heat_advice(const JudgedMotion& motion, const FindingWindow& window) {
+  return motion.model.dofs()[window.worst.item].name +
+         " gets too hot when this goes on: rest it, or straighten the leg";
+}
+
+std::string heat_obstacle(const Finding& f, double excess) {
+  return f.where + " torque, over the motor's thermal window, reaches " + ratio_text(excess) +
+         " of its lasting limit";
+}
+
+}  // namespace
+
+const Limit& heat_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::continuous_torque,
+                    .limit_class = LimitClass::force,
+                    .unit = "1",
+                    .tolerance = kWholeContinuousTorque,
+                    .meaning = "RMS motor torque over its continuous limit in the motor's thermal "
+                               "window; a warning when the motion is shorter than the window",
+                    .figure = {.key = "max_continuous_torque_ratio",
+                               .label = "largest continuous torque",
+                               .unit = "% of the limit",
+                               .scale = 100,
+                               .share_name = "continuous",
+                               .line = 10},
+                    .finding_unit = heat_unit,
+                    .place = joint_place,
+                    .advice = heat_advice,
+                    .obstacle = heat_obstacle,
+                    .holds_at = heat_holds}},
+      .judge_sample = note_square_sum,
+      .judge_motion = judge_heat};
+  return limit;
+}
+
+}  // namespace ayumi

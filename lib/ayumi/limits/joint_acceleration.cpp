@@ -1,0 +1,57 @@
+// A joint that accelerates very fast moves roughly: differences over a jump between two samples give
+// accelerations of jump / dt^2, far above those of a planned motion. It is a warning, since motors
+// have a limit of torque (joint_torque.cpp), not of roughness.
+#include <algorithm>
+
+#include "ayumi/limits/judged_motion.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// [rad/s^2] or [m/s^2] Chosen: a jump of 0.03 degrees between two samples at 1 kHz. It is a warning,
+// but attribution takes samples beyond it for broken by a jump.
+constexpr double kRoughAcceleration = 500;
+
+void judge_joint_accelerations(JudgedMotion& motion, const JudgedSample& s) {
+  const double most = motion.tolerance(FindingKind::joint_acceleration);
+  for (int i = 0; i < motion.model.dof_count(); ++i) {
+    const double acceleration = s.command.acceleration[6 + i];
+    motion.raise(FindingKind::joint_acceleration, std::abs(acceleration));
+    if (std::abs(acceleration) <= most) continue;
+    motion.rough[s.k] = true;
+    motion.add(FindingKind::joint_acceleration, i, s.k, acceleration, most, std::abs(acceleration),
+               0, Severity::warning);
+  }
+}
+
+const char* acceleration_unit(const JudgedMotion& motion, const Violation& v) {
+  return joint_unit(motion, v, "rad/s^2", "m/s^2");
+}
+
+Advice acceleration_advice(const JudgedMotion& motion, const FindingWindow& window) {
+  return "smooth " + motion.model.dofs()[window.worst.item].name +
+         " here: a longer segment or minimum_jerk interpolation";
+}
+
+}  // namespace
+
+const Limit& joint_acceleration_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::joint_acceleration,
+                    .limit_class = LimitClass::rate,
+                    .unit = "rad/s^2",
+                    .tolerance = kRoughAcceleration,
+                    .meaning = "joint acceleration; a warning, it tells a rough motion",
+                    .figure = {.key = "max_joint_acceleration_rad_s2",
+                               .label = "largest joint acceleration",
+                               .unit = "rad/s^2",
+                               .line = 8},
+                    .finding_unit = acceleration_unit,
+                    .place = joint_place,
+                    .advice = acceleration_advice}},
+      .judge_sample = judge_joint_accelerations};
+  return limit;
+}
+
+}  // namespace ayumi

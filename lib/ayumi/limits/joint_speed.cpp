@@ -1,0 +1,66 @@
+// A motor has a largest speed: |dtheta| <= speed limit of the actuator profile, which the voltage of
+// the motor and its gear set (data sheet of the robot, robot.json).
+#include "ayumi/limits/judged_motion.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Share of the speed limit. A law, not a choice: the data sheet's figure is the largest speed.
+constexpr double kWholeSpeed = 1;
+
+void judge_joint_speeds(JudgedMotion& motion, const JudgedSample& s) {
+  const double most = motion.tolerance(FindingKind::joint_speed);
+  for (int i = 0; i < motion.model.dof_count(); ++i) {
+    const double limit = motion.limits.speed[i], speed = s.command.state.dtheta[i];
+    if (!std::isfinite(limit)) continue;
+    const double ratio = std::abs(speed) / limit;
+    motion.raise(FindingKind::joint_speed, ratio);
+    if (ratio > most)
+      motion.add(FindingKind::joint_speed, i, s.k, speed, most * limit, ratio);
+  }
+}
+
+bool joint_speed_holds(JudgedMotion&, const Violation& v, double pace) {
+  return std::abs(v.value) * pace <= std::abs(v.limit);
+}
+
+const char* speed_unit(const JudgedMotion& motion, const Violation& v) {
+  return joint_unit(motion, v, "rad/s", "m/s");
+}
+
+Advice speed_advice(const JudgedMotion& motion, const FindingWindow& window) {
+  const Violation& v = window.worst;
+  return slow_down_text(std::abs(v.value / v.limit)) + " or let " +
+         motion.model.dofs()[v.item].name + " swing through a smaller angle";
+}
+
+std::string speed_obstacle(const Finding& f, double excess) {
+  return f.where + " speed reaches " + ratio_text(excess) + " of its limit";
+}
+
+}  // namespace
+
+const Limit& joint_speed_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::joint_speed,
+                    .limit_class = LimitClass::rate,
+                    .unit = "1",
+                    .tolerance = kWholeSpeed,
+                    .meaning = "joint speed over its limit",
+                    .figure = {.key = "max_joint_speed_ratio",
+                               .label = "largest joint speed",
+                               .unit = "% of the limit",
+                               .scale = 100,
+                               .share_name = "speed",
+                               .line = 7},
+                    .finding_unit = speed_unit,
+                    .place = joint_place,
+                    .advice = speed_advice,
+                    .obstacle = speed_obstacle,
+                    .holds_at = joint_speed_holds}},
+      .judge_sample = judge_joint_speeds};
+  return limit;
+}
+
+}  // namespace ayumi

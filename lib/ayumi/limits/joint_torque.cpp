@@ -1,0 +1,69 @@
+// A motor has a peak torque: |tau| <= peak torque of the actuator profile, with tau from inverse
+// dynamics and the ground wrench shared between the feet, plus the rotor's inertia, viscous and dry
+// friction of the servo (demand/ground_demand.hpp, motor_torques()). Beside a flight's edges
+// accelerations have no meaning, so torques are not judged there.
+#include "ayumi/limits/judged_motion.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Share of the peak torque. A law, not a choice: the data sheet's figure is the largest torque.
+constexpr double kWholeTorque = 1;
+
+void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {
+  const double most = motion.tolerance(FindingKind::joint_torque);
+  if (!s.known) return;
+  for (int i = 0; i < motion.model.dof_count(); ++i) {
+    const double limit = motion.limits.peak_torque[i], torque = s.demand.torque[i];
+    if (!std::isfinite(limit)) continue;
+    const double ratio = std::abs(torque) / limit;
+    motion.raise(FindingKind::joint_torque, ratio);
+    if (ratio > most) motion.add(FindingKind::joint_torque, i, s.k, torque, most * limit, ratio);
+  }
+}
+
+bool joint_torque_holds(JudgedMotion& motion, const Violation& v, double pace) {
+  return std::abs(motion.dynamics.at(v.sample, pace).torque[v.item]) <= std::abs(v.limit);
+}
+
+const char* torque_unit(const JudgedMotion& motion, const Violation& v) {
+  return joint_unit(motion, v, "N m", "N");
+}
+
+Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
+  const Violation& v = window.worst;
+  return "lower the load on " + motion.model.dofs()[v.item].name + ": " +
+         slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
+         " where inertia is the cause, or straighten the leg where weight is";
+}
+
+std::string torque_obstacle(const Finding& f, double excess) {
+  return f.where + " torque reaches " + ratio_text(excess) + " of its limit";
+}
+
+}  // namespace
+
+const Limit& joint_torque_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::joint_torque,
+                    .limit_class = LimitClass::force,
+                    .unit = "1",
+                    .tolerance = kWholeTorque,
+                    .meaning = "motor torque over its peak limit",
+                    .figure = {.key = "max_torque_ratio",
+                               .label = "largest torque",
+                               .unit = "% of the limit",
+                               .scale = 100,
+                               .share_name = "torque",
+                               .line = 9},
+                    .finding_unit = torque_unit,
+                    .place = joint_place,
+                    .advice = torque_advice,
+                    .obstacle = torque_obstacle,
+                    .holds_at = joint_torque_holds}},
+      .judge_sample = judge_joint_torques};
+  return limit;
+}
+
+}  // namespace ayumi

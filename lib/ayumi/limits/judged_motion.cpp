@@ -1,0 +1,102 @@
+#include "ayumi/limits/judged_motion.hpp"
+
+#include <limits>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/model/gravity.hpp"
+
+namespace ayumi {
+
+using Eigen::Vector3d;
+
+JudgedMotion::JudgedMotion(const RobotModel& model, const CommandSeries& series,
+                           const CheckOptions& options)
+    : model(model),
+      series(series),
+      tolerance_of(tolerances(options, model, series)),
+      friction(options.friction),
+      limits(model.limits(options.profile)),
+      plan(contact_plan(series)),
+      collisions(model),
+      dynamics(model, series, plan),
+      weight(model.mass() * kGravity),
+      windows(static_cast<int>(std::lround(kWindowGap / series.dt))),
+      targets(static_cast<int>(std::lround(kWindowGap / series.dt))),
+      square_sum(Eigen::MatrixXd::Zero(model.dof_count(), count() + 1)),
+      flight_moment(count(), Vector3d::Zero()),
+      cog(count(), Vector3d::Zero()),
+      cog_deviation(count(), 0.0),
+      soles{std::vector<SoleError>(count()), std::vector<SoleError>(count())},
+      rough(count(), 0) {
+  for (const FindingSpec* spec : summary_figures())
+    if (spec->figure.least) summary[spec->kind] = std::numeric_limits<double>::infinity();
+}
+
+int largest_axis(const Vector3d& v) {
+  int axis = 0;
+  v.cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
+
+void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
+                      const Vector3d& difference, Severity severity, int item, double allowance) {
+  const double size = difference.norm();
+  motion.raise(kind, size);
+  const double limit = allowance * motion.tolerance(kind);
+  if (size > limit)
+    motion.add(kind, item, sample, size, limit, size, largest_axis(difference), severity);
+}
+
+bool flight_is_free(JudgedMotion& motion, int sample, double pace, double limit) {
+  constexpr int kLooks = 5;  // at other samples. Chosen: both ends and three between
+  int first = sample, last = sample;
+  while (motion.flies_freely(first - 1)) --first;
+  while (motion.flies_freely(last + 1)) ++last;
+  for (int n = 0; n <= kLooks; ++n) {
+    const int k = n == kLooks ? sample : first + n * (last - first) / (kLooks - 1);
+    const Vector3d ddcog = motion.dynamics.at(k, pace).ddcog;
+    if ((ddcog + Vector3d(0, 0, kGravity)).norm() > limit) return false;
+  }
+  return true;
+}
+
+Place axis_place(const JudgedMotion&, const Violation& v) { return AxisPlace{v.detail}; }
+Place support_place(const JudgedMotion&, const Violation& v) {
+  return SupportPlace{static_cast<Support>(v.detail)};
+}
+Place foot_place(const JudgedMotion&, const Violation& v) { return FootPlace{foot_of(v)}; }
+Place joint_place(const JudgedMotion&, const Violation& v) { return JointPlace{v.item}; }
+
+std::string where_text(const RobotModel& model, const Place& place) {
+  struct Words {
+    const RobotModel& model;
+    std::string operator()(std::monostate) const { return ""; }
+    std::string operator()(const JointPlace& p) const { return model.dofs()[p.dof].name; }
+    std::string operator()(const FootPlace& p) const { return name_of(p.side); }
+    std::string operator()(const AxisPlace& p) const { return axis_name(p.axis); }
+    std::string operator()(const SupportPlace& p) const { return name_of(p.support); }
+    std::string operator()(const BodyPairPlace& p) const {
+      return model.bodies()[p.a].name + " - " + model.bodies()[p.b].name;
+    }
+  };
+  return std::visit(Words{model}, place);
+}
+
+const char* axis_name(int axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
+
+const char* joint_unit(const JudgedMotion& motion, const Violation& v, const char* rotary,
+                       const char* prismatic) {
+  return motion.model.dofs()[v.item].prismatic ? prismatic : rotary;
+}
+
+std::string in_mm(double metres) { return text::fixed(1000 * std::abs(metres), 1) + " mm"; }
+
+std::string ratio_text(double excess) {
+  return text::fixed(std::ceil(100 * excess - 1e-9) / 100, 2);
+}
+
+std::string slow_down_text(double factor) {
+  return "slow this window down by " + text::fixed(std::ceil(100 * factor) / 100, 2);
+}
+
+}  // namespace ayumi

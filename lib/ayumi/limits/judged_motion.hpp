@@ -1,0 +1,115 @@
+#pragma once
+// A motion under judgement: what it demands, what its limits are, and what they find.
+
+#include <cmath>
+
+#include "ayumi/demand/motion_demand.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
+#include "ayumi/limits/limit.hpp"
+#include "ayumi/limits/violation.hpp"
+
+namespace ayumi {
+
+/// Lengths that are met exactly differ by rounding of at most this [m]. Chosen: a thousandth of the
+/// smallest tolerance of a length, and far above the rounding of coordinates of metres (1e-15).
+inline constexpr double kRounding = 1e-7;
+
+/// Violations of one kind and item nearer than this are one finding [s]. Chosen: 20 samples at 1 kHz,
+/// so that a figure which swings about its limit is one finding, and two steps are two.
+inline constexpr double kWindowGap = 0.020;
+
+struct JudgedMotion {
+  JudgedMotion(const RobotModel& model, const CommandSeries& series, const CheckOptions& options);
+  JudgedMotion(const JudgedMotion&) = delete;
+  JudgedMotion& operator=(const JudgedMotion&) = delete;
+
+  int count() const { return static_cast<int>(series.samples.size()); }
+  double tolerance(FindingKind kind) const { return tolerance_of[kind]; }
+  bool flies(int k) const {
+    return k >= 0 && k < count() && series.samples[k].support == Support::none;
+  }
+  /// In flight, and not so near its edges that the rates mix it with support.
+  bool flies_freely(int k) const { return flies(k) && !at_flight_edge(k); }
+  /// See at_flight_edge() of demand/contact_plan.hpp.
+  bool at_flight_edge(int k) const { return ayumi::at_flight_edge(series, k); }
+
+  /// Notes a violation; `excess` orders the samples of a finding, `detail` is carried along.
+  void add(FindingKind kind, int item, int sample, double value, double limit, double excess,
+           int detail = 0, Severity severity = Severity::error) {
+    windows.add({kind, item, sample, severity, value, limit, excess, detail});
+  }
+  /// Notes a value of a figure of the summary: the largest, or the least, stays.
+  void raise(FindingKind kind, double value) {
+    if (value > summary[kind]) summary[kind] = value;
+  }
+  void lower(FindingKind kind, double value) {
+    if (value < summary[kind]) summary[kind] = value;
+  }
+
+  const RobotModel& model;
+  const CommandSeries& series;
+  const Tolerances tolerance_of;
+  const double friction;  ///< coefficient
+  const ActuatorLimits& limits;
+  const ContactPlan plan;
+  const CollisionModel collisions;
+  MotionDynamics dynamics;
+  const double weight;  ///< [N]
+
+  FindingWindows windows;
+  FindingWindows targets;  ///< warnings that are neither cause nor consequence of anything
+  CheckSummary summary;
+
+  // What the samples demand, as far as limits of the whole motion and attribution ask for it.
+  Eigen::MatrixXd square_sum;                   ///< of torques before a sample, dof x (samples + 1)
+  std::vector<Eigen::Vector3d> flight_moment;   ///< about the COG, by sample; 0 on the ground [N m]
+  std::vector<Eigen::Vector3d> cog;             ///< of the posture, by sample [m]
+  std::vector<double> cog_deviation;            ///< of the posture from the command, by sample [m]
+  std::array<std::vector<SoleError>, 2> soles;  ///< by Side and sample; of a swing the depth only
+  std::vector<char> rough;  ///< a joint accelerates beyond the tolerance, by sample
+};
+
+/// One sample of it.
+struct JudgedSample {
+  int k = 0;
+  const CommandSample& command;
+  const SampleDynamics& demand;
+  /// No flight edge beside it: its accelerations are those of support or of flight, not a mixture,
+  /// so that its forces have a meaning.
+  bool known = true;
+  bool flight = false;  ///< no foot supports
+
+  bool stands() const { return known && !flight; }
+  bool has_zmp() const { return stands() && demand.use.has_zmp; }
+};
+
+/// The axis along which a vector is largest.
+int largest_axis(const Eigen::Vector3d& v);
+
+/// Notes the size of a difference that should vanish as figure, and as violation beyond `allowance`
+/// times the tolerance. Its detail is the largest axis.
+void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
+                      const Eigen::Vector3d& difference, Severity severity = Severity::error,
+                      int item = 0, double allowance = 1);
+
+/// Whether all of a flight is free within `limit` [m/s^2] when it is played at this pace. A flight
+/// has one pace at which it is free, so several samples are looked at: the acceleration of a single
+/// one can be scaled to that of gravity whatever made it.
+bool flight_is_free(JudgedMotion& motion, int sample, double pace, double limit);
+
+// Places and words that several limits share.
+Place axis_place(const JudgedMotion&, const Violation&);     ///< by detail
+Place support_place(const JudgedMotion&, const Violation&);  ///< by detail
+Place foot_place(const JudgedMotion&, const Violation&);     ///< by item
+Place joint_place(const JudgedMotion&, const Violation&);    ///< by item
+std::string where_text(const RobotModel& model, const Place& place);
+const char* axis_name(int axis);
+/// `rotary`, or for a prismatic joint (the item) the other unit.
+const char* joint_unit(const JudgedMotion&, const Violation&, const char* rotary,
+                       const char* prismatic);
+std::string in_mm(double metres);            ///< of the size, "12.0 mm"
+std::string ratio_text(double excess);       ///< rounded up to 0.01, "1.04"
+std::string slow_down_text(double factor);   ///< "slow this window down by 1.04"
+inline constexpr const char* kOrRepair = ", or repair";
+
+}  // namespace ayumi

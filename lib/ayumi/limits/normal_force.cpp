@@ -1,0 +1,58 @@
+// The ground pushes and cannot pull: f_n >= 0 wherever a foot is planned to stand, where f_n is the
+// demanded ground force along the normal of the support plane. A COG that is to fall faster than
+// gravity (ddz < -g) needs f_n < 0: the feet would leave the ground, which only a planned flight may.
+#include "ayumi/limits/judged_motion.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Normal force below which contact is a warning, as a share of the weight. Chosen: where less than a
+// twentieth of the weight rests on the ground, friction and ZMP say little. It is a warning only;
+// half or twice of it changes no verdict.
+constexpr double kLeastNormalShare = 0.05;
+
+void judge_normal_force(JudgedMotion& motion, const JudgedSample& s) {
+  if (!s.stands()) return;
+  const double least = motion.tolerance(FindingKind::unilateral) * motion.weight;
+  const double force = s.demand.use.normal_force;
+  if (force >= least) return;
+  const bool pulls = force < 0;
+  motion.add(FindingKind::unilateral, 0, s.k, force, pulls ? 0 : least, -force,
+             static_cast<int>(s.command.support), pulls ? Severity::error : Severity::warning);
+}
+
+bool normal_force_holds(JudgedMotion& motion, const Violation& v, double pace) {
+  return motion.dynamics.at(v.sample, pace).use.normal_force >= 0;
+}
+
+const char* normal_force_unit(const JudgedMotion&, const Violation&) { return "N"; }
+
+Advice normal_force_advice(const JudgedMotion&, const FindingWindow&) {
+  return "the ground cannot pull: lower the COG with less than free fall, or plan a flight phase";
+}
+
+std::string normal_force_obstacle(const Finding& f, double) {
+  return "the ground would have to pull (" + f.where + ")";
+}
+
+}  // namespace
+
+const Limit& normal_force_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::unilateral,
+                    .limit_class = LimitClass::force,
+                    .unit = "m g",
+                    .tolerance = kLeastNormalShare,
+                    .meaning = "normal ground force in contact: an error when it would have to "
+                               "pull, a warning below the tolerance, a share of the weight",
+                    .finding_unit = normal_force_unit,
+                    .place = support_place,
+                    .advice = normal_force_advice,
+                    .obstacle = normal_force_obstacle,
+                    .holds_at = normal_force_holds}},
+      .judge_sample = judge_normal_force};
+  return limit;
+}
+
+}  // namespace ayumi

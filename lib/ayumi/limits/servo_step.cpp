@@ -1,0 +1,132 @@
+// A servo receives one target in each of its periods T, and its motor follows no step that is larger
+// than the speed limit allows: |theta(k) - theta(k - T)| <= speed limit T. Where the joint's planned
+// speed is too large itself, that is joint_speed; a step beyond it is a jump between samples.
+// The target is the posture led by kd/kp times its rate (motion/servo_feedforward.hpp). It may step
+// by more than the posture; then `export` refuses the table, and a warning says so.
+#include <algorithm>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/motion/servo_feedforward.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Share of the step that the speed limit allows. A law, not a choice.
+constexpr double kWholeStep = 1;
+
+// The mean speed of a period differs from the speeds at its ends. Chosen: half a percent, the
+// difference that an acceleration of half the speed limit in 10 ms makes in a period of 1 ms is 5 %
+// of the change; smooth motions stay below.
+constexpr double kMeanSpeedSpare = 1.005;
+
+int servo_ticks(const JudgedMotion& motion) {
+  const double period = motion.model.description().servo_period;
+  return std::max(1, static_cast<int>(std::lround(period / motion.series.dt)));
+}
+
+void judge_servo_steps(JudgedMotion& motion) {
+  const double dt = motion.series.dt;
+  const int ticks = servo_ticks(motion);
+  const double most = motion.tolerance(FindingKind::servo_step);
+  for (int k = ticks; k < motion.count(); ++k) {
+    const RobotState& from = motion.series.samples[k - ticks].state;
+    const RobotState& to = motion.series.samples[k].state;
+    for (int i = 0; i < motion.model.dof_count(); ++i) {
+      const double limit = motion.limits.speed[i], allowed = limit * ticks * dt;
+      if (!std::isfinite(allowed)) continue;
+      const double step = to.theta[i] - from.theta[i], ratio = std::abs(step) / allowed;
+      motion.raise(FindingKind::servo_step, ratio);
+      const double planned = std::max(std::abs(from.dtheta[i]), std::abs(to.dtheta[i]));
+      if (ratio > kMeanSpeedSpare * most && planned <= limit)
+        motion.add(FindingKind::servo_step, i, k, step, most * allowed, ratio);
+    }
+  }
+}
+
+// A joint that is itself too fast is a finding of its own.
+void judge_servo_targets(JudgedMotion& motion) {
+  const double dt = motion.series.dt;
+  const int ticks = servo_ticks(motion);
+  const Eigen::VectorXd lead = servo_lead(motion.model);
+  const double most = motion.tolerance(FindingKind::servo_step);
+  const auto target = [&](int k, int i) {
+    const RobotState& s = motion.series.samples[k].state;
+    return s.theta[i] + lead[i] * s.dtheta[i];
+  };
+  for (int k = ticks; k < motion.count(); ++k) {
+    for (int i = 0; i < motion.model.dof_count(); ++i) {
+      const double limit = motion.limits.speed[i], allowed = most * limit * ticks * dt;
+      if (!std::isfinite(allowed) ||
+          std::abs(motion.series.samples[k].state.dtheta[i]) > most * limit)
+        continue;
+      const double step = target(k, i) - target(k - ticks, i), ratio = std::abs(step) / allowed;
+      if (ratio > kMeanSpeedSpare)
+        motion.targets.add({FindingKind::servo_step, i, k, Severity::warning, step, allowed, ratio,
+                            kServoTarget});
+    }
+  }
+}
+
+void judge_servos(JudgedMotion& motion) {
+  judge_servo_steps(motion);
+  judge_servo_targets(motion);
+}
+
+bool servo_step_holds(JudgedMotion&, const Violation& v, double pace) {
+  return std::abs(v.value) * pace <= std::abs(v.limit);
+}
+
+const char* step_unit(const JudgedMotion& motion, const Violation& v) {
+  return joint_unit(motion, v, "rad", "m");
+}
+
+Advice target_advice(const JudgedMotion& motion, const Violation& v) {
+  const Dof& dof = motion.model.dofs()[v.item];
+  return "the target of " + dof.name + "'s servo, which leads the posture by kd/kp = " +
+         text::brief(1e3 * dof.servo.kd / dof.servo.kp, 3) + " ms, steps by " +
+         text::brief(std::abs(v.value / v.limit), 3) +
+         " of what the speed limit allows, so that `export` refuses the table: accelerate " +
+         dof.name + " less here";
+}
+
+Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
+  const Violation& v = window.worst;
+  if (v.detail == kServoTarget) return target_advice(motion, v);
+  return motion.model.dofs()[v.item].name + " jumps by " + text::brief(v.value, 3) +
+         " rad in one servo period: spread the step over " +
+         text::fixed(std::ceil(std::abs(v.value / v.limit)), 0) + " periods";
+}
+
+std::string step_obstacle(const Finding& f, double excess) {
+  return f.where + " steps " + ratio_text(excess) + " times what one servo period allows";
+}
+
+}  // namespace
+
+const Limit& servo_step_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::servo_step,
+                    .limit_class = LimitClass::rate,
+                    .unit = "1",
+                    .tolerance = kWholeStep,
+                    .meaning = "change of the joint angle per servo period over what the speed "
+                               "limit allows, where the joint speed itself does not tell it; a "
+                               "warning where only the servo's target, which leads the angle, "
+                               "steps by more",
+                    .figure = {.key = "max_servo_step_ratio",
+                               .label = "largest step in a servo period",
+                               .unit = "% of what the speed limit allows",
+                               .scale = 100,
+                               .line = 17},
+                    .finding_unit = step_unit,
+                    .place = joint_place,
+                    .advice = step_advice,
+                    .obstacle = step_obstacle,
+                    .holds_at = servo_step_holds}},
+      .judge_motion = judge_servos};
+  return limit;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,82 @@
+// The ground only pushes, so its resultant passes through the convex hull of the supporting soles:
+// with f_n > 0 and the inward unit normal a of each edge (a . x >= b inside),
+//   margin = min over the edges of (a . ZMP - b) >= 0.
+// The margin is positive inside. Outside no contact forces produce the motion: the robot tips.
+#include "ayumi/limits/judged_motion.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Margin below which a ZMP inside the support is a warning [m], and the least margin of a repaired
+// motion. Chosen: a few hundredths of the width of small soles (5 cm). Half or twice of it changes no
+// verdict of a check.
+constexpr double kLeastMargin = 0.002;
+
+void judge_margin(JudgedMotion& motion, const JudgedSample& s, ZmpOf whose, double margin) {
+  const double wanted = motion.tolerance(FindingKind::support_margin);
+  if (margin >= wanted - kRounding) return;
+  const bool outside = margin < -kRounding;
+  motion.add(FindingKind::support_margin, whose, s.k, margin, outside ? 0 : wanted, -margin,
+             static_cast<int>(s.command.support), outside ? Severity::error : Severity::warning);
+}
+
+void judge_support(JudgedMotion& motion, const JudgedSample& s) {
+  if (!s.has_zmp()) return;
+  const GroundDemand& use = s.demand.use;
+  const SupportPlane& plane = motion.dynamics.plane();
+  motion.lower(FindingKind::support_margin, use.margin);
+  judge_margin(motion, s, kMotionZmp, use.margin);
+  const Eigen::Vector3d command = plane.frame.inverse() * s.command.zmp;
+  const double command_margin = plane.polygon.margin(command.head<2>());
+  // The commanded ZMP is a fact of its own only where the motion's ZMP is another one.
+  if ((use.zmp_world - s.command.zmp).norm() > motion.tolerance(FindingKind::zmp_residual) &&
+      command_margin < -kRounding)
+    judge_margin(motion, s, kCommandZmp, command_margin);
+}
+
+bool support_holds(JudgedMotion& motion, const Violation& v, double pace) {
+  const SampleDynamics& now = motion.dynamics.at(v.sample, pace);
+  return now.use.has_zmp && now.use.margin >= -kRounding;
+}
+
+Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
+  const Violation& v = window.worst;
+  const std::string whose = v.item == kMotionZmp ? "the ZMP of the motion" : "the commanded ZMP";
+  if (v.value < 0)
+    return {whose + " is " + in_mm(v.value) +
+                " outside the support: move the COG that much less, give the step more time",
+            kOrRepair};
+  return whose + " is only " + in_mm(v.value) + " inside the support, the margin asked for is " +
+         in_mm(v.limit);
+}
+
+std::string support_obstacle(const Finding& f, double excess) {
+  return "the ZMP is " + in_mm(excess) + " outside the support (" + f.where + ")";
+}
+
+}  // namespace
+
+const Limit& support_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::support_margin,
+                    .limit_class = LimitClass::force,
+                    .unit = "m",
+                    .tolerance = kLeastMargin,
+                    .meaning = "distance of the ZMP inside the support polygon: an error outside, a "
+                               "warning when less than the tolerance inside",
+                    .figure = {.key = "min_zmp_margin_m",
+                               .label = "least ZMP margin",
+                               .unit = "mm",
+                               .scale = 1e3,
+                               .least = true,
+                               .line = 1},
+                    .place = support_place,
+                    .advice = support_advice,
+                    .obstacle = support_obstacle,
+                    .holds_at = support_holds}},
+      .judge_sample = judge_support};
+  return limit;
+}
+
+}  // namespace ayumi
