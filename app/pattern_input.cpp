@@ -9,9 +9,9 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/limits/limit.hpp"
 #include "ayumi/control/controller.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
 
 namespace ayumi::app {

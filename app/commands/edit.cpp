@@ -109,8 +109,8 @@ std::string in_words(double scale, const ConsistencyReport& before, const ForceR
     out += pace->bounded ? "  faster breaks " + pace->limited_by + "\n"
                          : "  nothing limits it down to this scale\n";
   return out + "  ZMP margin " + mm(before.summary[FindingKind::support_margin]) + " mm before, " +
-         mm(after.report.summary[FindingKind::support_margin]) + " mm now; f_z " + newtons(force_before) +
-         " before, " + newtons(force) + " now\n";
+         mm(after.report.summary[FindingKind::support_margin]) + " mm now; f_z " +
+         newtons(force_before) + " before, " + newtons(force) + " now\n";
 }
 
 Json in_json(double scale, const ConsistencyReport& before, const ForceRange& force_before,

@@ -124,8 +124,8 @@ std::string check_text(const ConsistencyReport& report) {
   std::string text = report.consistent ? "consistent" : "inconsistent";
   text += ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
           " mm, joint speed " + text::fixed(100 * report.summary[FindingKind::joint_speed], 0) +
-          " %, torque " + text::fixed(100 * report.summary[FindingKind::joint_torque], 0) + " % of " +
-          report.profile;
+          " %, torque " + text::fixed(100 * report.summary[FindingKind::joint_torque], 0) +
+          " % of " + report.profile;
   for (const Finding& finding : report.findings)
     if (finding.severity == Severity::error)
       text += std::string("\n            ") + name_of(finding.kind) + " at " +

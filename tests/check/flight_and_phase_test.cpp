@@ -166,7 +166,7 @@ TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
     ASSERT_EQ(p.phases[both].support, Support::both);
     const double lifts = p.phases[both].until -= 0.060;
     Errors e = errors_of(p);
-    EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << both << "\n" << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{"contact_ends_early"})) << both << "\n" << e.told;
     ASSERT_EQ(e.all.size(), 1u) << e.told;
     EXPECT_EQ(e.all[0].where, name_of(p.phases[both + 1].swing->foot)) << e.told;
     EXPECT_NEAR(e.all[0].at, lifts, 0.002);
@@ -189,7 +189,7 @@ TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
   Pattern p = hops();
   p.phases[0].until -= 0.060;
   const Errors e = errors_of(p);
-  EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"contact_ends_early"})) << e.told;
   EXPECT_EQ(e.all.size(), 2u) << e.told;
 }
 

@@ -7,9 +7,9 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/author/generate/generate.hpp"
-#include "ayumi/limits/limit.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/limits/limit.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/check_report.hpp"
@@ -334,7 +334,8 @@ TEST(PlantedFault, MomentsInFlightAreJudgedByTheRobotOrByWhatWasSet) {
   CheckOptions options;
   options.profile = jump().profile;
   EXPECT_NEAR(tolerances(options, hoap1(), series)[kind], 0.0065 * weight * height, 1e-12);
-  const double used = check_consistency(hoap1(), series, options).summary[FindingKind::angular_momentum];
+  const double used =
+      check_consistency(hoap1(), series, options).summary[FindingKind::angular_momentum];
   ASSERT_GT(used, 0.02);
   ASSERT_LT(used, 0.0065 * weight * height);
   options.tolerances["angular_momentum"] = 0.9 * used;

@@ -310,7 +310,8 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
           {"overlap", -summary[FindingKind::self_collision]},
           {"cog", summary[FindingKind::cog_residual]}};
   if (jumps) told["ballistic"] = summary[FindingKind::ballistic];
-  if (summary[FindingKind::self_collision] < 0) {  // ends are less deep inside than shapes have to be parted
+  if (summary[FindingKind::self_collision] <
+      0) {  // ends are less deep inside than shapes have to be parted
     EXPECT_GT(most["overlap"], 0);
     EXPECT_LE(most["overlap"], told["overlap"] + 1e-9);
     told.erase("overlap");

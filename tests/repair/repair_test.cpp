@@ -87,7 +87,8 @@ TEST(Repair, ConsistentStaysAsItIs) {
 
 TEST(Repair, ZmpComesInsideAndNothingChangesTwice) {
   const CommandSeries series = zmp_outside();
-  ASSERT_LT(check_consistency(limited_biped(), series).summary[FindingKind::support_margin], -0.005);
+  ASSERT_LT(check_consistency(limited_biped(), series).summary[FindingKind::support_margin],
+            -0.005);
   const RepairResult r = repair(limited_biped(), series);
   expect_repaired(r);
   EXPECT_GT(r.check.summary[FindingKind::support_margin], 0.0019);

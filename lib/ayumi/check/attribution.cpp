@@ -1,9 +1,10 @@
-// Data feed each other in one direction: the angle of a joint makes poses, poses and time make rates,
-// rates make forces, and the command is compared with all of them. A finding is a consequence where a
-// finding upstream, at the same place in the motion, is enough to bring it about. One engine executes
-// the rules in their order: for each open error of the cause, in the rule's order, every other open
-// error that belongs to one of its effects, touches that effect's interval and passes its condition
-// follows from it. An error is open as long as it follows from no other one.
+// Data feed each other in one direction: the angle of a joint makes poses, poses and time make
+// rates, rates make forces, and the command is compared with all of them. A finding is a
+// consequence where a finding upstream, at the same place in the motion, is enough to bring it
+// about. One engine executes the rules in their order: for each open error of the cause, in the
+// rule's order, every other open error that belongs to one of its effects, touches that effect's
+// interval and passes its condition follows from it. An error is open as long as it follows from no
+// other one.
 #include "ayumi/check/attribution.hpp"
 
 #include <algorithm>
@@ -15,6 +16,8 @@
 
 namespace ayumi {
 
+// A namespace of its own, because the rules have short names.
+namespace attribution {
 namespace {
 
 // ---- what the rules are made of
@@ -116,26 +119,22 @@ const FindingSet kRates = {"rates",
                            [](const Violation& v) { return is_class(v, LimitClass::rate); }};
 const FindingSet kCollision = {"`self_collision`", is_kind<FindingKind::self_collision>};
 const FindingSet kForces = {"forces", is_force};
-const FindingSet kForcesOnGround = {"forces but those of flight", [](const Violation& v) {
-                                      return is_force(v) && !is_flight(v);
-                                    }};
+const FindingSet kForcesOnGround = {
+    "forces but those of flight", [](const Violation& v) { return is_force(v) && !is_flight(v); }};
 const FindingSet kForcesButTorque = {"forces but `joint_torque`", [](const Violation& v) {
                                        return is_force(v) && v.kind != FindingKind::joint_torque;
                                      }};
-const FindingSet kForcesAndMargins = {"forces, `support_margin` of the command",
-                                      [](const Violation& v) {
-                                        return is_force(v) ||
-                                               v.kind == FindingKind::support_margin;
-                                      }};
+const FindingSet kForcesAndMargins = {
+    "forces, `support_margin` of the command",
+    [](const Violation& v) { return is_force(v) || v.kind == FindingKind::support_margin; }};
 const FindingSet kFlight = {"`ballistic`, `angular_momentum`", is_flight};
 const FindingSet kFall = {"`ballistic`", is_kind<FindingKind::ballistic>};
 const FindingSet kLeaps = {"`ballistic` where the COG leaps", [](const Violation& v) {
                              return v.kind == FindingKind::ballistic && v.item == kMotionLeaps;
                            }};
-const FindingSet kCommandFall = {"`ballistic` of the commanded COG", [](const Violation& v) {
-                                   return v.kind == FindingKind::ballistic &&
-                                          v.item == kCommandFalls;
-                                 }};
+const FindingSet kCommandFall = {
+    "`ballistic` of the commanded COG",
+    [](const Violation& v) { return v.kind == FindingKind::ballistic && v.item == kCommandFalls; }};
 const FindingSet kMomentum = {"`angular_momentum`", is_kind<FindingKind::angular_momentum>};
 const FindingSet kCommand = {"command residuals",
                              [](const Violation& v) { return is_class(v, LimitClass::command); }};
@@ -182,16 +181,17 @@ const Where kAnywhere = {"anywhere", [](const Scene& scene, int) {
 const Where kWindow = {"in its window", [](const Scene& scene, int i) {
                          return std::vector<Interval>{around(scene.window(i))};
                        }};
-const Where kNearWindow = {"within 3 samples of its window", [](const Scene& scene, int i) {
-                             return std::vector<Interval>{around(scene.window(i), kDifferenceReach)};
-                           }};
+const Where kNearWindow = {
+    "within 3 samples of its window", [](const Scene& scene, int i) {
+      return std::vector<Interval>{around(scene.window(i), kDifferenceReach)};
+    }};
 const Where kBesideWindow = {"within 5 samples of its window", [](const Scene& scene, int i) {
                                return std::vector<Interval>{around(scene.window(i), kEdgeReach)};
                              }};
-const Where kPaddedWindow = {"within 50 ms of its window", [](const Scene& scene, int i) {
-                               return std::vector<Interval>{
-                                   around(scene.window(i), pad_samples(scene.motion))};
-                             }};
+const Where kPaddedWindow = {
+    "within 50 ms of its window", [](const Scene& scene, int i) {
+      return std::vector<Interval>{around(scene.window(i), pad_samples(scene.motion))};
+    }};
 const Where kInfluence = {"in its influence interval", [](const Scene& scene, int i) {
                             return std::vector<Interval>{influence_of(scene, i)};
                           }};
@@ -200,37 +200,36 @@ const Where kAngleInfluence = {
       return std::vector<Interval>{
           around(wrong_angle_around(scene.motion, scene.window(i)), pad_samples(scene.motion))};
     }};
-const Where kDeviation = {"while the COG is off its command", [](const Scene& scene, int i) {
-                            return std::vector<Interval>{
-                                deviation_around(scene.motion, scene.window(i))};
-                          }};
+const Where kDeviation = {
+    "while the COG is off its command", [](const Scene& scene, int i) {
+      return std::vector<Interval>{deviation_around(scene.motion, scene.window(i))};
+    }};
 const Where kEdges = {"within 3 samples of its begin or end", [](const Scene& scene, int i) {
                         return std::vector<Interval>{edges_of(scene, i)};
                       }};
-const Where kSameFlight = {"in that flight", [](const Scene& scene, int i) {
-                             return std::vector<Interval>{
-                                 flight_around(scene.motion, scene.window(i))};
-                           }};
-const Where kFlightEdges = {"within 5 samples of lift-off and landing",
-                            [](const Scene& scene, int i) {
-                              const Interval f = flight_around(scene.motion, scene.window(i));
-                              return std::vector<Interval>{
-                                  {f.first - kEdgeReach, f.first + kEdgeReach},
-                                  {f.last - kEdgeReach, f.last + kEdgeReach}};
-                            }};
+const Where kSameFlight = {
+    "in that flight", [](const Scene& scene, int i) {
+      return std::vector<Interval>{flight_around(scene.motion, scene.window(i))};
+    }};
+const Where kFlightEdges = {
+    "within 5 samples of lift-off and landing", [](const Scene& scene, int i) {
+      const Interval f = flight_around(scene.motion, scene.window(i));
+      return std::vector<Interval>{{f.first - kEdgeReach, f.first + kEdgeReach},
+                                   {f.last - kEdgeReach, f.last + kEdgeReach}};
+    }};
 const Where kNearFlight = {"within 5 samples of that flight", [](const Scene& scene, int i) {
                              return std::vector<Interval>{
                                  around(flight_around(scene.motion, scene.window(i)), kEdgeReach)};
                            }};
-const Where kPhases = {
-    "in the phase and the foot's swing or flight beside it", [](const Scene& scene, int i) {
-      return std::vector<Interval>{
-          around(moved_phases(scene.motion, scene.of(i)), kDifferenceReach)};
+const Where kPhases = {"in the phase and the foot's swing or flight beside it",
+                       [](const Scene& scene, int i) {
+                         return std::vector<Interval>{
+                             around(moved_phases(scene.motion, scene.of(i)), kDifferenceReach)};
+                       }};
+const Where kBetweenRests = {
+    "between two rests", [](const Scene& scene, int i) {
+      return std::vector<Interval>{motion_around(scene.motion, scene.of(i).sample)};
     }};
-const Where kBetweenRests = {"between two rests", [](const Scene& scene, int i) {
-                               return std::vector<Interval>{
-                                   motion_around(scene.motion, scene.of(i).sample)};
-                             }};
 
 // ---- conditions
 
@@ -262,8 +261,7 @@ bool stands_before_and_after(const Scene& scene, const FindingWindow& w) {
   const auto stands = [&](int k) {
     return k < contact.first || k > contact.last || displacement(motion, foot, k) <= small;
   };
-  return contact.contact && stands(w.first - kDifferenceReach) &&
-         stands(w.last + kDifferenceReach);
+  return contact.contact && stands(w.first - kDifferenceReach) && stands(w.last + kDifferenceReach);
 }
 
 // From the last jump of the joint before this window to the first one after it.
@@ -271,8 +269,8 @@ Interval held_around(const Scene& scene, const FindingWindow& w, int dof) {
   Interval held = {0, scene.motion.count() - 1};
   for (const FindingWindow& jump : scene.windows) {
     const Violation& v = jump.worst;
-    const bool of_joint = v.severity == Severity::error && v.item == dof &&
-                          is_class(v, LimitClass::rate);
+    const bool of_joint =
+        v.severity == Severity::error && v.item == dof && is_class(v, LimitClass::rate);
     if (!of_joint) continue;
     if (jump.first <= w.first + kDifferenceReach) held.first = std::max(held.first, jump.first);
     if (jump.last >= w.last + 1 - kDifferenceReach) held.last = std::min(held.last, jump.last);
@@ -282,11 +280,10 @@ Interval held_around(const Scene& scene, const FindingWindow& w, int dof) {
 
 const Condition kAlways = {"always", [](Scene&, int, int, const Interval&) { return true; }};
 
-const Condition kNotAskedFor = {
-    "the command does not put its ZMP outside the support itself",
-    [](Scene& scene, int, int j, const Interval&) {
-      return !is_asked_for(scene.motion, scene.of(j));
-    }};
+const Condition kNotAskedFor = {"the command does not put its ZMP outside the support itself",
+                                [](Scene& scene, int, int j, const Interval&) {
+                                  return !is_asked_for(scene.motion, scene.of(j));
+                                }};
 
 const Condition kLargerOfOneFoot = {
     "of the same foot, and the cause is the largest displacement",
@@ -315,14 +312,14 @@ const Condition kRateOfAngle = {
       const Violation& v = scene.of(j);
       if (!same_item(scene, i, j)) return false;
       return !broken_by_jump(scene.motion, v.sample) ||
-             comes_back(scene.motion, v.item,
-                        around(wrong_angle_around(scene.motion, scene.window(i)),
-                               kDifferenceReach));
+             comes_back(
+                 scene.motion, v.item,
+                 around(wrong_angle_around(scene.motion, scene.window(i)), kDifferenceReach));
     }};
 
-const Condition kSameJoint = {
-    "of the same joint",
-    [](Scene& scene, int i, int j, const Interval&) { return same_item(scene, i, j); }};
+const Condition kSameJoint = {"of the same joint", [](Scene& scene, int i, int j, const Interval&) {
+                                return same_item(scene, i, j);
+                              }};
 
 const Condition kInsideInterval = {"it begins and ends there",
                                    [](Scene& scene, int, int j, const Interval& interval) {
@@ -352,18 +349,18 @@ const Condition kHeldJoint = {
              (is_jump(scene, j, held.first) || is_jump(scene, j, held.last));
     }};
 
-// A foot that is off its place on the ground makes no flight unfree, but differences over a jump into
-// it reach a few samples back.
+// A foot that is off its place on the ground makes no flight unfree, but differences over a jump
+// into it reach a few samples back.
 const Condition kNearDisplacement = {
-    "within 3 samples of the displacement",
-    [](Scene& scene, int i, int j, const Interval&) {
+    "within 3 samples of the displacement", [](Scene& scene, int i, int j, const Interval&) {
       const Interval off = displacement_around(scene.motion, scene.window(i));
       const int sample = scene.of(j).sample;
       return off.first <= sample + kDifferenceReach && sample - kDifferenceReach <= off.last;
     }};
 
 const Condition kMovesCog = {
-    "the COG is off by no more than the sole, or agrees when the robot is moved so that the sole is "
+    "the COG is off by no more than the sole, or agrees when the robot is moved so that the sole "
+    "is "
     "in its place",
     [](Scene& scene, int i, int j, const Interval&) {
       return moves_cog(scene.motion, scene.of(i), scene.of(j));
@@ -399,11 +396,10 @@ const Condition kOfFlight = {
              around(scene.window(i), kDifferenceReach).touches(scene.window(j));
     }};
 
-const Condition kUncountedFoot = {
-    "a foot that still stands is not counted there",
-    [](Scene& scene, int, int j, const Interval&) {
-      return uncounted_foot_stands(scene.motion, scene.of(j).sample);
-    }};
+const Condition kUncountedFoot = {"a foot that still stands is not counted there",
+                                  [](Scene& scene, int, int j, const Interval&) {
+                                    return uncounted_foot_stands(scene.motion, scene.of(j).sample);
+                                  }};
 
 const Condition kSlowerPace = {
     "one slower pace removes both; or a jump breaks its differences, of which it is not one itself",
@@ -416,12 +412,12 @@ const Condition kTorqueOfLeg = {"of a joint of a leg",
                                   return is_leg_joint(scene.motion.model, scene.of(j).item);
                                 }};
 
-const Condition kHeldByFriction = {
-    "up to twice what the missing coefficient would hold",
-    [](Scene& scene, int i, int j, const Interval&) {
-      const double more = scene.of(i).value / scene.of(i).limit;
-      return scene.of(j).value <= kArmFactor * more * scene.of(j).limit;
-    }};
+const Condition kHeldByFriction = {"up to twice what the missing coefficient would hold",
+                                   [](Scene& scene, int i, int j, const Interval&) {
+                                     const double more = scene.of(i).value / scene.of(i).limit;
+                                     return scene.of(j).value <=
+                                            kArmFactor * more * scene.of(j).limit;
+                                   }};
 
 // ---- the rules, in their order
 
@@ -557,20 +553,21 @@ void execute(Scene& scene, const Rule& rule) {
 }
 
 }  // namespace
+}  // namespace attribution
 
 void mark_consequences(JudgedMotion& motion, std::vector<FindingWindow>& windows) {
-  Scene scene = {motion, windows};
-  for (const Rule& rule : rules()) execute(scene, rule);
+  attribution::Scene scene = {motion, windows};
+  for (const attribution::Rule& rule : attribution::rules()) attribution::execute(scene, rule);
   for (FindingWindow& w : windows)
     if (w.cause >= 0) w.worst.severity = Severity::warning;
 }
 
 std::vector<std::array<std::string, 4>> attribution_table() {
   std::vector<std::array<std::string, 4>> table;
-  for (const Rule& rule : rules())
-    for (const Effect& effect : rule.effects)
-      table.push_back({rule.cause.words, effect.findings.words, effect.where.words,
-                       effect.condition.words});
+  for (const attribution::Rule& rule : attribution::rules())
+    for (const attribution::Effect& effect : rule.effects)
+      table.push_back(
+          {rule.cause.words, effect.findings.words, effect.where.words, effect.condition.words});
   return table;
 }
 

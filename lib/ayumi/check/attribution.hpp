@@ -1,7 +1,7 @@
 #pragma once
-// Attribution: one fault in a pattern shows in many figures. A finding that another one is enough to
-// bring about is a consequence of it: it becomes a warning that names its cause, so that errors are
-// what there is to correct. The rules are data, the rows of the table in docs/attribution.md.
+// Attribution: one fault in a pattern shows in many figures. A finding that another one is enough
+// to bring about is a consequence of it: it becomes a warning that names its cause, so that errors
+// are what there is to correct. The rules are data, the rows of the table in docs/attribution.md.
 
 #include <array>
 #include <string>

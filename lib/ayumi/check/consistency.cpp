@@ -28,8 +28,8 @@ void judge(JudgedMotion& motion) {
 }
 
 // Where acceleration bends, as beside a flight, the ZMP of single samples is thrown: for less than
-// kSpikeTime a moment of up to kSpikeSize times the limit turns nothing. It becomes a warning. Source
-// of both: docs/attribution.md.
+// kSpikeTime a moment of up to kSpikeSize times the limit turns nothing. It becomes a warning.
+// Source of both: docs/attribution.md.
 constexpr double kSpikeTime = 0.005;  // [s]
 constexpr double kSpikeSize = 3;      // times the limit
 

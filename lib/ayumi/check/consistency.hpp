@@ -1,7 +1,7 @@
 #pragma once
 // Is a command series physically consistent? The posture, COG, ZMP and f_z are judged against each
-// other and against every limit of the robot (limits/). Findings say what is wrong, where, when and by
-// how much, and what to do about it.
+// other and against every limit of the robot (limits/). Findings say what is wrong, where, when and
+// by how much, and what to do about it.
 
 #include <string>
 #include <vector>

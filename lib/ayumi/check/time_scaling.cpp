@@ -11,8 +11,8 @@ namespace {
 // Pace down to which a slower motion is looked for. Chosen: slower than a twentieth no motion is
 // called too fast.
 constexpr double kSlowestPace = 0.05;
-// From pace to pace. Chosen: commands of ZMP and f_z agree with the motion within their tolerances in
-// a band of paces 6 % wide, so that steps of 3 % cannot miss it.
+// From pace to pace. Chosen: commands of ZMP and f_z agree with the motion within their tolerances
+// in a band of paces 6 % wide, so that steps of 3 % cannot miss it.
 constexpr double kPaceStep = 0.97;
 // The same for a mean over the thermal window, which no command bounds from below.
 constexpr double kCoarsePaceStep = 0.85;
@@ -36,8 +36,7 @@ bool slower_pace_removes(JudgedMotion& motion, const Violation& cause, const Vio
       effect.kind == FindingKind::ballistic || effect.kind == FindingKind::angular_momentum;
   if (!flies && broken_by_jump(motion, effect.sample))
     return effect.kind != FindingKind::servo_step;
-  const double step =
-      effect.kind == FindingKind::continuous_torque ? kCoarsePaceStep : kPaceStep;
+  const double step = effect.kind == FindingKind::continuous_torque ? kCoarsePaceStep : kPaceStep;
   for (double pace = step; pace > kSlowestPace; pace *= step)
     if (holds_at(motion, cause, pace) && holds_at(motion, effect, pace)) return true;
   return false;

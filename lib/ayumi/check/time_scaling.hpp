@@ -6,11 +6,12 @@
 
 namespace ayumi {
 
-/// Whether the demand near this sample is broken by differences over a jump, so that no pace mends it.
+/// Whether the demand near this sample is broken by differences over a jump, so that no pace mends
+/// it.
 bool broken_by_jump(const JudgedMotion& motion, int sample);
 
-/// Whether there is one pace at which both violations are gone. Where the demand is broken by a jump,
-/// no pace removes it: then the violation is attributed to speed, unless it is that jump.
+/// Whether there is one pace at which both violations are gone. Where the demand is broken by a
+/// jump, no pace removes it: then the violation is attributed to speed, unless it is that jump.
 bool slower_pace_removes(JudgedMotion& motion, const Violation& cause, const Violation& effect);
 
 }  // namespace ayumi

@@ -36,9 +36,9 @@ Vector6d plane_wrench(const SupportPlane& plane, const Eigen::Vector3d& base_pos
 Eigen::Matrix<double, Eigen::Dynamic, 6> support_rows(const SupportPlane& plane);
 
 /// Share of the weight above which the ground force has a ZMP with a meaning. Chosen: below it the
-/// moment that places the ZMP is rounding. Motions in contact rest on far more (normal_force.cpp warns
-/// at 5 %), so that only samples beside flights come near it. The estimator of a controller and the
-/// commands of an imported motion take 5 % instead: load cells and differences are noisier.
+/// moment that places the ZMP is rounding. Motions in contact rest on far more (normal_force.cpp
+/// warns at 5 %), so that only samples beside flights come near it. The estimator of a controller
+/// and the commands of an imported motion take 5 % instead: load cells and differences are noisier.
 inline constexpr double kContactThreshold = 0.02;
 
 /// Ground force in the axes of the plane, and the ZMP where it has a meaning (f_n > min_force).

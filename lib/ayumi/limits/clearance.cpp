@@ -1,6 +1,7 @@
-// Bodies of the robot do not overlap: the distance of every pair of their collision shapes, negative
-// where they overlap (geometry/distance.hpp), stays above a margin. Every 20 ms all pairs are looked
-// at, then every sample around the places where a pair is near (demand/collision_scan.hpp).
+// Bodies of the robot do not overlap: the distance of every pair of their collision shapes,
+// negative where they overlap (geometry/distance.hpp), stays above a margin. Every 20 ms all pairs
+// are looked at, then every sample around the places where a pair is near
+// (demand/collision_scan.hpp).
 #include "ayumi/demand/collision_scan.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 
@@ -26,10 +27,9 @@ void note_clearance(JudgedMotion& motion, int pair, int k, double clearance) {
 
 void judge_clearances(JudgedMotion& motion) {
   const double near = motion.tolerance(FindingKind::self_collision) + kRefineBelow;
-  scan_clearance(motion.model, motion.series, motion.collisions, near,
-                 [&motion](int pair, int k, double clearance) {
-                   note_clearance(motion, pair, k, clearance);
-                 });
+  scan_clearance(
+      motion.model, motion.series, motion.collisions, near,
+      [&motion](int pair, int k, double clearance) { note_clearance(motion, pair, k, clearance); });
 }
 
 Place body_pair_place(const JudgedMotion& motion, const Violation& v) {

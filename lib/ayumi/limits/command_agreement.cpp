@@ -1,8 +1,9 @@
 // A pattern commands COG, ZMP and f_z beside the posture; they have to be those of the motion:
-//   |COG of the posture - commanded COG|, |ZMP of the full model - commanded ZMP|, |f_z - commanded|.
-// The point mass gap is that between the ZMP of the mass-concentrated model, equations (14) and (15)
-// of the paper, and the commanded ZMP: how good that model is here, never an error. In flight nothing
-// pushes whatever the motion does: the commanded force must be zero.
+//   |COG of the posture - commanded COG|, |ZMP of the full model - commanded ZMP|, |f_z -
+//   commanded|.
+// The point mass gap is that between the ZMP of the mass-concentrated model, equations (14) and
+// (15) of the paper, and the commanded ZMP: how good that model is here, never an error. In flight
+// nothing pushes whatever the motion does: the commanded force must be zero.
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
@@ -25,9 +26,9 @@ constexpr double kForceTolerance = 0.05;
 // [m] Chosen: for information only, no verdict depends on it.
 constexpr double kPointMassTolerance = 0.02;
 
-// Share of the weight below which a ZMP error may be larger, in inverse proportion to the force: what
-// counts is its moment. Source: docs/attribution.md: legs that swing at 1000 rad/s^2 leave 0.1 N m of
-// rounding in single samples.
+// Share of the weight below which a ZMP error may be larger, in inverse proportion to the force:
+// what counts is its moment. Source: docs/attribution.md: legs that swing at 1000 rad/s^2 leave 0.1
+// N m of rounding in single samples.
 constexpr double kLightShare = 0.25;
 constexpr double kLeastForceShare = 1e-3;  // of the weight, so that no force divides by zero
 
@@ -47,8 +48,8 @@ void judge_zmp(JudgedMotion& motion, const JudgedSample& s) {
   const CommandSample& command = s.command;
   const double light =
       kLightShare * motion.weight / std::max(command.fz, kLeastForceShare * motion.weight);
-  judge_difference(motion, FindingKind::zmp_residual, s.k,
-                   s.demand.use.zmp_world - command.zmp, Severity::error, 0, std::max(1.0, light));
+  judge_difference(motion, FindingKind::zmp_residual, s.k, s.demand.use.zmp_world - command.zmp,
+                   Severity::error, 0, std::max(1.0, light));
   const Vector3d point_mass =
       pendulum_zmp(motion.dynamics.data().cog, s.demand.ddcog, command.zmp.z());
   judge_difference(motion, FindingKind::point_mass_gap, s.k, point_mass - command.zmp,
@@ -65,8 +66,8 @@ void judge_command(JudgedMotion& motion, const JudgedSample& s) {
 
 bool zmp_holds(JudgedMotion& motion, const Violation& v, double pace) {
   const SampleDynamics& now = motion.dynamics.at(v.sample, pace);
-  return now.use.has_zmp && (now.use.zmp_world - motion.series.samples[v.sample].zmp).norm() <=
-                                std::abs(v.limit);
+  return now.use.has_zmp &&
+         (now.use.zmp_world - motion.series.samples[v.sample].zmp).norm() <= std::abs(v.limit);
 }
 
 bool vertical_force_holds(JudgedMotion& motion, const Violation& v, double pace) {

@@ -1,7 +1,7 @@
-// A contact ends when its foot leaves the ground. A foot that stands on after that breaks no law where
-// the ZMP is over the other foot, and yet the phases are not those of the motion. From the times t1
-// and t2 at which its sole is 0.01 and 0.08 mm off its place, 2 t1 - t2 is when it began to leave, if
-// it left with the cube of time (demand/contact_plan.hpp, samples_after_contact()).
+// A contact ends when its foot leaves the ground. A foot that stands on after that breaks no law
+// where the ZMP is over the other foot, and yet the phases are not those of the motion. From the
+// times t1 and t2 at which its sole is 0.01 and 0.08 mm off its place, 2 t1 - t2 is when it began
+// to leave, if it left with the cube of time (demand/contact_plan.hpp, samples_after_contact()).
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 
@@ -9,8 +9,8 @@ namespace ayumi {
 
 namespace {
 
-// Time for which a foot may stand on [s]. Source: docs/attribution.md ("Contacts that end too early"):
-// generated walks have -8 to 1 ms, a jump 3 ms. Chosen: ten times the largest of these.
+// Time for which a foot may stand on [s]. Source: docs/attribution.md ("Contacts that end too
+// early"): generated walks have -8 to 1 ms, a jump 3 ms. Chosen: ten times the largest of these.
 constexpr double kLateTolerance = 0.030;
 
 void judge_contact_ends(JudgedMotion& motion) {
@@ -21,8 +21,8 @@ void judge_contact_ends(JudgedMotion& motion) {
     for (size_t i = 0; i + 1 < intervals.size(); ++i) {
       if (!intervals[i].contact) continue;
       const double late =
-          motion.series.dt * samples_after_contact(motion.model, motion.series, side, intervals[i],
-                                                   intervals[i + 1]);
+          motion.series.dt *
+          samples_after_contact(motion.model, motion.series, side, intervals[i], intervals[i + 1]);
       if (late > limit)
         motion.add(FindingKind::contact_ends_early, foot, intervals[i].last, late, limit, late);
     }
@@ -31,8 +31,7 @@ void judge_contact_ends(JudgedMotion& motion) {
 
 Advice contact_end_advice(const JudgedMotion&, const FindingWindow& window) {
   return "the " + std::string(name_of(foot_of(window.worst))) + " sole stands still for " +
-         text::fixed(window.worst.value, 3) +
-         " s after its contact ends: end it that much later";
+         text::fixed(window.worst.value, 3) + " s after its contact ends: end it that much later";
 }
 
 std::string contact_end_obstacle(const Finding& f, double) {

@@ -16,8 +16,8 @@ namespace {
 // Acceleration of the COG from free fall [m/s^2]. Chosen: 5 % of g, as the tolerance of f_z.
 constexpr double kFallTolerance = 0.5;
 
-// Leap of the COG at the edge of a flight [m]. Source: docs/attribution.md ("Leaps"): a force of ten
-// times the weight bends the path by 0.04 mm at 1 kHz, so 1 mm is no force.
+// Leap of the COG at the edge of a flight [m]. Source: docs/attribution.md ("Leaps"): a force of
+// ten times the weight bends the path by 0.04 mm at 1 kHz, so 1 mm is no force.
 constexpr double kLeap = 1e-3;
 
 // All five samples are in the same flight.
@@ -71,22 +71,21 @@ std::string free_fall_obstacle(const Finding&, double) {
 }  // namespace
 
 const Limit& free_fall_limit() {
-  static const Limit limit = {
-      .findings = {{.kind = FindingKind::ballistic,
-                    .limit_class = LimitClass::force,
-                    .unit = "m/s^2",
-                    .tolerance = kFallTolerance,
-                    .meaning = "COG acceleration in flight from free fall",
-                    .figure = {.key = "max_ballistic_residual_m_s2",
-                               .label = "largest deviation from free fall",
-                               .unit = "m/s^2",
-                               .line = 18},
-                    .place = axis_place,
-                    .advice = free_fall_advice,
-                    .obstacle = free_fall_obstacle,
-                    .holds_at = free_fall_holds}},
-      .judge_sample = judge_free_fall,
-      .judge_motion = judge_leaps};
+  static const Limit limit = {.findings = {{.kind = FindingKind::ballistic,
+                                            .limit_class = LimitClass::force,
+                                            .unit = "m/s^2",
+                                            .tolerance = kFallTolerance,
+                                            .meaning = "COG acceleration in flight from free fall",
+                                            .figure = {.key = "max_ballistic_residual_m_s2",
+                                                       .label = "largest deviation from free fall",
+                                                       .unit = "m/s^2",
+                                                       .line = 18},
+                                            .place = axis_place,
+                                            .advice = free_fall_advice,
+                                            .obstacle = free_fall_obstacle,
+                                            .holds_at = free_fall_holds}},
+                              .judge_sample = judge_free_fall,
+                              .judge_motion = judge_leaps};
   return limit;
 }
 

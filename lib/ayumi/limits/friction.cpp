@@ -1,7 +1,8 @@
 // Coulomb: a sole does not slide while the force along the ground stays inside the round cone,
 //   f_t = |(f_x, f_y)| <= mu f_n,
 // with (f_x, f_y, f_n) the demanded ground force in the axes of the support plane. The ratio
-// f_t / (mu f_n) is the share of the cone that the motion uses; mu times it is the coefficient needed.
+// f_t / (mu f_n) is the share of the cone that the motion uses; mu times it is the coefficient
+// needed.
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 
@@ -30,8 +31,8 @@ bool friction_holds(JudgedMotion& motion, const Violation& v, double pace) {
 
 Advice friction_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return "needs a friction coefficient of " + text::fixed(v.value * motion.friction, 2) +
-         ", has " + text::fixed(motion.friction, 2) + ": " + slow_down_text(std::sqrt(v.value)) +
+  return "needs a friction coefficient of " + text::fixed(v.value * motion.friction, 2) + ", has " +
+         text::fixed(motion.friction, 2) + ": " + slow_down_text(std::sqrt(v.value)) +
          " or take shorter steps";
 }
 
@@ -47,7 +48,8 @@ const Limit& friction_limit() {
                     .limit_class = LimitClass::force,
                     .unit = "1",
                     .tolerance = kWholeCone,
-                    .meaning = "tangential ground force over friction coefficient times normal force",
+                    .meaning =
+                        "tangential ground force over friction coefficient times normal force",
                     .figure = {.key = "max_friction_ratio",
                                .label = "largest friction use",
                                .unit = "% of the cone",

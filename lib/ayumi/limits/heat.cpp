@@ -1,8 +1,8 @@
 // A motor is heated by the square of its torque. In its thermal window T the root mean square stays
 // within the continuous torque of the actuator profile:
 //   sqrt(1/T sum tau^2 dt) <= continuous torque,
-// where a motor gives no more than its peak torque, so that no more than that heats it. A motion that
-// is shorter than T may be followed by rest: then it is a warning.
+// where a motor gives no more than its peak torque, so that no more than that heats it. A motion
+// that is shorter than T may be followed by rest: then it is a warning.
 #include <algorithm>
 
 #include "ayumi/limits/judged_motion.hpp"
@@ -14,8 +14,8 @@ namespace {
 // Share of the continuous torque. A law, not a choice: the data sheet's figure is the largest one.
 constexpr double kWholeContinuousTorque = 1;
 
-// Samples of the window at which torques are evaluated at another pace. Chosen: attribution only asks
-// whether the mean holds, and each sample costs one inverse dynamics.
+// Samples of the window at which torques are evaluated at another pace. Chosen: attribution only
+// asks whether the mean holds, and each sample costs one inverse dynamics.
 constexpr int kThermalLooks = 100;
 
 void note_square_sum(JudgedMotion& motion, const JudgedSample& s) {

@@ -1,6 +1,6 @@
-// A joint that accelerates very fast moves roughly: differences over a jump between two samples give
-// accelerations of jump / dt^2, far above those of a planned motion. It is a warning, since motors
-// have a limit of torque (joint_torque.cpp), not of roughness.
+// A joint that accelerates very fast moves roughly: differences over a jump between two samples
+// give accelerations of jump / dt^2, far above those of a planned motion. It is a warning, since
+// motors have a limit of torque (joint_torque.cpp), not of roughness.
 #include <algorithm>
 
 #include "ayumi/limits/judged_motion.hpp"
@@ -9,8 +9,8 @@ namespace ayumi {
 
 namespace {
 
-// [rad/s^2] or [m/s^2] Chosen: a jump of 0.03 degrees between two samples at 1 kHz. It is a warning,
-// but attribution takes samples beyond it for broken by a jump.
+// [rad/s^2] or [m/s^2] Chosen: a jump of 0.03 degrees between two samples at 1 kHz. It is a
+// warning, but attribution takes samples beyond it for broken by a jump.
 constexpr double kRoughAcceleration = 500;
 
 void judge_joint_accelerations(JudgedMotion& motion, const JudgedSample& s) {

@@ -10,8 +10,8 @@ namespace ayumi {
 
 namespace {
 
-// [rad] or [m] Chosen: a motion planned onto the limit meets it but for the rounding of a table with
-// four decimals.
+// [rad] or [m] Chosen: a motion planned onto the limit meets it but for the rounding of a table
+// with four decimals.
 constexpr double kPositionTolerance = 1e-4;
 constexpr double kLeastHalfRange = 1e-9;  // so that a joint without range divides by no zero [rad]
 
@@ -52,22 +52,21 @@ std::string position_obstacle(const Finding& f, double excess) {
 }  // namespace
 
 const Limit& joint_position_limit() {
-  static const Limit limit = {
-      .findings = {{.kind = FindingKind::joint_position,
-                    .unit = "rad",
-                    .tolerance = kPositionTolerance,
-                    .meaning = "joint angle beyond its limit",
-                    .figure = {.key = "max_joint_position_ratio",
-                               .label = "largest joint angle",
-                               .unit = "% of half the range",
-                               .scale = 100,
-                               .share_name = "position",
-                               .line = 6},
-                    .finding_unit = position_unit,
-                    .place = joint_place,
-                    .advice = position_advice,
-                    .obstacle = position_obstacle}},
-      .judge_sample = judge_joint_positions};
+  static const Limit limit = {.findings = {{.kind = FindingKind::joint_position,
+                                            .unit = "rad",
+                                            .tolerance = kPositionTolerance,
+                                            .meaning = "joint angle beyond its limit",
+                                            .figure = {.key = "max_joint_position_ratio",
+                                                       .label = "largest joint angle",
+                                                       .unit = "% of half the range",
+                                                       .scale = 100,
+                                                       .share_name = "position",
+                                                       .line = 6},
+                                            .finding_unit = position_unit,
+                                            .place = joint_place,
+                                            .advice = position_advice,
+                                            .obstacle = position_obstacle}},
+                              .judge_sample = judge_joint_positions};
   return limit;
 }
 

@@ -1,5 +1,5 @@
-// A motor has a largest speed: |dtheta| <= speed limit of the actuator profile, which the voltage of
-// the motor and its gear set (data sheet of the robot, robot.json).
+// A motor has a largest speed: |dtheta| <= speed limit of the actuator profile, which the voltage
+// of the motor and its gear set (data sheet of the robot, robot.json).
 #include "ayumi/limits/judged_motion.hpp"
 
 namespace ayumi {
@@ -16,8 +16,7 @@ void judge_joint_speeds(JudgedMotion& motion, const JudgedSample& s) {
     if (!std::isfinite(limit)) continue;
     const double ratio = std::abs(speed) / limit;
     motion.raise(FindingKind::joint_speed, ratio);
-    if (ratio > most)
-      motion.add(FindingKind::joint_speed, i, s.k, speed, most * limit, ratio);
+    if (ratio > most) motion.add(FindingKind::joint_speed, i, s.k, speed, most * limit, ratio);
   }
 }
 
@@ -42,24 +41,23 @@ std::string speed_obstacle(const Finding& f, double excess) {
 }  // namespace
 
 const Limit& joint_speed_limit() {
-  static const Limit limit = {
-      .findings = {{.kind = FindingKind::joint_speed,
-                    .limit_class = LimitClass::rate,
-                    .unit = "1",
-                    .tolerance = kWholeSpeed,
-                    .meaning = "joint speed over its limit",
-                    .figure = {.key = "max_joint_speed_ratio",
-                               .label = "largest joint speed",
-                               .unit = "% of the limit",
-                               .scale = 100,
-                               .share_name = "speed",
-                               .line = 7},
-                    .finding_unit = speed_unit,
-                    .place = joint_place,
-                    .advice = speed_advice,
-                    .obstacle = speed_obstacle,
-                    .holds_at = joint_speed_holds}},
-      .judge_sample = judge_joint_speeds};
+  static const Limit limit = {.findings = {{.kind = FindingKind::joint_speed,
+                                            .limit_class = LimitClass::rate,
+                                            .unit = "1",
+                                            .tolerance = kWholeSpeed,
+                                            .meaning = "joint speed over its limit",
+                                            .figure = {.key = "max_joint_speed_ratio",
+                                                       .label = "largest joint speed",
+                                                       .unit = "% of the limit",
+                                                       .scale = 100,
+                                                       .share_name = "speed",
+                                                       .line = 7},
+                                            .finding_unit = speed_unit,
+                                            .place = joint_place,
+                                            .advice = speed_advice,
+                                            .obstacle = speed_obstacle,
+                                            .holds_at = joint_speed_holds}},
+                              .judge_sample = judge_joint_speeds};
   return limit;
 }
 

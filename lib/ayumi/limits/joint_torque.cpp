@@ -45,24 +45,23 @@ std::string torque_obstacle(const Finding& f, double excess) {
 }  // namespace
 
 const Limit& joint_torque_limit() {
-  static const Limit limit = {
-      .findings = {{.kind = FindingKind::joint_torque,
-                    .limit_class = LimitClass::force,
-                    .unit = "1",
-                    .tolerance = kWholeTorque,
-                    .meaning = "motor torque over its peak limit",
-                    .figure = {.key = "max_torque_ratio",
-                               .label = "largest torque",
-                               .unit = "% of the limit",
-                               .scale = 100,
-                               .share_name = "torque",
-                               .line = 9},
-                    .finding_unit = torque_unit,
-                    .place = joint_place,
-                    .advice = torque_advice,
-                    .obstacle = torque_obstacle,
-                    .holds_at = joint_torque_holds}},
-      .judge_sample = judge_joint_torques};
+  static const Limit limit = {.findings = {{.kind = FindingKind::joint_torque,
+                                            .limit_class = LimitClass::force,
+                                            .unit = "1",
+                                            .tolerance = kWholeTorque,
+                                            .meaning = "motor torque over its peak limit",
+                                            .figure = {.key = "max_torque_ratio",
+                                                       .label = "largest torque",
+                                                       .unit = "% of the limit",
+                                                       .scale = 100,
+                                                       .share_name = "torque",
+                                                       .line = 9},
+                                            .finding_unit = torque_unit,
+                                            .place = joint_place,
+                                            .advice = torque_advice,
+                                            .obstacle = torque_obstacle,
+                                            .holds_at = joint_torque_holds}},
+                              .judge_sample = judge_joint_torques};
   return limit;
 }
 

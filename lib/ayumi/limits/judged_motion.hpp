@@ -14,8 +14,8 @@ namespace ayumi {
 /// smallest tolerance of a length, and far above the rounding of coordinates of metres (1e-15).
 inline constexpr double kRounding = 1e-7;
 
-/// Violations of one kind and item nearer than this are one finding [s]. Chosen: 20 samples at 1 kHz,
-/// so that a figure which swings about its limit is one finding, and two steps are two.
+/// Violations of one kind and item nearer than this are one finding [s]. Chosen: 20 samples at 1
+/// kHz, so that a figure which swings about its limit is one finding, and two steps are two.
 inline constexpr double kWindowGap = 0.020;
 
 struct JudgedMotion {
@@ -107,9 +107,9 @@ const char* axis_name(int axis);
 /// `rotary`, or for a prismatic joint (the item) the other unit.
 const char* joint_unit(const JudgedMotion&, const Violation&, const char* rotary,
                        const char* prismatic);
-std::string in_mm(double metres);            ///< of the size, "12.0 mm"
-std::string ratio_text(double excess);       ///< rounded up to 0.01, "1.04"
-std::string slow_down_text(double factor);   ///< "slow this window down by 1.04"
+std::string in_mm(double metres);           ///< of the size, "12.0 mm"
+std::string ratio_text(double excess);      ///< rounded up to 0.01, "1.04"
+std::string slow_down_text(double factor);  ///< "slow this window down by 1.04"
 inline constexpr const char* kOrRepair = ", or repair";
 
 }  // namespace ayumi

@@ -41,9 +41,7 @@ const std::vector<const FindingSpec*>& finding_specs() {
   return table;
 }
 
-const FindingSpec& spec_of(FindingKind kind) {
-  return *finding_specs()[static_cast<size_t>(kind)];
-}
+const FindingSpec& spec_of(FindingKind kind) { return *finding_specs()[static_cast<size_t>(kind)]; }
 
 const std::vector<const FindingSpec*>& summary_figures() {
   static const std::vector<const FindingSpec*> figures = [] {

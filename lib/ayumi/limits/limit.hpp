@@ -35,16 +35,18 @@ enum class LimitClass {
 
 /// A figure of the summary: the largest (or least) value of a limit over the motion.
 struct SummaryFigure {
-  const char* key = nullptr;   ///< in JSON; null: the kind has no figure
+  const char* key = nullptr;    ///< in JSON; null: the kind has no figure
   const char* label = nullptr;  ///< on the report's page
-  const char* unit = "";       ///< shown after the value times `scale`
+  const char* unit = "";        ///< shown after the value times `scale`
   double scale = 1;
-  const char* share_name = nullptr;  ///< its name in "of the limits: position 93 %, ..."; may be null
-  bool least = false;                ///< the least value matters, not the largest
-  int line = 0;  ///< place in JSON and on the page, an order that scripts and readers know
+  const char* share_name =
+      nullptr;         ///< its name in "of the limits: position 93 %, ..."; may be null
+  bool least = false;  ///< the least value matters, not the largest
+  int line = 0;        ///< place in JSON and on the page, an order that scripts and readers know
 };
 
-/// What to do about a finding, in two parts: by hand, and the advice to use `repair` (may be empty).
+/// What to do about a finding, in two parts: by hand, and the advice to use `repair` (may be
+/// empty).
 struct Advice {
   Advice(std::string remedy, std::string or_repair = "")
       : remedy(std::move(remedy)), or_repair(std::move(or_repair)) {}
@@ -78,8 +80,8 @@ struct FindingSpec {
   bool is_ratio() const { return unit[0] == '1'; }
 };
 
-/// A bound on the acceleration of single joints [rad/s^2], by dof; infinite where there is none. The
-/// repair makes its rows from it: lower -bound, upper bound, derivative 1.
+/// A bound on the acceleration of single joints [rad/s^2], by dof; infinite where there is none.
+/// The repair makes its rows from it: lower -bound, upper bound, derivative 1.
 using AccelerationBound = Eigen::VectorXd (*)(const RobotModel&, const ActuatorLimits&,
                                               const ByFindingKind<double>& tolerance);
 
@@ -121,8 +123,8 @@ struct CheckOptions {
   std::map<std::string, double> tolerances;  ///< by the name of the kind
 };
 
-/// The defaults with those that were set. Throws Error(usage) for an unknown name or a tolerance that
-/// is not a finite number.
+/// The defaults with those that were set. Throws Error(usage) for an unknown name or a tolerance
+/// that is not a finite number.
 Tolerances tolerances(const CheckOptions& options);
 
 /// Those for a motion of one robot: the default of angular_momentum grows with weight and height

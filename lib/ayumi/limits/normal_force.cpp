@@ -1,14 +1,15 @@
 // The ground pushes and cannot pull: f_n >= 0 wherever a foot is planned to stand, where f_n is the
 // demanded ground force along the normal of the support plane. A COG that is to fall faster than
-// gravity (ddz < -g) needs f_n < 0: the feet would leave the ground, which only a planned flight may.
+// gravity (ddz < -g) needs f_n < 0: the feet would leave the ground, which only a planned flight
+// may.
 #include "ayumi/limits/judged_motion.hpp"
 
 namespace ayumi {
 
 namespace {
 
-// Normal force below which contact is a warning, as a share of the weight. Chosen: where less than a
-// twentieth of the weight rests on the ground, friction and ZMP say little. It is a warning only;
+// Normal force below which contact is a warning, as a share of the weight. Chosen: where less than
+// a twentieth of the weight rests on the ground, friction and ZMP say little. It is a warning only;
 // half or twice of it changes no verdict.
 constexpr double kLeastNormalShare = 0.05;
 

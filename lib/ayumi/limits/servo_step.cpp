@@ -1,8 +1,8 @@
-// A servo receives one target in each of its periods T, and its motor follows no step that is larger
-// than the speed limit allows: |theta(k) - theta(k - T)| <= speed limit T. Where the joint's planned
-// speed is too large itself, that is joint_speed; a step beyond it is a jump between samples.
-// The target is the posture led by kd/kp times its rate (motion/servo_feedforward.hpp). It may step
-// by more than the posture; then `export` refuses the table, and a warning says so.
+// A servo receives one target in each of its periods T, and its motor follows no step that is
+// larger than the speed limit allows: |theta(k) - theta(k - T)| <= speed limit T. Where the joint's
+// planned speed is too large itself, that is joint_speed; a step beyond it is a jump between
+// samples. The target is the posture led by kd/kp times its rate (motion/servo_feedforward.hpp). It
+// may step by more than the posture; then `export` refuses the table, and a warning says so.
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
@@ -63,8 +63,8 @@ void judge_servo_targets(JudgedMotion& motion) {
         continue;
       const double step = target(k, i) - target(k - ticks, i), ratio = std::abs(step) / allowed;
       if (ratio > kMeanSpeedSpare)
-        motion.targets.add({FindingKind::servo_step, i, k, Severity::warning, step, allowed, ratio,
-                            kServoTarget});
+        motion.targets.add(
+            {FindingKind::servo_step, i, k, Severity::warning, step, allowed, ratio, kServoTarget});
     }
   }
 }

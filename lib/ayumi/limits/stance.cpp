@@ -1,9 +1,11 @@
-// A supporting sole rests in its place: the pose P of its contact interval (demand/contact_plan.hpp).
-// With the corners x_i of the sole in the frame of P and v_i where they belong,
-//   slip = max |x_i - v_i| along the ground,  penetration = max(0, -min z_i),  float = max(0, max z_i).
-// A swinging sole must not sink below the lower of the places that it leaves and comes to. A foot in
-// the air does not slip, it floats; but one that leaves its place and comes back to it within one
-// contact is displaced, whatever its height meanwhile.
+// A supporting sole rests in its place: the pose P of its contact interval
+// (demand/contact_plan.hpp). With the corners x_i of the sole in the frame of P and v_i where they
+// belong,
+//   slip = max |x_i - v_i| along the ground,  penetration = max(0, -min z_i),  float = max(0, max
+//   z_i).
+// A swinging sole must not sink below the lower of the places that it leaves and comes to. A foot
+// in the air does not slip, it floats; but one that leaves its place and comes back to it within
+// one contact is displaced, whatever its height meanwhile.
 #include <algorithm>
 #include <limits>
 
@@ -20,8 +22,8 @@ namespace {
 constexpr double kSlipTolerance = 0.002;
 // [m] Chosen: half of the slip that is allowed, since the ground resists depth with its stiffness.
 constexpr double kDepthTolerance = 0.001;
-// [m] Chosen: far above the rounding of planned contacts (1e-12 m in generated walks), far below what
-// a sole hangs 60 ms before the end of a swing of usual height.
+// [m] Chosen: far above the rounding of planned contacts (1e-12 m in generated walks), far below
+// what a sole hangs 60 ms before the end of a swing of usual height.
 constexpr double kFloatTolerance = 0.0003;
 
 // The ground below a swinging foot: the lower of where it stood and where it will stand.
@@ -55,9 +57,9 @@ bool in_place(const JudgedMotion& motion, int foot, int k) {
          e.slip <= motion.tolerance(FindingKind::foot_slip);
 }
 
-// A foot whose contact has begun but which still comes down to its place, or rises from it before its
-// contact ends: the swing is longer than the phases say. A slow swing hangs less than a sole may
-// float by, so that its motion shows it, not its height.
+// A foot whose contact has begun but which still comes down to its place, or rises from it before
+// its contact ends: the swing is longer than the phases say. A slow swing hangs less than a sole
+// may float by, so that its motion shows it, not its height.
 void judge_contact_edge(JudgedMotion& motion, Side side, const ContactInterval& contact,
                         bool lands) {
   const int k = lands ? contact.first : contact.last;

@@ -9,8 +9,8 @@ namespace ayumi {
 namespace {
 
 // Margin below which a ZMP inside the support is a warning [m], and the least margin of a repaired
-// motion. Chosen: a few hundredths of the width of small soles (5 cm). Half or twice of it changes no
-// verdict of a check.
+// motion. Chosen: a few hundredths of the width of small soles (5 cm). Half or twice of it changes
+// no verdict of a check.
 constexpr double kLeastMargin = 0.002;
 
 void judge_margin(JudgedMotion& motion, const JudgedSample& s, ZmpOf whose, double margin) {
@@ -63,8 +63,9 @@ const Limit& support_limit() {
                     .limit_class = LimitClass::force,
                     .unit = "m",
                     .tolerance = kLeastMargin,
-                    .meaning = "distance of the ZMP inside the support polygon: an error outside, a "
-                               "warning when less than the tolerance inside",
+                    .meaning =
+                        "distance of the ZMP inside the support polygon: an error outside, a "
+                        "warning when less than the tolerance inside",
                     .figure = {.key = "min_zmp_margin_m",
                                .label = "least ZMP margin",
                                .unit = "mm",

@@ -9,8 +9,8 @@ namespace ayumi {
 
 namespace {
 
-// [m/s] Chosen: a fall from 1 mm reaches 0.14 m/s. It is a warning only; half or twice of it changes
-// no verdict.
+// [m/s] Chosen: a fall from 1 mm reaches 0.14 m/s. It is a warning only; half or twice of it
+// changes no verdict.
 constexpr double kLandingTolerance = 0.15;
 
 double landing_speed(const JudgedMotion& motion, Side side, const ContactInterval& contact) {
@@ -40,9 +40,8 @@ void judge_landings(JudgedMotion& motion) {
 }
 
 Advice landing_advice(const JudgedMotion&, const FindingWindow& window) {
-  return "let the " + std::string(name_of(foot_of(window.worst))) +
-         " foot come down slower than " + text::fixed(window.worst.limit, 2) +
-         " m/s: a lower lift or a longer step";
+  return "let the " + std::string(name_of(foot_of(window.worst))) + " foot come down slower than " +
+         text::fixed(window.worst.limit, 2) + " m/s: a lower lift or a longer step";
 }
 
 }  // namespace

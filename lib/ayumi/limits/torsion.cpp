@@ -53,8 +53,9 @@ const Limit& torsion_limit() {
                     .limit_class = LimitClass::force,
                     .unit = "1",
                     .tolerance = kWholeMoment,
-                    .meaning = "moment about the normal through the ZMP over what friction resists, "
-                               "evenly pressed soles",
+                    .meaning =
+                        "moment about the normal through the ZMP over what friction resists, "
+                        "evenly pressed soles",
                     .figure = {.key = "max_yaw_ratio",
                                .label = "largest yaw moment",
                                .unit = "% of what friction resists",

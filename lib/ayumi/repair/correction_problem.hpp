@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "ayumi/limits/limit.hpp"
 #include "ayumi/demand/contact_plan.hpp"
+#include "ayumi/limits/limit.hpp"
 #include "ayumi/math/windows.hpp"
 #include "ayumi/repair/correction_constraints.hpp"
 #include "ayumi/repair/curvature.hpp"

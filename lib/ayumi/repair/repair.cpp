@@ -300,8 +300,8 @@ class Repair {
     objective_ = solution.objective;
     take(problem_->track(solution.x.head(problem_->variable_count())));
     // Bodies that have met are hard to part again: then from the start.
-    const bool on_its_way =
-        last_status_ == NlpStatus::iteration_limit && result_.check.summary[FindingKind::self_collision] > 0;
+    const bool on_its_way = last_status_ == NlpStatus::iteration_limit &&
+                            result_.check.summary[FindingKind::self_collision] > 0;
     spec_.start =
         last_status_ == NlpStatus::solved || (on_its_way && solution.violation < kNearlyMet)
             ? track_.coefficients

@@ -118,8 +118,8 @@ Table finding_table(const ConsistencyReport& check) {
 Table summary_table(const CheckSummary& summary) {
   Table table = {"Figures of the check", {}, {}};
   for (const FindingSpec* spec : summary_figures())
-    table.rows.push_back({spec->figure.label,
-                          figure(spec->figure.scale * summary[spec->kind], spec->figure.unit)});
+    table.rows.push_back(
+        {spec->figure.label, figure(spec->figure.scale * summary[spec->kind], spec->figure.unit)});
   return table;
 }
 

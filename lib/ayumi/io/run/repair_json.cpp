@@ -70,8 +70,9 @@ std::string repair_json(const RepairResult& result) {
                        {"where", result.where},
                        {"at_s", result.at}};
   moved.update(OrderedJson::parse(motion_change_json(result.moved)));
-  const OrderedJson margin = {{"before_m", figure(result.before.summary[FindingKind::support_margin])},
-                              {"after_m", figure(result.check.summary[FindingKind::support_margin])}};
+  const OrderedJson margin = {
+      {"before_m", figure(result.before.summary[FindingKind::support_margin])},
+      {"after_m", figure(result.check.summary[FindingKind::support_margin])}};
   OrderedJson obstacles = OrderedJson::array();
   for (const Obstacle& o : result.obstacles) obstacles.push_back(obstacle_json(o));
   const OrderedJson json = {
