@@ -101,12 +101,15 @@ std::string script_of(const std::string& page, const std::vector<Command>& comma
   return script;
 }
 
-class Pages : public testing::TestWithParam<std::string> {
+class Page : public testing::TestWithParam<std::string> {
  protected:
   fs::path page() const { return fs::path(AYUMI_SOURCE_DIR) / GetParam(); }
 };
 
-TEST_P(Pages, CommandsCanBePasted) {
+class CommandsOfPage : public Page {};  // slow: its own suite
+class LinksOfPage : public Page {};
+
+TEST_P(CommandsOfPage, CanBePasted) {
   const std::vector<Command> commands = commands_of(contents(page()));
   const std::string script = script_of(GetParam(), commands);
   if (script.empty()) GTEST_SKIP() << "no command to run";
@@ -143,7 +146,7 @@ std::vector<std::string> anchors_of(const std::string& page) {
   return anchors;
 }
 
-TEST_P(Pages, LinksLeadToFilesAndHeadings) {
+TEST_P(LinksOfPage, LeadToFilesAndHeadings) {
   const std::string text = contents(page());
   const std::regex link("\\]\\(([^)#\\s]*)(#([^)]*))?\\)");
   for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
@@ -165,7 +168,8 @@ std::string test_name(const testing::TestParamInfo<std::string>& page) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Docs, Pages, testing::ValuesIn(pages()), test_name);
+INSTANTIATE_TEST_SUITE_P(Docs, CommandsOfPage, testing::ValuesIn(pages()), test_name);
+INSTANTIATE_TEST_SUITE_P(Docs, LinksOfPage, testing::ValuesIn(pages()), test_name);
 
 // The reading of a page itself: continued lines, here-documents, comments and exit codes.
 TEST(PageCommands, AreReadAsAShellReadsThem) {
