@@ -220,12 +220,14 @@ Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, do
 }
 
 void find_limits(Context& context, const PushCommand& options) {
+  plant_of(options.plant);  // one that is missing is told before anything is computed
   if (!options.map.empty()) {
     const std::string type = std::filesystem::path(options.map).extension().string();
     if (type != ".svg" && type != ".png")
       fail(ErrorCode::usage, "--map " + options.map + ": the name must end in .svg or .png");
     refuse_overwriting(context, options.map);
   }
+  if (!options.out.empty()) require_file_target(options.out);
   const PatternInput input = load_pattern(context, options.pattern, options.input);
   const PushOptions push = push_options(context, input, options);
   const Json study = study_json(input, push);
