@@ -10,9 +10,6 @@ namespace ayumi {
 
 namespace {
 
-constexpr FindingKind kOfActuators[] = {FindingKind::joint_torque, FindingKind::continuous_torque,
-                                        FindingKind::joint_speed, FindingKind::servo_step};
-
 // The error of this kind that is furthest beyond its limit.
 const Finding* worst(const ConsistencyReport& report, FindingKind kind) {
   const Finding* found = nullptr;
@@ -25,12 +22,11 @@ const Finding* worst(const ConsistencyReport& report, FindingKind kind) {
 
 std::vector<std::string> missing(const ConsistencyReport& report) {
   std::vector<std::string> parts;
-  for (const FindingKind kind : kOfActuators) {
-    const Finding* f = worst(report, kind);
+  for (const FindingSpec* spec : actuator_findings()) {
+    const Finding* f = worst(report, spec->kind);
     if (!f) continue;
-    parts.push_back(text::brief(std::abs(f->worst), 3) + " " + f->unit +
-                    (kind == FindingKind::continuous_torque ? " lasting" : "") + " at " + f->where +
-                    " at " + text::fixed(f->at, 2) + " s (has " +
+    parts.push_back(text::brief(std::abs(f->worst), 3) + " " + f->unit + spec->actuator.after +
+                    " at " + f->where + " at " + text::fixed(f->at, 2) + " s (has " +
                     text::brief(std::abs(f->limit), 3) + ")");
   }
   return parts;

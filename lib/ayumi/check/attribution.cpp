@@ -115,6 +115,15 @@ const FindingSet kPosition = {"`joint_position`", is_kind<FindingKind::joint_pos
 const FindingSet kSpeed = {"`joint_speed`", is_kind<FindingKind::joint_speed>};
 const FindingSet kTorque = {"`joint_torque`", is_kind<FindingKind::joint_torque>};
 const FindingSet kStep = {"`servo_step`", is_kind<FindingKind::servo_step>};
+const FindingSet kMotor = {"`motor_acceleration`", is_kind<FindingKind::motor_acceleration>};
+const FindingSet kStepAndMotor = {"`servo_step`, `motor_acceleration`", [](const Violation& v) {
+                                    return v.kind == FindingKind::servo_step ||
+                                           v.kind == FindingKind::motor_acceleration;
+                                  }};
+const FindingSet kSpeedAndStep = {"`joint_speed`, `servo_step`", [](const Violation& v) {
+                                    return v.kind == FindingKind::joint_speed ||
+                                           v.kind == FindingKind::servo_step;
+                                  }};
 const FindingSet kRates = {"rates",
                            [](const Violation& v) { return is_class(v, LimitClass::rate); }};
 const FindingSet kCollision = {"`self_collision`", is_kind<FindingKind::self_collision>};
@@ -480,12 +489,14 @@ const std::vector<Rule>& rules() {
        Order::worst_of_each_motion,
        {{kForcesButTorque, kBetweenRests, kSlowerPace},
         {kZmpAndForce, kBetweenRests, kSlowerPace},
-        {kStep, kBetweenRests, kSlowerPace}}},
+        {kStepAndMotor, kBetweenRests, kSlowerPace}}},
       {kTorque,
        Order::worst_of_each_motion,
        {{kForcesButTorque, kBetweenRests, kSlowerPace},
         {kZmpAndForce, kBetweenRests, kSlowerPace},
-        {kStep, kBetweenRests, kSlowerPace}}},
+        {kStepAndMotor, kBetweenRests, kSlowerPace}}},
+      {kSpeedAndStep, Order::by_severity, {{kMotor, kNearWindow, kSameJoint}}},
+      {kTorque, Order::by_severity, {{kMotor, kNearWindow, kSameJoint}}},
       {kMotionSupport, Order::by_time, {{kTorque, kNearWindow, kTorqueOfLeg}}},
       {kFriction, Order::by_severity, {{kTorsion, kAnywhere, kHeldByFriction}}},
       {kCog, Order::by_severity, {{kZmpAndForce, kInfluence, kAlways}}},

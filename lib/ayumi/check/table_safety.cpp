@@ -15,9 +15,11 @@ namespace ayumi {
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / EIGEN_PI;
-constexpr double kCountSlack = 1e-6;  // counts; rounding of degrees and radians
+// Counts by which a limit may be missed: the rounding of degrees and radians in double precision is
+// far smaller, and a servo sees whole counts only.
+constexpr double kCountSlack = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kLargestCount = 32767;  // 16 bit signed
+constexpr int kLargestCount = 32767;  // counts are signed numbers of 16 bits (docs/formats.md)
 
 double counts_per_radian(const Dof& dof) {
   return dof.encoder.device > 0 ? dof.encoder.counts_per_degree * kDegreesPerRadian : 0;

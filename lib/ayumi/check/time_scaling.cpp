@@ -35,7 +35,7 @@ bool slower_pace_removes(JudgedMotion& motion, const Violation& cause, const Vio
   const bool flies =
       effect.kind == FindingKind::ballistic || effect.kind == FindingKind::angular_momentum;
   if (!flies && broken_by_jump(motion, effect.sample))
-    return effect.kind != FindingKind::servo_step;
+    return spec_of(effect.kind).limit_class != LimitClass::rate;
   const double step = effect.kind == FindingKind::continuous_torque ? kCoarsePaceStep : kPaceStep;
   for (double pace = step; pace > kSlowestPace; pace *= step)
     if (holds_at(motion, cause, pace) && holds_at(motion, effect, pace)) return true;

@@ -9,7 +9,10 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kCoarsePeriod = 0.020;  // [s]
+// Period at which every pair of bodies is looked at [s]. Chosen: in that time bodies that approach
+// each other at 0.5 m/s come 10 mm nearer, which is what limits/clearance.cpp adds to its
+// tolerance.
+constexpr double kCoarsePeriod = 0.020;
 
 std::vector<int> coarse_samples(const CommandSeries& series) {
   const int count = static_cast<int>(series.samples.size());

@@ -50,8 +50,13 @@ ContactPlan contact_plan(const CommandSeries& series) {
 
 RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side side,
                    const ContactInterval& contact, bool lands) {
-  constexpr double kArrived = 0.02;   // of the height at the edge
-  constexpr double kRunOnFall = 0.8;  // of it, without a halt
+  // Share of the height at the edge below which the sole has as good as come to its place. Chosen:
+  // a swing that ends as (1 - s)^3 has a quarter of its remaining time left there.
+  constexpr double kArrived = 0.02;
+  // Share of the height at the edge by which the sole comes down without a halt when it is on its
+  // way. Chosen: a sole that hangs still and then lowers a little is floating, which is judged by
+  // height.
+  constexpr double kRunOnFall = 0.8;
   const int edge = lands ? contact.first : contact.last, step = lands ? 1 : -1;
   const Eigen::Isometry3d inverse = contact.sole.inverse();
   const Eigen::Vector3d center(model.sole(side).center.x(), model.sole(side).center.y(), 0);
@@ -77,7 +82,9 @@ RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side si
 
 double samples_after_contact(const RobotModel& model, const CommandSeries& series, Side side,
                              const ContactInterval& contact, const ContactInterval& swing) {
-  constexpr double kOff = 1e-5;  // of a sole in its place [m]
+  // Distance from its place at which a sole is leaving it [m]. Source: docs/attribution.md
+  // ("Contacts that end too early"); planned contacts are met to 1e-12 m.
+  constexpr double kOff = 1e-5;
   RobotData data(model);
   int off = -1;
   for (int k = swing.first; k <= swing.last; ++k) {
@@ -91,7 +98,8 @@ double samples_after_contact(const RobotModel& model, const CommandSeries& serie
 }
 
 bool at_flight_edge(const CommandSeries& series, int k) {
-  constexpr int kReach = 2;  // of the differences of fill_rates()
+  // Samples to either side that fill_rates() of motion/differentiate.hpp uses.
+  constexpr int kReach = 2;
   const int last = static_cast<int>(series.samples.size()) - 1;
   const auto flies = [&](int i) { return series.samples[i].support == Support::none; };
   for (int i = std::max(0, k - kReach); i <= std::min(last, k + kReach); ++i)

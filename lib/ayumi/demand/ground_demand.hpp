@@ -68,7 +68,9 @@ std::array<Vector6d, 2> foot_wrenches(const RobotModel& model, Support support,
                                       const Eigen::Vector3d& base_position,
                                       const Vector6d& base_wrench);
 
-/// Dry friction turns its sign over twice this joint rate [rad/s].
+/// Dry friction turns its sign over twice this joint rate [rad/s]. Chosen: far below the rates of a
+/// motion (0.1 rad/s and more) and above the rounding of differences, so that its torque has no
+/// jump.
 inline constexpr double kCoulombRate = 0.01;
 
 /// Motor torques [dof]: `force` of inverse_dynamics without what the ground gives at the feet, plus

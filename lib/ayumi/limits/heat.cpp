@@ -91,6 +91,7 @@ const Limit& heat_limit() {
                                .scale = 100,
                                .share_name = "continuous",
                                .line = 10},
+                    .actuator = {.line = 2, .after = " lasting"},
                     .finding_unit = heat_unit,
                     .place = joint_place,
                     .advice = heat_advice,

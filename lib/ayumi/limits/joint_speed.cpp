@@ -52,6 +52,7 @@ const Limit& joint_speed_limit() {
                                                        .scale = 100,
                                                        .share_name = "speed",
                                                        .line = 7},
+                                            .actuator = {.line = 3},
                                             .finding_unit = speed_unit,
                                             .place = joint_place,
                                             .advice = speed_advice,

@@ -56,6 +56,7 @@ const Limit& joint_torque_limit() {
                                                        .scale = 100,
                                                        .share_name = "torque",
                                                        .line = 9},
+                                            .actuator = {.line = 1},
                                             .finding_unit = torque_unit,
                                             .place = joint_place,
                                             .advice = torque_advice,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -43,17 +44,39 @@ const std::vector<const FindingSpec*>& finding_specs() {
 
 const FindingSpec& spec_of(FindingKind kind) { return *finding_specs()[static_cast<size_t>(kind)]; }
 
+namespace {
+
+/// The kinds whose line is not 0, in the order of their lines.
+template <typename Line>
+std::vector<const FindingSpec*> by_line(const Line& line) {
+  std::vector<const FindingSpec*> found;
+  for (const FindingSpec* spec : finding_specs())
+    if (line(*spec) > 0) found.push_back(spec);
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const FindingSpec* a, const FindingSpec* b) { return line(*a) < line(*b); });
+  return found;
+}
+
+}  // namespace
+
 const std::vector<const FindingSpec*>& summary_figures() {
-  static const std::vector<const FindingSpec*> figures = [] {
-    std::vector<const FindingSpec*> found;
-    for (const FindingSpec* spec : finding_specs())
-      if (spec->figure.key) found.push_back(spec);
-    std::stable_sort(found.begin(), found.end(), [](const FindingSpec* a, const FindingSpec* b) {
-      return a->figure.line < b->figure.line;
-    });
-    return found;
-  }();
+  static const auto figures = by_line([](const FindingSpec& spec) { return spec.figure.line; });
   return figures;
+}
+
+const std::vector<const FindingSpec*>& actuator_findings() {
+  static const auto findings = by_line([](const FindingSpec& spec) { return spec.actuator.line; });
+  return findings;
+}
+
+Eigen::VectorXd acceleration_bound(const RobotModel& model, const ActuatorLimits& actuators,
+                                   const Tolerances& tolerance) {
+  Eigen::VectorXd bound =
+      Eigen::VectorXd::Constant(model.dof_count(), std::numeric_limits<double>::infinity());
+  for (const Limit* limit : limits())
+    if (limit->acceleration_bound)
+      bound = bound.cwiseMin(limit->acceleration_bound(model, actuators, tolerance));
+  return bound;
 }
 
 bool is_of_posture(const Finding& finding) {

@@ -45,6 +45,13 @@ struct SummaryFigure {
   int line = 0;        ///< place in JSON and on the page, an order that scripts and readers know
 };
 
+/// What a motion needs of the actuators where it breaks a limit that another actuator profile may
+/// keep: "needs 8.1 N m at r_knee at 1.39 s (has 4.5)".
+struct ActuatorNeedWords {
+  int line = 0;            ///< place in the list of needs; 0: no actuator helps
+  const char* after = "";  ///< after the unit
+};
+
 /// What to do about a finding, in two parts: by hand, and the advice to use `repair` (may be
 /// empty).
 struct Advice {
@@ -64,6 +71,7 @@ struct FindingSpec {
   /// The default for a motion of one robot is at least this; null: the default holds for all.
   double (*least_tolerance)(const RobotModel&, const CommandSeries&) = nullptr;
   SummaryFigure figure = {};
+  ActuatorNeedWords actuator = {};
 
   /// Unit of the values of a violation; null: `unit`.
   const char* (*finding_unit)(const JudgedMotion&, const Violation&) = nullptr;
@@ -80,8 +88,9 @@ struct FindingSpec {
   bool is_ratio() const { return unit[0] == '1'; }
 };
 
-/// A bound on the acceleration of single joints [rad/s^2], by dof; infinite where there is none.
-/// The repair makes its rows from it: lower -bound, upper bound, derivative 1.
+/// The bound of one limit on the acceleration of single joints [rad/s^2], [m/s^2], by dof; infinite
+/// where there is none. The repair makes its rows from it: lower -bound, upper bound, derivative 1
+/// by the joint's own acceleration.
 using AccelerationBound = Eigen::VectorXd (*)(const RobotModel&, const ActuatorLimits&,
                                               const ByFindingKind<double>& tolerance);
 
@@ -94,6 +103,11 @@ struct Limit {
   AccelerationBound acceleration_bound = nullptr;
 };
 
+/// The least bound of all limits on the acceleration of each joint [rad/s^2], [m/s^2], by dof;
+/// infinite where there is none. For the repair.
+Eigen::VectorXd acceleration_bound(const RobotModel& model, const ActuatorLimits& actuators,
+                                   const ByFindingKind<double>& tolerance);
+
 /// Every limit once, in the order of limit_table.hpp.
 const std::vector<const Limit*>& limits();
 
@@ -105,6 +119,9 @@ const std::vector<const FindingSpec*>& finding_specs();
 
 /// Of all kinds that have a figure, by SummaryFigure::line.
 const std::vector<const FindingSpec*>& summary_figures();
+
+/// Of all kinds that actuators can keep, by ActuatorNeedWords::line.
+const std::vector<const FindingSpec*>& actuator_findings();
 
 /// Whether the finding is about the posture itself, the same at every pace; a speed, a torque or a
 /// ZMP at some time can be corrected though the posture there stays.

@@ -16,9 +16,8 @@ namespace {
 // Share of the step that the speed limit allows. A law, not a choice.
 constexpr double kWholeStep = 1;
 
-// The mean speed of a period differs from the speeds at its ends. Chosen: half a percent, the
-// difference that an acceleration of half the speed limit in 10 ms makes in a period of 1 ms is 5 %
-// of the change; smooth motions stay below.
+// The mean speed of a period differs a little from the speeds at its ends. Chosen: half a percent,
+// so that a motion planned at its speed limit makes no step beyond it.
 constexpr double kMeanSpeedSpare = 1.005;
 
 int servo_ticks(const JudgedMotion& motion) {
@@ -120,6 +119,7 @@ const Limit& servo_step_limit() {
                                .unit = "% of what the speed limit allows",
                                .scale = 100,
                                .line = 17},
+                    .actuator = {.line = 4},
                     .finding_unit = step_unit,
                     .place = joint_place,
                     .advice = step_advice,

@@ -276,6 +276,7 @@ void CorrectionProblem::place_foot_blocks(int instant) {
 void CorrectionProblem::place_joint_blocks(int instant) {
   const ActuatorLimits& limits = model_.limits(spec_.profile);
   const double soft = model_.description().soft_limit_margin + spec_.joint_margin;
+  const VectorXd bound = acceleration_bound(model_, limits, spec_.tolerance);
   for (int i = 0; i < model_.dof_count(); ++i) {
     if (!spec_.locked.empty() && spec_.locked[i]) continue;
     const Dof& dof = model_.dofs()[i];
@@ -294,6 +295,9 @@ void CorrectionProblem::place_joint_blocks(int instant) {
       add_block(block_of(ConstraintGroup::position, instant, i, 1), lower, upper);
     if (speed > spec_.watched_share * fastest)
       add_block(block_of(ConstraintGroup::speed, instant, i, 1, 1 / fastest), -spec_.share,
+                spec_.share);
+    if (acceleration > spec_.watched_share * bound[i])
+      add_block(block_of(ConstraintGroup::acceleration, instant, i, 1, 1 / bound[i]), -spec_.share,
                 spec_.share);
     // No rougher than a motion that is rough already: that is told, but no fault.
     const double own = std::abs(watched(instant)[0]->acceleration[6 + i]);
