@@ -27,7 +27,7 @@ constexpr double kStiff = 1e7;  // of a sole [N/m]
 
 /// Any plant; takes down how long each of its steps took [us].
 struct TimedPlant {
-  AnyPlant inner;
+  PlantInterface inner;
   std::shared_ptr<double> step_time;
   const RobotState& state() const { return inner.state(); }
   const RobotData& data() const { return inner.data(); }
@@ -65,8 +65,8 @@ void run_once(const CommandSeries& series, SimulateOptions options, Contender& c
   options.plant.name = kind.name;
   options.plant.make = [kind, step_time](const RobotModel& robot, const ActuatorLimits& limits,
                                          const World& world) {
-    return AnyPlant(TimedPlant{
-        kind.make ? kind.make(robot, limits, world) : AnyPlant(Plant(robot, limits, world)),
+    return PlantInterface(TimedPlant{
+        kind.make ? kind.make(robot, limits, world) : PlantInterface(Plant(robot, limits, world)),
         step_time});
   };
   Simulator simulator(*contender.model, series, options);

@@ -79,7 +79,7 @@ bool walk(const RobotModel& model, const std::string& controller, double hours) 
   Plant plant(model, model.limits(), options.world);
   bool placed = false;
   options.plant.make = [&](const RobotModel&, const ActuatorLimits&, const World&) {
-    return AnyPlant(Lasting{&plant, &placed});
+    return PlantInterface(Lasting{&plant, &placed});
   };
   Spread ends[2];
   double time = 0, path = 0, start = 0, error = 0, heading = 0;

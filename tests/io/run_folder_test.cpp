@@ -122,7 +122,7 @@ TEST(SimulationLogFile, NoFieldOfASampleIsForgotten) {
   EXPECT_EQ(json.at("columns").at(0), "base.x[m]");
   const size_t fields_of_plain_sample = 3 * sizeof(BasePose) + 2 * 24 +
                                         6 * sizeof(Eigen::VectorXd) + 15 * 24 + 6 * 8 +
-                                        sizeof(Work) + 8;
+                                        sizeof(EnergyBalance) + 8;
   EXPECT_LE(sizeof(SimulationSample) - fields_of_plain_sample, 64u) << "a field was added?";
 }
 

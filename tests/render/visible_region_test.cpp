@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <type_traits>
+
+#include "ayumi/sim/ground.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -24,13 +27,20 @@ Eigen::Matrix4f clip_of(const Camera& camera) {
   return (projection_matrix(camera, kAspect) * view_matrix(camera)).cast<float>();
 }
 
-Ground level_ground(double height) {
-  Ground ground;
+GroundRectangle level_ground(double height) {
+  GroundRectangle ground;
   ground.origin = {0, 0, height};
   ground.u = Vector3d::UnitX();
   ground.v = Vector3d::UnitY();
   ground.normal = Vector3d::UnitZ();
   return ground;
+}
+
+// The simulated ground and the drawn one are two types, and a program can use both.
+TEST(VisibleRegion, CompilesBesideTheGroundOfTheSimulation) {
+  static_assert(!std::is_same_v<Ground, GroundRectangle>);
+  const Ground simulated{World{}};
+  EXPECT_EQ(simulated.top(), level_ground(0).origin.z());
 }
 
 TEST(VisibleRegion, HoldsEveryPointOfABoxAndLittleMore) {
@@ -78,7 +88,7 @@ TEST(GroundHeight, IsWhereTheFirstRowLeavesTheSquare) {
     const Camera camera = camera_at(eye);
     const Eigen::Matrix4d back =
         (projection_matrix(camera, kAspect) * view_matrix(camera)).inverse();
-    const Ground plane = level_ground(-0.2);
+    const GroundRectangle plane = level_ground(-0.2);
     const Eigen::Vector2d center(0.3, -0.1);
     const double reach = 20;
     const auto sees_ground = [&](double x, double y) {

@@ -28,7 +28,7 @@ double energy(const RobotModel& model, const RobotState& state) {
   return 0.5 * state.velocity().dot(M * state.velocity()) + model.mass() * kGravity * data.cog.z();
 }
 
-double sum(const Work& w) { return w.servos + w.contacts + w.outside + w.joints; }
+double sum(const EnergyBalance& w) { return w.servos + w.contacts + w.outside + w.joints; }
 
 // A block that falls 20 mm and comes to rest: the ground takes m g h, at the impact all of it. The
 // step of the impact begins somewhere in the last v dt of the fall, and gravity acts through it.

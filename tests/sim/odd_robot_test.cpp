@@ -123,7 +123,7 @@ TEST(MeshOnTheGround, LiesWhereItsShapeIs) {
     s.base.attitude = exp_rotation({0.1, 0, 0});
     s.base.position = s.base.attitude * Vector3d(0.3, 0, 0.045);
     plant.set_state(s);
-    Work work;
+    EnergyBalance work;
     for (int i = 0; i < 1000; ++i) work += plant.step(VectorXd(0), {}, 1e-3).work;
     const Vector3d place = s.base.attitude.conjugate() * plant.state().base.position;
     EXPECT_NEAR(place.z(), 0.04, 1e-5) << name;

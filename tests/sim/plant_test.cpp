@@ -57,6 +57,19 @@ TEST(Block, SlidesAndStopsByCoulombsLaw) {
   EXPECT_LT(block.plant.state().base_velocity.norm(), 1e-9);
 }
 
+TEST(Plant, ACopyContinuesAloneAndToTheSameBits) {
+  BlockOnSlope block(0.4, 0.2);
+  block.run(0.1);
+  const Vector3d start = block.plant.state().base.position;
+  Plant copy = block.plant;
+  block.run(0.1);
+  EXPECT_EQ(copy.state().base.position, start);
+  EXPECT_NE(block.plant.state().base.position, start);
+  for (int i = 0; i < 100; ++i) copy.step(VectorXd(0), {}, 1e-3);
+  EXPECT_EQ(copy.state().base.position, block.plant.state().base.position);
+  EXPECT_EQ(copy.state().base_velocity, block.plant.state().base_velocity);
+}
+
 TEST(Block, SticksBelowTheFrictionAngleWithoutCreep) {
   BlockOnSlope block(0.3, 0.35);
   block.run(1.0);

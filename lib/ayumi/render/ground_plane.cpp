@@ -7,9 +7,9 @@ namespace ayumi {
 using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
-Ground make_ground(const Eigen::Isometry3d& frame, const Eigen::AlignedBox3d& box,
-                   const Vector3d& sun) {
-  Ground ground;
+GroundRectangle ground_rectangle(const Eigen::Isometry3d& frame, const Eigen::AlignedBox3d& box,
+                                 const Vector3d& sun) {
+  GroundRectangle ground;
   ground.origin = frame.translation();
   ground.u = frame.linear().col(0);
   ground.v = frame.linear().col(1);
@@ -26,7 +26,7 @@ Ground make_ground(const Eigen::Isometry3d& frame, const Eigen::AlignedBox3d& bo
 }
 
 // With p from the plane's origin: p -> ((p - s (n.p)/(n.s)) . u - center) / reach, the same for v.
-Eigen::Matrix4d flattening(const Ground& plane, const Vector3d& sun) {
+Eigen::Matrix4d flattening(const GroundRectangle& plane, const Vector3d& sun) {
   const Eigen::Matrix3d fall =
       Eigen::Matrix3d::Identity() - sun * plane.normal.transpose() / plane.normal.dot(sun);
   Eigen::Matrix4d flatten = Eigen::Matrix4d::Zero();

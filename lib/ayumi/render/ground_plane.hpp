@@ -9,9 +9,8 @@
 
 namespace ayumi {
 
-/// Frame of the ground plane and the square of it that the robot's shadow falls
-/// on.
-struct Ground {
+/// Frame of the ground plane and the square of it that the robot's shadow falls on.
+struct GroundRectangle {
   Eigen::Vector3d origin, u, v, normal;
   Eigen::Vector2d center;
   double reach = 1;  ///< half edge of the square [m]
@@ -19,11 +18,11 @@ struct Ground {
 
 /// `frame` lies in the plane, z is its normal; `box` bounds what throws the shadow, `sun` points to
 /// the light.
-Ground make_ground(const Eigen::Isometry3d& frame, const Eigen::AlignedBox3d& box,
-                   const Eigen::Vector3d& sun);
+GroundRectangle ground_rectangle(const Eigen::Isometry3d& frame, const Eigen::AlignedBox3d& box,
+                                 const Eigen::Vector3d& sun);
 
 /// Along the sun onto the plane: the square of the shadow becomes -1..1, depth 0.
-Eigen::Matrix4d flattening(const Ground& ground, const Eigen::Vector3d& sun);
+Eigen::Matrix4d flattening(const GroundRectangle& ground, const Eigen::Vector3d& sun);
 
 /// The sun over the camera's left shoulder, whatever side it looks from; unit.
 Eigen::Vector3d sun_behind(const Camera& camera, const Eigen::Vector3d& up);

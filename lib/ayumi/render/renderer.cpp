@@ -254,8 +254,8 @@ Image Renderer::render(const Scene& scene) {
   const bool with_shadow = p.options.ground && p.options.shadow && !box.isEmpty() &&
                            scene.ground.linear().col(2).dot(sun) > 0.2;
   const Vector3d none = Vector3d::Zero();
-  const Ground plane =
-      make_ground(scene.ground, box.isEmpty() ? Eigen::AlignedBox3d(none, none) : box, sun);
+  const GroundRectangle plane =
+      ground_rectangle(scene.ground, box.isEmpty() ? Eigen::AlignedBox3d(none, none) : box, sun);
   const Eigen::Matrix4d flatten = flattening(plane, sun);
   const Matrix4f view_projection =
       (projection_matrix(scene.camera, double(p.options.width) / p.options.height) *

@@ -15,7 +15,7 @@ const Vector3d kHorizon = {0.877, 0.893, 0.907};  // sRGB
 const Eigen::Vector4f kWholePlane = {0, 0, 1, 1};
 
 /// Point of the plane below the camera's target, its coordinates.
-Eigen::Vector2d middle_of_plane(const Camera& camera, const Ground& plane) {
+Eigen::Vector2d middle_of_plane(const Camera& camera, const GroundRectangle& plane) {
   const Vector3d target = camera.target - plane.origin;
   return {plane.u.dot(target), plane.v.dot(target)};
 }

@@ -17,7 +17,7 @@ constexpr int kShadowSize = 256;  ///< of the coverage [pixel]
 
 /// Where a frame's ground, shadow and horizon are.
 struct Setting {
-  Ground plane;
+  GroundRectangle plane;
   Eigen::Matrix4f view_projection;
   bool with_shadow = false;
 };

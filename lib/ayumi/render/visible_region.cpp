@@ -55,7 +55,7 @@ std::array<PixelBox, 4> around(const PixelBox& inner, int width, int height) {
 
 // The square is seen as a convex shape: it holds a row whose two ends it holds, and with the lowest
 // row and another one all rows between.
-double ground_height(const Camera& camera, double aspect, const Ground& plane,
+double ground_height(const Camera& camera, double aspect, const GroundRectangle& plane,
                      const Vector2d& center, double reach) {
   const Eigen::Matrix3d turn = view_matrix(camera).topLeftCorner<3, 3>();  // right, up, back
   const double up = std::tan(0.5 * camera.field_of_view), right = up * aspect;

@@ -36,7 +36,7 @@ std::array<PixelBox, 4> around(const PixelBox& inner, int width, int height);
 
 /// Height up to which a picture shows nothing but the square of the plane with this middle (plane
 /// coordinates) and half edge [m]: -1 its bottom, 1 its top.
-double ground_height(const Camera& camera, double aspect, const Ground& plane,
+double ground_height(const Camera& camera, double aspect, const GroundRectangle& plane,
                      const Eigen::Vector2d& center, double reach);
 
 }  // namespace ayumi

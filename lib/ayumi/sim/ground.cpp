@@ -11,19 +11,24 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A corner this far below a block's top, or less far than it is inside, stands on the top; deeper
-// it has run into the side.
-constexpr double kLip = 0.001;  // [m]
-constexpr double kDeep =
-    0.005;                      // an edge this far inside a sole has met its side, not its face [m]
-constexpr double kBelow = 0.5;  // of a solid block, below the plane [m]
+/// Depth below a block's top up to which a point stands on the top [m]. A point that is deeper
+/// below the top than this, and deeper than it is behind the side, has hit the side. Chosen: far
+/// above the penetration of a loaded sole (tens of micrometres) and far below the height of a step.
+constexpr double kLip = 0.001;
+/// Depth inside a sole up to which an edge touches the sole's face [m]; a deeper edge has hit the
+/// sole's side. Chosen: five times kLip, below the thickness of a sole.
+constexpr double kFaceDepth = 0.005;
+/// Depth of a solid block below the plane [m]. Chosen: deeper than any body penetrates.
+constexpr double kBlockDepth = 0.5;
+// Ids of inner points: 1024 for each block, then the nodes of the height field.
 constexpr long kBlockIds = 1 << 10, kFieldIds = 1 << 24;
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross_xy(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// The plane of a sole over the ground: height at a place.
+/// The plane of a sole over the ground.
 struct Plane {
   Vector3d origin, normal;
+  /// Height at the place p.
   double at(const Vector2d& p) const {
     return origin.z() - normal.head<2>().dot(p - origin.head<2>()) / normal.z();
   }
@@ -32,7 +37,7 @@ struct Plane {
 bool inside(const std::vector<Vector3d>& polygon, const Vector2d& p) {
   for (size_t i = 0; i < polygon.size(); ++i) {
     const Vector2d a = polygon[i].head<2>(), b = polygon[(i + 1) % polygon.size()].head<2>();
-    if (cross(b - a, p - a) < 0) return false;
+    if (cross_xy(b - a, p - a) < 0) return false;
   }
   return true;
 }
@@ -51,7 +56,7 @@ Ground::Block Ground::prepared(const GroundBlock& block, double rise) {
 }
 
 SolidBlock Ground::solid(const GroundBlock& block, double rise) const {
-  const double bottom = std::min(world_.height, block.height) - kBelow;
+  const double bottom = std::min(world_.height, block.height) - kBlockDepth;
   const double depth = block.height - bottom;
   const bool disc = block.kind == GroundBlock::Kind::disc;
   const Vector2d size = block.high - block.low;
@@ -134,7 +139,7 @@ GroundTouch Ground::touch(const Vector3d& p) const {
       const Vector2d& a = block.corner[static_cast<size_t>(k)];
       const Vector2d edge =
           (block.corner[static_cast<size_t>((k + 1) % block.count)] - a).normalized();
-      const double distance = cross(edge, p.head<2>() - a);
+      const double distance = cross_xy(edge, p.head<2>() - a);
       if (distance >= within) continue;
       within = distance;
       outward << edge.y(), -edge.x();
@@ -155,7 +160,7 @@ GroundTouch Ground::touch(const Vector3d& p) const {
   return std::isfinite(wall_depth) && result.gap > -kLip ? wall : result;
 }
 
-// Corners of a block within the sole, and crossings of its edges with the sole's.
+// Corners of a block within the sole, and crossings of the edges of both.
 void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
                           std::vector<InnerPoint>& points) const {
   Vector2d center = Vector2d::Zero();
@@ -166,7 +171,7 @@ void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
   if (plane.normal.z() < 0.5) return;
   const auto add = [&](long id, const Vector2d& p, double height, double rise) {
     const double z = plane.at(p), gap = (z - height) * plane.normal.z();
-    if (gap < reach && gap > -kDeep) points.push_back({id, {p.x(), p.y(), z}, gap, rise});
+    if (gap < reach && gap > -kFaceDepth) points.push_back({id, {p.x(), p.y(), z}, gap, rise});
   };
   for (size_t b = 0; b < blocks_.size(); ++b) {
     const Block& block = blocks_[b];
@@ -179,9 +184,9 @@ void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
       for (size_t i = 0; i < sole.size(); ++i) {
         const Vector2d a = sole[i].head<2>();
         const Vector2d edge = sole[(i + 1) % sole.size()].head<2>() - a;
-        const double area = cross(along, edge);
+        const double area = cross_xy(along, edge);
         if (std::abs(area) < 1e-12) continue;
-        const double s = cross(a - p, edge) / area, t = cross(a - p, along) / area;
+        const double s = cross_xy(a - p, edge) / area, t = cross_xy(a - p, along) / area;
         if (s > 0 && s < 1 && t > 0 && t < 1)
           add(base + 8 + 8 * static_cast<long>(i) + k, p + s * along, block.height, block.rise);
       }
@@ -210,7 +215,8 @@ void Ground::visit_nodes(const Vector2d& center, double radius, const Visit& vis
                      field_.spacing * Vector2d(static_cast<double>(i), static_cast<double>(j))));
 }
 
-// Higher than the mean of its neighbours along x or along y; the plane lies around the field.
+// True when a node is higher than the mean of its neighbours along x or along y. Around the field
+// is the plane.
 bool Ground::stands_out(Eigen::Index i, Eigen::Index j) const {
   const Eigen::MatrixXd& z = field_.heights;
   const auto at = [&](Eigen::Index a, Eigen::Index b) {
@@ -221,7 +227,9 @@ bool Ground::stands_out(Eigen::Index i, Eigen::Index j) const {
 }
 
 void Ground::tips(const Vector3d& center, double radius, std::vector<FieldTip>& tips) const {
-  constexpr double kBlunt = 1e-4;  // radius of a tip [m]
+  // Radius of a tip [m]. Chosen: a sphere has a normal in every direction, and a tenth of a
+  // millimetre is small against the spacing of a field.
+  constexpr double kBlunt = 1e-4;
   tips.clear();
   visit_nodes(center.head<2>(), radius, [&](Eigen::Index i, Eigen::Index j, const Vector2d& p) {
     const double height = field_.heights(i, j);

@@ -1,6 +1,7 @@
 #pragma once
-// The ground of one step: the world's shapes with the floor's pose and the bumps of that moment.
-// Points and normals are in the ground's frame (z along the slope's normal) unless said otherwise.
+// The ground during one step: the shapes of the world with the floor's pose and the bumps of that
+// step. Points and normals are in the ground's frame (z along the normal of the slope) unless a
+// comment names another frame. docs/theory_plant.md, "Ground".
 
 #include <Eigen/Dense>
 #include <vector>
@@ -10,29 +11,30 @@
 
 namespace ayumi {
 
-/// What a point meets.
+/// The ground at a point.
 struct GroundTouch {
   double gap = 0;  ///< along the normal, negative inside [m]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  double rise = 0;  ///< rate of the ground's height there [m/s]
+  double rise = 0;  ///< rate of the ground's height at this place [m/s]
 };
 
-/// Where the ground meets a sole between the sole's corners: a corner or edge of a block, or a node
-/// of the height field.
+/// A place where the ground touches a sole between the sole's corners: a corner or an edge of a
+/// block, or a node of the height field.
 struct InnerPoint {
   long id = 0;              ///< the same in the next step
-  Eigen::Vector3d on_sole;  ///< point of the sole's plane [m]
-  double gap = 0, rise = 0;
+  Eigen::Vector3d on_sole;  ///< point in the plane of the sole [m]
+  double gap = 0;           ///< along the normal, negative inside [m]
+  double rise = 0;          ///< [m/s]
 };
 
-/// A block as a solid, for shapes that lie over its edges.
+/// A block as a solid, for shapes that lie on its edges.
 struct SolidBlock {
   Collider collider;
   Eigen::Isometry3d pose;  ///< in the ground's frame
   double rise = 0;         ///< [m/s]
 };
 
-/// A node of the height field that stands out.
+/// A node of the height field that is higher than its neighbours.
 struct FieldTip {
   long id = 0;  ///< the same in the next step
   SolidBlock solid;
@@ -42,33 +44,35 @@ class Ground {
  public:
   explicit Ground(const World& world);
 
-  /// As it is in the coming step.
+  /// Takes floor, friction and bumps of the coming step.
   void set(const StepInput& input);
 
-  /// Only a plane: soles touch with their corners alone.
+  /// True when the ground is only a plane, so that soles touch with their corners alone.
   bool plain() const { return blocks_.empty() && field_.heights.size() == 0; }
-  const std::vector<SolidBlock>& solids() const { return solids_; }  ///< of all blocks
-  double top() const { return top_; }                                ///< of everything [m]
+  const std::vector<SolidBlock>& solids() const { return solids_; }  ///< all blocks
+  double top() const { return top_; }  ///< height of the highest point [m]
   const Eigen::Isometry3d& pose() const { return floor_.pose; }
-  Eigen::Vector3d normal() const { return floor_.pose.linear().col(2); }  ///< of the plane, world
+  Eigen::Vector3d normal() const { return floor_.pose.linear().col(2); }               ///< world
   const Eigen::Vector3d& angular_velocity() const { return floor_.angular_velocity; }  ///< [rad/s]
   bool at_rest() const { return floor_.velocity.isZero(0) && floor_.angular_velocity.isZero(0); }
-  /// Velocity of the floor at a point, both in the world [m/s].
+  /// Velocity of the floor at the point p, world [m, m/s].
   Eigen::Vector3d velocity(const Eigen::Vector3d& p) const {
     return floor_.velocity + floor_.angular_velocity.cross(p - floor_.pose.translation());
   }
 
+  /// Gap, normal and rise of the ground at the point p.
   GroundTouch touch(const Eigen::Vector3d& p) const;
+  /// Coefficient of friction at the point p.
   double friction(const Eigen::Vector3d& p) const;
 
-  /// Appends what lies under the convex sole with these corners (anticlockwise seen from above),
-  /// unless it is further below the sole than `reach` [m].
+  /// Appends the corners, edges and nodes under the convex sole with these corners (anticlockwise
+  /// seen from above) that are less than `reach` [m] below the sole.
   void inner_points(const std::vector<Eigen::Vector3d>& sole, double reach,
                     std::vector<InnerPoint>& points) const;
 
-  /// Fills `tips` with the nodes of the height field within `radius` of `center` (ground's frame)
-  /// that stand out, as solids with a blunt tip: what a shape can lie on without a corner of its
-  /// own. The rest of the field is flat or hollow.
+  /// Fills `tips` with the nodes of the height field within `radius` of `center` that are higher
+  /// than their neighbours, as small spheres. A shape can lie on these without a corner of its own;
+  /// the rest of the field is flat or hollow, where corners of the shape touch first.
   void tips(const Eigen::Vector3d& center, double radius, std::vector<FieldTip>& tips) const;
 
  private:
@@ -90,8 +94,8 @@ class Ground {
   HeightField field_;
   FloorPose still_, floor_;
   std::vector<Block> blocks_;       // of the world, then the bumps
-  std::vector<SolidBlock> solids_;  // likewise
-  size_t fixed_ = 0;
+  std::vector<SolidBlock> solids_;  // in the same order
+  size_t fixed_ = 0;                // blocks of the world
   std::optional<double> friction_;
   double top_ = 0, fixed_top_ = 0;
 };

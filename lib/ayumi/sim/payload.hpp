@@ -1,5 +1,5 @@
 #pragma once
-// What a robot carries, made part of its links.
+// Loads that a robot carries become part of its links.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace ayumi {
 
-/// The robot with point masses on its links: another robot to the dynamics.
+/// The robot with point masses on its links, as a model of its own.
 RobotModel with_payloads(const RobotModel& model, const std::vector<CarriedMass>& payloads);
 
 }  // namespace ayumi

@@ -1,8 +1,8 @@
 #pragma once
-// The seam between the simulator and what moves the robot: state in, servo targets and what acts
-// from outside in, next state and ground forces out. Any copyable class with the four members below
-// is a plant; a copy of an AnyPlant is a plant of its own that goes on to the last bit as the
-// original.
+// The interface between the simulator and a plant, the part that moves the robot. The state, the
+// servo targets and the forces from outside go in; the next state and the ground forces come out.
+// Any copyable class with the four members below is a plant. A copy of a PlantInterface is an
+// independent plant that continues exactly as the original would, to the last bit.
 
 #include <any>
 #include <utility>
@@ -13,18 +13,19 @@
 
 namespace ayumi {
 
-class AnyPlant {
+class PlantInterface {
  public:
   template <typename P>
-  explicit AnyPlant(P plant) : plant_(std::move(plant)), calls_(&kCalls<P>) {}
+  explicit PlantInterface(P plant) : plant_(std::move(plant)), calls_(&kCalls<P>) {}
 
   const RobotState& state() const { return calls_->state(plant_); }
   /// Positions and velocities of state().
   const RobotData& data() const { return calls_->data(plant_); }
-  /// Puts the robot there and forgets contacts. Throws Error(usage) for what is not a number.
+  /// Puts the robot in this state and forgets contacts. Throws Error(usage) for a value that is not
+  /// a number.
   void set_state(const RobotState& state) { calls_->set_state(plant_, state); }
   /// Advances by `dt` [s] with the servo targets [rad, m] held; the report holds until the next
-  /// step. Throws Error(usage) with place and time for input that is not finite or beyond 1e6.
+  /// step. Throws Error(usage) with place and time for input that is not finite or not below 1e6.
   const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt) {
     return calls_->step(plant_, targets, input, dt);
   }

@@ -18,7 +18,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRise = 0.02;  // a bump comes up within this time [s]
+/// Time in which a bump rises [s]. Chosen: 20 steps of 1 ms, so that the rate of its height is
+/// smooth and short against a step of a walk.
+constexpr double kBumpRise = 0.02;
 
 int find_pushed_link(const RobotModel& model, const std::string& name) {
   if (name == "cog") return -1;
@@ -41,7 +43,7 @@ int find_joint(const RobotModel& model, const std::string& name) {
   return static_cast<int>(found - names.begin());
 }
 
-/// Share of the rectangle's value in step i of n; the mean over the steps is 1 for impulses.
+/// Factor on the rectangle's value in step i of n; its mean over the steps is 1 for impulses.
 double shape_factor(const Disturbance& d, long i, long n) {
   if (d.shape == DisturbanceShape::rectangle) return 1.0;
   const double phase = M_PI * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
@@ -130,13 +132,13 @@ void Schedule::set(const std::vector<Disturbance>& scenario) {
                          ? d.magnitude / (static_cast<double>(entry.count) * step_)
                          : d.magnitude;
     if (is_push(d.type) && !(std::abs(entry.per_step) < kLargestNumber))
-      fail(ErrorCode::bad_pattern, "scenario: the push at " + text::brief(d.at) + " s is one of " +
-                                       text::brief(entry.per_step) +
-                                       " N (N m); give one below 1e6 or let it last longer");
+      fail(ErrorCode::bad_pattern,
+           "scenario: the push at " + text::brief(d.at) + " s has " + text::brief(entry.per_step) +
+               " N (N m); give a smaller one than 1e6 or a longer duration");
     entry.link = find_pushed_link(*model_, d.on);
     entry.joint = find_joint(*model_, d.joint);
     if (d.type == DisturbanceType::payload && entry.link < 0)
-      fail(ErrorCode::bad_pattern, "scenario: a payload needs a link to be on");
+      fail(ErrorCode::bad_pattern, "scenario: a payload needs a link that carries it");
     if (d.type == DisturbanceType::floor) motions_.push_back(floor_motion(d));
     entries_.push_back(entry);
   }
@@ -176,10 +178,10 @@ Bump Schedule::bump(Entry& entry, long k, const RobotData& data) const {
     }
   }
   const auto height = [&](long i) {
-    const double s = std::clamp(static_cast<double>(i) * step_ / kRise, 0.0, 1.0);
+    const double s = std::clamp(static_cast<double>(i) * step_ / kBumpRise, 0.0, 1.0);
     return d.magnitude * s * s * s * (10 - 15 * s + 6 * s * s);
   };
-  // One that is there from the start has been there before: it does not come up again.
+  // A bump that begins at 0 was there before the start and does not rise.
   const long since = entry.first == 0 ? 1l << 30 : k - entry.first;
   Bump result;
   result.block.kind = GroundBlock::Kind::disc;

@@ -1,5 +1,5 @@
 #pragma once
-// A scenario laid out on integrator steps: what acts on robot, ground and sensors in each of them.
+// A scenario in integrator steps: the disturbances of robot, ground and sensors in each step.
 
 #include <Eigen/Dense>
 #include <vector>
@@ -11,44 +11,44 @@
 
 namespace ayumi {
 
-/// What is wrong with the sensors.
+/// Errors of the sensors in a tick.
 struct SensorFault {
-  double latency = 0;                              ///< beyond the robot's own [s]
+  double latency = 0;                              ///< added to the robot's own [s]
   Eigen::Vector2d tilt = Eigen::Vector2d::Zero();  ///< bias of the attitude, world axes [rad]
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< [rad/s]
-  double force = 0;                                ///< of every load cell [N]
+  double force = 0;                                ///< bias of every load cell [N]
 };
 
-/// Where the world's floor is at `t` [s] with its own motions and these, and its mean velocity over
-/// the step [s] from there.
+/// Pose of the floor at `t` [s] with the world's motions and these, and its mean velocity over the
+/// following `step` [s].
 FloorPose moving_floor(const World& world, const std::vector<FloorMotion>& motions, double t,
                        double step);
 
 class Schedule {
  public:
-  /// The model outlives the schedule; `step` [s] is the integrator's.
+  /// The model must outlive the schedule; `step` [s] is that of the integrator.
   Schedule(const RobotModel& model, const World& world, double step);
 
-  /// Throws Error(bad_pattern) for an unknown link or joint.
+  /// Replaces the disturbances. Throws Error(bad_pattern) for an unknown link or joint.
   void set(const std::vector<Disturbance>& scenario);
 
-  /// What acts during step k (from k step on; negative before the start) on a robot whose positions
-  /// are `data`. The lists of `input` keep their room.
+  /// Fills the input of step k, which begins at k times `step` (k is negative before the start),
+  /// for a robot whose positions are `data`. The lists of `input` keep their memory.
   void fill(long k, const RobotData& data, StepInput& input);
   SensorFault sensor_fault(long k) const;
-  double largest_latency() const;  ///< ever [s]
+  double largest_latency() const;  ///< of the whole scenario [s]
 
-  /// Start, and end of what lasts, in words.
+  /// Start of each disturbance, and end of each lasting one, in words.
   std::vector<SimulationEvent> events() const;
 
  private:
   struct Entry {
     Disturbance source;
     long first = 0, count = 1;
-    int link = -1, joint = -1;  ///< -1: COG, all joints
+    int link = -1, joint = -1;  ///< -1: the COG, all joints
     double per_step = 0;        ///< force or torque of a rectangle [N] or [N m]
-    bool placed = false;        ///< a bump has found its place ...
-    Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< ... in the ground's frame
+    bool placed = false;        ///< for a bump: `place` is known
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< ground's frame [m]
   };
   bool acts(const Entry& entry, long k) const;
   ExternalWrench wrench(const Entry& entry, long k, const RobotData& data) const;

@@ -1,6 +1,6 @@
 #pragma once
-// SimulationLog = simulate(model, command series, controller, scenario): Ayumi's own integrator (or
-// another plant) with servos, sensors and scripted disturbances, the loop closed around `control`.
+// simulate(): the closed loop of a plant with servos, sensors, scripted disturbances and a
+// controller, from a command series to a SimulationLog.
 
 #include <functional>
 
@@ -11,13 +11,13 @@
 
 namespace ayumi {
 
-class AnyPlant;
+class PlantInterface;
 
-/// Which integrator moves the robot.
+/// The plant that moves the robot.
 struct PlantKind {
   std::string name = "ayumi";
-  /// Empty: Ayumi's own. The model outlives the plant.
-  std::function<AnyPlant(const RobotModel&, const ActuatorLimits&, const World&)> make = {};
+  /// Empty: Ayumi's own plant. The model must outlive the plant.
+  std::function<PlantInterface(const RobotModel&, const ActuatorLimits&, const World&)> make = {};
 };
 
 struct SimulateOptions {
@@ -26,9 +26,9 @@ struct SimulateOptions {
   World world;
   std::vector<Disturbance> scenario;
   double settle = 1.0;        ///< hold the last command this long after the pattern [s]
-  int substeps = 1;           ///< integrator steps per 1 ms control tick
-  bool true_state = false;    ///< controllers see ground truth instead of sensors
-  bool sensor_noise = false;  ///< the sidecar's noise, bias, latency
+  int substeps = 1;           ///< integrator steps per control tick
+  bool true_state = false;    ///< the controller gets the true state in place of sensor readings
+  bool sensor_noise = false;  ///< use the sidecar's noise, bias and latency
   std::uint64_t seed = 1;
   PlantKind plant;
 };
@@ -38,7 +38,7 @@ struct SimulateOptions {
 SimulationLog simulate(const RobotModel& model, const CommandSeries& series,
                        const SimulateOptions& options, const Progress& progress = {});
 
-/// The table the robot is to replay: servo targets and reference quantities of a run.
+/// The table that the robot replays: servo targets and reference quantities of a run.
 ReferenceTrajectory extract_reference(const RobotModel& model, const SimulationLog& log);
 
 }  // namespace ayumi

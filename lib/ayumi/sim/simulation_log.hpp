@@ -1,6 +1,6 @@
 #pragma once
-// Everything a run left behind, one sample per control tick: enough to judge, plot, render and
-// export without simulating again.
+// The log of a run with one sample per control tick. It is sufficient to judge, plot, render and
+// export the run without another simulation.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -10,16 +10,16 @@
 #include "ayumi/model/robot_state.hpp"
 #include "ayumi/motion/reference_trajectory.hpp"
 #include "ayumi/motion/scenario.hpp"
-#include "ayumi/sim/work.hpp"
+#include "ayumi/sim/energy_balance.hpp"
 
 namespace ayumi {
 
 struct SimulationSample {
-  RobotState state;                                         ///< true state of the plant
-  Eigen::VectorXd target;                                   ///< what the servos received [rad]
-  Eigen::VectorXd torque;                                   ///< applied by the servos [N m]
-  BasePose reference_base;                                  ///< base of the reference posture
-  Eigen::VectorXd reference_theta;                          ///< ref theta (target without lead)
+  RobotState state;                 ///< true state of the plant
+  Eigen::VectorXd target;           ///< servo targets [rad, m]
+  Eigen::VectorXd torque;           ///< applied by the servos [N m]
+  BasePose reference_base;          ///< base of the reference posture
+  Eigen::VectorXd reference_theta;  ///< reference posture, without the servo lead [rad, m]
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();            ///< true, world [m]
   Eigen::Vector3d dcog = Eigen::Vector3d::Zero();           ///< [m/s]
   Eigen::Vector3d zmp = Eigen::Vector3d::Zero();            ///< true, world; held in flight [m]
@@ -42,8 +42,8 @@ struct SimulationSample {
   Eigen::Vector3d push_point = Eigen::Vector3d::Zero();  ///< where it acts, world [m]
   double contact_residual = 0;                           ///< of the contact solve [m/s]
   int contact_iterations = 0;
-  double energy = 0;  ///< kinetic (rotors included) and potential over z = 0 [J]
-  Work work;          ///< done since t = 0
+  double energy = 0;   ///< kinetic (rotors included) and potential over z = 0 [J]
+  EnergyBalance work;  ///< done since t = 0
 };
 
 struct SimulationEvent {
@@ -60,7 +60,7 @@ struct SimulationResult {
   Outcome outcome = Outcome::unsettled;
   double fell_at = -1;              ///< [s]; negative when it did not fall
   double max_tilt = 0;              ///< of the trunk [rad]
-  double final_cog_error = 0;       ///< foot-relative, horizontal [m]
+  double final_cog_error = 0;       ///< relative to the feet, horizontal [m]
   double final_speed = 0;           ///< of the COG [m/s]
   double zmp_tracking_rms = 0;      ///< measured ZMP against reference ZMP [m]
   double flight = 0;                ///< time without ground contact [s]
@@ -78,7 +78,7 @@ struct SimulationResult {
 struct SimulationLog {
   double dt = 0.001;            ///< control tick [s]
   std::string controller;       ///< "none", "dtad", ...
-  std::string plant = "ayumi";  ///< what integrated the motion: "ayumi", "mujoco"
+  std::string plant = "ayumi";  ///< integrator of the motion: "ayumi" or "mujoco"
   Provenance provenance;
   World world;
   std::vector<Disturbance> scenario;

@@ -1,5 +1,6 @@
-// Per control tick k: measure (forces of the step that ended at k dt) -> estimate -> controller ->
-// log -> integrator sub-steps with the targets held and the disturbances of exactly those steps.
+// Control tick k: measurement (with the forces of the step that ended at k dt), estimate,
+// controller, log, then the integrator steps with the targets held and the disturbances of each
+// step.
 #include "ayumi/sim/simulator.hpp"
 
 #include <algorithm>
@@ -17,10 +18,17 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kBeforeStart = 0.4;  // servos hold the first posture this long before t = 0 [s]
-constexpr double kAfterFall = 0.8;    // of simulation kept after a fall [s]
-constexpr long kRoom = 1 << 15;       // samples that the log has room for from the start
-constexpr double kZmpShare = 0.02;    // of the weight below which the ZMP is held
+/// Time for which the servos hold the first posture before t = 0 [s]. Chosen: four
+/// periods of an oscillation of 10 Hz, so that soles and servos come to rest.
+constexpr double kBeforeStart = 0.4;
+/// Simulated time after a fall [s]. Chosen: the robot has reached the ground, which a replay shows.
+constexpr double kAfterFall = 0.8;
+/// Samples for which the log reserves memory at the start; longer runs allocate more.
+constexpr long kReservedSamples = 1 << 15;
+/// Fraction of the weight that the vertical ground force needs for the true ZMP to be updated;
+/// below it, the ZMP keeps its last value. Chosen: the ZMP is a quotient of moment and force, and
+/// rounding and chatter of contacts disturb it at small forces.
+constexpr double kZmpMinLoad = 0.02;
 
 const CommandSeries& checked(const CommandSeries& series, const SimulateOptions& options) {
   if (series.samples.empty()) fail(ErrorCode::bad_pattern, "the command series is empty");
@@ -28,10 +36,10 @@ const CommandSeries& checked(const CommandSeries& series, const SimulateOptions&
   return series;
 }
 
-AnyPlant make_plant(const RobotModel& model, const ActuatorLimits& limits,
-                    const SimulateOptions& options) {
+PlantInterface make_plant(const RobotModel& model, const ActuatorLimits& limits,
+                          const SimulateOptions& options) {
   if (options.plant.make) return options.plant.make(model, limits, options.world);
-  return AnyPlant(Plant(model, limits, options.world));
+  return PlantInterface(Plant(model, limits, options.world));
 }
 
 }  // namespace
@@ -46,11 +54,11 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       plant_(make_plant(model, limits_, options)),
       sensors_(model, series.dt, options.sensor_noise && !options.true_state, options.seed),
       estimator_(model, series.dt),
-      judge_(model, limits_, options.world),
+      monitor_(model, limits_, options.world),
       schedule_(model, options.world, h_),
       controller_(model, limits_, series, options.controller),
       saturated_(static_cast<size_t>(model.dof_count())) {
-  model.sole(Side::left);  // says so when the robot has none
+  model.sole(Side::left);  // throws when the robot has no soles
   set_scenario(options.scenario);
   planned_ = end_ =
       static_cast<long>(series.samples.size()) + std::lround(options.settle / series.dt);
@@ -74,7 +82,7 @@ const CommandSample& Simulator::command(long k) const {
 
 double Simulator::time() const { return static_cast<double>(tick_) * series_->dt; }
 
-/// Of the robot without what it carries.
+/// Energy of the robot without its loads, rotors included [J].
 double Simulator::energy() const {
   const RobotData& data = plant_.data();
   double twice = 0;
@@ -94,8 +102,8 @@ double Simulator::energy() const {
   return 0.5 * twice;
 }
 
-/// What the estimator cannot know: the world's truth in place of the plan frame.
-void Simulator::see_truth() {
+/// The true state in the world in place of the estimate in the plan frame.
+void Simulator::replace_estimate_by_truth() {
   const RobotData& data = plant_.data();
   estimate_.state = plant_.state();
   estimate_.cog = data.cog;
@@ -108,10 +116,10 @@ void Simulator::see_truth() {
       moment += cell.force.z() * cell.position;
     }
   estimate_.fz = fz;
-  if (fz > kZmpShare * model_->mass() * kGravity) estimate_.zmp = moment / fz;
+  if (fz > kZmpMinLoad * model_->mass() * kGravity) estimate_.zmp = moment / fz;
 }
 
-/// last_ from the plant, the plan and what the controller made of it; its lists keep their room.
+/// Fills last_ from the plant, the plan and the controller's output; its lists keep their memory.
 void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
                             const ControlOutput& out) {
   SimulationSample& s = last_;
@@ -167,7 +175,7 @@ void Simulator::take_forces(const CommandSample& cmd) {
     s.fz += vertical;
     moment += weighted;
   }
-  if (s.fz > kZmpShare * model_->mass() * kGravity) zmp_ = moment / s.fz;
+  if (s.fz > kZmpMinLoad * model_->mass() * kGravity) zmp_ = moment / s.fz;
   s.zmp = zmp_;
 }
 
@@ -189,16 +197,16 @@ void Simulator::step_once() {
   const Vector3d zmp_before = estimate_.zmp;
   estimate_ = estimator_.update(measurement, cmd.feet);
   if (options_.true_state) {
-    estimate_.zmp = zmp_before;  // held in flight
-    see_truth();
+    estimate_.zmp = zmp_before;  // keeps its value in flight
+    replace_estimate_by_truth();
   }
   const ControlOutput& out = controller_.update(estimate_);
   take_sample(cmd, estimate_, out);
   if (!last_.state.theta.allFinite() || !last_.state.base.position.allFinite())
     fail(ErrorCode::internal,
-         "the simulation left the finite numbers at t = " + text::fixed(t, 3) + " s");
-  if (input_.floor) judge_.set_ground(input_.floor->pose);
-  if (judge_.observe(t, cmd, last_, plant_.data(), report_, series_->dt)) {
+         "the state of the simulation is not finite at t = " + text::fixed(t, 3) + " s");
+  if (input_.floor) monitor_.set_ground(input_.floor->pose);
+  if (monitor_.observe(t, cmd, last_, plant_.data(), report_, series_->dt)) {
     fell_ = true;
     end_ = std::min(planned_, tick_ + std::lround(kAfterFall / series_->dt));
   }
@@ -221,7 +229,8 @@ void Simulator::step_once() {
                            model_->bodies()[report_.self_contact[1]].name});
   }
   if (keep_samples_) {
-    if (samples_.empty()) samples_.reserve(static_cast<size_t>(std::min(planned_, kRoom)));
+    if (samples_.empty())
+      samples_.reserve(static_cast<size_t>(std::min(planned_, kReservedSamples)));
     samples_.push_back(last_);
   }
   ++tick_;
@@ -239,7 +248,7 @@ bool Simulator::advance(long ticks, const Progress& progress) {
 }
 
 SimulationResult Simulator::result() const {
-  return Judge(judge_).conclude(controller_.plan(), plant_.state());
+  return FallMonitor(monitor_).conclude(controller_.plan(), plant_.state());
 }
 
 SimulationLog Simulator::take_log() {
@@ -253,7 +262,7 @@ SimulationLog Simulator::take_log() {
   log.samples = std::move(samples_);
   samples_.clear();
   log.result = result();
-  log.events = judge_.events();
+  log.events = monitor_.events();
   log.events.insert(log.events.end(), events_.begin(), events_.end());
   for (const SimulationEvent& event : schedule_.events()) log.events.push_back(event);
   std::stable_sort(log.events.begin(), log.events.end(),

@@ -1,5 +1,5 @@
 #pragma once
-// What goes into a plant's step and what comes out of it, the same for every plant.
+// The input and the report of one step of a plant, the same for every plant.
 
 #include <Eigen/Dense>
 #include <array>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ayumi/motion/ground_world.hpp"
-#include "ayumi/sim/work.hpp"
+#include "ayumi/sim/energy_balance.hpp"
 
 namespace ayumi {
 
@@ -33,14 +33,14 @@ struct Bump {
   double rate = 0;  ///< of its height [m/s]
 };
 
-/// Servo and friction of one joint as they are now.
+/// Changes of the servo and the friction of one joint during a step.
 struct JointFault {
-  double gain = 1;                  ///< times kp and kd
-  double coulomb = 0, viscous = 0;  ///< beyond the joint's own [N m, N m s/rad or N, N s/m]
-  double encoder = 0;               ///< what the encoder reads beyond the truth [rad, m]
+  double gain = 1;                  ///< factor on kp and kd
+  double coulomb = 0, viscous = 0;  ///< added friction [N m, N m s/rad or N, N s/m]
+  double encoder = 0;               ///< error of the encoder's reading [rad, m]
 };
 
-/// Where the floor is at the start of a step, and how it moves during it.
+/// Pose of the floor at the start of a step, and its velocity during the step.
 struct FloorPose {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();      ///< ground's frame in the world
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< of the frame's origin [m/s]
@@ -51,34 +51,34 @@ struct FloorPose {
 struct StepInput {
   std::vector<ExternalWrench> wrenches;
   std::vector<CarriedMass> payloads;
-  std::vector<JointFault> joints;  ///< by dof; empty: all sound
+  std::vector<JointFault> joints;  ///< by dof; empty: no faults
   std::optional<FloorPose> floor;  ///< empty: the world's slope at rest
-  std::optional<double> friction;  ///< of the whole ground
-  std::vector<Bump> bumps;         ///< besides the world's blocks
+  std::optional<double> friction;  ///< of the whole ground, in place of the world's
+  std::vector<Bump> bumps;         ///< in addition to the world's blocks
 
   StepInput() = default;
   StepInput(std::vector<ExternalWrench> w) : wrenches(std::move(w)) {}
   StepInput(std::initializer_list<ExternalWrench> w) : wrenches(w) {}
 };
 
-/// Ground force at one vertex of a sole. Force between the vertices is shared among their cells, so
-/// that total and centre of pressure are right.
+/// Ground force at one vertex of a sole, where a load cell is. A force between the vertices is
+/// distributed over them so that the total and the centre of pressure are right.
 struct SoleForce {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< on the robot, world [N]
   double gap = 0;                                      ///< to the ground, negative inside [m]
 };
 
-/// What a step did, averaged over its duration.
+/// Forces and events of a step; forces are means over its duration.
 struct StepReport {
   Eigen::VectorXd torque;                       ///< of the servos [N m]
   std::array<std::vector<SoleForce>, 2> soles;  ///< by Side, in the order of the sole's polygon
-  bool body_contact = false;                    ///< something but a sole touches the ground
+  bool body_contact = false;                    ///< a body that is no sole touches the ground
   std::vector<int> saturated;                   ///< dofs whose torque is at its limit
   int contact_iterations = 0;
   double contact_residual = 0;  ///< [m/s]
   double max_penetration = 0;   ///< of a sole vertex [m]
-  Work work;                    ///< done in the step
+  EnergyBalance work;           ///< done in the step
   /// Bodies of the robot that touch each other, the first such pair; -1: none.
   std::array<int, 2> self_contact = {-1, -1};
 };

@@ -13,7 +13,7 @@ namespace {
 
 bool sound(double x) { return std::abs(x) < kLargestNumber; }
 
-/// Of the largest number's size, and no NaN among them.
+/// True when every element is smaller than kLargestNumber and not NaN.
 template <typename Derived>
 bool sound(const Eigen::MatrixBase<Derived>& v) {
   for (Eigen::Index i = 0; i < v.size(); ++i)
@@ -42,7 +42,7 @@ bool sound(const JointFault& fault) {
          sound(fault.coulomb) && sound(fault.viscous) && sound(fault.encoder);
 }
 
-bool friction(double mu) { return mu >= 0 && sound(mu); }
+bool sound_friction(double mu) { return mu >= 0 && sound(mu); }
 
 }  // namespace
 
@@ -50,14 +50,14 @@ void check_world(const RobotModel& model, const World& world) {
   const auto complain = [&](const std::string& what) {
     fail(ErrorCode::bad_pattern, model.name() + ": the world's " + what);
   };
-  if (!friction(world.friction))
-    complain("friction is " + text::brief(world.friction) + "; it cannot be");
+  if (!sound_friction(world.friction))
+    complain("friction is " + text::brief(world.friction) + "; it has to be 0 or more");
   if (!sound(world.slope) || !sound(world.height)) complain("slope or height is not a number");
   for (size_t i = 0; i < world.blocks.size(); ++i)
     if (!sound(world.blocks[i])) complain("block " + std::to_string(i) + " is not made of numbers");
   for (size_t i = 0; i < world.patches.size(); ++i) {
     const FrictionPatch& patch = world.patches[i];
-    if (!sound(patch.low) || !sound(patch.high) || !friction(patch.friction))
+    if (!sound(patch.low) || !sound(patch.high) || !sound_friction(patch.friction))
       complain("patch " + std::to_string(i) + " is not made of numbers");
   }
   for (const HeightField& field : world.fields)
@@ -104,17 +104,17 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
           w.body < static_cast<int>(model.bodies().size())))
       complain("an external force is not a finite number below 1e6 on a body");
   if (!input.joints.empty() && static_cast<int>(input.joints.size()) != model.dof_count())
-    complain("conditions of " + std::to_string(input.joints.size()) + " joints for " + count);
+    complain("faults of " + std::to_string(input.joints.size()) + " joints for " + count);
   for (size_t j = 0; j < input.joints.size(); ++j)
     if (!sound(input.joints[j]))
-      complain("the condition of joint " + model.dofs()[j].name +
+      complain("the fault of joint " + model.dofs()[j].name +
                " is negative or not a finite number below 1e6");
   for (const CarriedMass& carried : input.payloads)
     if (!(carried.mass >= 0 && sound(carried.mass) && sound(carried.point) && carried.link >= 0 &&
           carried.link < static_cast<int>(model.links().size())))
       complain("a payload is not a mass on a link");
   if (input.floor && !sound(*input.floor)) complain("the floor's motion is not made of numbers");
-  if (input.friction && !friction(*input.friction))
+  if (input.friction && !sound_friction(*input.friction))
     complain("the floor's friction is " + text::brief(*input.friction));
   for (const Bump& bump : input.bumps)
     if (!sound(bump.block) || !sound(bump.rate)) complain("a bump is not made of numbers");

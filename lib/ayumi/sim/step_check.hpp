@@ -1,21 +1,24 @@
 #pragma once
-// What no plant takes: numbers that are none or too large for anything that is there. Each is
-// refused by name, and within a run with the time.
+// Checks of the input that every plant makes: values that are not finite or too large are refused
+// with their names, and within a run with the time.
 
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/sim/step.hpp"
 
 namespace ayumi {
 
-constexpr double kLargestNumber = 1e6;  ///< smaller ones are taken, in SI units
+constexpr double kLargestNumber =
+    1e6;  ///< values below this are accepted, SI units. Chosen: no robot
+          ///< or world has a larger one, and its square is finite
 
-/// Throws Error(bad_pattern) naming what of the world is not a number or not possible.
+/// Throws Error(bad_pattern) that names the part of the world that is not a number or not possible.
 void check_world(const RobotModel& model, const World& world);
 
-/// Throws Error(usage) naming what is not a number or has the wrong count.
+/// Throws Error(usage) that names the part of the state that is not a number or has the wrong size.
 void check_state(const RobotModel& model, const RobotState& state);
 
-/// The same for one step of `dt` [s], `time` [s] after the plant's start.
+/// Throws Error(usage) that names the part of the input of one step of `dt` [s] that is not valid,
+/// `time` [s] after the plant's start.
 void check_step(const RobotModel& model, const Eigen::VectorXd& targets, const StepInput& input,
                 double dt, double time);
 

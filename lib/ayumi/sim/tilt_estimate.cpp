@@ -10,7 +10,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kBiasTime = 4 * kTiltTime;  // both poles of the loop are real then
+/// Time constant of the gyro's bias [s]. With 4 kTiltTime both poles of the loop are equal and
+/// real, so that the estimate does not overshoot.
+constexpr double kBiasTime = 4 * kTiltTime;
 
 }  // namespace
 
@@ -21,8 +23,8 @@ void TiltEstimate::start(const Quaterniond& attitude, const Vector3d& gyro) {
   rate_.setZero();
 }
 
-// The force is compared with gravity as a vector and not by its direction: in flight, where there
-// is none, nothing is corrected, and what walking adds and takes has no mean.
+// The force enters as a vector and not as a direction: in flight, where it is zero, nothing is
+// corrected, and the accelerations of a walk have no mean effect.
 void TiltEstimate::update(const Vector3d& gyro, const Vector3d& force, double dt) {
   const Vector3d rate = gyro - bias_;
   attitude_ = (attitude_ * exp_rotation(0.5 * dt * (rate_ + rate))).normalized();

@@ -1,20 +1,21 @@
 #pragma once
-// What an inertial unit makes of its gyro and accelerometer. docs/theory.md, "Tilt".
+// The attitude that an inertial unit computes from its gyro and accelerometer. docs/theory.md,
+// "Tilt".
 
 #include <Eigen/Geometry>
 
 namespace ayumi {
 
-/// Complementary filter: the gyro over times below kTiltTime, gravity above. Heading is the gyro's
-/// alone.
+/// A complementary filter: the attitude follows the gyro over times shorter than kTiltTime and the
+/// direction of gravity over longer times. The heading follows the gyro alone.
 class TiltEstimate {
  public:
-  /// At rest, with the gyro's mean reading there [rad/s].
+  /// Starts at rest with this attitude; `gyro` is the gyro's mean reading at rest [rad/s].
   void start(const Eigen::Quaterniond& attitude, const Eigen::Vector3d& gyro);
   bool started() const { return started_; }
 
-  /// With readings in the unit's axes: rate [rad/s] now, specific force [m/s^2] in the mean of the
-  /// last `dt` [s]: upwards and as much as gravity where the unit is not accelerated.
+  /// Takes readings in the axes of the unit: the rate now [rad/s] and the mean specific force of
+  /// the last `dt` [s] [m/s^2], which is gravity upwards where the unit is not accelerated.
   void update(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt);
 
   const Eigen::Quaterniond& attitude() const { return attitude_; }  ///< unit to world
@@ -26,6 +27,8 @@ class TiltEstimate {
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero(), rate_ = Eigen::Vector3d::Zero();
 };
 
-constexpr double kTiltTime = 5.0;  ///< of what gravity corrects [s]
+/// Time constant with which gravity corrects the attitude [s]. Chosen: several steps of a walk,
+/// whose accelerations have no mean, and short against the drift of a gyro.
+constexpr double kTiltTime = 5.0;
 
 }  // namespace ayumi

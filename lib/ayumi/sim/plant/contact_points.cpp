@@ -14,9 +14,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kStaticSink = 1e-7;  // of a body on four of its points [m]
+/// Penetration of a body that rests on four of its points [m]. Chosen: almost rigid, and far above
+/// the rounding of positions at 10 m (2e-15 m).
+constexpr double kStaticSink = 1e-7;
 
-/// Points of a body that may touch the ground besides the soles, in the frame of the link.
+/// Points of a collision shape that may touch the ground, in the frame of the link.
 std::vector<ContactPoint> touch_points(const PlacedShape& placed) {
   std::vector<ContactPoint> points;
   const auto add = [&](const Vector3d& p, double radius) {
@@ -115,7 +117,7 @@ void corner_weights(const std::vector<Vector2d>& polygon, const Vector2d& p,
   double sum = 0;
   for (size_t i = 0; i < n; ++i) {
     double w = area(polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n]);
-    for (size_t j = 0; j < n; ++j)  // the sides that do not end in corner i
+    for (size_t j = 0; j < n; ++j)  // sides that do not end in corner i
       if (j != i && (j + 1) % n != i) w *= std::max(0.0, area(polygon[j], polygon[(j + 1) % n], p));
     weights[i] = w;
     sum += w;

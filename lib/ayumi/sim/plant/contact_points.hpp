@@ -1,6 +1,6 @@
 #pragma once
-// The points of a robot that may touch the ground: corners of its soles and of its collision
-// shapes.
+// The points of a robot that may touch the ground: the corners of its soles and of its collision
+// shapes, each with its spring.
 
 #include <Eigen/Dense>
 #include <vector>
@@ -9,41 +9,43 @@
 
 namespace ayumi {
 
-/// A point with its spring.
+/// A point of a body, or the lowest point of a sphere or circle around it, with its spring.
 struct ContactPoint {
   int body = 0;
   Eigen::Vector3d position;  ///< body frame [m]
-  double radius = 0;         ///< of a sphere around it [m]
-  /// Of a circle around it, whose lowest point is the one that touches [m]: an end of a cylinder
-  /// that rolls. Where the circle lies level no point is the lowest, and others hold the cylinder.
+  double radius = 0;         ///< of the sphere around it [m]
+  /// Radius of a circle around it whose lowest point touches: an end of a cylinder that rolls [m].
+  /// A level circle has no lowest point; other points then carry the cylinder.
   double rim = 0;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of that circle, body frame
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of the circle, body frame
   double stiffness = 0;                            ///< [N/m]
-  double damping_time = 0;                         ///< [s]
-  int side = -1, vertex = -1;                      ///< of a sole, else -1
+  double damping_time = 0;                         ///< damping / stiffness [s]
+  int side = -1, vertex = -1;                      ///< of a sole; -1: no sole
 };
 
-/// Consecutive points of one body and a sphere around them, body frame.
+/// Consecutive points of one body and a sphere that contains them, body frame.
 struct PointGroup {
   int body = 0, first = 0, count = 0;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0;
 };
 
-/// Soles first (left, right, in the order of their polygons), then the collision shapes of all
-/// links that are not part of a foot: corners of boxes, spheres, ends of capsules, eight corners
-/// and the rim of a cylinder's ends, vertices of meshes (of large ones those farthest out in 90
-/// directions).
+/// The points of the soles (left, right, in the order of their polygons), then those of the
+/// collision shapes of all links that are not part of a foot: corners of boxes, centres of spheres,
+/// ends of capsules, eight corners and the rim of each end of a cylinder, and vertices of meshes
+/// (of large meshes those farthest out in 90 directions).
 std::vector<ContactPoint> contact_points(const RobotModel& model);
 
-/// Spring of a point of a body that is no sole: almost rigid.
-double body_stiffness(const RobotModel& model);  ///< [N/m]
-constexpr double kBodyDamping = 0.004;           ///< damping / stiffness [s]
+/// Stiffness of a contact point of a body that is no sole: almost rigid [N/m].
+double body_stiffness(const RobotModel& model);
+/// Damping over stiffness of such a point [s]. Chosen: four steps of 1 ms, so that an impact of a
+/// body is inelastic.
+constexpr double kBodyDamping = 0.004;
 
 std::vector<PointGroup> group_points(const std::vector<ContactPoint>& points);
 
-/// Weights of a convex polygon's corners that make up the point p within it (Wachspress): all
-/// non-negative, their sum is 1 and the weighted corners give p.
+/// Wachspress coordinates of the point p in a convex polygon: the weights of the corners are not
+/// negative, their sum is 1, and the weighted sum of the corners is p.
 void corner_weights(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p,
                     std::vector<double>& weights);
 

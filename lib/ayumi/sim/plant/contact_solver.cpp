@@ -1,14 +1,15 @@
-// One contact alone, D = its diagonal block, r = what the others leave (b + off-diagonal A l):
+// One contact alone, with D its diagonal block and r = b + the off-diagonal part of A l:
 //   open:   r_n >= 0                       -> l = 0
 //   stick:  l = -D^-1 r, inside the cone   -> l
 //   slide:  u_n = 0, (D_tt + s 1) l_t + D_tn l_n + r_t = 0 with the s >= 0 that puts l on the cone.
 // The slide is one equation in s: |l_t(s)| - mu l_n(s) falls with s.
-// Sweeps find who is open, sticks or slides; one Newton step on all closed contacts together,
+// Sweeps find which contacts are open, stick or slide. One Newton step on all closed contacts,
 //   stick: u = 0        slide: u_n = 0, l_t + mu l_n u_t/|u_t| = 0,
-// then lands on the answer, where sweeps alone would creep when many points share a stiff load. A
-// Newton step is kept only when the sweep after it moves less than the sweep before it did. Some
-// from the last step's impulses come first, as long as they come nearer: mostly the first is the
-// answer, which a test of each contact against the others tells at the cost of one product with A.
+// then arrives at the solution, where sweeps alone converge slowly when many points share a stiff
+// load. A Newton step is kept only when the sweep after it changes less than the sweep before it.
+// Newton steps from the last step's impulses come first, as long as they approach the solution: the
+// first one mostly is the solution, which a test of each contact against the others shows for the
+// cost of one product with A.
 #include "ayumi/sim/plant/contact_solver.hpp"
 
 #include <algorithm>
@@ -24,9 +25,24 @@ using Eigen::Vector3d;
 
 namespace {
 
-// l_n from u_n = 0 given l_t; then the tangential rows hold the reduced matrix K = D_tt - D_tn
-// D_nt / D_nn and right side c. Newton's method on 1/|l_t| - 1/(mu l_n), which is almost straight
-// in s, within a bracket.
+// Rounding limits of double precision (1.1e-16). They decide only when an iteration ends or which
+// formula is used next to the cone; the solver's tolerance decides the result.
+
+/// Relative distance from the cone at which the equation of a slide is solved.
+constexpr double kConeRounding = 1e-14;
+/// Impulse that is added to mu l_n there, so that the limit is not 0 for an open contact [N s].
+constexpr double kNoImpulse = 1e-12;
+/// Relative distance from the cone from which on an impulse is inside it.
+constexpr double kConeMargin = 1e-9;
+/// Tangential speed below which a contact on the cone sticks, where the direction of the slip is
+/// lost to rounding [m/s]. Chosen: 1/100 of kContactTolerance.
+constexpr double kNoSlip = 1e-12;
+/// Steps of the equation of a slide. Chosen: bisection of a bracket alone takes 60.
+constexpr int kMaxSlideSteps = 100;
+
+// u_n = 0 gives l_n as a function of l_t. The tangential rows then have the reduced matrix
+// K = D_tt - D_tn D_nt / D_nn and the right side c. Newton's method within a bracket solves
+// 1/|l_t| - 1/(mu l_n) = 0, which is almost linear in s.
 Vector3d slide(const Matrix3d& D, const Vector3d& r, double mu) {
   const double dnn = D(0, 0);
   const Vector2d dtn = D.block<2, 1>(1, 0);
@@ -34,16 +50,16 @@ Vector3d slide(const Matrix3d& D, const Vector3d& r, double mu) {
   const Vector2d c = r.tail<2>() - dtn * (r[0] / dnn);
   double s = 0, low = 0, high = std::numeric_limits<double>::infinity();
   Vector3d l;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < kMaxSlideSteps; ++i) {
     Matrix2d m = K;
     m.diagonal().array() += s;
     const Matrix2d inverse = m.inverse();
     const Vector2d t = -inverse * c, dt = -inverse * t;
     const double n = -(r[0] + dtn.dot(t)) / dnn, dn = -dtn.dot(dt) / dnn, size = t.norm();
     l << n, t;
-    const double excess = size - mu * n;
-    if (std::abs(excess) <= 1e-14 * (mu * std::abs(n) + 1e-12)) break;
-    (excess > 0 ? low : high) = s;
+    const double outside = size - mu * n;  // of the cone
+    if (std::abs(outside) <= kConeRounding * (mu * std::abs(n) + kNoImpulse)) break;
+    (outside > 0 ? low : high) = s;
     double next = low;
     if (n > 0 && size > 0)
       next = s - (1 / size - 1 / (mu * n)) / (dn / (mu * n * n) - t.dot(dt) / (size * size * size));
@@ -59,7 +75,7 @@ Vector3d slide(const Matrix3d& D, const Vector3d& r, double mu) {
   return l;
 }
 
-/// D^-1 r of a symmetric positive definite D.
+/// D^-1 r for a symmetric positive definite D.
 Vector3d solve_three(const Matrix3d& D, const Vector3d& r) {
   const double a = 1 / D(0, 0), l10 = a * D(1, 0), l20 = a * D(2, 0);
   const double b = 1 / (D(1, 1) - l10 * D(1, 0)), e = D(2, 1) - l20 * D(1, 0), l21 = b * e;
@@ -69,9 +85,9 @@ Vector3d solve_three(const Matrix3d& D, const Vector3d& r) {
   return {a * r[0] - l10 * x1 - l20 * x2, x1, x2};
 }
 
-/// Of a contact that presses; by more than rounding.
+/// True when the impulse of a closed contact is inside the cone by more than rounding.
 bool inside_cone(const Vector3d& l, double mu) {
-  const double most = mu * l[0] * (1 - 1e-9);
+  const double most = mu * l[0] * (1 - kConeMargin);
   return l.tail<2>().squaredNorm() < most * most;
 }
 
@@ -83,19 +99,19 @@ Vector3d solve_one(const Matrix3d& D, const Vector3d& r, double mu) {
   return slide(D, r, mu);
 }
 
-/// How far a contact with impulse l and shifted velocity u is from its law [m/s].
+/// Distance of a contact with impulse l and shifted velocity u from its law [m/s].
 double off_by(const Matrix3d& D, const Vector3d& l, const Vector3d& u, double mu) {
   if (l[0] > 0 && inside_cone(l, mu)) return u.cwiseAbs().maxCoeff();
   if (l.isZero(0)) return std::max(-u[0], 0.0);
   const double normal = l[0], along = l.tail<2>().norm(), speed = u.tail<2>().norm();
   if (!(normal > 0 && along > 0)) return (D * (solve_one(D, u - D * l, mu) - l)).norm();
-  // u_t must be against l_t, l on the cone.
+  // u_t has to be opposite to l_t, and l has to be on the cone.
   return std::max({std::abs(u[0]), (u.tail<2>() + speed / along * l.tail<2>()).norm(),
                    D.diagonal().maxCoeff() * std::abs(along - mu * normal)});
 }
 
-/// x <- G^-1 x by elimination with row exchanges, in place; `m` rows, column-major. False when G is
-/// singular.
+/// x <- G^-1 x by elimination with partial pivoting, in place; m rows, column-major. False when G
+/// is singular.
 bool eliminate(double* G, double* x, int m) {
   for (int k = 0; k < m; ++k) {
     int pivot = k;
@@ -137,8 +153,8 @@ void ContactSolver::resize(int n) {
   closed_.reserve(static_cast<size_t>(n));
 }
 
-// One Gauss-Seidel sweep that goes `share` of the way; returns the largest change of a shifted
-// velocity that the whole way would have made.
+// One Gauss-Seidel sweep with the relaxation factor `share`. Returns the largest change of a
+// shifted velocity of the sweep without relaxation.
 double ContactSolver::sweep(Vector l, double share) {
   double change = 0;
   const Matrix matrix = A();
@@ -156,9 +172,9 @@ double ContactSolver::sweep(Vector l, double share) {
   return change;
 }
 
-// Largest change of a shifted velocity when each contact is solved with the others as they are;
-// contacts that are off by more than `tolerance` take that solution.
-double ContactSolver::wrong_by(Vector l, double tolerance) {
+// Tests each contact against its law with the impulses of the others held. A contact that misses it
+// by more than `tolerance` takes its own solution. Returns the largest distance from a law [m/s].
+double ContactSolver::correct(Vector l, double tolerance) {
   const Matrix matrix = A();
   Vector u(store_[6].data(), 3 * n_);
   u = b();
@@ -175,13 +191,14 @@ double ContactSolver::wrong_by(Vector l, double tolerance) {
   return change;
 }
 
-/// Whether a closed contact's row of the Newton step is that of one that sticks.
+/// Whether a closed contact sticks in the Newton step.
 bool ContactSolver::sticks(int i, const Vector3d& l, const Vector3d& u) const {
-  return inside_cone(l, friction_[static_cast<size_t>(i)]) || u.tail<2>().squaredNorm() < 1e-24;
+  return inside_cone(l, friction_[static_cast<size_t>(i)]) ||
+         u.tail<2>().squaredNorm() < kNoSlip * kNoSlip;
 }
 
-// Newton step on the contacts that are closed in impulse(), into the candidate. False where it has
-// no answer.
+// Newton step on the contacts that are closed in impulse(); writes the candidate. False when the
+// matrix is singular.
 bool ContactSolver::newton_step() {
   const Matrix matrix = A();
   const Vector l = impulse();
@@ -194,7 +211,7 @@ bool ContactSolver::newton_step() {
   bool all_stick = rows == 3 * n_;
   for (int i : closed_)
     all_stick = all_stick && inside_cone(l.segment<3>(3 * i), friction_[static_cast<size_t>(i)]);
-  const bool from_zero = all_stick;  // it is A l = -b, wherever l is now
+  const bool from_zero = all_stick;  // the step solves A l = -b and does not depend on l
   if (!from_zero) {
     kernels_->multiply_add(matrix.data(), 3 * n_, 3 * n_, 3 * n_, l.data(), u.data());
     all_stick = true;
@@ -214,7 +231,7 @@ bool ContactSolver::newton_step() {
   return next.allFinite();
 }
 
-// Where all stick the matrix is that of the problem: symmetric, positive definite.
+// Where all contacts stick the matrix is that of the problem: symmetric and positive definite.
 bool ContactSolver::stick_together(int rows) {
   const Matrix matrix = A();
   const int stride = (rows + 3) / 4 * 4;
@@ -261,8 +278,9 @@ bool ContactSolver::stick_and_slide(int rows) {
   return eliminate(store_[4].data(), store_[5].data(), rows);
 }
 
-// Newton steps from the last step's impulses while each comes nearer; those impulses again where
-// they do not arrive. Returns what is left.
+// Newton steps from the last step's impulses while each one reduces the distance from the laws.
+// Restores these impulses when the steps do not reach the tolerance. Returns the remaining
+// distance.
 double ContactSolver::newton_alone(int& sweeps, double tolerance) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   Vector candidate(store_[3].data(), 3 * n_), start(store_[7].data(), 3 * n_);
@@ -272,7 +290,7 @@ double ContactSolver::newton_alone(int& sweeps, double tolerance) {
   start = impulse();
   for (double last = kNone; newton_step();) {
     ++sweeps;
-    const double change = wrong_by(candidate, tolerance);
+    const double change = correct(candidate, tolerance);
     if (!(change < last)) break;
     impulse() = candidate;
     if (change <= tolerance) return change;
@@ -299,7 +317,8 @@ ContactSolution ContactSolver::solve(double tolerance, int max_iterations) {
       change = candidate_change;
       continue;
     }
-    // Sweeps that chase each other round a cycle are calmed by going part of the way.
+    // Relaxation breaks cycles of sweeps. Chosen: 1 for 30 sweeps, which solve almost every
+    // problem, then 0.6 and from 100 sweeps on 0.25; the last of four sweeps is without relaxation.
     const double share = sweeps < 30 ? 1.0 : sweeps < 100 ? 0.6 : 0.25;
     for (int i = 0; i < 4 && change > tolerance; ++i, ++sweeps)
       change = sweep(impulse(), i < 3 ? share : 1.0);

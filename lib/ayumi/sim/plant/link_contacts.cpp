@@ -13,6 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
+// Keys: 4096 points for each pair of shapes, 4096 pairs of shapes for each pair of bodies.
 constexpr long kPairKeys = 1l << 24, kShapeKeys = 1l << 12;
 
 }  // namespace
@@ -60,7 +61,7 @@ const std::vector<LinkTouch>& LinkContacts::find(const RobotData& data, double n
     square = std::max(square, v.squaredNorm() + radius_[i] * radius_[i] * w.squaredNorm());
   }
   const double speed = std::sqrt(2 * square);  // at least |v| + r |w| of each
-  // The step behind was made with the speeds there are now; those ahead may be faster.
+  // The last step moved the bodies with their present speeds; the next steps may be faster.
   moved_ += 2 * speed * last_dt_;
   last_dt_ = dt;
   const double reach = near + 6 * speed * dt;
@@ -78,7 +79,7 @@ const std::vector<LinkTouch>& LinkContacts::find(const RobotData& data, double n
   return touches_;
 }
 
-// The clearance of a pair, or where that is more than `reach` a bound that is so too.
+// The clearance of a pair, or a lower bound of it where both are larger than `reach`.
 double LinkContacts::apart(const Pair& pair, const RobotData& data, double reach) {
   const Isometry3d A = data.pose(pair.a), B = data.pose(pair.b);
   double nearest = std::numeric_limits<double>::infinity();
@@ -110,7 +111,8 @@ void LinkContacts::touch(const Pair& pair, long index, const RobotData& data, do
     for (const auto& b : shapes_.shapes(pair.b)) {
       const Isometry3d pose_a = A * a.pose, pose_b = B * b.pose;
       if (clearance_bound(a.collider, pose_a, b.collider, pose_b) <= reach) {
-        // Of the patch b leaves a; here the first body is the one that is pushed.
+        // In a patch the second shape is the one that is pushed; in a LinkTouch it is the first
+        // body.
         const ContactPatch patch = contact_patch(b.collider, pose_b, a.collider, pose_a, reach);
         for (int i = 0; i < patch.count; ++i) {
           const PatchPoint& point = patch.points[static_cast<size_t>(i)];

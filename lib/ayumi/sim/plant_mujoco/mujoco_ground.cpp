@@ -1,4 +1,4 @@
-// The ground under the robot in MuJoCo: where it is, how rough, how it moves; and the forces.
+// The ground under the robot in MuJoCo: its pose, friction and motion, and the contact forces.
 #include <algorithm>
 
 #include "ayumi/dynamics/kinematics.hpp"
@@ -24,8 +24,8 @@ void MujocoPlant::Impl::place_floor() {
   set_quaternion(d->mocap_quat + 4 * mocap, Quaterniond(ground.pose().linear()));
 }
 
-// The ground's own geoms have no friction and of two the larger holds: that of a ball or plate is
-// what the ground has where it is.
+// MuJoCo uses the larger friction of two geoms. The geoms of the ground have none, and each ball or
+// plate gets the friction of the ground at its place.
 void MujocoPlant::Impl::set_friction() {
   const Eigen::Isometry3d to_ground = ground.pose().inverse();
   for (int g = 0; g < m->ngeom; ++g) {
@@ -40,8 +40,8 @@ void MujocoPlant::Impl::set_friction() {
   }
 }
 
-// A body that MuJoCo's user moves has no velocity to it. What the ground does is added to the
-// rates that contacts aim at: a = -b (v - v_ground) + a_ground along each row.
+// MuJoCo gives no velocity to a body that its user moves. The motion of the ground is therefore
+// added to the reference acceleration of each contact row: a = -b (v - v_ground) + a_ground.
 void MujocoPlant::Impl::move_ground(double dt) {
   FloorPose now = floor;
   now.pose = ground.pose();

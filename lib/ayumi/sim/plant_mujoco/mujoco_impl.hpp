@@ -1,5 +1,5 @@
 #pragma once
-// What the MuJoCo plant is made of. Seen within plant_mujoco only.
+// Members of the MuJoCo plant. Private to plant_mujoco.
 
 #include <array>
 #include <optional>
@@ -25,7 +25,8 @@ struct MujocoPlant::Impl {
         world(ground_world),
         ground(ground_world),
         points(contact_points(robot)) {
-    // Its points are small balls, fixed to their bodies: a cylinder rolls on its eight corners.
+    // The points are small balls that are fixed to their bodies: a cylinder rolls on its eight
+    // corners.
     std::erase_if(points, [](const ContactPoint& point) { return point.rim > 0; });
     build(false);
   }
@@ -76,7 +77,7 @@ struct MujocoPlant::Impl {
   void share_among_cells(int side, const Eigen::Vector3d& at, const Eigen::Vector3d& force);
   const RobotModel& moving() const { return loaded ? *loaded : *model; }
 
-  int steps;  // of MuJoCo per step of the plant
+  int steps;  // MuJoCo's steps per step of the plant
   const RobotModel* model;
   ActuatorLimits limits;
   World world;
@@ -84,19 +85,20 @@ struct MujocoPlant::Impl {
   std::vector<ContactPoint> points;
   MujocoModel m{nullptr, mj_deleteModel};
   MujocoData d{nullptr, mj_deleteData};
-  bool bumps = false;               // the model has room for them
+  bool bumps = false;               // the model has geoms for bumps
   std::vector<int> velocity, body;  // MuJoCo's index of each dof and body
-  std::vector<int> point_of;        // geom -> point; -1: the ground, -2 - side: a plate
+  std::vector<int> point_of;        // by geom: point; -1: the ground; -2 - side: a plate
   std::array<int, 2> plate = {-1, -1};
   int floor_id = 0;
   std::optional<RobotModel> loaded;
   std::vector<CarriedMass> carried;
   FloorPose floor;            // of the last step
-  std::vector<double> rates;  // at which bumps rise
+  std::vector<double> rates;  // by geom: rate at which a bump rises [m/s]
   RobotState state;
   RobotData data{*model};
   StepReport report;
-  std::vector<double> weights;   // workspace, as what follows
+  // Workspace.
+  std::vector<double> weights;
   Eigen::VectorXd before, mean;  // rates of a step
 };
 

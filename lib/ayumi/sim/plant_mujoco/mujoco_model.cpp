@@ -1,4 +1,5 @@
-// Who meets whom: balls (1) the ground (2), plates of soles (4) what lies under them (8).
+// Groups of geoms that may touch (contype): balls of the robot (1) touch the ground (2), and plates
+// of soles (4) touch rods and fields under them (8).
 #include "ayumi/sim/plant_mujoco/mujoco_model.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -20,9 +21,15 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kBall = kMujocoBall;
-constexpr double kPlate = 0.004;  // thickness of a sole's plate [m]
-constexpr double kDepth = 0.2;    // of blocks below the ground [m]
-constexpr double kWide = 50;      // half width of ground around a field [m]
+/// Thickness of a sole's plate [m]. Chosen: thicker than an edge penetrates within a step, so that
+/// the edge does not pass through.
+constexpr double kPlate = 0.004;
+/// Depth of blocks and fields below the ground [m]. Chosen: a body cannot pass through within a
+/// step.
+constexpr double kDepth = 0.2;
+/// Width of the ground around a height field that dips below the plane [m]. Chosen: longer than any
+/// run of a humanoid.
+constexpr double kWide = 50;
 constexpr const char* kUnderBall = "' contype='2' conaffinity='1'/>";
 constexpr const char* kUnderPlate = "' contype='8' conaffinity='4'/>";
 constexpr const char* kUnderBoth = "' contype='10' conaffinity='5'/>";
@@ -41,7 +48,7 @@ std::string box_text(const Vector3d& low, const Vector3d& high) {
          triple(0.5 * (high + low)) + kUnderBall;
 }
 
-/// A rod whose upper side lies along the edge a-b of a top, within the block.
+/// A rod inside the block whose upper side is the edge a-b of the block's top.
 std::string rod_text(const Vector2d& a, const Vector2d& b, double height) {
   const Vector2d along = (b - a).normalized(), inward(-along.y(), along.x());
   Vector3d from, to;
@@ -87,7 +94,7 @@ std::string field_asset(const HeightField& field) {
          "'/></asset>";
 }
 
-/// The plane; where a field dips below it, the ground around the field.
+/// The plane; or four boxes around a field that dips below the plane.
 std::string plane_text(const World& world) {
   const bool dips = !world.fields.empty() && world.fields[0].heights.minCoeff() < world.height;
   if (!dips)
@@ -104,7 +111,7 @@ std::string bump_name(int i, int part) {
   return "bump" + std::to_string(i) + "-" + std::to_string(part);
 }
 
-/// Room for a disc: a cylinder and the rods of its eight edges, placed later.
+/// Geoms of a bump: a cylinder and the rods of its eight edges, which set_bump() places.
 std::string bump_text(int i) {
   std::string out =
       "<geom name='" + bump_name(i, 8) + "' type='cylinder' size='1 1' pos='0 0 -9" + kUnderBall;
@@ -127,7 +134,7 @@ std::string floor_text(const World& world, bool bumps) {
   return out + "</body>";
 }
 
-// A sole's corner touches where the bottom of its ball is while the sole is flat.
+// The bottom of the ball at a sole's corner is at the corner's height while the sole is flat.
 std::string point_text(const RobotModel& model, const ContactPoint& point, size_t i) {
   const double radius = std::max(point.radius, kBall);
   Vector3d center = point.position;
@@ -137,8 +144,8 @@ std::string point_text(const RobotModel& model, const ContactPoint& point, size_
          "' pos='" + triple(center) + "' contype='1' conaffinity='2'/>";
 }
 
-/// The plate over a sole's rectangle; a polygon that is none is met by a box around its middle
-/// half, so that it never reaches beyond the sole.
+/// The plate over a rectangular sole. Another polygon gets a box around its middle half, so that
+/// the plate never reaches beyond the sole.
 std::string plate_text(const Sole& sole, int side) {
   Vector2d low = sole.polygon[0], high = low;
   for (const Vector2d& p : sole.polygon) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -195,7 +202,7 @@ std::string servo_text(const RobotModel& model, const ActuatorLimits& limits, in
 MujocoModel compile(const std::string& robot, const std::string& xml) {
   const auto vfs = std::make_unique<mjVFS>();
   mj_defaultVFS(vfs.get());
-  char error[1000] = "could not take the text";
+  char error[1000] = "could not read the model";
   MujocoModel model(nullptr, mj_deleteModel);
   if (mj_makeEmptyFileVFS(vfs.get(), "robot.xml", static_cast<int>(xml.size())) == 0) {
     const int file = mj_findFileVFS(vfs.get(), "robot.xml");

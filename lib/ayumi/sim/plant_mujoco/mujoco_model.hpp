@@ -1,5 +1,5 @@
 #pragma once
-// The robot and its ground as MuJoCo's compiler takes them. Seen within plant_mujoco only.
+// The robot and its ground as a model of MuJoCo. Private to plant_mujoco.
 
 #include <mujoco/mujoco.h>
 
@@ -14,26 +14,29 @@
 
 namespace ayumi {
 
-constexpr double kMujocoBall = 0.0005;  ///< radius of balls at corners, of rods along edges [m]
-constexpr int kMujocoBumps = 4;         ///< discs that may stand out of the ground at once
+/// Radius of the balls at corners and of the rods along edges [m]. Chosen: small against the edges
+/// of a sole and large against the penetration of a loaded contact.
+constexpr double kMujocoBall = 0.0005;
+/// Number of bumps that may exist at once. Chosen: one for each corner of a sole.
+constexpr int kMujocoBumps = 4;
 
 using MujocoModel = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 
-/// A body "floor" that the plant places, with plane, blocks (their top edges as thin rods), field
-/// and room for bumps; the robot with a ball at each contact point and, where the ground is more
-/// than a plane, a plate per sole that meets edges and fields between the corners. Masses and
-/// places of the robot are left to set_inertia() and whoever sets body_pos. Throws
-/// Error(bad_model) with MuJoCo's complaint.
+/// The model has a body "floor", which the plant moves, with the plane, the blocks (their top edges
+/// as thin rods), the height field and, with `bumps`, the bumps. The robot has a ball at each
+/// contact point and, where the ground is more than a plane, a plate per sole that touches edges
+/// and fields between the corners. The caller sets the masses with set_inertia() and the placement
+/// of the bodies. Throws Error(bad_model) with MuJoCo's message.
 MujocoModel mujoco_model(const RobotModel& model, const std::vector<ContactPoint>& points,
                          const ActuatorLimits& limits, const World& world, bool bumps);
 
-/// Index by name; -1 when there is none.
+/// Index of a named object; -1 when there is none.
 int mujoco_id(const mjModel* m, mjtObj type, const std::string& name);
 
 void set_inertia(const Inertia& inertia, int body, mjModel* m);
-/// Geom of a part of bump `i`: rods of its edges 0..7, its cylinder 8.
+/// Geom of a part of bump `i`: 0..7 are the rods of its edges, 8 is its cylinder.
 int bump_geom(const mjModel* m, int i, int part);
-/// Bump `i` as it is now; nothing there when `bump` is null.
+/// Places bump `i`; removes it when `bump` is null.
 void set_bump(const Bump* bump, int i, mjModel* m);
 
 }  // namespace ayumi

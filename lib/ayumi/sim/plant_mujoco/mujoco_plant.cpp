@@ -1,5 +1,5 @@
-// Servo: torque = clamp(kp (target - theta)) - kd dtheta, the damping as implicit joint damping.
-// MuJoCo's free joint has its angular velocity in body axes.
+// Servos: torque = clamp(kp (target - theta)) - kd dtheta, with the damping as implicit joint
+// damping. The angular velocity of MuJoCo's free joint is in body axes.
 #include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// What stands in the input when t of the step has passed.
+/// The input after the time t of the step has passed.
 StepInput later(StepInput input, double t) {
   if (input.floor) {
     FloorPose& floor = *input.floor;
@@ -41,7 +41,7 @@ void MujocoPlant::Impl::build(bool with_bumps) {
   bumps = with_bumps;
   m = mujoco_model(*model, points, limits, world, bumps);
   MujocoData next(mj_makeData(m.get()), mj_deleteData);
-  if (d) {  // the same robot goes on
+  if (d) {  // the motion continues
     mju_copy(next->qpos, d->qpos, m->nq);
     mju_copy(next->qvel, d->qvel, m->nv);
     mju_copy(next->qacc_warmstart, d->qacc_warmstart, m->nv);
@@ -96,7 +96,7 @@ void MujocoPlant::Impl::read_state() {
   state.base_angular_velocity = state.base.attitude * Eigen::Map<const Vector3d>(d->qvel + 3);
   for (int j = 0; j < model->dof_count(); ++j) {
     const int column = velocity[static_cast<size_t>(j)];
-    state.theta[j] = d->qpos[column + 1];  // one quaternion before it
+    state.theta[j] = d->qpos[column + 1];  // positions have one number more: the quaternion
     state.dtheta[j] = d->qvel[column];
   }
   update_velocities(moving(), state, data);
@@ -110,7 +110,7 @@ void MujocoPlant::Impl::apply(const ExternalWrench& w) {
   Eigen::Map<Vector3d>(d->xfrc_applied + 6 * id + 3) += w.torque + (point - at).cross(w.force);
 }
 
-// A motor cannot push a joint beyond its speed limit, as in Plant.
+// As in Plant, a motor cannot push a joint beyond its speed limit.
 void MujocoPlant::Impl::limit_torques() {
   for (int j = 0; j < model->dof_count(); ++j) {
     if (!m->actuator_forcelimited[j]) continue;
@@ -122,7 +122,8 @@ void MujocoPlant::Impl::limit_torques() {
   }
 }
 
-// At the mean rates of the step. MuJoCo has contacts, end stops and dry friction in one.
+// Work at the mean rates of the step. MuJoCo does not separate contacts, end stops and dry
+// friction.
 void MujocoPlant::Impl::account(double dt) {
   const auto of = [&](const mjtNum* v) { return Eigen::Map<const VectorXd>(v, m->nv); };
   mean = 0.5 * (before + of(d->qvel));
@@ -139,7 +140,7 @@ void MujocoPlant::Impl::account(double dt) {
 // Forces are summed over MuJoCo's steps, then divided by their number.
 void MujocoPlant::Impl::begin_report() {
   report.torque.setZero();
-  report.work = Work{};
+  report.work = EnergyBalance{};
   report.contact_iterations = 0;
   report.max_penetration = 0;
   report.body_contact = false;
@@ -173,7 +174,7 @@ void MujocoPlant::Impl::check_input(const VectorXd& targets, const StepInput& in
                                      "; use Ayumi's own plant");
 }
 
-// What there is in this step besides pushes.
+// Ground, loads, joints and pushes of this step.
 void MujocoPlant::Impl::take_input(const StepInput& input) {
   ground.set(input);
   load(input.payloads);
@@ -222,7 +223,7 @@ void MujocoPlant::Impl::take_bumps(const std::vector<Bump>& now) {
 MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits, const World& world,
                          int steps) {
   if (static_cast<int>(model.bodies().size()) != model.dof_count() + 1)
-    fail(ErrorCode::bad_model, model.name() + ": the MuJoCo plant knows no mimic joints");
+    fail(ErrorCode::bad_model, model.name() + ": the MuJoCo plant does not support mimic joints");
   for (const Dof& dof : model.dofs())
     if (dof.servo.kp <= 0 && !model.description().servos.contains(dof.name))
       fail(ErrorCode::bad_model,
@@ -274,7 +275,7 @@ const StepReport& MujocoPlant::step(const VectorXd& targets, const StepInput& in
   for (int i = 0; i < p.steps; ++i)
     p.step(targets, i > 0 && moves ? later(input, i * h) : input, h);
   if (!p.state.theta.allFinite() || !p.state.base.position.allFinite())
-    fail(ErrorCode::internal, p.model->name() + ": MuJoCo left the finite numbers " +
+    fail(ErrorCode::internal, p.model->name() + ": MuJoCo's state is not finite " +
                                   text::fixed(p.d->time, 3) + " s after its start");
   p.finish_report();
   return p.report;
@@ -303,7 +304,7 @@ void MujocoPlant::Impl::step(const VectorXd& targets, const StepInput& input, do
 PlantKind mujoco_plant_kind(int steps) {
   return {"mujoco",
           [steps](const RobotModel& model, const ActuatorLimits& limits, const World& world) {
-            return AnyPlant(MujocoPlant(model, limits, world, steps));
+            return PlantInterface(MujocoPlant(model, limits, world, steps));
           }};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The same robot, servos and soles in MuJoCo, behind the same face as Plant: an independent judge
-// of Ayumi's own integrator. The same points touch the ground: corners of soles and shapes.
+// The same robot, servos and soles in MuJoCo with the interface of Plant: an independent reference
+// for Ayumi's own integrator. The same points touch the ground: corners of soles and shapes.
 
 #include <memory>
 
@@ -10,9 +10,11 @@
 
 namespace ayumi {
 
-/// MuJoCo's steps per step. It finds contact forces before it damps joints implicitly, as if the
-/// servos' torque at the step's start lasted: where kd h is above the rotor's inertia (twice it, on
-/// HOAP-1, at 1 ms) a force that changes as fast as in a jump makes the soles chatter.
+/// MuJoCo's steps per step of the plant. MuJoCo finds contact forces before it damps joints
+/// implicitly, as if the servo torques at the start of the step lasted. Where kd h is larger than
+/// the rotor inertia (twice as large on HOAP-1 at 1 ms), a force that changes as fast as in a jump
+/// makes the soles chatter.
+/// Chosen: with 4 steps, kd h is half of the rotor inertia.
 constexpr int kMujocoSteps = 4;
 
 class MujocoPlant {
@@ -31,7 +33,7 @@ class MujocoPlant {
   const RobotData& data() const;
   void set_state(const RobotState& state);
 
-  /// As Plant::step(). Throws Error(bad_pattern) for more bumps at once than it keeps room for.
+  /// As Plant::step(). Throws Error(bad_pattern) for more than kMujocoBumps bumps at once.
   const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt);
 
  private:
@@ -39,7 +41,7 @@ class MujocoPlant {
   std::unique_ptr<Impl> impl_;
 };
 
-/// For SimulateOptions::plant.
+/// MuJoCo as the plant of SimulateOptions.
 PlantKind mujoco_plant_kind(int steps = kMujocoSteps);
 
 }  // namespace ayumi

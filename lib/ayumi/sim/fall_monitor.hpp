@@ -1,5 +1,6 @@
 #pragma once
-// The verdict of a run, one definition everywhere (docs/cli.md, "Outcome").
+// The verdict of a run: whether the robot fell, stands or has not settled, and the figures of the
+// run. This is the only definition of the verdict (docs/cli.md, "Outcome").
 
 #include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/model/robot_model.hpp"
@@ -10,20 +11,20 @@
 namespace ayumi {
 
 /// Gathers a run's figures tick by tick.
-class Judge {
+class FallMonitor {
  public:
-  Judge(const RobotModel& model, const ActuatorLimits& limits, const World& world);
+  FallMonitor(const RobotModel& model, const ActuatorLimits& limits, const World& world);
 
-  /// Where the floor is now; at first as the world has it.
+  /// Pose of the floor from now on; the initial one is that of the world.
   void set_ground(const Eigen::Isometry3d& pose) { ground_ = pose; }
 
-  /// One control tick: plan, true state and the last step's report. `sample` is the log entry of
-  /// this tick, `truth` holds the positions of its state. Returns true once, at the tick of the
-  /// fall.
+  /// Takes one control tick: the plan, the true state and the last step's report. `sample` is the
+  /// log entry of this tick, and `truth` holds the positions of its state. Returns true once, at
+  /// the tick of the fall.
   bool observe(double t, const CommandSample& command, const SimulationSample& sample,
                const RobotData& truth, const StepReport& report, double dt);
 
-  /// After the last tick; `command` is the plan's end.
+  /// The verdict after the last tick; `command` is the end of the plan.
   SimulationResult conclude(const CommandSample& command, const RobotState& state);
 
   const std::vector<SimulationEvent>& events() const { return events_; }
@@ -43,9 +44,9 @@ class Judge {
   long zmp_count_ = 0;
   double iterations_ = 0;
   long ticks_ = 0;
-  double level_ = 0;                         // commanded COG height, in flight that of lift-off [m]
-  double airborne_ = 0;                      // of the present flight [s]
-  double flight_apex_ = 0;                   // of the present flight, above level_ [m]
+  double level_ = 0;        // commanded COG height, that of the lift-off during a flight [m]
+  double airborne_ = 0;     // of the present flight [s]
+  double flight_apex_ = 0;  // of the present flight, over level_ [m]
   std::array<double, 2> unloaded_ = {0, 0};  // time each foot has been off the ground [s]
   std::array<bool, 2> in_stance_ = {false, false};
   std::array<Eigen::Vector3d, 2> stance_start_;  // in the floor's frame [m]

@@ -1,4 +1,4 @@
-#include "ayumi/sim/verdict.hpp"
+#include "ayumi/sim/fall_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,18 +15,38 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kFallTilt = 0.8;          // [rad]
-constexpr double kFallHeightShare = 0.6;   // of the commanded COG height
-constexpr double kRestTilt = 0.2;          // [rad]
-constexpr double kRestError = 0.09;        // times z
-constexpr double kRestSpeed = 0.054;       // times omega z
-constexpr double kTouchShare = 0.05;       // of the weight: a foot is on the ground
-constexpr double kFlight = 0.04;           // of the robot: what is shorter is a rebound [s]
-constexpr double kMinFlightOfFoot = 0.03;  // off the ground before a touchdown counts [s]
+// Verdict thresholds. docs/cli.md, "Outcome", defines them for users.
+
+/// Tilt of the trunk against the ground's normal beyond which the robot has fallen [rad]. Chosen:
+/// 46 deg is beyond the postures of the bundled patterns and long before the trunk touches the
+/// ground.
+constexpr double kFallTilt = 0.8;
+/// Fraction of the commanded COG height below which the robot has fallen. Chosen: lower than a
+/// robot with bent knees under its load, higher than one that sits or lies.
+constexpr double kFallHeight = 0.6;
+/// Tilt of the trunk below which a robot stands at the end [rad]. Chosen: a quarter of kFallTilt.
+constexpr double kRestTilt = 0.2;
+/// Horizontal COG error at the end below which a robot stands, in units of the COG height z.
+/// Chosen: 22 mm for HOAP-1 (z 0.245 m), whose soles reach 42 mm behind and 56 mm in front of the
+/// ankle.
+constexpr double kRestError = 0.09;
+/// COG speed at the end below which a robot stands, in units of omega z. Chosen: the speed that
+/// moves the DCM by 0.054 z, which is 13 mm for HOAP-1 and keeps it inside the soles.
+constexpr double kRestSpeed = 0.054;
+/// Fraction of the weight above which a foot or the robot is on the ground. Chosen: above the noise
+/// of contacts that open and close, below the load of any stance.
+constexpr double kTouchLoad = 0.05;
+/// Time off the ground after which the robot is in flight [s]. Chosen: a shorter one is a rebound.
+constexpr double kMinFlight = 0.04;
+/// Time off the ground after which the next contact of a foot is a touchdown [s]. Chosen: a shorter
+/// one is a rebound.
+constexpr double kMinFootFlight = 0.03;
+/// Events for which memory is reserved, so that a tick allocates nothing in a usual run.
+constexpr size_t kReservedEvents = 64;
 
 /// Rigid motion that takes the planned soles onto the real ones and the level ground of the plan
-/// onto the real one: mean place, heading, slope. On a slope the feet lie in it, and the plan with
-/// them.
+/// onto the real ground: mean place, heading and slope. On a slope the plan is inclined with the
+/// feet.
 Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
                          const CommandSample& command, const Vector3d& normal) {
   Vector3d plan = Vector3d::Zero(), real = Vector3d::Zero();
@@ -64,14 +84,14 @@ const char* name_of(Outcome outcome) {
   return "";
 }
 
-Judge::Judge(const RobotModel& model, const ActuatorLimits& limits, const World& world)
+FallMonitor::FallMonitor(const RobotModel& model, const ActuatorLimits& limits, const World& world)
     : model_(&model), limits_(limits) {
   ground_.linear() = exp_rotation({world.slope.x(), world.slope.y(), 0}).toRotationMatrix();
-  events_.reserve(64);  // of a usual run: a tick is not to allocate
+  events_.reserve(kReservedEvents);
 }
 
-bool Judge::observe(double t, const CommandSample& command, const SimulationSample& sample,
-                    const RobotData& truth, const StepReport& report, double dt) {
+bool FallMonitor::observe(double t, const CommandSample& command, const SimulationSample& sample,
+                          const RobotData& truth, const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
   const Vector3d up = truth.rotation[model_->trunk_body()].col(2);
   const double tilt = std::acos(std::clamp(up.dot(normal()), -1.0, 1.0));
@@ -79,7 +99,7 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
   const bool fallen_before = r.fell_at >= 0;
   if (!fallen_before) {
     r.max_tilt = std::max(r.max_tilt, tilt);
-    // In flight the command rises too: what counts is the height it left the ground with.
+    // In flight the command rises too; the apex is relative to the height at lift-off.
     if (command.support != Support::none) level_ = command.cog.z();
     r.max_penetration = std::max(r.max_penetration, report.max_penetration);
     r.max_contact_residual = std::max(r.max_contact_residual, report.contact_residual);
@@ -92,15 +112,15 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
       r.max_torque_ratio =
           std::max(r.max_torque_ratio, std::abs(sample.torque[j]) / limits_.peak_torque[j]);
     }
-    if (sample.fz > kTouchShare * weight) {
+    if (sample.fz > kTouchLoad * weight) {
       zmp_square_sum_ += (sample.measured_zmp - sample.reference_zmp).head<2>().squaredNorm();
       ++zmp_count_;
       airborne_ = flight_apex_ = 0;
     } else {
-      const bool counted = airborne_ > kFlight;
+      const bool counted = airborne_ > kMinFlight;
       airborne_ += dt;
       flight_apex_ = std::max(flight_apex_, sample.cog.z() - level_);
-      if (airborne_ > kFlight) {
+      if (airborne_ > kMinFlight) {
         r.flight += counted ? dt : airborne_;
         r.apex = std::max(r.apex, flight_apex_);
       }
@@ -112,8 +132,7 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
   std::string reason;
   if (tilt > kFallTilt)
     reason = "trunk tilt " + text::fixed(tilt, 2) + " rad";
-  else if ((ground_.inverse() * sample.cog).z() <
-           kFallHeightShare * (command.cog.z() - command.zmp.z()))
+  else if ((ground_.inverse() * sample.cog).z() < kFallHeight * (command.cog.z() - command.zmp.z()))
     reason = "COG at " + text::fixed((ground_.inverse() * sample.cog).z(), 3) + " m";
   else if (report.body_contact)
     reason = "touched the ground with something but a foot";
@@ -123,20 +142,20 @@ bool Judge::observe(double t, const CommandSample& command, const SimulationSamp
   return true;
 }
 
-void Judge::observe_feet(double t, const CommandSample& command, const RobotData& truth,
-                         const StepReport& report, double dt) {
+void FallMonitor::observe_feet(double t, const CommandSample& command, const RobotData& truth,
+                               const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
   for (Side side : {Side::left, Side::right}) {
     const int i = static_cast<int>(side);
     double fz = 0;
     for (const SoleForce& cell : report.soles[i]) fz += normal().dot(cell.force);
-    const bool loaded = fz > kTouchShare * weight;
-    if (loaded && unloaded_[i] > kMinFlightOfFoot) {
+    const bool loaded = fz > kTouchLoad * weight;
+    if (loaded && unloaded_[i] > kMinFootFlight) {
       ++result_.steps;
       events_.push_back({t, "touchdown", std::string(name_of(side)) + " foot"});
     }
     unloaded_[i] = loaded ? 0.0 : unloaded_[i] + dt;
-    // Slip is told from where the foot stood when it first carried load in its stance.
+    // Slip is measured from the place where the foot first carried load in its stance.
     const bool stance = supports(command.support, side) && loaded;
     const Vector3d place = ground_.inverse() * sole_pose(*model_, truth, side).translation();
     if (stance && !in_stance_[i]) stance_start_[i] = place;
@@ -148,7 +167,7 @@ void Judge::observe_feet(double t, const CommandSample& command, const RobotData
   }
 }
 
-SimulationResult Judge::conclude(const CommandSample& command, const RobotState& state) {
+SimulationResult FallMonitor::conclude(const CommandSample& command, const RobotState& state) {
   SimulationResult& r = result_;
   RobotData data(*model_);
   update_velocities(*model_, state, data);

@@ -1,0 +1,89 @@
+#pragma once
+// The contacts of a step as a problem for the ContactSolver: Jacobians J of the contact points,
+// Y = L^-T J' with the factor L of the step's matrix, the Delassus matrix A = Y' Y + compliance and
+// the right side b. docs/theory_plant.md, (P2) and (P3).
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "ayumi/dynamics/tree_cholesky.hpp"
+#include "ayumi/sim/plant/contact_solver.hpp"
+#include "ayumi/sim/plant/contacts.hpp"
+
+namespace ayumi {
+
+class ContactRows {
+ public:
+  /// Reserves room for the corners of both soles, `points` being the robot's number of points.
+  ContactRows(const RobotModel& model, const TreeCholesky& factor, size_t points);
+
+  /// Jacobians, compliances, gaps and friction of the contacts of a step of `dt` [s]. `before` is
+  /// the generalised velocity at its start.
+  void set(const std::vector<ActiveContact>& contacts, const RobotData& data,
+           const TreeCholesky& factor, const Eigen::VectorXd& before, double dt);
+
+  /// Solves the contacts with the factor L of the step's matrix. `x` holds L^-T times the right
+  /// side of the free motion, in the order of places, and receives L^-T J' times the impulses.
+  ContactSolution solve(const RobotData& data, const TreeCholesky& factor, Eigen::VectorXd& x);
+
+  /// Impulses of the last solve, contact axes [N s].
+  Eigen::Vector3d impulse(size_t contact) const {
+    return solver_.impulse().segment<3>(3 * static_cast<Eigen::Index>(contact));
+  }
+  /// Velocities of the contact points before the step, contact axes [m/s].
+  Eigen::Vector3d rate_before(size_t contact) const {
+    return Eigen::Map<const Eigen::Vector3d>(&rates_before_[3 * contact]);
+  }
+  /// Velocities after the step, as of the last set_rates() [m/s].
+  Eigen::Vector3d rate(size_t contact) const {
+    return Eigen::Map<const Eigen::Vector3d>(&rates_[3 * contact]);
+  }
+  void set_rates(const RobotData& data, const TreeCholesky& factor,
+                 const Eigen::VectorXd& velocity) {
+    multiply(data, factor, velocity, rates_);
+  }
+
+ private:
+  /// Consecutive contacts of one body. Where links touch each other, two blocks describe the same
+  /// contacts, one for each body. The rows of a block stand side by side, three per contact and
+  /// filled up to a multiple of four, one line for each place on the path to the body.
+  struct Block {
+    int body = 0;
+    int last = 0;                 // last place that moves the body
+    double sign = 1;              // -1 for the body that is pushed back
+    size_t first = 0, count = 0;  // contacts
+    int width = 0;                // doubles per line
+    size_t begin = 0;             // in J_ and Y_
+  };
+
+  void find_blocks(const std::vector<ActiveContact>& contacts, const TreeCholesky& factor);
+  void add_block(size_t first, size_t count, int body, double sign, const TreeCholesky& factor);
+  size_t end_of(const Block& block, const TreeCholesky& factor) const {
+    return block.begin + static_cast<size_t>((factor.depth(block.last) + 1) * block.width);
+  }
+  void fill_jacobian(const Block& block, const std::vector<ActiveContact>& contacts,
+                     const RobotData& data, const TreeCholesky& factor);
+  void fill_problem(const RobotData& data, const TreeCholesky& factor, const Eigen::VectorXd& x);
+  void couple(const Block& block, const Block& other, const RobotData& data,
+              const TreeCholesky& factor);
+  Eigen::Map<const Eigen::VectorXd> times_path(const Block& block, const double* rows,
+                                               const Eigen::VectorXd& x, const RobotData& data,
+                                               const TreeCholesky& factor);
+  void multiply(const RobotData& data, const TreeCholesky& factor, const Eigen::VectorXd& velocity,
+                std::vector<double>& rates);
+
+  std::vector<std::vector<int>> chain_bodies_, chain_lines_;  // by body: path to the root
+  size_t count_ = 0;                                          // contacts
+  std::vector<Block> blocks_;
+  bool linked_ = false;  // some contacts are between links of the robot
+  std::vector<double> J_, Y_;
+  std::vector<double> compliance_;            // by contact [1/kg]
+  std::vector<Eigen::Vector3d> shift_;        // by contact: J v + gap terms - ground velocity [m/s]
+  std::vector<double> rates_before_, rates_;  // three per contact [m/s]
+  ContactSolver solver_;
+  // Workspace.
+  std::vector<double> gram_, product_;
+  Eigen::VectorXd placed_;
+};
+
+}  // namespace ayumi

@@ -1,0 +1,97 @@
+#pragma once
+// The contacts of one step: which points of the robot touch the ground, a block or another link of
+// the robot, or may do so before the step ends, and the frame, gap and friction of each.
+// docs/theory_plant.md.
+
+#include <vector>
+
+#include "ayumi/sim/ground.hpp"
+#include "ayumi/sim/plant/contact_points.hpp"
+#include "ayumi/sim/plant/link_contacts.hpp"
+
+namespace ayumi {
+
+/// A point that touches, or may touch before the step ends.
+struct ActiveContact {
+  long key = 0;     ///< the same in each step: the index of the ContactPoint, or a larger number
+                    ///< where edges, nodes of the height field or links touch
+  int body = 0;     ///< body that is pushed along the normal
+  int other = -1;   ///< body that is touched; -1: the ground
+  int side = -1;    ///< Side of the sole, -1 for a body that is no sole
+  int vertex = -1;  ///< corner of the sole; -1: between its corners, or no sole
+  double stiffness = 0;             ///< [N/m]
+  double damping_time = 0;          ///< damping / stiffness [s]
+  double gap = 0;                   ///< along the normal, negative inside [m]
+  Eigen::Vector3d position;         ///< world [m]
+  Eigen::Matrix3d to_contact;       ///< rows: normal, first and second tangent, world axes
+  Eigen::Vector3d ground_velocity;  ///< world [m/s]
+  double friction = 0;              ///< coefficient of friction
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();     ///< of the last step, contact axes [N s]
+  Eigen::Vector2d deflection = Eigen::Vector2d::Zero();  ///< of the tangential spring [m]
+};
+
+class ContactSet {
+ public:
+  ContactSet(const RobotModel& model, const World& world);
+
+  Ground& ground() { return ground_; }
+  const Ground& ground() const { return ground_; }
+
+  size_t point_count() const { return points_.size(); }  ///< points of the robot
+
+  /// The contacts of the present step, in the order of their keys. Contacts of one body, or of one
+  /// pair of bodies, are consecutive.
+  std::vector<ActiveContact>& active() { return active_; }
+  const std::vector<ActiveContact>& active() const { return active_; }
+
+  /// Forgets impulses, deflections and distances: the robot was moved elsewhere.
+  void reset();
+
+  /// Finds the contacts of a step of `dt` [s] from the positions and velocities in `data`. A
+  /// contact that was active in the last step keeps its impulse and deflection.
+  void collect(const RobotData& data, double dt);
+
+  /// Brings back the contacts before the last collect().
+  void undo_collect() { active_.swap(previous_); }
+
+  /// Removes the contacts that are still above the ground and have not pressed so far.
+  void remove_arriving();
+
+  /// The point of the robot that touches; null where an edge, a node of the field or a link does.
+  const ContactPoint* point_of(const ActiveContact& contact) const {
+    return contact.key < static_cast<long>(points_.size())
+               ? &points_[static_cast<size_t>(contact.key)]
+               : nullptr;
+  }
+
+  /// Whether the robot can turn about this contact: a point of the robot, or of the ground under a
+  /// sole, that stays in its place while the robot turns. A sphere and a rim roll instead.
+  bool is_pivot(const ActiveContact& contact) const;
+
+ private:
+  void collect_points(const PointGroup& group, const RobotData& data, double dt);
+  void collect_under_sole(const PointGroup& group, const RobotData& data, double dt);
+  void collect_edges(const RobotData& data, double dt);
+  void collect_edges(int body, const CollisionModel::PlacedCollider& shape, const SolidBlock& block,
+                     long key, const RobotData& data, double dt);
+  void collect_links(const RobotData& data, double dt);
+  void keep_impulses();
+  double height_above_all(const PointGroup& group, const RobotData& data) const;
+  double fastest_approach(const RobotData& data) const;
+
+  Ground ground_;
+  std::vector<ContactPoint> points_;
+  std::vector<PointGroup> groups_;
+  double widest_ = 0;  // largest distance of a point's far side from its body's origin [m]
+  LinkContacts links_;
+  double link_friction_ = 0, link_stiffness_ = 0;  // where links touch each other or an edge
+  std::vector<char> is_foot_;                      // by body
+  std::vector<ActiveContact> active_, previous_;
+  // Workspace of collect().
+  Eigen::Matrix3d level_;  // contact axes on the plane
+  std::vector<Eigen::Vector3d> outline_;
+  std::vector<InnerPoint> inner_;
+  std::vector<FieldTip> tips_;
+};
+
+}  // namespace ayumi
