@@ -174,7 +174,7 @@ void MainJob::repair_pattern(PatternInput& input) {
 
 bool MainJob::simulate(const PatternInput& input) {
   SimulationChoice open = options_.choice;
-  open.controller = "none";
+  open.controller = name_of(ControllerKind::none);
   open.gains.clear();
   folder_.logs["open_loop"] = simulate_once(context_, input, open);
   say("simulate", outcome_text(folder_.logs["open_loop"]));
@@ -215,7 +215,7 @@ void MainJob::export_tables(const PatternInput& input) {
 void MainJob::draw(const RobotModel& model, const std::string& title) {
   const SimulationLog& closed = folder_.logs["closed_loop"];
   const std::vector<LociRun> runs = {{"open loop", &folder_.logs["open_loop"]},
-                                     {closed.controller, &closed}};
+                                     {name_of(closed.controller.value()), &closed}};
   LociOptions loci;
   loci.title = title;
   loci.model = &model;

@@ -223,7 +223,7 @@ TEST(FootholdShift, GainsOutOfRangeAreRefused) {
   for (const auto& [gain, value, said] :
        {std::tuple{"step", 1.5, "step is a share, 0 to 1"}, {"hurry", 0.5, "at least 1"}}) {
     try {
-      dtad_params(walk().model, {"dtad", {{gain, value}}});
+      dtad_params(walk().model, {ControllerKind::dtad, {{gain, value}}});
       FAIL() << gain;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();

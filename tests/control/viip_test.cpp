@@ -44,7 +44,7 @@ TEST(Viip, PrintedCondition25Overshoots) {
 
 std::string complaint(const std::string& gain, double value) {
   ControllerSpec spec;
-  spec.type = "viip";
+  spec.type = ControllerKind::viip;
   spec.gains = {{gain, value}};
   try {
     viip_params(test::biped(), spec);

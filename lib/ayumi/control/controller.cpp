@@ -20,8 +20,6 @@ namespace {
 constexpr double kBlend = 0.8;      // over which an offset of the COG is taken back [s]
 constexpr double kFootBlend = 0.2;  // of a swing, over which a foot returns to its command [s]
 
-bool is_dtad(const std::string& type) { return type == "dtad" || type == "dtad-literal"; }
-
 /// Level pose between both soles.
 Isometry3d between(const std::array<Isometry3d, 2>& feet) {
   const double left = matrix_to_rpy(feet[0].linear()).z();
@@ -48,19 +46,8 @@ CommandSample moved(const CommandSample& command, const Isometry3d& turn) {
 
 }  // namespace
 
-const std::vector<std::string>& controller_names() {
-  static const std::vector<std::string> names = {"none", "dtad",          "dtad-literal",
-                                                 "viip", "viip-landings", "viip-nofeedback"};
-  return names;
-}
-
 void check_controller(const RobotModel& model, const ControllerSpec& spec) {
-  const std::vector<std::string>& names = controller_names();
-  if (std::find(names.begin(), names.end(), spec.type) == names.end())
-    fail(ErrorCode::usage, "unknown controller '" + spec.type + "'" +
-                               text::suggestion(spec.type, names) +
-                               " (known: " + text::join(names, ", ") + ")");
-  if (is_dtad(spec.type)) dtad_params(model, spec);
+  if (spec.type.kind == ControllerKind::dtad) dtad_params(model, spec);
   viip_params(model, spec);
 }
 
@@ -75,9 +62,9 @@ Controller::Controller(const RobotModel& model, const ActuatorLimits& limits,
       start_(plan_.state),
       target_(series.samples.front().state.theta) {
   check_controller(model, spec);
-  if (spec.type.starts_with("viip") && series.viip.empty())
+  if (spec.type.kind == ControllerKind::viip && series.viip.empty())
     fail(ErrorCode::bad_pattern,
-         "controller " + spec.type +
+         "controller " + name_of(spec.type) +
              ": the pattern has no phase with \"viip\" goals; add one or use dtad");
   if (series.viip.empty()) sag_ = servo_sag(model, limits, series);
   const bool told = sag_.size() > 0 && !series.servo_commands;
@@ -95,7 +82,7 @@ const CommandSample& Controller::command(long k) const {
 
 // The last phase goes on after the end of the series.
 const ViipSpan* Controller::span_at(long k) const {
-  if (spec_.type == "none") return nullptr;
+  if (spec_.type == ControllerKind::none) return nullptr;
   const long last = static_cast<long>(series_->samples.size()) - 1;
   for (const ViipSpan& span : series_->viip)
     if (k >= span.begin && (k < span.end || span.end >= last)) return &span;
@@ -157,9 +144,9 @@ void Controller::start_law(const ViipSpan* span) {
       law_ = ViipJump(*model_, limits_, params, series_->dt, from, placed(tick_), *jump);
     else
       law_ = Viip(*model_, limits_, params, series_->dt, from, placed(tick_));
-  } else if (is_dtad(spec_.type) || spec_.type == "viip") {
+  } else if (spec_.type.kind == ControllerKind::dtad || spec_.type == ControllerKind::viip) {
     ControllerSpec spec = spec_;
-    if (spec.type == "viip") spec = {"dtad", {}};
+    if (spec.type == ControllerKind::viip) spec = {ControllerKind::dtad, {}};
     const Handover from = handover();
     const DtadParams params = dtad_params(*model_, spec);
     Dtad dtad(*model_, limits_, params, series_->dt, plan_, target_);

@@ -12,15 +12,7 @@
 
 namespace ayumi {
 
-/// Names known to ControllerSpec::type. "none": open loop, VIIP phases hold their posture;
-/// "dtad", "dtad-literal": that law, VIIP in phases that carry goals; "viip": the same, its gains
-/// are those of VIIP; "viip-nofeedback": likewise with nothing measured, feet land by the clock,
-/// the rest open loop; "viip-landings": the same, but the landing of a foot is noticed. Where the
-/// whole motion is planned ahead, without VIIP goals, servos are told its torques in every law
-/// (control/feedforward.hpp).
-const std::vector<std::string>& controller_names();
-
-/// Throws Error(usage) for an unknown name or gain.
+/// Throws Error(usage) for an unknown gain or a gain out of range.
 void check_controller(const RobotModel& model, const ControllerSpec& spec);
 
 class Controller {

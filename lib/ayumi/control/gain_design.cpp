@@ -185,7 +185,7 @@ void refuse_unstable(const LoopModel& loop, const DtadParams& params) {
 
 std::string instability(const RobotModel& model, const ControllerSpec& spec, double height,
                         double tick) {
-  if (spec.type != "dtad") return {};
+  if (spec.type != ControllerKind::dtad) return {};
   const DtadParams params = dtad_params(model, spec);
   if (params.as_printed != 0) return {};
   for (Side side : {Side::left, Side::right})

@@ -146,8 +146,9 @@ TuneFigures Tuner::judge(const Gains& gains) {
 void check(const TuneOptions& options, const CommandSeries& series, const Gains& known) {
   const auto refuse = [](const std::string& why) { fail(ErrorCode::usage, "tune: " + why); };
   if (series.samples.empty()) fail(ErrorCode::bad_pattern, "the command series is empty");
-  if (options.simulate.controller.type != "dtad")
-    refuse("controller '" + options.simulate.controller.type + "' has no gains to tune; use dtad");
+  if (options.simulate.controller.type != ControllerKind::dtad)
+    refuse("controller '" + name_of(options.simulate.controller.type) +
+           "' has no gains to tune; use dtad");
   if (options.directions < 1 || options.directions > 360) refuse("directions: give 1 to 360");
   if (!(options.level > 0)) refuse("level must be positive");
   if (!(options.factor > 1)) refuse("factor must exceed 1");

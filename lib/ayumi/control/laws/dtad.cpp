@@ -99,7 +99,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
     fail(ErrorCode::usage,
          "controller gains: hurry is the fastest clock of the pattern, at least 1; it is " +
              text::brief(p.hurry));
-  p.literal = spec.type == "dtad-literal";
+  p.literal = spec.type.demonstration == Demonstration::literal;
   return p;
 }
 

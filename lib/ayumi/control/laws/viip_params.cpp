@@ -31,7 +31,7 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   };
   for (const auto& [name, value] : model.description().control.viip)
     set(name, value, model.name() + " sidecar");
-  if (spec.type.starts_with("viip"))
+  if (spec.type.kind == ControllerKind::viip)
     for (const auto& [name, value] : spec.gains) set(name, value, "controller gains");
   for (const char* name : {"q", "goal", "tau_z", "kz", "single", "both", "lift"})
     if (!(*fields.at(name) > 0))
@@ -40,8 +40,8 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
     fail(ErrorCode::usage, "controller gains: dz = " + text::brief(p.dz) +
                                " overshoots; (25) asks for K_Dz^2 >= 4 m K_Pz, dz >= 1");
   if (p.hold > 1) fail(ErrorCode::usage, "controller gains: hold is a share, at most 1");
-  p.landings = spec.type != "viip-nofeedback";
-  p.feedback = p.landings && spec.type != "viip-landings";
+  p.landings = spec.type.demonstration != Demonstration::no_feedback;
+  p.feedback = p.landings && spec.type.demonstration != Demonstration::landings_only;
   return p;
 }
 
