@@ -7,9 +7,9 @@
 #include <new>
 
 #include "ayumi/control/estimator.hpp"
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/dynamics/supports.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"

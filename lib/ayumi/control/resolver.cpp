@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/dynamics/supports.hpp"
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -124,7 +124,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   // Relative to the anchored sole: its own chain counts backwards.
   BodyTasks& tasks = work.tasks;
   BodyTasks::Vector& u = tasks.u;
-  anchored_cog_jacobian(model, data, anchor, work.cog);
+  cog_jacobian(model, data, anchor, work.cog);
   tasks.J.resize(BodyTasks::kRows, n);
   tasks.J.topRows<3>() = work.cog;
   tasks.J.bottomRows<9>().setZero();

@@ -17,6 +17,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/laws/jump_parts.hpp"
 #include "ayumi/control/support.hpp"
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"

@@ -5,6 +5,7 @@
 
 #include "ayumi/control/laws/jump_parts.hpp"
 #include "ayumi/control/laws/viip_jump.hpp"
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/weighted_solve.hpp"
