@@ -261,7 +261,7 @@ PushCase Study::plan(size_t i) const {
 
 bool Study::plan_moves(const ControllerSpec& controller) const {
   return !series.viip.empty() ||
-         (controller.type == ControllerKind::dtad && dtad_params(model, controller).step > 0);
+         (controller.type == ControllerKind::dtad && dtad_params(model, controller).step_share > 0);
 }
 
 void Study::search(size_t i, PushCase& found) {

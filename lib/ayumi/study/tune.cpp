@@ -25,9 +25,10 @@ using Gains = std::map<std::string, double>;
 
 /// The gains that may be tuned, of the numbers in force.
 Gains tunable(const DtadParams& p) {
-  return {{"q", p.q},         {"ka", p.ka},           {"ks", p.ks},          {"kd", p.kd},
-          {"tau_z", p.tau_z}, {"washout", p.washout}, {"kz", p.kz},          {"dz", p.dz},
-          {"kaz", p.kaz},     {"ankle", p.ankle},     {"conform", p.conform}};
+  return {{"q", p.pole_ratio},        {"ka", p.zmp_gain},       {"ks", p.pull_rate},
+          {"kd", p.pull_damping},     {"tau_z", p.zmp_filter},  {"washout", p.offset_time},
+          {"kz", p.height_stiffness}, {"dz", p.height_damping}, {"kaz", p.fz_gain},
+          {"ankle", p.ankle_share},   {"conform", p.compliance}};
 }
 
 double height(const CommandSample& command) { return command.cog.z() - command.zmp.z(); }
