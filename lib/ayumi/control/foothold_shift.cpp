@@ -1,6 +1,6 @@
 // A rigid shift of all footholds to come by D moves the plan's DCM now by less, because the plan's
 // ZMP is still where it was: with zeta the shift of the ZMP, d dcm = int omega exp(-omega s)
-// zeta(t + s) ds, so D share exp(-omega T) before a landing in T. The other way round, an error of
+// zeta(t + s) ds, so D share exp(-omega T) before a landing in T. Conversely, an error of
 // the DCM that the ZMP cannot take away until then asks for D = error exp(omega T) / share. The
 // clock of the pattern shortens T. Under a clock of rate r the plan's DCM runs along the same
 // pendulum about the ZMP p of the single support, dcm = p + (dcm_landing - p) exp(-omega T / r).
@@ -228,25 +228,26 @@ Vector2d FootholdShift::error_left_over(const Vector2d& dcm, double time_scale) 
 Vector2d FootholdShift::not_crossing(const Vector2d& target) const {
   const Step& step = steps_[coming_];
   const Eigen::Rotation2Dd turn(step.stance.yaw);
-  Vector2d way = turn.inverse() * (step.landing.position + target - after_ - step.stance.position);
+  Vector2d offset =
+      turn.inverse() * (step.landing.position + target - after_ - step.stance.position);
   const double side = step.swing.foot == Side::left ? 1 : -1;
-  if (side * way.y() < 2 * half_width_ + kSoleClearance)
-    way.y() = (turn.inverse() * (step.landing.position - step.stance.position)).y();
-  return step.stance.position + turn * way - step.landing.position + after_;
+  if (side * offset.y() < 2 * half_width_ + kSoleClearance)
+    offset.y() = (turn.inverse() * (step.landing.position - step.stance.position)).y();
+  return step.stance.position + turn * offset - step.landing.position + after_;
 }
 
 /// What the leg can reach, and in the time that is left.
 Vector2d FootholdShift::reachable(const Vector2d& target, double time_scale) const {
   const PlannedSwing& swing = steps_[coming_].swing;
-  Vector2d way = target - after_;
+  Vector2d shift = target - after_;
   const double reach = kFootholdReach * height_;
-  if (way.norm() > reach) way *= reach / way.norm();
+  if (shift.norm() > reach) shift *= reach / shift.norm();
   const double margin = kSwingMargin * (swing.land - swing.lift);
   const double begin = std::max(phase_, swing.lift + margin);
   const double time = std::max(0.0, swing.land - margin - begin) * series_->dt / time_scale;
   const double most = kFootSpeed * omega_ * height_ * time / kLeastJerkPeak;
   const Vector2d from = foot_[index(swing.foot)];
-  Vector2d move = after_ + way - from;
+  Vector2d move = after_ + shift - from;
   if (move.norm() > most) move *= most / move.norm();
   return from + move;
 }

@@ -75,10 +75,10 @@ GroundPose Footsteps::moved(const GroundPose& center, const StepGoal& goal, Side
                             int left) const {
   if (left <= 1) return center;
   const Side leading = goal.velocity.y() > 0 ? Side::left : Side::right;
-  Vector2d way = period_ * goal.velocity;
-  way.y() *= swing == leading ? 2 : 0;
+  Vector2d move = period_ * goal.velocity;
+  move.y() *= swing == leading ? 2 : 0;
   const double turn = period_ * goal.turn;
-  return {center.position + turned(way, center.yaw + 0.5 * turn), center.yaw + turn};
+  return {center.position + turned(move, center.yaw + 0.5 * turn), center.yaw + turn};
 }
 
 PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose& foot, int left,

@@ -38,7 +38,7 @@ class SwingReplan {
     acceleration_.setZero();
   }
 
-  /// One tick of dt [s]: the way made, when `remaining` is left to go in `time` [s].
+  /// One tick of dt [s]: the distance made when `remaining` is left to go in `time` [s].
   Vector step(const Vector& remaining, double time, double dt) {
     const double t = std::max(time, kLeastTime);
     const Vector jerk = 60 / (t * t * t) * remaining - 36 / (t * t) * rate_ - 9 / t * acceleration_;

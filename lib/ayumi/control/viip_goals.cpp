@@ -111,12 +111,12 @@ Attempt lead_to(const RobotModel& model, const CommandSample& held, const Vector
   Attempt attempt;
   for (int i = 0; i < kLeadTicks; ++i) {
     anchor_base(model, Side::left, held.feet[0], state, data);
-    const Vector3d way = goal - data.cog;
-    attempt.miss = way.norm();
+    const Vector3d remaining = goal - data.cog;
+    attempt.miss = remaining.norm();
     if (attempt.miss < kGoalReached) break;
     const Resolution r = resolve(model, model.limits(), state, data, Side::left,
-                                 way / std::max(kLeadTime, way.norm() / kLeadSpeed), wanted, wanted,
-                                 kLeadTick, model.joint_weight(), options);
+                                 remaining / std::max(kLeadTime, remaining.norm() / kLeadSpeed),
+                                 wanted, wanted, kLeadTick, model.joint_weight(), options);
     state.theta += kLeadTick * r.dtheta;
     attempt.joint.clear();
     for (const int dof : r.held)

@@ -246,8 +246,9 @@ Vector2d Viip::regulate(const Vector2d& dcm, int state) const {
       break;
     case Stage::weight_shift: {
       const PlannedStep step = planned_step(anchor_);
-      const Vector2d way = step.landing.position + step.offset - step.stance_place;
-      return inside_support(standing(step.stance_place + way * std::exp(-params_.single_support)));
+      const Vector2d to_landing = step.landing.position + step.offset - step.stance_place;
+      return inside_support(
+          standing(step.stance_place + to_landing * std::exp(-params_.single_support)));
     }
     case Stage::single_support:
       // Shortly before the landing only the foothold can still answer.
@@ -335,13 +336,13 @@ Vector2d Viip::landing_point(const PlannedStep& step, const Vector2d& dcm) const
     target[i] = std::clamp(target[i], nominal[i] - reach, nominal[i] + reach);
   target -= Eigen::Rotation2Dd(step.landing.yaw) * landing_bias_[index(foot)];
   const GroundPose stance = ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]);
-  Vector2d way = Eigen::Rotation2Dd(-stance.yaw) * (target - stance.position);
+  Vector2d beside_stance = Eigen::Rotation2Dd(-stance.yaw) * (target - stance.position);
   const double beside = 2 * sole_half_width(*model_) + kSoleClearance;
   if (foot == Side::left)
-    way.y() = std::max(way.y(), beside);
+    beside_stance.y() = std::max(beside_stance.y(), beside);
   else
-    way.y() = std::min(way.y(), -beside);
-  return stance.position + Eigen::Rotation2Dd(stance.yaw) * way;
+    beside_stance.y() = std::min(beside_stance.y(), -beside);
+  return stance.position + Eigen::Rotation2Dd(stance.yaw) * beside_stance;
 }
 
 // The swing foot lifts off, goes to the landing point, which moves, and comes down.
@@ -357,9 +358,9 @@ void Viip::move_swing_foot(const Vector2d& dcm) {
   if (elapsed_ > begin && time > dt_) {
     const Vector3d remaining(target.x() - at.position.x(), target.y() - at.position.y(),
                              std::remainder(step.landing.yaw - at.yaw, 2 * M_PI));
-    const Vector3d way = swing_.step(remaining, time, dt_);
-    at.position += way.head<2>();
-    at.yaw += way.z();
+    const Vector3d move = swing_.step(remaining, time, dt_);
+    at.position += move.head<2>();
+    at.yaw += move.z();
   }
   const double after = std::min(1.0, (elapsed_ + time_scale_ * dt_) / length);
   const double ground = plan_.feet[index(anchor_)].translation().z();

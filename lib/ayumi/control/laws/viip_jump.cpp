@@ -277,8 +277,8 @@ bool ViipJump::leaves_now() {
   const double spring = goal_.release == JumpGoal::Release::spring ? kGravity / stiffness_ : 0.0;
   const double z = data_.cog.z() - ground_of(plan_.feet) - height_;
   if (z + dt_ * dcog_.z() < spring) return false;
-  const double way = std::max(0.0, goal_.height + 0.5 * spring - z);
-  dcog_.z() = std::sqrt(kGravity * (kGravity * dt_ * dt_ + 2 * way)) - kGravity * dt_;
+  const double rise = std::max(0.0, goal_.height + 0.5 * spring - z);
+  dcog_.z() = std::sqrt(kGravity * (kGravity * dt_ * dt_ + 2 * rise)) - kGravity * dt_;
   return true;
 }
 
@@ -433,13 +433,13 @@ void ViipJump::release() {
                        std::min(kRetractionTime, kRetractionFlightShare * flight_.duration) / 2;
 
   const double yaw = heading_of_feet(plan_.feet);
-  const Vector3d way = goal_.forward * Vector3d(std::cos(yaw), std::sin(yaw), 0);
+  const Vector3d forward = goal_.forward * Vector3d(std::cos(yaw), std::sin(yaw), 0);
   Vector3d landing = flight_.cog + flight_.duration * flight_.velocity;
   landing.z() = ground + height_ + flight_.retraction;
   for (const Side side : {Side::left, Side::right}) {
     const auto s = static_cast<size_t>(side);
     flight_.feet[s] = plan_.feet[s].translation() - flight_.cog;
-    plan_.feet[s].translation() += way;
+    plan_.feet[s].translation() += forward;
     flight_.landing[s] = plan_.feet[s].translation() - landing;
   }
   enter(Stage::flight);

@@ -84,7 +84,7 @@ class ViipJump {
   int left_ = 1;              // jumps to go, this one included
   double from_ = 0;           // COG height at which the stage began [m]
   double stiffness_ = 0;      // K_Pz / m of (26) or (27) [1/s^2]
-  double depth_ = 0;          // way of the push or of the absorption [m]
+  double depth_ = 0;          // of the push or of the landing [m]
   Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();       // of the reference, angular [N m s]
   Eigen::Vector3d momentum_rate_ = Eigen::Vector3d::Zero();  // on the ground [N m]
   Flight flight_;
