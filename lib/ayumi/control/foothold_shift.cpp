@@ -72,7 +72,7 @@ constexpr double kLongestRamp = 1.3;
 // Peak speed of a path of least jerk from rest to rest, in units of its mean speed: 15/8.
 constexpr double kLeastJerkPeak = 1.875;
 
-ConvexPolygon about(const ConvexPolygon& polygon, const Vector2d& center) {
+ConvexPolygon about_zmp(const ConvexPolygon& polygon, const Vector2d& center) {
   std::vector<Vector2d> points;
   for (const Vector2d& p : polygon.vertices()) points.push_back(p - center);
   return ConvexPolygon(points);
@@ -177,8 +177,9 @@ FootholdShift::Step FootholdShift::step_of(const PlannedSwing& swing) const {
   step.zmp = middle.zmp.head<2>();
   step.dcm = divergent_component(landed.cog, landed.dcog, omega_).head<2>();
   step.before = support_polygon(*model_, before.feet, Support::both);
-  step.single = about(support_polygon(*model_, middle.feet, on(stance)), step.zmp);
-  step.next = about(support_polygon(*model_, rested.feet, on(swing.foot)), rested.zmp.head<2>());
+  step.single = about_zmp(support_polygon(*model_, middle.feet, on(stance)), step.zmp);
+  step.next =
+      about_zmp(support_polygon(*model_, rested.feet, on(swing.foot)), rested.zmp.head<2>());
   step.stance = ground_pose(*model_, stance, landed.feet[index(stance)]);
   step.landing = ground_pose(*model_, swing.foot, landed.feet[index(swing.foot)]);
   step.share = ramp_share(std::min((swing.rest - swing.land) * series_->dt, kLongestRamp / omega_));

@@ -24,7 +24,7 @@ constexpr int kPreview = 6;
 // is farther off is moved to the feet, so that a push does not make the robot hurry back.
 constexpr double kLargestError = 0.35;
 
-Vector2d turned(const Vector2d& v, double yaw) { return Eigen::Rotation2Dd(yaw) * v; }
+Vector2d turned_by(const Vector2d& v, double yaw) { return Eigen::Rotation2Dd(yaw) * v; }
 
 double sign_of(Side side) { return side == Side::left ? 1.0 : -1.0; }
 
@@ -38,7 +38,7 @@ GroundPose ground_pose(const RobotModel& model, Side side, const Isometry3d& sol
 Isometry3d sole_frame(const RobotModel& model, Side side, const GroundPose& pose, double z) {
   Isometry3d frame = Isometry3d::Identity();
   frame.linear() = rpy_to_matrix({0, 0, pose.yaw});
-  frame.translation().head<2>() = pose.position - turned(model.sole(side).center, pose.yaw);
+  frame.translation().head<2>() = pose.position - turned_by(model.sole(side).center, pose.yaw);
   frame.translation().z() = z;
   return frame;
 }
@@ -63,11 +63,11 @@ Footsteps::Footsteps(const RobotModel& model, const std::array<Isometry3d, 2>& f
 }
 
 GroundPose Footsteps::beside(const GroundPose& center, Side side) const {
-  return {center.position + turned({0, sign_of(side) * half_width_}, center.yaw), center.yaw};
+  return {center.position + turned_by({0, sign_of(side) * half_width_}, center.yaw), center.yaw};
 }
 
 Vector2d Footsteps::zmp_on(Side side, const GroundPose& foot) const {
-  return foot.position - turned({0, sign_of(side) * inset_}, foot.yaw);
+  return foot.position - turned_by({0, sign_of(side) * inset_}, foot.yaw);
 }
 
 // Sideways the foot that leads goes twice as far and the other one closes up to it.
@@ -78,7 +78,7 @@ GroundPose Footsteps::moved(const GroundPose& center, const StepGoal& goal, Side
   Vector2d move = period_ * goal.velocity;
   move.y() *= swing == leading ? 2 : 0;
   const double turn = period_ * goal.turn;
-  return {center.position + turned(move, center.yaw + 0.5 * turn), center.yaw + turn};
+  return {center.position + turned_by(move, center.yaw + 0.5 * turn), center.yaw + turn};
 }
 
 PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose& foot, int left,
@@ -98,7 +98,7 @@ PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose&
     zmps.push_back(zmp_on(side, place));
   }
   const Vector2d after = count == left
-                             ? Vector2d(center.position + error + turned(rest, center.yaw))
+                             ? Vector2d(center.position + error + turned_by(rest, center.yaw))
                              : zmp_on(side, beside(moved(center, goal, side, left - count), side));
   // At the end the DCM stays where the robot is to stand; else one more step is guessed.
   const double share = count == left ? 1 : 1 / (growth_ + 1);

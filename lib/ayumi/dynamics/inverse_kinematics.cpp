@@ -24,10 +24,10 @@ namespace {
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
 
 // Residual at which Newton stops [m, rad]. Chosen: above the rounding of a leg's kinematics.
-constexpr double kTolerance = 1e-12;
+constexpr double kNewtonTolerance = 1e-12;
 
-// Residual that is accepted when rounding keeps it above kTolerance [m, rad]. Chosen: far below the
-// tolerances of the check.
+// Residual that is accepted when rounding keeps it above kNewtonTolerance [m, rad]. Chosen: far
+// below the tolerances of the check.
 constexpr double kAcceptedResidual = 1e-10;
 
 // Largest step of a joint in one iteration [rad]. Chosen: Newton stays on its side of a straight
@@ -139,7 +139,7 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state,
   for (int iteration = 0; iteration < 25; ++iteration) {
     const Residual e = residual(target, state, data);
     const double largest = e.largest();
-    if (largest <= kTolerance) return true;
+    if (largest <= kNewtonTolerance) return true;
     if (iteration > 3 && largest > 0.5 * before) return largest <= kAcceptedResidual;
     before = iteration > 1 ? largest : INFINITY;
     const MatrixXd C = cog_jacobian_floating(*model_, data);
@@ -185,7 +185,7 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
   };
   Residual e = residual(target, state, data);
   double lambda = 1e-6;
-  for (int iteration = 0; iteration < 200 && e.largest() > kTolerance; ++iteration) {
+  for (int iteration = 0; iteration < 200 && e.largest() > kNewtonTolerance; ++iteration) {
     MatrixXd J = MatrixXd::Zero(15, 3 + n0 + n1);
     J.block<3, 3>(0, 0).setIdentity();
     J.block<3, 3>(6, 0).setIdentity();

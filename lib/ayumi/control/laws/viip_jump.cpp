@@ -101,7 +101,7 @@ constexpr double kFlightPostureRate = 2;
 constexpr double kFlightDamping = 1e-5;
 constexpr double kFlightLength = 0.2;
 
-double smooth_step(double x) {
+double smooth_rise(double x) {
   const double s = std::clamp(x, 0.0, 1.0);
   return s * s * (3 - 2 * s);
 }
@@ -248,7 +248,7 @@ CogReference ViipJump::cog_reference(const Estimate& e) {
     const Vector2d speed =
         goal_.forward / (f.push + f.flight) * Vector2d(std::cos(yaw), std::sin(yaw));
     goal += speed * f.push * (s * s * s - 0.5 * s * s * s * s);
-    rate = speed * smooth_step(s);
+    rate = speed * smooth_rise(s);
     acceleration = speed / f.push * 6 * s * (1 - s);
   }
   const ConvexPolygon polygon =
@@ -285,7 +285,7 @@ bool ViipJump::leaves_now() {
 // Forwards, as far as the legs' push and landing turn the trunk back [rad].
 double ViipJump::lean() const {
   const double most = kStoopLean * goal_.stoop / height_;
-  if (stage_ == Stage::stoop) return most * smooth_step(elapsed_ * omega_ / kStoopTime);
+  if (stage_ == Stage::stoop) return most * smooth_rise(elapsed_ * omega_ / kStoopTime);
   return stage_ == Stage::push ? most : 0.0;
 }
 
@@ -355,7 +355,7 @@ void ViipJump::move_joints(const VectorXd& velocity, ControlOutput& out) {
     const Dof& dof = model_->dofs()[j];
     const double most = limits_.peak_torque[j], step = kTargetRate * limits_.speed[j] * dt_;
     if (dof.servo.kp > 0)
-      out.target[j] += smooth_step(forward_) * std::clamp(tau[j], -most, most) / dof.servo.kp;
+      out.target[j] += smooth_rise(forward_) * std::clamp(tau[j], -most, most) / dof.servo.kp;
     out.target[j] = std::clamp(out.target[j], target_[j] - step, target_[j] + step);
     if (dof.limited) out.target[j] = std::clamp(out.target[j], dof.lower, dof.upper);
   }
@@ -369,8 +369,8 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
   dcog_ += dt_ * out.cog_reference.ddcog;
   const bool last = stage_ == Stage::push && leaves_now();
   out.cog_reference.dcog = dcog_;
-  const double share = stage_ == Stage::push      ? smooth_step(2 * progress())
-                       : stage_ == Stage::landing ? 1 - smooth_step(progress())
+  const double share = stage_ == Stage::push      ? smooth_rise(2 * progress())
+                       : stage_ == Stage::landing ? 1 - smooth_rise(progress())
                                                   : 0.0;
   const Resolution r = resolve_with_momentum(share);
   for (const std::string& note : limit_notes(*model_, r)) out.notes.push_back(note);
@@ -451,7 +451,7 @@ Vector3d ViipJump::foot_position(int side, double t) const {
   const Flight& f = flight_;
   const auto s = static_cast<size_t>(side);
   const double T = f.duration;
-  Vector3d place = f.feet[s] + smooth_step((t / T - 0.05) / 0.75) * (f.landing[s] - f.feet[s]) -
+  Vector3d place = f.feet[s] + smooth_rise((t / T - 0.05) / 0.75) * (f.landing[s] - f.feet[s]) -
                    f.velocity * t * std::exp(-t / kRunOnTime);
   const double last = std::min(kRetractionTime, kRetractionFlightShare * T),
                u = (t - (T - last)) / last;
