@@ -19,7 +19,7 @@ namespace {
 
 // f_min of the projection of ref f_z, as a share of the weight. Chosen: twice the 5 % below which
 // there is no ZMP (control/estimator), so that omega^2 of (17) keeps a meaning.
-constexpr double kLeastForceShare = 0.1;
+constexpr double kAdmissibleForceShare = 0.1;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ double long_term_force(double command_fz, double mass, double K_z, double D_z,
 }
 
 double admissible_force(double fz, double mass) {
-  return std::max(kLeastForceShare * mass * kGravity, fz);
+  return std::max(kAdmissibleForceShare * mass * kGravity, fz);
 }
 
 double push_stiffness(double z_H, double z_d) { return 2 * kGravity * z_H / (z_d * z_d); }

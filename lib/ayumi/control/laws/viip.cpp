@@ -65,7 +65,7 @@ constexpr double kLandingBiasLimit = 0.015;
 // HOAP-1, as the offset time of DTAD.
 constexpr double kSlopeTime = 6.6;
 
-GroundPose middle_of_feet(const RobotModel& model, const std::array<Isometry3d, 2>& feet) {
+GroundPose ground_middle(const RobotModel& model, const std::array<Isometry3d, 2>& feet) {
   const GroundPose left = ground_pose(model, Side::left, feet[0]);
   const GroundPose right = ground_pose(model, Side::right, feet[1]);
   return {0.5 * (left.position + right.position),
@@ -166,7 +166,7 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
       footsteps_(new_path(start.plan.feet)),
       filter_(start.plan.zmp.head<2>(), start.plan.fz) {
   body_.take_over(start);
-  const GroundPose from = middle_of_feet(model, held.feet);
+  const GroundPose from = ground_middle(model, held.feet);
   Vector3d from3(from.position.x(), from.position.y(), ground_of(held.feet));
   offset_ = rotated(held.cog - from3, -from.yaw);
   plan_.feet = start.plan.feet;
@@ -215,7 +215,7 @@ void Viip::start_steps() {
 }
 
 Vector3d Viip::standing_goal(const Vector3d& displacement) const {
-  const GroundPose feet = middle_of_feet(*model_, next_.feet);
+  const GroundPose feet = ground_middle(*model_, next_.feet);
   const Vector3d on_ground(feet.position.x(), feet.position.y(), ground_of(next_.feet));
   return on_ground + rotated(offset_ + displacement, feet.yaw);
 }
@@ -433,7 +433,7 @@ void Viip::step_state_machine(const Estimate& e) {
 
 // COG, ZMP and trunk of the plan that the judge and the resolution see.
 void Viip::finish_plan() {
-  const GroundPose feet = middle_of_feet(*model_, next_.feet);
+  const GroundPose feet = ground_middle(*model_, next_.feet);
   const double yaw_before = matrix_to_rpy(plan_.state.base.attitude.toRotationMatrix()).z();
   next_.state.base = body_.state().base;
   next_.state.base.attitude =
