@@ -56,7 +56,7 @@ Lines pendulum_numbers(const CollocationPoint& i) {
                     ") = " + fixed(w2 * (x - real), 3) + " m/s2");
     lines.push_back(
         "   the reference lacks w2 (ZMP - ref ZMP) = " + fixed(w2 * (real - wanted), 3) +
-        " m/s2; ka = " + text::brief(i.gains.ka) + " times that is added");
+        " m/s2; ka = " + text::brief(i.gains.zmp_gain) + " times that is added");
   }
   return lines;
 }
@@ -104,7 +104,7 @@ Lines force_numbers(const CollocationPoint& i) {
   const SimulationSample& s = i.now();
   const Delta d = delta(i);
   const double m = i.model.mass(), w = std::sqrt(kGravity / height(s));
-  const double kz = i.gains.kz * w * w, dz = i.gains.dz * w;
+  const double kz = i.gains.height_stiffness * w * w, dz = i.gains.height_damping * w;
   return {"ref f_z = " + fixed(s.command_fz, 1) + " + " + fixed(m, 2) + " x (" + fixed(kz, 1) +
           " x " + mm(d.e.z()) + " + " + fixed(dz, 1) + " x " + fixed(1e3 * d.de.z(), 1) +
           " mm/s) = " + fixed(s.command_fz + m * (kz * d.e.z() + dz * d.de.z()), 1) +

@@ -77,7 +77,7 @@ Json thresholds_json(const std::vector<PushCase>& cases,
       thresholds.push_back({{"phase", push.phase.name},
                             {"direction_rad", push.direction},
                             {"at_s", push.phase.at},
-                            {"controller", controllers[c].type},
+                            {"controller", name_of(controllers[c].type)},
                             {"impulse_Ns", push.limits[c].impulse},
                             {"open_loop_Ns", push.open_loop.impulse},
                             {"bound_Ns", push.bound},
@@ -92,7 +92,7 @@ Json thresholds_json(const std::vector<PushCase>& cases,
 Json summaries_json(const std::vector<PushCase>& cases, const PushOptions& options) {
   Json summaries = Json::array();
   for (size_t c = 0; c < options.controllers.size(); ++c)
-    summaries.push_back({{"controller", options.controllers[c].type},
+    summaries.push_back({{"controller", name_of(options.controllers[c].type)},
                          {"walking", summary_json(summarize(cases, c, false, options.step))},
                          {"standing", summary_json(summarize(cases, c, true, options.step))}});
   return summaries;

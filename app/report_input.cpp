@@ -17,8 +17,9 @@ ReportInput report_input(const RunFolder& run, const std::string& file) {
     input.runs.push_back({label, &log});
   }
   if (input.runs.empty()) fail(ErrorCode::bad_file, file + ": the run holds no simulation log");
-  std::stable_partition(input.runs.begin(), input.runs.end(),
-                        [](const ReportRun& entry) { return entry.log->controller == "none"; });
+  std::stable_partition(input.runs.begin(), input.runs.end(), [](const ReportRun& entry) {
+    return entry.log->controller == ControllerKind::none;
+  });
   input.results = read_results(run, file);
   return input;
 }

@@ -51,7 +51,10 @@ void refuse_unstable_gains(const PatternInput& input, const ControllerSpec& spec
 
 ControllerSpec chosen_controller(const PatternInput& input, const SimulationChoice& choice) {
   ControllerSpec spec = input.pattern.controller;
-  if (!choice.controller.empty() && choice.controller != spec.type) spec = {choice.controller, {}};
+  if (!choice.controller.empty()) {
+    const ControllerType type = controller_type(choice.controller);
+    if (type != spec.type) spec = {type, {}};
+  }
   for (const auto& [name, value] : read_pairs(choice.gains, "--gain"))
     spec.gains.emplace_back(name, value);
   return spec;
@@ -107,7 +110,7 @@ SimulationLog simulate_once(const Context& context, const PatternInput& input,
   options.plant = plant_of(choice.plant);
   options.seed = context.seed;
   SimulationLog log = simulate(input.model, input.series, options, context.progress());
-  log.provenance = provenance(context, input, options.controller.type);
+  log.provenance = provenance(context, input, name_of(options.controller.type));
   return log;
 }
 
@@ -129,7 +132,8 @@ Eigen::MatrixXd torques_of(const SimulationLog& log) {
 std::string outcome_text(const SimulationLog& log) {
   const SimulationResult& r = log.result;
   std::string text =
-      (log.controller == "none" ? "open loop" : log.controller) + " " + name_of(r.outcome);
+      (log.controller == ControllerKind::none ? "open loop" : name_of(log.controller.value())) +
+      " " + name_of(r.outcome);
   if (r.outcome == Outcome::fell) {
     text += " at " + text::fixed(r.fell_at, 2) + " s";
     for (const SimulationEvent& event : log.events)

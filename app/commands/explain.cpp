@@ -100,7 +100,7 @@ Numbers numbers_of(const Context& context, const Equation& e, const ExplainComma
   Numbers result;
   if (e.numbers) result.lines = e.numbers(instant);
   result.where = place.run;
-  result.controller = log.controller;
+  if (log.controller) result.controller = name_of(*log.controller);
   result.t = log.dt * static_cast<double>(instant.k);
   const std::string origin = read_run_section(place.run, "sampled_from");
   if (!origin.empty()) result.sampled_from = Json::parse(origin);

@@ -119,18 +119,18 @@ std::vector<std::pair<std::string, double>> gain_list(const DtadParams& p) {
   if (p.k)
     list = {{"k", *p.k}, {"d", *p.d}};
   else
-    list = {{"q", p.q}};
-  for (const auto& entry : std::vector<std::pair<std::string, double>>{{"ka", p.ka},
-                                                                       {"ks", p.ks},
-                                                                       {"kd", p.kd},
-                                                                       {"tau_z", p.tau_z},
+    list = {{"q", p.pole_ratio}};
+  for (const auto& entry : std::vector<std::pair<std::string, double>>{{"ka", p.zmp_gain},
+                                                                       {"ks", p.pull_rate},
+                                                                       {"kd", p.pull_damping},
+                                                                       {"tau_z", p.zmp_filter},
                                                                        {"margin", p.margin},
-                                                                       {"washout", p.washout},
-                                                                       {"kz", p.kz},
-                                                                       {"dz", p.dz},
-                                                                       {"kaz", p.kaz},
-                                                                       {"ankle", p.ankle},
-                                                                       {"conform", p.conform}})
+                                                                       {"washout", p.offset_time},
+                                                                       {"kz", p.height_stiffness},
+                                                                       {"dz", p.height_damping},
+                                                                       {"kaz", p.fz_gain},
+                                                                       {"ankle", p.ankle_share},
+                                                                       {"conform", p.compliance}})
     list.push_back(entry);
   return list;
 }
@@ -152,14 +152,14 @@ std::string report(const RobotModel& model, const Design& d) {
   out += "\n(18)(19)  K = " + text::brief(long_term_k(p)) +
          ", D = " + text::fixed(1e3 * long_term_d(p) / w, 1) +
          " ms: the ZMP goes K times as far out as the COG\n";
-  out += "short term  " + text::fixed(100 * p.ka / (1 + p.ka), 0) +
+  out += "short term  " + text::fixed(100 * p.zmp_gain / (1 + p.zmp_gain), 0) +
          " % of a ZMP error is taken up at once, measured over " +
-         text::fixed(1e3 * p.tau_z / w, 1) + " ms\n";
-  out += "return  the reference comes back to the command in " + text::fixed(1e3 / (w * p.ks), 0) +
-         " ms";
-  out += p.washout > 0
-             ? ", lasting offsets are forgotten in " + text::fixed(1e3 * p.washout / w, 0) + " ms\n"
-             : ", lasting offsets stay\n";
+         text::fixed(1e3 * p.zmp_filter / w, 1) + " ms\n";
+  out += "return  the reference comes back to the command in " +
+         text::fixed(1e3 / (w * p.pull_rate), 0) + " ms";
+  out += p.offset_time > 0 ? ", lasting offsets are forgotten in " +
+                                 text::fixed(1e3 * p.offset_time / w, 0) + " ms\n"
+                           : ", lasting offsets stay\n";
   out += "loop on one foot: ankle " + text::brief(d.loop.stiffness) + " N m/rad, sensors " +
          text::brief(1e3 * d.loop.delay) + " ms late; stable, ka up to " +
          (d.most_ka >= kMostKa ? "more than " + text::brief(kMostKa) : text::fixed(d.most_ka, 2)) +

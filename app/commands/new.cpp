@@ -178,7 +178,7 @@ void new_viip(const Context& context, const NewOptions& options) {
         "viip: the last step closes, so that one step goes nowhere; one step forward is --steps 2");
   Pattern pattern;
   pattern.robot = options.robot;
-  pattern.controller.type = "viip";
+  pattern.controller.type = ControllerKind::viip;
   for (const std::vector<double>& values : {options.cog, options.velocity, {options.turn_deg}})
     for (const double value : values)
       if (!std::isfinite(value)) fail(ErrorCode::usage, "viip: a value is not a finite number");

@@ -36,7 +36,9 @@ struct LabelledLog {
 std::string label_of(const std::string& name, const SimulationLog& log) {
   std::string label = name;
   std::replace(label.begin(), label.end(), '_', ' ');
-  return log.controller.empty() || log.controller == "none" ? label : label + ", " + log.controller;
+  return !log.controller || log.controller == ControllerKind::none
+             ? label
+             : label + ", " + name_of(*log.controller);
 }
 
 // The logs of a RUN, open loop first so that the closed loop lies above it.
@@ -61,8 +63,9 @@ std::vector<LabelledLog> logs_of(const PlotOptions& options) {
       std::string label = prefix + label_of(name, log);
       logs.push_back({std::move(label), std::move(log)});
     }
-    std::stable_partition(logs.begin() + first, logs.end(),
-                          [](const LabelledLog& entry) { return entry.log.controller == "none"; });
+    std::stable_partition(logs.begin() + first, logs.end(), [](const LabelledLog& entry) {
+      return entry.log.controller == ControllerKind::none;
+    });
   }
   return logs;
 }

@@ -37,13 +37,15 @@ std::vector<ControllerSpec> chosen_controllers(const PatternInput& input,
                                                const PushCommand& options) {
   std::vector<ControllerSpec> specs;
   for (const std::string& name : options.controllers) {
-    if (name == "none") continue;  // open loop is always there
-    specs.push_back({name, {}});
-    if (name == input.pattern.controller.type) specs.back() = input.pattern.controller;
+    const ControllerType type = controller_type(name);
+    if (type == ControllerKind::none) continue;  // open loop is always there
+    specs.push_back({type, {}});
+    if (type == input.pattern.controller.type) specs.back() = input.pattern.controller;
   }
   if (options.controllers.empty())
-    specs = {input.pattern.controller.type == "none" ? ControllerSpec{"dtad", {}}
-                                                     : input.pattern.controller};
+    specs = {input.pattern.controller.type == ControllerKind::none
+                 ? ControllerSpec{ControllerKind::dtad, {}}
+                 : input.pattern.controller};
   for (ControllerSpec& spec : specs) {
     for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
       spec.gains.emplace_back(name, value);
@@ -67,7 +69,8 @@ PushOptions push_options(const Context& context, const PatternInput& input,
   if (push.phases.empty()) {
     SimulateOptions gait = push.simulate;
     for (const ControllerSpec& c : push.controllers)
-      if (c.type == "viip" && gait.controller.type != "viip") gait.controller = c;
+      if (c.type == ControllerKind::viip && gait.controller.type != ControllerKind::viip)
+        gait.controller = c;
     push.phases = default_push_phases(input.model, input.series, gait);
   }
   return push;
@@ -79,7 +82,7 @@ Json study_json(const PatternInput& input, const PushOptions& push) {
   for (const ControllerSpec& c : push.controllers) {
     Json gains = Json::object();
     for (const auto& [name, value] : c.gains) gains[name] = value;
-    controllers.push_back({{"type", c.type}, {"gains", gains}});
+    controllers.push_back({{"type", name_of(c.type)}, {"gains", gains}});
   }
   for (const PushPhase& p : push.phases)
     phases.push_back({{"name", p.name}, {"at_s", p.at}, {"standing", p.standing}});
@@ -133,7 +136,7 @@ std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const
     for (const bool standing : {false, true}) {
       const PushSummary s = summarize(cases, k, standing, push.step);
       if (s.cases == 0) continue;
-      lines.push_back((standing ? "standing" : motion) + ": " + push.controllers[k].type +
+      lines.push_back((standing ? "standing" : motion) + ": " + name_of(push.controllers[k].type) +
                       " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
                       " B; " + open + " worst " + text::fixed(s.open_worst, 2) + " B, mean " +
                       text::fixed(s.open_mean, 2) + " B; below " + open + " in " +
@@ -163,7 +166,7 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
     line("m w d_edge, N s", [](const PushCase& c) { return text::fixed(c.edge_bound, 2); });
     line(open + " / B", [](const PushCase& c) { return ratio_text(c.open_loop, c.bound); });
     for (size_t k = 0; k < push.controllers.size(); ++k)
-      line(push.controllers[k].type + " / B",
+      line(name_of(push.controllers[k].type) + " / B",
            [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
   }
   for (const std::string& line : summary_lines(cases, push, series)) out += line + "\n";
@@ -176,7 +179,7 @@ PushMap push_map(const PatternInput& input, const std::vector<PushCase>& cases,
   map.title = input.pattern.name + ", " + input.model.name() +
               (input.profile.empty() ? "" : ", actuators " + input.profile) + ": pushes of " +
               text::fixed(1e3 * push.duration, 0) + " ms";
-  for (const ControllerSpec& c : push.controllers) map.laws.push_back(c.type);
+  for (const ControllerSpec& c : push.controllers) map.laws.push_back(name_of(c.type));
   map.baseline = baseline(input.series);
   map.remarks = summary_lines(cases, push, input.series);
   const size_t directions = static_cast<size_t>(push.directions);

@@ -152,7 +152,7 @@ void MainJob::simulate(const PatternInput& input) {
     return folder_.logs[name] = simulate_once(context_, input, choice);
   };
   SimulationChoice open = options_.choice;
-  open.controller = "none";
+  open.controller = name_of(ControllerKind::none);
   open.gains.clear();
   say("simulate", outcome_text(run("open_loop", open)));
   const SimulationLog& closed = run("closed_loop", options_.choice);
@@ -228,7 +228,7 @@ void MainJob::write_hoap(const PatternInput& input, const SimulationLog& log) {
 void MainJob::draw(const RobotModel& model, const std::string& title) {
   const SimulationLog& closed = judged_log();
   const std::vector<LociRun> runs = {{"open loop", &folder_.logs.at("open_loop")},
-                                     {closed.controller, &closed}};
+                                     {name_of(closed.controller.value()), &closed}};
   LociOptions loci;
   loci.title = title;
   loci.model = &model;

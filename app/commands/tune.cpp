@@ -50,8 +50,9 @@ void tune(Context& context, TuneCommand& options) {
   t.simulate.profile = input.profile;
   t.simulate.world = input.pattern.world;
   t.simulate.seed = context.seed;
-  t.simulate.controller = {"dtad", {}};
-  if (input.pattern.controller.type == "dtad") t.simulate.controller = input.pattern.controller;
+  t.simulate.controller = {ControllerKind::dtad, {}};
+  if (input.pattern.controller.type == ControllerKind::dtad)
+    t.simulate.controller = input.pattern.controller;
   for (const auto& [name, value] : read_pairs(options.start, "--gain"))
     t.simulate.controller.gains.emplace_back(name, value);
   for (const double at : options.times)

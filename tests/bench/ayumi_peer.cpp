@@ -1,7 +1,7 @@
 #include <memory>
 
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/dynamics/supports.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"
 #include "tests/bench/bench.hpp"
 
@@ -72,7 +72,7 @@ Kernels ayumi_kernels(const Problem& problem) {
   };
   const auto cog_anchored = [w, p](size_t i) {
     update_positions(w->model, p->states[i], w->data);
-    anchored_cog_jacobian(w->model, w->data, Side::left, w->J);
+    cog_jacobian(w->model, w->data, Side::left, w->J);
   };
   const auto rnea_derivatives = [w, p](size_t i) {
     w->fast.inverse_derivatives(p->states[i], p->accelerations[i], w->inverse);

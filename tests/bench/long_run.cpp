@@ -75,7 +75,7 @@ bool walk(const RobotModel& model, const std::string& controller, double hours) 
   const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
   const CommandSeries series[2] = {sample(model, pattern), sample(model, mirrored(model, pattern))};
   SimulateOptions options;
-  options.controller.type = controller;
+  options.controller.type = controller_type(controller);
   Plant plant(model, model.limits(), options.world);
   bool placed = false;
   options.plant.make = [&](const RobotModel&, const ActuatorLimits&, const World&) {
@@ -118,7 +118,7 @@ bool walk(const RobotModel& model, const std::string& controller, double hours) 
 bool stand(const RobotModel& model, const std::string& controller, double hours) {
   const CommandSeries series = test::standing(model, 0.01);
   SimulateOptions options;
-  options.controller.type = controller;
+  options.controller.type = controller_type(controller);
   options.settle = 3600 * hours;
   Simulator run(model, series, options);
   run.keep_samples(false);

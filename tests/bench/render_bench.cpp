@@ -35,7 +35,7 @@ struct Walk {
   Walk() : model(load_robot(AYUMI_SOURCE_DIR "/robots/hoap1", {}, {.meshes = true})) {
     surface = robot_surface(model);
     log.joints = model.dof_names();
-    log.controller = "dtad";
+    log.controller = ControllerKind::dtad;
     log.dt = 1.0 / 30;
     for (int k = 0; k < kFrames; ++k) {
       SimulationSample s;

@@ -69,12 +69,12 @@ TEST(CaptureBound, OneKnownStep) {
   EXPECT_NEAR(capture_bound(region, towards(-M_PI / 2)),
               unit * (kHalfWidth - stay * kFoot + (1 - stay) * kFoot), 1e-9);
   // The pendulum itself agrees: from just inside the bound, with the ZMP held on the front edge of
-  // each support in turn, xi ends inside the last one; from just outside it does not.
+  // each support in turn, dcm ends inside the last one; from just outside it does not.
   const double bound = capture_bound(region, towards(0)) / unit;
   for (double share : {0.99, 1.01}) {
-    double xi = 0.01 + share * bound;
-    for (long j = k; j < 300; ++j) xi += 0.001 * kOmega * (xi - kFront);
-    EXPECT_EQ(xi < 0.08 + kFront, share < 1) << xi;
+    double dcm = 0.01 + share * bound;
+    for (long j = k; j < 300; ++j) dcm += 0.001 * kOmega * (dcm - kFront);
+    EXPECT_EQ(dcm < 0.08 + kFront, share < 1) << dcm;
   }
 }
 

@@ -13,7 +13,7 @@ using test::LevelPendulum;
 using test::Motion;
 
 /// Whether a pendulum at rest over the middle of a support of half length `edge` comes back after
-/// an impulse [N s], with a ZMP that feeds xi = x + v/omega back and saturates at the edges.
+/// an impulse [N s], with a ZMP that feeds dcm = x + v/omega back and saturates at the edges.
 bool survives(const LevelPendulum& pendulum, double edge, double impulse) {
   const double omega = pendulum.omega(), q = 0.25;
   Motion s = {0, impulse / pendulum.mass};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"

@@ -7,7 +7,7 @@
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/control/laws/dtad.hpp"
-#include "ayumi/control/support.hpp"
+#include "ayumi/control/support_region.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -31,7 +31,7 @@ const Walk& walk() {
 
 double omega_of(const CommandSample& c) { return std::sqrt(kGravity / (c.cog.z() - c.zmp.z())); }
 
-/// What a robot on its plan measures, its xi off by `error`.
+/// What a robot on its plan measures, its DCM off by `error`.
 Estimate on_plan(const CommandSample& plan, const Vector2d& error) {
   Estimate e;
   e.state = plan.state;
@@ -81,12 +81,12 @@ TEST(FootholdShift, NothingLeftOverIsThePatternToTheLastBit) {
 constexpr size_t kJump = 2450;
 
 /// A pendulum that walks beside the pattern, with (18)(19) about the plan on its ZMP: y is its COG
-/// less the pattern's, so y'' = omega^2 (y - (Z - pattern's Z)) whatever the plan does. Its xi
-/// jumps at tick kJump. Returns how far its xi is from the plan's at the end of the walk.
+/// less the pattern's, so y'' = omega^2 (y - (Z - pattern's Z)) whatever the plan does. Its DCM
+/// jumps at tick kJump. Returns how far its DCM is from the plan's at the end of the walk.
 double pendulum_error(double share, const Vector2d& jump) {
   const std::vector<CommandSample>& s = walk().series.samples;
   const double omega = omega_of(s.front()), dt = walk().series.dt;
-  FootholdShift shift(walk().model, walk().series, {.share = share, .hurry = 1});
+  FootholdShift shift(walk().model, walk().series, {.share = share, .time_scale_limit = 1});
   Vector2d y(0, 0), dy(0, 0);
   double error = 0;
   for (size_t k = 0; k + 1 < s.size(); ++k) {
@@ -117,7 +117,7 @@ TEST(FootholdShift, PendulumStepsOutWhatItsSupportCannotAnswer) {
 // The COG's velocity in the plan is the derivative of its place while footholds move, and the plan
 // ends where its feet do.
 TEST(FootholdShift, ShiftedPlanIsSmooth) {
-  FootholdShift shift(walk().model, walk().series, {.share = 1, .hurry = 1.5});
+  FootholdShift shift(walk().model, walk().series, {.share = 1, .time_scale_limit = 1.5});
   const double dt = walk().series.dt;
   Vector3d cog = shift.plan().cog, dcog = shift.plan().dcog;
   for (int k = 0; k < 7000; ++k) {
@@ -223,7 +223,7 @@ TEST(FootholdShift, GainsOutOfRangeAreRefused) {
   for (const auto& [gain, value, said] :
        {std::tuple{"step", 1.5, "step is a share, 0 to 1"}, {"hurry", 0.5, "at least 1"}}) {
     try {
-      dtad_params(walk().model, {"dtad", {{gain, value}}});
+      dtad_params(walk().model, {ControllerKind::dtad, {{gain, value}}});
       FAIL() << gain;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();

@@ -12,9 +12,9 @@ using Eigen::Vector2d;
 
 TEST(Footsteps, ZmpToArriveTakesXiThere) {
   const double omega = 6.4, T = 0.3;
-  const Vector2d xi(0.012, -0.03), end(0.05, 0.02);
-  const Vector2d zmp = zmp_to_arrive(xi, end, std::exp(omega * T));
-  Vector2d x = xi;  // xi' = omega (xi - Z), integrated by small steps
+  const Vector2d dcm(0.012, -0.03), end(0.05, 0.02);
+  const Vector2d zmp = zmp_to_arrive(dcm, end, std::exp(omega * T));
+  Vector2d x = dcm;  // dcm' = omega (dcm - Z), integrated by small steps
   const int n = 200000;
   for (int i = 0; i < n; ++i) x += T / n * omega * (x - zmp);
   EXPECT_LT((x - end).norm(), 1e-6);
@@ -36,12 +36,12 @@ TEST(Footsteps, LandingOffsetsCarryThePendulumToTheEnd) {
   const std::vector<Vector2d> footholds = {{0, 0.04}, {0.03, -0.05}, {0.08, 0.03}, {0.08, -0.04}};
   const Vector2d last(0, 0.04);
   const std::vector<Vector2d> b = landing_offsets(footholds, E, last);
-  Vector2d xi = footholds[0] + b[0];
+  Vector2d dcm = footholds[0] + b[0];
   for (size_t k = 0; k + 1 < footholds.size(); ++k) {
-    xi = footholds[k] + E * (xi - footholds[k]);
-    EXPECT_LT((xi - footholds[k + 1] - b[k + 1]).norm(), 1e-12) << k;
+    dcm = footholds[k] + E * (dcm - footholds[k]);
+    EXPECT_LT((dcm - footholds[k + 1] - b[k + 1]).norm(), 1e-12) << k;
   }
-  EXPECT_LT((xi - footholds.back() - last).norm(), 1e-12);
+  EXPECT_LT((dcm - footholds.back() - last).norm(), 1e-12);
 }
 
 struct Walker {

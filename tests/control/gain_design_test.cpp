@@ -27,10 +27,10 @@ void expect_pole(const LoopAnalysis& analysis, Complex pole, double tolerance) {
 // Without the short-term loop body and reference are alone: two quadratics in s.
 TEST(GainDesign, PolesOfTheSeparateParts) {
   DtadParams p;
-  p.ka = 0;
-  p.ks = 1.5;
-  p.kd = 2;
-  p.washout = 0;
+  p.zmp_gain = 0;
+  p.pull_rate = 1.5;
+  p.pull_damping = 2;
+  p.offset_time = 0;
   LoopModel loop = kLoop;
   loop.tick = 1e-5;
   loop.delay = 0;
@@ -61,10 +61,11 @@ double stepped_growth(const LoopModel& loop, const DtadParams& p, double seconds
     late.push_back({x, v, -s * (target - x - T * v)});
     if (late.size() > 1 + static_cast<size_t>(std::lround(loop.delay / dt))) late.pop_front();
     const Reading m = late.front();
-    zf += (1 - std::exp(-dt * w / p.tau_z)) * (m.z - zf);
-    const double gap = zf - (1 + p.q) * (m.x + m.v / w) - zd;
-    zd += dt * w / p.washout * gap;
-    vr += dt * (p.ka * w * w * gap - p.ks * p.ks * w * w * xr - 2 * p.kd * w * vr);
+    zf += (1 - std::exp(-dt * w / p.zmp_filter)) * (m.z - zf);
+    const double gap = zf - (1 + p.pole_ratio) * (m.x + m.v / w) - zd;
+    zd += dt * w / p.offset_time * gap;
+    vr += dt * (p.zmp_gain * w * w * gap - p.pull_rate * p.pull_rate * w * w * xr -
+                2 * p.pull_damping * w * vr);
     xr += dt * vr;
     target = xr + T * vr;
     for (int i = 0; i < 400; ++i) {
@@ -84,8 +85,8 @@ double stepped_growth(const LoopModel& loop, const DtadParams& p, double seconds
 TEST(GainDesign, SlowestModeIsThatOfTheSteppedLoop) {
   DtadParams p;
   EXPECT_NEAR(stepped_growth(kLoop, p, 8), -analyze_loop(kLoop, p).decay, 0.05);
-  p.ka = 40;
-  p.tau_z = 0.4;
+  p.zmp_gain = 40;
+  p.zmp_filter = 0.4;
   LoopModel late = kLoop;
   late.delay = 0.015;
   const LoopAnalysis unstable = analyze_loop(late, p);
@@ -107,10 +108,10 @@ TEST(GainDesign, PolesGiveKAndD) {
 TEST(GainDesign, Hoap1DefaultsAreStableAndTooMuchIsRefused) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const LoopModel loop = single_support_loop(model, 0.22, 0.001);
-  DtadParams p = dtad_params(model, {"dtad", {}});
+  DtadParams p = dtad_params(model, {ControllerKind::dtad, {}});
   EXPECT_NO_THROW(refuse_unstable(loop, p));
-  p.tau_z = 2;
-  p.ka = 50;
+  p.zmp_filter = 2;
+  p.zmp_gain = 50;
   try {
     refuse_unstable(loop, p);
     FAIL();

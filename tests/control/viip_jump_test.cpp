@@ -63,7 +63,10 @@ std::string refused(const JumpGoal& goal) {
   CommandSample held;
   held.state = model.rest_state();
   held.cog.z() = 0.25;
-  const Handover start{held.state, Eigen::Vector3d::Zero(), held.state.theta, held};
+  CommandSeries series;
+  series.samples = {held};
+  const Handover start{held.state, Eigen::Vector3d::Zero(), held.state.theta, held,
+                       CommandPlan(series)};
   try {
     const ViipJump jump(model, model.limits(), {}, 0.001, start, held, goal);
   } catch (const Error& error) {

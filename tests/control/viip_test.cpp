@@ -25,7 +25,7 @@ TEST(Viip, CorrectedCondition25DoesNotOvershoot) {
   for (const double mass : {1.0, 6.5, 35.0}) {
     ViipParams params;  // K_Dz^2 = 4 m K_Pz
     EXPECT_LE(overshoot(params, mass), 0.0002) << mass;
-    params.dz = 1.5;
+    params.height_damping = 1.5;
     EXPECT_LE(overshoot(params, mass), 0.0002) << mass;
   }
 }
@@ -34,7 +34,7 @@ TEST(Viip, CorrectedCondition25DoesNotOvershoot) {
 TEST(Viip, PrintedCondition25Overshoots) {
   const auto printed = [](double mass) {
     ViipParams params;
-    params.dz = 1 / std::sqrt(mass);
+    params.height_damping = 1 / std::sqrt(mass);
     return overshoot(params, mass);
   };
   EXPECT_LE(printed(1.0), 0.0002);
@@ -44,7 +44,7 @@ TEST(Viip, PrintedCondition25Overshoots) {
 
 std::string complaint(const std::string& gain, double value) {
   ControllerSpec spec;
-  spec.type = "viip";
+  spec.type = ControllerKind::viip;
   spec.gains = {{gain, value}};
   try {
     viip_params(test::biped(), spec);

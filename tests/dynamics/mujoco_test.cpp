@@ -5,6 +5,7 @@
 #ifdef AYUMI_HAS_MUJOCO
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"

@@ -64,7 +64,7 @@ TEST(ResultsJson, EveryFigureOfACheckIsReadBack) {
 
 TEST(ResultsJson, SimulationHasTheKeysOfTheCommandLine) {
   SimulationLog log;
-  log.controller = "dtad";
+  log.controller = ControllerKind::dtad;
   log.result = {.outcome = Outcome::fell, .fell_at = 2.25, .max_tilt = 0.9, .steps = 3};
   log.events = {{2.25, "fell", "on its side"}};
   Json json = Json::parse(simulation_json(log));

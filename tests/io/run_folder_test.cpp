@@ -45,7 +45,7 @@ SimulationSample random_sample(test::Random& random, int joints) {
 SimulationLog random_log(unsigned seed) {
   test::Random random(seed);
   SimulationLog log;
-  log.controller = "dtad";
+  log.controller = ControllerKind::dtad;
   log.provenance = {"hoap1", "ab", "walk", "cd", "hoap1", "dtad", "ayumi run walk.json"};
   log.world.slope = {0.01, 1.0 / 3};
   Disturbance push;

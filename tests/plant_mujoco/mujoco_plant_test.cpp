@@ -97,7 +97,7 @@ class MujocoWalk : public testing::TestWithParam<std::string> {};
 
 TEST_P(MujocoWalk, GoesTheSameWay) {
   SimulateOptions options;
-  options.controller.type = GetParam();
+  options.controller.type = controller_type(GetParam());
   const SimulationLog ours = run(options, {}), theirs = run(options, mujoco_plant_kind());
   EXPECT_EQ(ours.plant, "ayumi");
   EXPECT_EQ(theirs.plant, "mujoco");

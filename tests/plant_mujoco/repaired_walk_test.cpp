@@ -30,7 +30,7 @@ void expect_stands_repaired(const Pattern& pattern, const std::string& profile) 
   const RepairResult r = repair(hoap1(), sample(hoap1(), pattern), options);
   ASSERT_EQ(r.status, RepairStatus::repaired);
   SimulateOptions open_loop;
-  open_loop.controller.type = "none";
+  open_loop.controller.type = ControllerKind::none;
   open_loop.profile = profile;
   open_loop.plant = mujoco_plant_kind();
   const SimulationResult result = simulate(hoap1(), r.series, open_loop).result;

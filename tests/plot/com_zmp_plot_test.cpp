@@ -21,7 +21,7 @@ struct TwoRuns {
   SimulationLog standing = test::box_run(model);
   SimulationLog falling = standing;
   TwoRuns() {
-    falling.controller = "none";
+    falling.controller = ControllerKind::none;
     falling.result.outcome = Outcome::fell;
     falling.result.fell_at = 0.6;
     for (size_t k = 200; k < falling.samples.size(); ++k) {

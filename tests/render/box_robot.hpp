@@ -77,7 +77,7 @@ inline RobotModel box_robot() {
 inline SimulationLog box_run(const RobotModel& model) {
   SimulationLog log;
   log.dt = 0.002;
-  log.controller = "dtad";
+  log.controller = ControllerKind::dtad;
   log.provenance.pattern = "patterns/sway.json";
   log.joints = model.dof_names();
   log.result.outcome = Outcome::stands;

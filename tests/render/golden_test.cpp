@@ -89,7 +89,7 @@ ClipOptions small() {
 /// HOAP-1 standing on the ground, knees bent, pushed from its right.
 SimulationLog bent(const RobotModel& model) {
   SimulationLog log;
-  log.controller = "dtad";
+  log.controller = ControllerKind::dtad;
   log.provenance.pattern = "bent";
   log.joints = model.dof_names();
   log.result.outcome = Outcome::stands;

@@ -28,7 +28,7 @@ inline SimulationLog standing(const RobotModel& model) {
   sample.reference_base = sample.command_base = sample.state.base;
   sample.state.dtheta = Eigen::VectorXd::Zero(model.dof_count());
   SimulationLog log;
-  log.controller = "dtad";
+  log.controller = ControllerKind::dtad;
   log.provenance.robot = "hoap1";
   log.provenance.pattern = "stand";
   log.joints = model.dof_names();
@@ -45,7 +45,7 @@ class OnARun : public testing::Test {
     run.provenance = log.provenance;
     run.logs["closed_loop"] = log;
     run.logs["open_loop"] = log;
-    run.logs["open_loop"].controller = "none";
+    run.logs["open_loop"].controller = ControllerKind::none;
     write_run(folder / "run", run);
   }
   Output ayumi(std::vector<std::string> arguments) {

@@ -74,7 +74,7 @@ TEST_F(ThrownKnee, LeavesTheCaptureBoundsAsTheyWerePlanned) {
 TEST_F(ThrownKnee, RepairedWithstandsThePushesOfItsPlan) {
   PushOptions options;
   options.phases = {{"middle of the step", begin + 0.35 * (end - begin), false}};
-  options.controllers = {{"dtad", {}}};
+  options.controllers = {{ControllerKind::dtad, {}}};
   options.directions = 4;
   options.replicas = 0;
   options.step = kStep / 3;  // levels of two plans differ by as much as one of them

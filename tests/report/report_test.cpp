@@ -16,7 +16,7 @@ struct Made {
   ReportInput input;
 
   Made() {
-    open.controller = "none";
+    open.controller = ControllerKind::none;
     open.result.outcome = Outcome::fell;
     open.result.fell_at = 0.8;
     open.samples.resize(450);

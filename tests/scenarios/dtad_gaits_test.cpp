@@ -123,7 +123,7 @@ TEST(DtadGaits, TheExportedReferenceReplaysToTheSameLoci) {
   replay.keyframes.clear();
   replay.table = read_dense_table(folder.path() / "reference.csv");
   EXPECT_TRUE(replay.table->commands);
-  options.controller.type = "none";
+  options.controller.type = ControllerKind::none;
   const CommandSeries played = sample(hoap1(), replay);
   const SimulationLog open = simulate(hoap1(), played, options);
   EXPECT_EQ(open.result.outcome, Outcome::stands);

@@ -24,7 +24,7 @@ const Walk& walk() {
 
 SimulateOptions unpushed(const std::string& controller) {
   SimulateOptions options;
-  options.controller.type = controller;
+  options.controller.type = controller_type(controller);
   options.profile = "hoap1";
   options.world = walk().pattern.world;
   return options;

@@ -18,7 +18,7 @@ CommandSeries walk() {
 
 SimulationLog played(const CommandSeries& series) {
   SimulateOptions options;
-  options.controller.type = "none";
+  options.controller.type = ControllerKind::none;
   return simulate(hoap1(), series, options);
 }
 

@@ -19,7 +19,7 @@ Pattern with(const ViipGoal& goal, double until = 5) {
   Pattern p;
   p.phases.push_back({0.5, Support::both, {}, CogGoal{}});
   p.phases.push_back({until, Support::both, {}, goal});
-  p.controller.type = "viip";
+  p.controller.type = ControllerKind::viip;
   return p;
 }
 

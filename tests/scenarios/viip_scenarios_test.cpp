@@ -39,7 +39,7 @@ struct Conditions {
 
 SimulationLog run(const Pattern& pattern, const Conditions& conditions = {}) {
   SimulateOptions options;
-  options.controller.type = conditions.controller;
+  options.controller.type = controller_type(conditions.controller);
   options.controller.gains = conditions.gains;
   options.profile = conditions.profile;
   options.sensor_noise = conditions.noise;

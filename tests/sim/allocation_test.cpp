@@ -7,9 +7,9 @@
 #include <new>
 
 #include "ayumi/control/estimator.hpp"
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/dynamics/supports.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
@@ -82,7 +82,7 @@ TEST(Allocations, ATickOfTheClosedLoopHasNoneAfterTheFirstSteps) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
   const CommandSeries series = sample(model, pattern);
-  for (const char* controller : {"dtad", "none"}) {
+  for (const ControllerKind controller : {ControllerKind::dtad, ControllerKind::none}) {
     SimulateOptions options;
     options.controller.type = controller;
     options.sensor_noise = true;
@@ -91,7 +91,7 @@ TEST(Allocations, ATickOfTheClosedLoopHasNoneAfterTheFirstSteps) {
     simulator.advance(2000);        // two steps: both kinds of support have been
     for (int i = 0; i < 10; ++i)
       EXPECT_EQ(allocations_of([&] { simulator.advance(200); }), 0)
-          << controller << " from " << simulator.time() - 0.2 << " s";
+          << name_of(controller) << " from " << simulator.time() - 0.2 << " s";
   }
 }
 
@@ -101,7 +101,7 @@ TEST(Allocations, ATickThatMovesFootholdsHasNoneAfterTheFirstSteps) {
   const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
   const CommandSeries series = sample(model, pattern);
   SimulateOptions options;
-  options.controller = {"dtad", {{"step", 1}}};
+  options.controller = {ControllerKind::dtad, {{"step", 1}}};
   options.profile = "hoap1-strong";
   options.scenario = pattern.scenario;
   options.scenario.front().direction = {1, 0, 0};

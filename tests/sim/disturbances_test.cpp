@@ -40,7 +40,7 @@ Disturbance lasting(DisturbanceType type, double magnitude) {
 SimulationLog run(const std::vector<Disturbance>& scenario, double friction = 0.8,
                   double settle = 0) {
   SimulateOptions options;
-  options.controller.type = "none";
+  options.controller.type = ControllerKind::none;
   options.settle = settle;
   options.scenario = scenario;
   options.world.friction = friction;
@@ -124,7 +124,7 @@ TEST(EncoderOffset, MovesTheJointUnseen) {
   Disturbance d = lasting(DisturbanceType::encoder_offset, 0.02);
   d.joint = hoap1().dof_names().back();
   SimulateOptions options;
-  options.controller.type = "none";
+  options.controller.type = ControllerKind::none;
   options.scenario = {d};
   const int j = dof(d.joint);
   Simulator simulator(hoap1(), stand(), options);
@@ -176,7 +176,7 @@ TEST(SensorBias, TurnsTheAttitudeAndLoadsTheCells) {
   d.tilt_bias = Eigen::Vector2d(0, 0.02);
   d.force_bias = 0.5;
   SimulateOptions options;
-  options.controller.type = "none";
+  options.controller.type = ControllerKind::none;
   options.scenario = {d};
   Simulator simulator(hoap1(), stand(), options);
   simulator.advance(490);
@@ -266,7 +266,7 @@ TEST(Energy, IsKeptInFreeFlight) {
   CommandSeries series = stand();
   for (CommandSample& s : series.samples) s.state.base.position.z() += 5;
   SimulateOptions options;
-  options.controller.type = "none";
+  options.controller.type = ControllerKind::none;
   Simulator simulator(hoap1(), series, options);
   simulator.advance(1);
   const double speed = simulator.last_sample().dcog.z();

@@ -20,7 +20,7 @@ struct Stand {
   CommandSeries series = sample(model, stand_pattern(model, 0.6));
   SimulateOptions options;
   Stand() {
-    options.controller.type = "dtad";
+    options.controller.type = ControllerKind::dtad;
     options.sensor_noise = true;
     options.settle = 0.2;
     options.scenario = {push(0.3)};

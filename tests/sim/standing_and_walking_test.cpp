@@ -50,7 +50,7 @@ const CommandSeries& curve() {
 SimulationLog run(const RobotModel& model, const CommandSeries& series,
                   const std::string& controller, int substeps = 1, double settle = 1.0) {
   SimulateOptions options;
-  options.controller.type = controller;
+  options.controller.type = controller_type(controller);
   options.substeps = substeps;
   options.settle = settle;
   return simulate(model, series, options);
@@ -141,7 +141,7 @@ TEST_P(Walking, IsTheSameInAMirror) {
       {&walk(), 0.0}, {&walk(), 0.5}, {&curve(), 0.0}};
   for (const auto& [walk, push] : cases) {
     SimulateOptions options;
-    options.controller.type = GetParam();
+    options.controller.type = controller_type(GetParam());
     if (push > 0) {
       Disturbance d;
       d.at = 1.9;

@@ -17,7 +17,7 @@ struct Stand {
   PushOptions options;
   Stand() {
     options.phases = {{"standing", 0.5, true}};
-    options.controllers = {{"dtad", {}}};
+    options.controllers = {{ControllerKind::dtad, {}}};
     options.directions = 2;
     options.step = 0.4;
     options.cap = 1.6;

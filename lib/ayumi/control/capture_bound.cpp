@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ayumi/control/support.hpp"
+#include "ayumi/control/support_region.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -44,7 +44,7 @@ CaptureRegion capture_region(const RobotModel& model, const CommandSeries& serie
   const CommandSample& now = sample_at(series, k);
   const double w = omega_of(now);
   CaptureRegion region;
-  region.xi = (now.cog + now.dcog / w).head<2>();
+  region.dcm = (now.cog + now.dcog / w).head<2>();
   region.impulse_per_length = model.mass() * w;
   for (int i = 0; i < directions; ++i) {
     const double angle = 2 * M_PI * i / directions;
@@ -77,7 +77,7 @@ double capture_bound(const CaptureRegion& region, const Vector2d& u) {
     const Vector2d& n = region.normals[i];
     const double along = n.dot(u);
     if (along < 1e-6) continue;
-    least = std::min(least, (region.support[i] - n.dot(region.xi)) / along);
+    least = std::min(least, (region.support[i] - n.dot(region.dcm)) / along);
   }
   return region.impulse_per_length * least;
 }

@@ -1,26 +1,20 @@
 #pragma once
-// The laws behind one face: open loop, DTAD, VIIP. A pattern may pass the robot from one to another
-// by phases; each goes on from the posture, velocity and footholds the last one left.
+// The control laws behind one face: open loop, DTAD, VIIP's steps and its jump. A pattern may pass
+// the robot from one to another by phases; each goes on from the posture, velocity and footholds
+// that the last one left. Where the whole motion is planned ahead, without VIIP goals, the servos
+// receive the torques of the plan in every law (control/torque_feedforward).
 
-#include <optional>
+#include <memory>
 #include <variant>
 
-#include "ayumi/control/foothold_shift.hpp"
 #include "ayumi/control/laws/dtad.hpp"
+#include "ayumi/control/laws/open_loop.hpp"
 #include "ayumi/control/laws/viip.hpp"
 #include "ayumi/control/laws/viip_jump.hpp"
 
 namespace ayumi {
 
-/// Names known to ControllerSpec::type. "none": open loop, VIIP phases hold their posture;
-/// "dtad", "dtad-literal": that law, VIIP in phases that carry goals; "viip": the same, its gains
-/// are those of VIIP; "viip-nofeedback": likewise with nothing measured, feet land by the clock,
-/// the rest open loop; "viip-landings": the same, but the landing of a foot is noticed. Where the
-/// whole motion is planned ahead, without VIIP goals, servos are told its torques in every law
-/// (control/feedforward.hpp).
-const std::vector<std::string>& controller_names();
-
-/// Throws Error(usage) for an unknown name or gain.
+/// Throws Error(usage) for an unknown gain or a gain out of range.
 void check_controller(const RobotModel& model, const ControllerSpec& spec);
 
 class Controller {
@@ -31,7 +25,9 @@ class Controller {
              const ControllerSpec& spec);
 
   /// The plan of the coming tick: the command where the robot's feet are, or VIIP's own.
-  const CommandSample& plan() const { return plan_; }
+  const CommandSample& plan() const {
+    return std::visit([](const auto& law) -> const CommandSample& { return law.plan(); }, law_);
+  }
 
   /// How the robot stands before the first tick: as planned; where the plan's joints are what
   /// servos receive, as they give way under the weight.
@@ -43,44 +39,27 @@ class Controller {
   const ControlOutput& update(const Estimate& estimate);
 
  private:
-  /// The command itself on the servos.
-  struct OpenLoop {
-    Eigen::VectorXd lead;  ///< of the servo targets [s]
-  };
-  /// From the command as sampled to the feet as they are: after steps that VIIP placed.
-  struct Placement {
-    Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
-    /// Of each foot, from its turned command to where it stands; fades when it swings.
-    std::array<Eigen::Isometry3d, 2> rest = {Eigen::Isometry3d::Identity(),
-                                             Eigen::Isometry3d::Identity()};
-    std::array<double, 2> share = {1, 1};           ///< of `rest` that still holds
-    Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< of COG and ZMP, taken back slowly [m]
-    long since = 0;                                 ///< tick at which it began
-    bool moved = false;
-  };
+  using Law = std::variant<OpenLoop, Dtad, Viip, ViipJump>;
 
-  const CommandSample& command(long k) const;
-  CommandSample placed(long k) const;
-  void place(const CommandSample& from);
-  void enter(long k);
-  void start_law(const ViipSpan* span);
+  Law first_law();
+  Law law_of_command(Handover from) const;
   const ViipSpan* span_at(long k) const;
-  Handover handover() const;
+  void enter(long k);
+  void start_viip(const ViipSpan& span, long k);
+  void set_goal(const ViipSpan& span, long k);
 
   const RobotModel* model_;
   ActuatorLimits limits_;
   const CommandSeries* series_;
   ControllerSpec spec_;
-  Eigen::MatrixXd sag_;  // of the servos by sample, made up for [rad]; one column: throughout
-  std::variant<OpenLoop, Dtad, Viip, ViipJump> law_;
-  std::optional<FootholdShift> footholds_;  // of DTAD on a pattern without VIIP phases
-  Placement placement_;
-  CommandSample plan_, following_;  // of the coming tick, and after it where feet have moved
-  ControlOutput out_;
+  long tick_ = 0;  // the coming one
   RobotState start_;
   Eigen::VectorXd target_;
-  const ViipSpan* span_ = nullptr;
-  long tick_ = 0;  // the coming one
+  /// Of the servo targets by sample of the series [rad]; one column: throughout.
+  std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
+  Law law_;
+  const ViipSpan* span_ = nullptr;  // that law_ carries; null: law_ follows the command
+  ControlOutput out_;
 };
 
 }  // namespace ayumi

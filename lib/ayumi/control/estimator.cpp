@@ -16,9 +16,17 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kLoadFilter = 0.003;   // time constant of the load share [s]
-constexpr double kStanceShare = 0.6;    // of f_z that makes a foot the stance foot
-constexpr double kContactShare = 0.05;  // of the weight below which there is no ZMP
+// Time constant of the load share of each foot [s]. Chosen with the prototype: three ticks, enough
+// against the noise of the cells and short against a double support of 80 ms.
+constexpr double kLoadFilterTime = 0.003;
+
+// Share of f_z that makes a foot the stance foot. Chosen: 40 % of hysteresis, so that the stance
+// does not chatter in a double support; at 0.5 there is none.
+constexpr double kStanceShare = 0.6;
+
+// Share of the weight below which there is no ZMP: (17) loses its meaning towards flight
+// (docs/notation.md). Chosen: half of the force from which a foot stands (control/swing_foot).
+constexpr double kContactShare = 0.05;
 
 }  // namespace
 
@@ -26,7 +34,7 @@ Estimator::Estimator(const RobotModel& model, double dt)
     : model_(&model),
       data_(model),
       imu_(std::max(0, model.find_link(model.description().sensors.imu_link))),
-      filter_(1.0 - std::exp(-dt / kLoadFilter)) {
+      filter_(1.0 - std::exp(-dt / kLoadFilterTime)) {
   for (Side side : {Side::left, Side::right}) {
     const int i = static_cast<int>(side);
     sole_[i] = ConvexPolygon(model.sole(side).polygon);

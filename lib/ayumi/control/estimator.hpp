@@ -35,8 +35,8 @@ struct Estimate {
   Side stance = Side::left;                             ///< foot that carries the robot
   Eigen::Vector3d foot_tilt = Eigen::Vector3d::Zero();  ///< of the stance foot against the plan, as
                                                         ///< a rotation vector without yaw [rad]
-  double stance_inside = 1;  ///< way of the stance foot's centre of pressure from the nearest edge
-                             ///< of its sole, as a share of the most there is: 0 at the edge
+  double stance_inside = 1;  ///< distance of the stance foot's centre of pressure from the nearest
+                             ///< edge of its sole, as a share of the largest: 0 at the edge
 };
 
 class Estimator {

@@ -1,17 +1,18 @@
-// A rigid shift of all footholds to come by D moves the plan's xi now by less, because the plan's
-// ZMP is still where it was: with zeta the shift of the ZMP, d xi = int omega exp(-omega s)
-// zeta(t + s) ds, so D share exp(-omega T) before a landing in T. The other way round, an error of
-// xi that the ZMP cannot take away until then asks for D = error exp(omega T) / share. The clock
-// of the pattern shortens T. Under a clock of rate r the plan's xi runs along the same pendulum
-// about the ZMP p of the single support, xi = p + (xi_landing - p) exp(-omega T / r).
+// A rigid shift of all footholds to come by D moves the plan's DCM now by less, because the plan's
+// ZMP is still where it was: with zeta the shift of the ZMP, d dcm = int omega exp(-omega s)
+// zeta(t + s) ds, so D share exp(-omega T) before a landing in T. Conversely, an error of
+// the DCM that the ZMP cannot take away until then asks for D = error exp(omega T) / share. The
+// clock of the pattern shortens T. Under a clock of rate r the plan's DCM runs along the same
+// pendulum about the ZMP p of the single support, dcm = p + (dcm_landing - p) exp(-omega T / r).
 #include "ayumi/control/foothold_shift.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "ayumi/control/support.hpp"
+#include "ayumi/control/support_region.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/plan/foot_plan.hpp"
 
@@ -24,22 +25,54 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kKept = 0.2;          // share of the support that is kept in reserve
-constexpr double kLater = 0.5;         // share of the landing foot's support that is counted on
-constexpr double kReach = 0.36;        // of a foothold from the pattern's, times z
-constexpr double kFootSpeed = 0.65;    // of a foot's shift, times omega z
-constexpr double kLeast = 0.02;        // of what is left over, times z: less is not answered
-constexpr double kAhead = 1;           // before lift-off that a foothold is chosen, times 1/omega
-constexpr double kMoveCost = 0.3;      // of moving a foothold against leaving something over
-constexpr double kHurryCost = 0.016;   // of the clock's rate, times z
-constexpr double kRateStep = 0.1;      // between the rates tried
-constexpr double kTouchShare = 0.1;    // of the weight: a foot is on the ground
-constexpr double kTouchAfter = 0.3;    // of the swing: earlier forces are not a landing
-constexpr double kLeastReplan = 0.03;  // a swing is not planned for less than this [s]
-constexpr double kClearance = 0.008;   // between the soles' sides [m]
-constexpr double kLongRest = 1.3;      // of a double support's ramp that counts, times 1/omega
+// The figures behind the values below are in docs/theory.md, "Moving footholds": 32 walking pushes
+// of HOAP-1. Lengths are times the COG height z, times are times 1 / omega.
 
-ConvexPolygon about(const ConvexPolygon& polygon, const Vector2d& center) {
+// Share of each support that is kept in reserve, for what the point mass does not know. Chosen.
+constexpr double kReserve = 0.2;
+
+// Share of the landing foot's support that is counted on. Chosen: the ZMP gets there only in the
+// course of the double support.
+constexpr double kNextSupportShare = 0.5;
+
+// Largest distance of a foothold from the pattern's [z]. Chosen: within the reach of the legs with
+// the COG at the height of a walk.
+constexpr double kFootholdReach = 0.36;
+
+// Largest speed of a foot's shift [omega z]. Chosen: what the joint speeds of HOAP-1 leave beside
+// the swing itself.
+constexpr double kFootSpeed = 0.65;
+
+// Least error at the landing that is answered [z]: 4 mm on HOAP-1. Chosen: the sole takes less.
+constexpr double kLeastError = 0.02;
+
+// A foothold is chosen from this time before lift-off on [1/omega]. Chosen: until then the present
+// support can still take the error away.
+constexpr double kLookAhead = 1;
+
+// Cost of moving a foothold by a length against leaving the same length over. Chosen: moving is
+// worth it as soon as it takes away a third of what it costs.
+constexpr double kMoveCost = 0.3;
+
+// Cost of the clock's rate 1 [z]. Chosen: small, so that a faster clock is taken whenever it
+// leaves less over; of two that leave the same the slower one is.
+constexpr double kTimeScaleCost = 0.016;
+
+// Step between the rates of the clock that are tried. Chosen: 16 candidates up to 2.5.
+constexpr double kTimeScaleStep = 0.1;
+
+// Share of the swing before which a force on the swing foot is not a landing. Chosen: a foot that
+// has just left the ground still drags; a tipped robot's foot may land soon after.
+constexpr double kSwingLandingAfter = 0.3;
+
+// Longest double support over which the shift of the ZMP counts as a ramp [1/omega]. Chosen: the
+// DCM forgets a ramp that goes on after this by more than two thirds.
+constexpr double kLongestRamp = 1.3;
+
+// Peak speed of a path of least jerk from rest to rest, in units of its mean speed: 15/8.
+constexpr double kLeastJerkPeak = 1.875;
+
+ConvexPolygon about_zmp(const ConvexPolygon& polygon, const Vector2d& center) {
   std::vector<Vector2d> points;
   for (const Vector2d& p : polygon.vertices()) points.push_back(p - center);
   return ConvexPolygon(points);
@@ -47,8 +80,8 @@ ConvexPolygon about(const ConvexPolygon& polygon, const Vector2d& center) {
 
 /// What is left of an error that grows for `time` while the ZMP may be anywhere in `share` of
 /// `polygon` about `zmp`.
-Vector2d grown(const Vector2d& error, const ConvexPolygon& polygon, const Vector2d& zmp,
-               double omega, double time, double share) {
+Vector2d error_after(const Vector2d& error, const ConvexPolygon& polygon, const Vector2d& zmp,
+                     double omega, double time, double share) {
   if (time <= 0) return error;
   const double growth = std::exp(omega * time), can = (growth - 1) * share;
   const Vector2d wanted = error * growth / can;
@@ -78,14 +111,14 @@ std::vector<PlannedSwing> swings_of(const CommandSeries& series) {
   return swings;
 }
 
-void command_between(const CommandSeries& series, double place, CommandSample& c) {
+void command_between(const CommandSeries& series, double phase, CommandSample& c) {
   const std::vector<CommandSample>& s = series.samples;
-  if (place >= static_cast<double>(s.size() - 1)) {
+  if (phase >= static_cast<double>(s.size() - 1)) {
     c = s.back();
     return;
   }
-  const size_t k = static_cast<size_t>(place);
-  const double share = place - static_cast<double>(k);
+  const size_t k = static_cast<size_t>(phase);
+  const double share = phase - static_cast<double>(k);
   c = s[k];
   if (share == 0) return;
   const CommandSample& d = s[k + 1];
@@ -107,9 +140,9 @@ void command_between(const CommandSeries& series, double place, CommandSample& c
   }
 }
 
-CommandSample command_between(const CommandSeries& series, double place) {
+CommandSample command_between(const CommandSeries& series, double phase) {
   CommandSample c;
-  command_between(series, place, c);
+  command_between(series, phase, c);
   return c;
 }
 
@@ -124,14 +157,12 @@ FootholdShift::FootholdShift(const RobotModel& model, const CommandSeries& serie
       after_(0, 0),
       target_(0, 0),
       cog_(0, 0),
-      swing_rate_(0, 0),
-      swing_acceleration_(0, 0),
       data_(model) {
   const CommandSample& first = series.samples.front();
   height_ = first.cog.z() - first.zmp.z();
   omega_ = std::sqrt(kGravity / height_);
   for (const PlannedSwing& swing : swings_of(series)) steps_.push_back(step_of(swing));
-  refresh();
+  update_plan();
 }
 
 FootholdShift::Step FootholdShift::step_of(const PlannedSwing& swing) const {
@@ -144,17 +175,18 @@ FootholdShift::Step FootholdShift::step_of(const PlannedSwing& swing) const {
   const CommandSample& before =
       series_->samples[static_cast<size_t>(std::max(swing.lift - 1, 0.0))];
   step.zmp = middle.zmp.head<2>();
-  step.xi = (landed.cog + landed.dcog / omega_).head<2>();
-  step.both = support_polygon(*model_, before.feet, Support::both);
-  step.single = about(support_polygon(*model_, middle.feet, on(stance)), step.zmp);
-  step.next = about(support_polygon(*model_, rested.feet, on(swing.foot)), rested.zmp.head<2>());
+  step.dcm = divergent_component(landed.cog, landed.dcog, omega_).head<2>();
+  step.before = support_polygon(*model_, before.feet, Support::both);
+  step.single = about_zmp(support_polygon(*model_, middle.feet, on(stance)), step.zmp);
+  step.next =
+      about_zmp(support_polygon(*model_, rested.feet, on(swing.foot)), rested.zmp.head<2>());
   step.stance = ground_pose(*model_, stance, landed.feet[index(stance)]);
   step.landing = ground_pose(*model_, swing.foot, landed.feet[index(swing.foot)]);
-  step.share = ramp_share(std::min((swing.rest - swing.land) * series_->dt, kLongRest / omega_));
+  step.share = ramp_share(std::min((swing.rest - swing.land) * series_->dt, kLongestRamp / omega_));
   return step;
 }
 
-/// Of a shift that the ZMP makes evenly within `time`, what xi has made of it at the start.
+/// Share of a shift that the ZMP makes evenly within `time` which the DCM has made at its start.
 double FootholdShift::ramp_share(double time) const {
   return time > 0 ? (1 - std::exp(-omega_ * time)) / (omega_ * time) : 1.0;
 }
@@ -163,187 +195,179 @@ double FootholdShift::ramp_share(double time) const {
 Vector2d FootholdShift::zmp_shift() const {
   if (coming_ == 0) return after_;
   const PlannedSwing& past = steps_[coming_ - 1].swing;
-  const double done = std::min(1.0, (place_ - past.land) / (past.rest - past.land));
+  const double done = std::min(1.0, (phase_ - past.land) / (past.rest - past.land));
   return before_ + done * (after_ - before_);
 }
 
-Vector2d FootholdShift::xi_shift(double rate, const Vector2d& target) const {
+Vector2d FootholdShift::dcm_shift(double time_scale, const Vector2d& target) const {
   Vector2d shift = zmp_shift();
   if (coming_ > 0)
     shift += ramp_share(seconds_to(steps_[coming_ - 1].swing.rest)) * (after_ - shift);
   if (coming_ == steps_.size()) return shift;
   const Step& step = steps_[coming_];
-  const double time = seconds_to(step.swing.land), decay = std::exp(-omega_ * time / rate);
+  const double time = seconds_to(step.swing.land), decay = std::exp(-omega_ * time / time_scale);
   shift += step.share * decay * (target - after_);
-  if (rate != 1) shift += (decay - std::exp(-omega_ * time)) * (step.xi - step.zmp);
+  if (time_scale != 1) shift += (decay - std::exp(-omega_ * time)) * (step.dcm - step.zmp);
   return shift;
 }
 
-/// Of the error of xi, as it will be at the landing, what the supports cannot take away.
-Vector2d FootholdShift::left_over(const Vector2d& xi, double rate) const {
+/// The part of the DCM's error, as it will be at the landing, that the supports cannot take away.
+Vector2d FootholdShift::error_left_over(const Vector2d& dcm, double time_scale) const {
   const Step& step = steps_[coming_];
-  const double to_lift = seconds_to(step.swing.lift) / rate;
-  const double to_land = seconds_to(step.swing.land) / rate;
-  Vector2d error = xi - (now_.cog + now_.dcog / omega_).head<2>() - xi_shift(rate, after_);
-  error = grown(error, step.both, now_.zmp.head<2>(), omega_, to_lift, 1 - kKept);
-  error = grown(error, step.single, Vector2d::Zero(), omega_, std::min(to_land, to_land - to_lift),
-                1 - kKept);
-  error -= kLater * step.next.project(error / kLater);
-  return error.norm() < kLeast * height_ ? Vector2d::Zero() : error;
+  const double to_lift = seconds_to(step.swing.lift) / time_scale;
+  const double to_land = seconds_to(step.swing.land) / time_scale;
+  Vector2d error = dcm - divergent_component(now_.cog, now_.dcog, omega_).head<2>() -
+                   dcm_shift(time_scale, after_);
+  error = error_after(error, step.before, now_.zmp.head<2>(), omega_, to_lift, 1 - kReserve);
+  error = error_after(error, step.single, Vector2d::Zero(), omega_,
+                      std::min(to_land, to_land - to_lift), 1 - kReserve);
+  error -= kNextSupportShare * step.next.project(error / kNextSupportShare);
+  return error.norm() < kLeastError * height_ ? Vector2d::Zero() : error;
 }
 
 /// A foot that would cross the other one stays, sideways, where the pattern has it.
 Vector2d FootholdShift::not_crossing(const Vector2d& target) const {
   const Step& step = steps_[coming_];
   const Eigen::Rotation2Dd turn(step.stance.yaw);
-  Vector2d way = turn.inverse() * (step.landing.position + target - after_ - step.stance.position);
+  Vector2d offset =
+      turn.inverse() * (step.landing.position + target - after_ - step.stance.position);
   const double side = step.swing.foot == Side::left ? 1 : -1;
-  if (side * way.y() < 2 * half_width_ + kClearance)
-    way.y() = (turn.inverse() * (step.landing.position - step.stance.position)).y();
-  return step.stance.position + turn * way - step.landing.position + after_;
+  if (side * offset.y() < 2 * half_width_ + kSoleClearance)
+    offset.y() = (turn.inverse() * (step.landing.position - step.stance.position)).y();
+  return step.stance.position + turn * offset - step.landing.position + after_;
 }
 
 /// What the leg can reach, and in the time that is left.
-Vector2d FootholdShift::reachable(const Vector2d& target, double rate) const {
+Vector2d FootholdShift::reachable(const Vector2d& target, double time_scale) const {
   const PlannedSwing& swing = steps_[coming_].swing;
-  Vector2d way = target - after_;
-  const double reach = kReach * height_;
-  if (way.norm() > reach) way *= reach / way.norm();
+  Vector2d shift = target - after_;
+  const double reach = kFootholdReach * height_;
+  if (shift.norm() > reach) shift *= reach / shift.norm();
   const double margin = kSwingMargin * (swing.land - swing.lift);
-  const double begin = std::max(place_, swing.lift + margin);
-  const double time = std::max(0.0, swing.land - margin - begin) * series_->dt / rate;
-  const double most = kFootSpeed * omega_ * height_ * time / 1.875;  // peak of least jerk
+  const double begin = std::max(phase_, swing.lift + margin);
+  const double time = std::max(0.0, swing.land - margin - begin) * series_->dt / time_scale;
+  const double most = kFootSpeed * omega_ * height_ * time / kLeastJerkPeak;
   const Vector2d from = foot_[index(swing.foot)];
-  Vector2d move = after_ + way - from;
+  Vector2d move = after_ + shift - from;
   if (move.norm() > most) move *= most / move.norm();
   return from + move;
 }
 
-void FootholdShift::choose(const Estimate& e) {
+void FootholdShift::choose_foothold(const Estimate& e) {
   if (coming_ == steps_.size()) {
-    rate_ = 1;
+    time_scale_ = 1;
     return;
   }
   const PlannedSwing& swing = steps_[coming_].swing;
-  const double weight = model_->mass() * kGravity;
   // A foot that ought to stand and does not yet is waited for: the robot leans on the other one.
   const Side stance = other(swing.foot);
-  const bool stands = e.foot_fz[index(stance)] > kTouchShare * weight &&
-                      (place_ < swing.lift || e.stance == stance);
-  const bool early = seconds_to(swing.lift) > kAhead / omega_;
+  const bool stands = bears(*model_, e, stance) && (phase_ < swing.lift || e.stance == stance);
+  const bool early = seconds_to(swing.lift) > kLookAhead / omega_;
   if (!stands || early) {
-    if (place_ < swing.lift) {
-      rate_ = 1;
+    if (phase_ < swing.lift) {
+      time_scale_ = 1;
       target_ = after_;
     }
     return;
   }
-  const Vector2d xi = (e.cog + e.dcog / omega_).head<2>();
-  double least = std::numeric_limits<double>::infinity(), chosen = rate_;
-  for (int i = 0; rate_ + i * kRateStep <= params_.hurry + 1e-9; ++i) {
-    const double rate = rate_ + i * kRateStep;
-    const Vector2d rest = left_over(xi, rate);
+  const Vector2d dcm = divergent_component(e.cog, e.dcog, omega_).head<2>();
+  double least = std::numeric_limits<double>::infinity(), chosen = time_scale_;
+  for (int i = 0; time_scale_ + i * kTimeScaleStep <= params_.time_scale_limit + 1e-9; ++i) {
+    const double time_scale = time_scale_ + i * kTimeScaleStep;
+    const Vector2d rest = error_left_over(dcm, time_scale);
     const Vector2d wanted =
         rest.isZero(0) ? after_
                        : not_crossing(after_ + params_.share / steps_[coming_].share * rest);
-    const Vector2d target = reachable(wanted, rate);
+    const Vector2d target = reachable(wanted, time_scale);
     const double cost = (wanted - target).norm() + kMoveCost * (target - after_).norm() +
-                        kHurryCost * height_ * rate;
+                        kTimeScaleCost * height_ * time_scale;
     if (cost < least) {
       least = cost;
-      chosen = rate;
+      chosen = time_scale;
       target_ = target;
     }
     if (rest.isZero(0)) break;  // a faster clock leaves no less
   }
-  rate_ = chosen;
-  moved_ = moved_ || rate_ > 1 || target_ != after_;
+  time_scale_ = chosen;
+  moved_ = moved_ || time_scale_ > 1 || target_ != after_;
 }
 
 bool FootholdShift::lands_early(const Estimate& e) const {
   if (!moved_ || coming_ == steps_.size()) return false;
   const PlannedSwing& swing = steps_[coming_].swing;
-  return place_ > swing.lift + kTouchAfter * (swing.land - swing.lift) && e.stance != swing.foot &&
-         e.foot_fz[index(swing.foot)] > kTouchShare * model_->mass() * kGravity;
+  return phase_ > swing.lift + kSwingLandingAfter * (swing.land - swing.lift) &&
+         e.stance != swing.foot && bears(*model_, e, swing.foot);
 }
 
 /// The foot stays where it has met the ground, and the clock goes to its landing; the COG does not
 /// jump.
-void FootholdShift::meet(const Estimate& e) {
+void FootholdShift::land_where_it_is(const Estimate& e) {
   const PlannedSwing& swing = steps_[coming_].swing;
   update_positions(*model_, e.state, data_);
   command_between(*series_, swing.land, work_);
   const CommandSample& landed = work_;
-  const Vector3d place = sole_pose(*model_, data_, swing.foot).translation();
-  foot_[index(swing.foot)] = (place - landed.feet[index(swing.foot)].translation()).head<2>();
+  const Vector3d position = sole_pose(*model_, data_, swing.foot).translation();
+  foot_[index(swing.foot)] = (position - landed.feet[index(swing.foot)].translation()).head<2>();
   cog_ += (now_.cog - landed.cog).head<2>();
   land();
 }
 
 void FootholdShift::land() {
   const PlannedSwing& swing = steps_[coming_++].swing;
-  place_ = swing.land;
-  rate_ = 1;
+  phase_ = swing.land;
+  time_scale_ = 1;
   before_ = after_;
   // After the last step the ZMP ends between the feet.
   const bool last = coming_ == steps_.size();
   after_ = last ? Vector2d(0.5 * (foot_[0] + foot_[1])) : foot_[index(swing.foot)];
   target_ = after_;
-  swing_rate_.setZero();
-  swing_acceleration_.setZero();
+  swing_.stop();
 }
 
 void FootholdShift::go_on() {
-  if (moved_) move_foot();
-  const Vector2d rate = now_.dcog.head<2>() + omega_ * (xi_shift(rate_, target_) - cog_);
+  if (moved_) move_swing_foot();
+  const Vector2d rate = now_.dcog.head<2>() + omega_ * (dcm_shift(time_scale_, target_) - cog_);
   const Vector2d cog = now_.cog.head<2>() + cog_ + series_->dt * rate;
-  place_ += rate_;
-  if (coming_ < steps_.size() && place_ > steps_[coming_].swing.land - 1e-6) land();
+  phase_ += time_scale_;
+  if (coming_ < steps_.size() && phase_ > steps_[coming_].swing.land - 1e-6) land();
   if (!moved_) return;
-  command_between(*series_, place_, work_);
+  command_between(*series_, phase_, work_);
   cog_ = cog - work_.cog.head<2>();
 }
 
-/// Least jerk from where the foot is to rest on the target, planned anew in every tick.
-void FootholdShift::move_foot() {
+void FootholdShift::move_swing_foot() {
   if (coming_ == steps_.size()) return;
   const PlannedSwing& swing = steps_[coming_].swing;
   const double margin = kSwingMargin * (swing.land - swing.lift);
-  const double time = seconds_to(swing.land - margin) / rate_, dt = series_->dt;
-  if (place_ < swing.lift + margin || time <= dt) return;
-  const double t = std::max(time, kLeastReplan);
+  const double time = seconds_to(swing.land - margin) / time_scale_, dt = series_->dt;
+  if (phase_ < swing.lift + margin || time <= dt) return;
   Vector2d& at = foot_[index(swing.foot)];
-  const Vector2d jerk =
-      60 / (t * t * t) * (target_ - at) - 36 / (t * t) * swing_rate_ - 9 / t * swing_acceleration_;
-  swing_acceleration_ += dt * jerk;
-  swing_rate_ += dt * swing_acceleration_;
-  at += dt * swing_rate_;
+  at += swing_.step(target_ - at, time, dt);
 }
 
-void FootholdShift::refresh() {
-  command_between(*series_, place_, now_);
+void FootholdShift::update_plan() {
+  command_between(*series_, phase_, now_);
   plan_ = now_;
   if (!moved_) return;
-  plan_.state.dtheta *= rate_;
-  plan_.state.base_velocity *= rate_;
-  plan_.state.base_angular_velocity *= rate_;
   const Vector2d zmp = zmp_shift();
-  plan_.cog.head<2>() += cog_;
-  plan_.dcog.head<2>() += omega_ * (xi_shift(rate_, target_) - cog_);
-  plan_.ddcog.head<2>() += omega_ * omega_ * (cog_ - zmp);
-  plan_.zmp.head<2>() += zmp;
-  plan_.state.base.position.head<2>() += cog_;
-  for (int i = 0; i < 2; ++i) plan_.feet[i].translation().head<2>() += foot_[i];
+  PlanShift shift;
+  shift.time_scale = time_scale_;
+  shift.cog.head<2>() = shift.base.head<2>() = cog_;
+  shift.dcog.head<2>() = omega_ * (dcm_shift(time_scale_, target_) - cog_);
+  shift.ddcog.head<2>() = omega_ * omega_ * (cog_ - zmp);
+  shift.zmp = zmp;
+  for (size_t i = 0; i < 2; ++i) shift.foot[i].head<2>() = foot_[i];
+  shift_plan(shift, plan_);
 }
 
 bool FootholdShift::advance(const Estimate& estimate) {
-  choose(estimate);
+  choose_foothold(estimate);
   const bool early = lands_early(estimate);
   if (early)
-    meet(estimate);
+    land_where_it_is(estimate);
   else
     go_on();
-  refresh();
+  update_plan();
   return early;
 }
 

@@ -1,5 +1,5 @@
-// xi' = omega (xi - Z): with Z on foothold p_k for one step, xi - p_k grows by E. Landing on p_k
-// with b_k = xi - p_k therefore means b_k E = p_(k+1) - p_k + b_(k+1), solved backwards from the
+// dcm' = omega (dcm - Z): with Z on foothold p_k for one step, dcm - p_k grows by E. Landing on p_k
+// with b_k = dcm - p_k therefore means b_k E = p_(k+1) - p_k + b_(k+1), solved backwards from the
 // last foothold. In a steady walk this is b = L / (E - 1) along and -+W / (E + 1) across.
 #include "ayumi/control/footsteps.hpp"
 
@@ -16,10 +16,15 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kPreview = 6;             // footholds whose effect on b is still told apart
-constexpr double kLargestError = 0.35;  // of place that is taken back, times the feet's distance
+// Footholds that b looks ahead. The effect of one falls by E = exp(2.1) = 8 per step, so that of
+// the seventh is below 1e-5 of a step.
+constexpr int kPreview = 6;
 
-Vector2d turned(const Vector2d& v, double yaw) { return Eigen::Rotation2Dd(yaw) * v; }
+// Largest error of position that is taken back, times the distance of the feet. Chosen: a path that
+// is farther off is moved to the feet, so that a push does not make the robot hurry back.
+constexpr double kLargestError = 0.35;
+
+Vector2d turned_by(const Vector2d& v, double yaw) { return Eigen::Rotation2Dd(yaw) * v; }
 
 double sign_of(Side side) { return side == Side::left ? 1.0 : -1.0; }
 
@@ -33,18 +38,9 @@ GroundPose ground_pose(const RobotModel& model, Side side, const Isometry3d& sol
 Isometry3d sole_frame(const RobotModel& model, Side side, const GroundPose& pose, double z) {
   Isometry3d frame = Isometry3d::Identity();
   frame.linear() = rpy_to_matrix({0, 0, pose.yaw});
-  frame.translation().head<2>() = pose.position - turned(model.sole(side).center, pose.yaw);
+  frame.translation().head<2>() = pose.position - turned_by(model.sole(side).center, pose.yaw);
   frame.translation().z() = z;
   return frame;
-}
-
-double sole_half_width(const RobotModel& model) {
-  double low = 1e9, high = -1e9;
-  for (const Vector2d& p : model.sole(Side::left).polygon) {
-    low = std::min(low, p.y());
-    high = std::max(high, p.y());
-  }
-  return 0.5 * (high - low);
 }
 
 std::vector<Vector2d> landing_offsets(const std::vector<Vector2d>& footholds, double growth,
@@ -56,8 +52,8 @@ std::vector<Vector2d> landing_offsets(const std::vector<Vector2d>& footholds, do
 }
 
 Footsteps::Footsteps(const RobotModel& model, const std::array<Isometry3d, 2>& feet, double period,
-                     double growth, double hold, double inside)
-    : period_(period), growth_(growth), hold_(hold), inside_(inside) {
+                     double growth, double recovery, double inset)
+    : period_(period), growth_(growth), recovery_(recovery), inset_(inset) {
   const GroundPose left = ground_pose(model, Side::left, feet[0]);
   const GroundPose right = ground_pose(model, Side::right, feet[1]);
   half_width_ = 0.5 * (left.position - right.position).norm();
@@ -67,11 +63,11 @@ Footsteps::Footsteps(const RobotModel& model, const std::array<Isometry3d, 2>& f
 }
 
 GroundPose Footsteps::beside(const GroundPose& center, Side side) const {
-  return {center.position + turned({0, sign_of(side) * half_width_}, center.yaw), center.yaw};
+  return {center.position + turned_by({0, sign_of(side) * half_width_}, center.yaw), center.yaw};
 }
 
 Vector2d Footsteps::zmp_on(Side side, const GroundPose& foot) const {
-  return foot.position - turned({0, sign_of(side) * inside_}, foot.yaw);
+  return foot.position - turned_by({0, sign_of(side) * inset_}, foot.yaw);
 }
 
 // Sideways the foot that leads goes twice as far and the other one closes up to it.
@@ -79,10 +75,10 @@ GroundPose Footsteps::moved(const GroundPose& center, const StepGoal& goal, Side
                             int left) const {
   if (left <= 1) return center;
   const Side leading = goal.velocity.y() > 0 ? Side::left : Side::right;
-  Vector2d way = period_ * goal.velocity;
-  way.y() *= swing == leading ? 2 : 0;
+  Vector2d move = period_ * goal.velocity;
+  move.y() *= swing == leading ? 2 : 0;
   const double turn = period_ * goal.turn;
-  return {center.position + turned(way, center.yaw + 0.5 * turn), center.yaw + turn};
+  return {center.position + turned_by(move, center.yaw + 0.5 * turn), center.yaw + turn};
 }
 
 PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose& foot, int left,
@@ -95,16 +91,16 @@ PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose&
   const int count = std::min(left, kPreview);
   for (int k = 0; k < count; ++k, side = other(side)) {
     center = moved(center, goal, side, left - k);
-    error *= 1 - hold_;
+    error *= 1 - recovery_;
     GroundPose place = beside(center, side);
     place.position += error;
     if (k == 0) result.landing = place;
     zmps.push_back(zmp_on(side, place));
   }
   const Vector2d after = count == left
-                             ? Vector2d(center.position + error + turned(rest, center.yaw))
+                             ? Vector2d(center.position + error + turned_by(rest, center.yaw))
                              : zmp_on(side, beside(moved(center, goal, side, left - count), side));
-  // At the end xi stays where the robot is to stand; else one more step is guessed.
+  // At the end the DCM stays where the robot is to stand; else one more step is guessed.
   const double share = count == left ? 1 : 1 / (growth_ + 1);
   result.offset = zmps.front() - result.landing.position +
                   landing_offsets(zmps, growth_, share * (after - zmps.back())).front();

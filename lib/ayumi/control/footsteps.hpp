@@ -1,7 +1,7 @@
 #pragma once
-// Where VIIP puts the feet: a nominal path of footholds, what the pendulum's divergent component
-// xi = x + dx/omega must be when a foot lands for the path to be walked on, and the foot in the
-// air.
+// Where VIIP puts the feet: a nominal path of footholds, and the DCM (divergent component of
+// motion, x + dx/omega) that the pendulum must have when a foot lands so that the path can be
+// walked on.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -18,26 +18,24 @@ struct GroundPose {
   double yaw = 0;                                      ///< [rad]
 };
 
-/// Of a sole: its centre and heading.
+/// Centre and heading of a sole.
 GroundPose ground_pose(const RobotModel& model, Side side, const Eigen::Isometry3d& sole);
-/// Sole frame, level at height z, of a sole centre.
+/// Level sole frame at height z [m] whose sole has its centre and heading at `pose`.
 Eigen::Isometry3d sole_frame(const RobotModel& model, Side side, const GroundPose& pose, double z);
 
-/// Half the way between a sole's sides [m].
-double sole_half_width(const RobotModel& model);
-
-/// b of every foothold: xi - foothold when the foot lands, so that the pendulum reaches the next
-/// foothold's b after `growth` = exp(omega T) with its ZMP on this one; `last` is b of the last.
+/// b of every foothold: the DCM less the foothold when the foot lands, so that the pendulum reaches
+/// the next foothold's b after `growth` = exp(omega T) with its ZMP on this one; `last` is b of the
+/// last foothold.
 std::vector<Eigen::Vector2d> landing_offsets(const std::vector<Eigen::Vector2d>& footholds,
                                              double growth, const Eigen::Vector2d& last);
 
-/// The ZMP that, held, takes xi to `end` while it grows by `growth`.
-inline Eigen::Vector2d zmp_to_arrive(const Eigen::Vector2d& xi, const Eigen::Vector2d& end,
+/// The ZMP that, held, takes the DCM to `end` while its distance from the ZMP grows by `growth`.
+inline Eigen::Vector2d zmp_to_arrive(const Eigen::Vector2d& dcm, const Eigen::Vector2d& end,
                                      double growth) {
-  return (end - xi * growth) / (1 - growth);
+  return (end - dcm * growth) / (1 - growth);
 }
 
-/// One single support to come: stance foot, landing foot, and where xi is to be when it lands.
+/// One single support to come: stance foot, landing foot, and where the DCM is to be when it lands.
 struct PlannedStep {
   Side stance = Side::left;
   Eigen::Vector2d stance_place;  ///< nominal ZMP on the stance sole [m]
@@ -47,17 +45,17 @@ struct PlannedStep {
 
 class Footsteps {
  public:
-  /// `feet`: soles at the start; `period` of a step [s], `growth` of xi during it; `hold`: share of
-  /// an error of place that the next foothold takes back; `inside`: way of the nominal ZMP from a
-  /// sole's centre towards the other foot [m].
+  /// `feet`: soles at the start; `period` of a step [s], `growth` of the DCM during it; `recovery`:
+  /// share of an error of position that the next foothold takes back; `inset`: distance of the
+  /// nominal ZMP from a sole's centre towards the other foot [m].
   Footsteps(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet, double period,
-            double growth, double hold, double inside = 0);
+            double growth, double recovery, double inset = 0);
 
   /// Nominal ZMP while `side` supports alone.
   Eigen::Vector2d zmp_on(Side side, const GroundPose& foot) const;
 
-  /// The step with `stance` on the ground where it now is. `left`: swings to come, this included;
-  /// the last one closes. `rest`: xi wanted at the end, from the middle of the feet.
+  /// The step with `stance` on the ground where it now is. `left`: swings to come, this one
+  /// included; the last one closes. `rest`: DCM wanted at the end, from the middle of the feet [m].
   PlannedStep step(const StepGoal& goal, Side stance, const GroundPose& foot, int left,
                    const Eigen::Vector2d& rest) const;
 
@@ -74,8 +72,8 @@ class Footsteps {
   GroundPose moved(const GroundPose& center, const StepGoal& goal, Side swing, int left) const;
   GroundPose beside(const GroundPose& center, Side side) const;
 
-  double period_, growth_, hold_, inside_, half_width_;
-  double largest_error_;  // of place that is taken back [m]
+  double period_, growth_, recovery_, inset_, half_width_;
+  double largest_error_;  // of position that is taken back [m]
   GroundPose center_;     // of the feet on the path
 };
 

@@ -45,14 +45,15 @@ MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
     dx = unit(n - 2);
     zmp = unit(n - 1);
   }
-  const double filter = 1 - std::exp(-dt * w / p.tau_z);
+  const double filter = 1 - std::exp(-dt * w / p.zmp_filter);
   A.row(kFiltered) = unit(kFiltered) + filter * (zmp - unit(kFiltered));
   const RowVectorXd gap = A.row(kFiltered) - K * x - D * dx - unit(kOffset);
   A.row(kOffset) = unit(kOffset);
-  if (p.washout > 0) A.row(kOffset) += dt * w / p.washout * gap;
-  // The law uses the gap before the washout of this tick.
-  A.row(kDxr) = unit(kDxr) +
-                dt * (p.ka * w2 * gap - p.ks * p.ks * w2 * unit(kXr) - 2 * p.kd * w * unit(kDxr));
+  if (p.offset_time > 0) A.row(kOffset) += dt * w / p.offset_time * gap;
+  // The law uses the gap before the offset follows in this tick.
+  A.row(kDxr) =
+      unit(kDxr) + dt * (p.zmp_gain * w2 * gap - p.pull_rate * p.pull_rate * w2 * unit(kXr) -
+                         2 * p.pull_damping * w * unit(kDxr));
   A.row(kXr) = unit(kXr) + dt * A.row(kDxr);
   A.row(kTarget) = A.row(kXr) + T * A.row(kDxr);
 
@@ -90,8 +91,8 @@ LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params) {
   LoopAnalysis analysis;
   for (const std::complex<double>& value : values)
     if (std::abs(value) > 1e-9) analysis.poles.push_back(std::log(value) / loop.tick);
-  // Without a washout its state is a constant, not a mode.
-  if (params.washout <= 0)
+  // Without an offset time its state is a constant, not a mode.
+  if (params.offset_time <= 0)
     std::erase_if(analysis.poles, [](const auto& pole) { return std::abs(pole) < 1e-6; });
   std::sort(analysis.poles.begin(), analysis.poles.end(), [](const auto& a, const auto& b) {
     return a.real() != b.real() ? a.real() > b.real() : a.imag() > b.imag();
@@ -128,19 +129,19 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
   if (wishes.absorb) {
     if (!(*wishes.absorb >= 0 && *wishes.absorb < 1))
       refuse("absorbed share", *wishes.absorb, "from 0 (replay) to below 1 (the limit is (14))");
-    params.ka = *wishes.absorb / (1 - *wishes.absorb);
+    params.zmp_gain = *wishes.absorb / (1 - *wishes.absorb);
   }
   if (wishes.return_time) {
     if (!(*wishes.return_time > 0)) refuse("return time", *wishes.return_time, "must be positive");
-    params.ks = params.kd = 1 / (omega * *wishes.return_time);
+    params.pull_rate = params.pull_damping = 1 / (omega * *wishes.return_time);
   }
   if (wishes.zmp_filter) {
     if (!(*wishes.zmp_filter > 0)) refuse("ZMP filter", *wishes.zmp_filter, "must be positive");
-    params.tau_z = omega * *wishes.zmp_filter;
+    params.zmp_filter = omega * *wishes.zmp_filter;
   }
   if (wishes.forget) {
     if (!(*wishes.forget >= 0)) refuse("forgetting time", *wishes.forget, "must not be negative");
-    params.washout = omega * *wishes.forget;
+    params.offset_time = omega * *wishes.forget;
   }
   return params;
 }
@@ -148,7 +149,7 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
 // Stable gains below the first unstable one: the loop leaves stability once as ka grows.
 double largest_stable_ka(const LoopModel& loop, DtadParams params, double most) {
   const auto stable = [&](double ka) {
-    params.ka = ka;
+    params.zmp_gain = ka;
     return analyze_loop(loop, params).stable;
   };
   if (stable(most)) return most;
@@ -166,9 +167,9 @@ namespace {
 std::string growth(const LoopModel& loop, const DtadParams& params) {
   const LoopAnalysis analysis = analyze_loop(loop, params);
   if (analysis.stable) return {};
-  const double low = largest_stable_ka(loop, params, params.ka);
-  return "controller gains: with ka = " + text::brief(params.ka) +
-         ", tau_z = " + text::brief(params.tau_z) + " and sensors " + text::brief(loop.delay) +
+  const double low = largest_stable_ka(loop, params, params.zmp_gain);
+  return "controller gains: with ka = " + text::brief(params.zmp_gain) +
+         ", tau_z = " + text::brief(params.zmp_filter) + " and sensors " + text::brief(loop.delay) +
          " s late the loop grows at " + text::fixed(-analysis.decay, 1) + " /s, " +
          text::fixed(analysis.frequency, 1) + " Hz; " +
          (low > 1e-6 ? "ka below " + text::fixed(low, 2) + " would be stable"
@@ -185,7 +186,7 @@ void refuse_unstable(const LoopModel& loop, const DtadParams& params) {
 
 std::string instability(const RobotModel& model, const ControllerSpec& spec, double height,
                         double tick) {
-  if (spec.type != "dtad") return {};
+  if (spec.type != ControllerKind::dtad) return {};
   const DtadParams params = dtad_params(model, spec);
   if (params.as_printed != 0) return {};
   for (Side side : {Side::left, Side::right})

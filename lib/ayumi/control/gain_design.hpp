@@ -1,7 +1,7 @@
 #pragma once
 // Gains from poles, and whether the whole linear loop they close is stable: pendulum on a servo of
-// finite stiffness, filter and washout, sensor delay, control tick. One horizontal axis, feet flat,
-// the ZMP away from the edge. docs/theory.md, "Gain design".
+// finite stiffness, filter and accepted offset, sensor delay, control tick. One horizontal axis,
+// feet flat, the ZMP away from the edge. docs/theory.md, "Gain design".
 
 #include <array>
 #include <complex>
@@ -18,7 +18,7 @@ struct LoopModel {
   double mass = 0;       ///< [kg]
   double height = 0;     ///< of the COG above the ground [m]
   double stiffness = 0;  ///< about the ankle that turns the body against the foot [N m/rad]
-  double damping = 0;    ///< likewise [N m s/rad]
+  double damping = 0;    ///< about the same ankle [N m s/rad]
   double tick = 0.001;   ///< of the controller [s]
   double delay = 0;      ///< of the sensors [s]
 };

@@ -10,8 +10,8 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/laws/viip.hpp"
-#include "ayumi/control/resolver.hpp"
-#include "ayumi/control/support.hpp"
+#include "ayumi/control/support_region.hpp"
+#include "ayumi/control/whole_body.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -24,14 +24,33 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kReached = 0.001;   // of a goal [m]
-constexpr double kLeadTick = 0.004;  // [s]
+// A COG this near to a goal has reached it [m]. Chosen: half of the 2 mm to which a displacement is
+// to settle.
+constexpr double kGoalReached = 0.001;
+
+// The reference is led to a goal in ticks of this length [s], at most so many: 6 s, several times
+// what the slowest displacement takes.
+constexpr double kLeadTick = 0.004;
 constexpr int kLeadTicks = 1500;
-constexpr double kLeadTime = 0.1;   // in which the rest of the way is gone [s]
-constexpr double kLeadSpeed = 0.1;  // but not faster than this [m/s]
-constexpr double kLowest = 0.3;     // that a COG is led to, of the height held
-constexpr int kHalvings = 10;       // of the search for what is possible
-constexpr int kMostKeyedSteps = 6;  // a longer walk repeats itself
+
+// The rest of the distance is made in this time [s], but not faster than this speed [m/s]. Chosen:
+// so slow that only position limits count.
+constexpr double kLeadTime = 0.1;
+constexpr double kLeadSpeed = 0.1;
+
+// Lowest COG that is tried, as a share of the height held. Chosen: below it no leg of a humanoid
+// folds.
+constexpr double kLowestShare = 0.3;
+
+// Bisections of the search for what is possible: the answer is good to a thousandth of the goal.
+constexpr int kHalvings = 10;
+
+// Steps of the keyed walk that is judged in the place of a goal. Chosen: a longer walk repeats
+// itself.
+constexpr int kMostKeyedSteps = 6;
+
+// Largest turn in one step [rad]: 20 deg. Chosen: soles beside each other must not meet.
+constexpr double kStepTurnLimit = 0.35;
 
 const CommandSample& held_in(const CommandSeries& series, const ViipSpan& span) {
   return series.samples[static_cast<size_t>(span.begin)];
@@ -42,8 +61,8 @@ CommandSeries keyed_steps(const RobotModel& model, const CommandSample& held,
   const double z = held.cog.z() - ground_of(held.feet), omega = std::sqrt(kGravity / z);
   WalkParameters w = walk_defaults(model);
   w.steps = goal.steps > 0 ? std::clamp(goal.steps - 1, 1, kMostKeyedSteps) : kMostKeyedSteps;
-  w.period = (params.single + params.both) / omega;
-  w.double_support = params.both / (params.single + params.both);
+  w.period = (params.single_support + params.double_support) / omega;
+  w.double_support = params.double_support / (params.single_support + params.double_support);
   w.stride = goal.velocity.x() * w.period;
   w.side = 2 * goal.velocity.y() * w.period;
   w.turn = goal.turn * w.period;
@@ -92,12 +111,12 @@ Attempt lead_to(const RobotModel& model, const CommandSample& held, const Vector
   Attempt attempt;
   for (int i = 0; i < kLeadTicks; ++i) {
     anchor_base(model, Side::left, held.feet[0], state, data);
-    const Vector3d way = goal - data.cog;
-    attempt.miss = way.norm();
-    if (attempt.miss < kReached) break;
+    const Vector3d remaining = goal - data.cog;
+    attempt.miss = remaining.norm();
+    if (attempt.miss < kGoalReached) break;
     const Resolution r = resolve(model, model.limits(), state, data, Side::left,
-                                 way / std::max(kLeadTime, way.norm() / kLeadSpeed), wanted, wanted,
-                                 kLeadTick, model.joint_weight(), options);
+                                 remaining / std::max(kLeadTime, remaining.norm() / kLeadSpeed),
+                                 wanted, wanted, kLeadTick, model.joint_weight(), options);
     state.theta += kLeadTick * r.dtheta;
     attempt.joint.clear();
     for (const int dof : r.held)
@@ -112,7 +131,7 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
   const double yaw = matrix_to_rpy(held.feet[0].linear()).z();
   const Vector3d goal = held.cog + rpy_to_matrix({0, 0, yaw}) * displacement;
   const double height = held.cog.z() - ground_of(held.feet), margin = params.margin * height;
-  if (!(height + displacement.z() > kLowest * height))
+  if (!(height + displacement.z() > kLowestShare * height))
     return "the COG would be at " + text::fixed(1e3 * (height + displacement.z()), 1) +
            " mm above the ground";
   const double inside = support_polygon(model, held.feet, Support::both).margin(goal.head<2>());
@@ -121,7 +140,7 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
            (inside < 0 ? "outside" : "inside") + " the support of the feet, of which " +
            text::fixed(1e3 * margin, 1) + " mm are kept";
   const Attempt attempt = lead_to(model, held, goal);
-  if (attempt.miss < kReached) return {};
+  if (attempt.miss < kGoalReached) return {};
   return "the legs end " + text::fixed(1e3 * attempt.miss, 1) + " mm before it" +
          (attempt.joint.empty() ? "" : ", " + attempt.joint + " at its limit");
 }
@@ -151,7 +170,7 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
   if (!goal.velocity.allFinite() || !std::isfinite(goal.turn))
     fail(ErrorCode::bad_pattern, place + "a velocity is not finite");
   const double z = held.cog.z() - ground_of(held.feet);
-  const double period = (params.single + params.both) / std::sqrt(kGravity / z);
+  const double period = (params.single_support + params.double_support) / std::sqrt(kGravity / z);
   const double length = period * goal.velocity.norm(), most = params.reach * z;
   if (!(length <= most))
     fail(ErrorCode::bad_pattern, place + "a COG velocity of " + text::brief(goal.velocity.norm()) +
@@ -160,13 +179,12 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
                                      " s; footholds reach " + text::fixed(1e3 * most, 1) + " mm, " +
                                      text::fixed(most / period, 3) + " m/s at most");
   const double turn = std::abs(goal.turn) * period;
-  constexpr double kMostTurn = 0.35;  // of a step [rad]: soles beside each other must not meet
-  if (!(turn <= kMostTurn))
-    fail(ErrorCode::bad_pattern, place + "turning by " + text::brief(goal.turn * 180 / M_PI) +
-                                     " deg/s asks for " + text::fixed(turn * 180 / M_PI, 1) +
-                                     " deg in every step; at most " +
-                                     text::fixed(kMostTurn * 180 / M_PI, 1) + " deg, " +
-                                     text::fixed(kMostTurn / period * 180 / M_PI, 1) + " deg/s");
+  if (!(turn <= kStepTurnLimit))
+    fail(ErrorCode::bad_pattern,
+         place + "turning by " + text::brief(goal.turn * 180 / M_PI) + " deg/s asks for " +
+             text::fixed(turn * 180 / M_PI, 1) + " deg in every step; at most " +
+             text::fixed(kStepTurnLimit * 180 / M_PI, 1) + " deg, " +
+             text::fixed(kStepTurnLimit / period * 180 / M_PI, 1) + " deg/s");
   try {
     keyed_steps(model, held, params, goal);
   } catch (const Error& error) {

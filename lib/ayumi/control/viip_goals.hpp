@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "ayumi/motion/controller_spec.hpp"
 #include "ayumi/motion/keyed_goal.hpp"
-#include "ayumi/motion/scenario.hpp"
 
 namespace ayumi {
 

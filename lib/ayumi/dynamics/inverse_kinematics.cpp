@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 
@@ -21,10 +22,21 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 namespace {
 
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
-constexpr double kTolerance = 1e-12;  // asked of every residual component [m, rad]
-constexpr double kEnough = 1e-10;     // taken when rounding keeps it above kTolerance
-constexpr double kLargestStep = 0.3;  // of a joint in one iteration [rad]
-constexpr double kCogWeight = 100;    // so that what is out of reach shows at the feet
+
+// Residual at which Newton stops [m, rad]. Chosen: above the rounding of a leg's kinematics.
+constexpr double kNewtonTolerance = 1e-12;
+
+// Residual that is accepted when rounding keeps it above kNewtonTolerance [m, rad]. Chosen: far
+// below the tolerances of the check.
+constexpr double kAcceptedResidual = 1e-10;
+
+// Largest step of a joint in one iteration [rad]. Chosen: Newton stays on its side of a straight
+// knee.
+constexpr double kLargestJointStep = 0.3;
+
+// Weight of the COG against the feet in the damped solve. Chosen: large, so that what is out of
+// reach shows at the feet and not at the COG.
+constexpr double kCogWeight = 100;
 
 bool contains(const std::vector<int>& list, int value) {
   return std::find(list.begin(), list.end(), value) != list.end();
@@ -127,8 +139,8 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state,
   for (int iteration = 0; iteration < 25; ++iteration) {
     const Residual e = residual(target, state, data);
     const double largest = e.largest();
-    if (largest <= kTolerance) return true;
-    if (iteration > 3 && largest > 0.5 * before) return largest <= kEnough;
+    if (largest <= kNewtonTolerance) return true;
+    if (iteration > 3 && largest > 0.5 * before) return largest <= kAcceptedResidual;
     before = iteration > 1 ? largest : INFINITY;
     const MatrixXd C = cog_jacobian_floating(*model_, data);
     Eigen::Matrix<double, 6, 4> solved[2];  // A^-1 [E, e]
@@ -153,7 +165,7 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state,
       longest = std::max(longest, dq[s].cwiseAbs().maxCoeff());
     }
     if (!std::isfinite(longest) || !dp.allFinite()) return false;
-    const double scale = std::min(1.0, kLargestStep / std::max(longest, 1e-300));
+    const double scale = std::min(1.0, kLargestJointStep / std::max(longest, 1e-300));
     state.base.position += scale * dp;
     for (int s = 0; s < 2; ++s)
       for (int i = 0; i < 6; ++i) state.theta[legs_[s][i]] += scale * dq[s][i];
@@ -173,7 +185,7 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
   };
   Residual e = residual(target, state, data);
   double lambda = 1e-6;
-  for (int iteration = 0; iteration < 200 && e.largest() > kTolerance; ++iteration) {
+  for (int iteration = 0; iteration < 200 && e.largest() > kNewtonTolerance; ++iteration) {
     MatrixXd J = MatrixXd::Zero(15, 3 + n0 + n1);
     J.block<3, 3>(0, 0).setIdentity();
     J.block<3, 3>(6, 0).setIdentity();
@@ -190,7 +202,7 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     H.diagonal().array() += lambda;
     VectorXd d = H.ldlt().solve(J.transpose() * r);
     const double longest = d.tail(n0 + n1).cwiseAbs().maxCoeff();
-    if (longest > kLargestStep) d *= kLargestStep / longest;
+    if (longest > kLargestJointStep) d *= kLargestJointStep / longest;
     RobotState trial = state;
     trial.base.position += d.head<3>();
     for (Eigen::Index i = 0; i < n0; ++i) trial.theta[legs_[0][i]] += d[3 + i];
@@ -221,7 +233,7 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
     for (int dof = 0; dof < model_->dof_count(); ++dof)
       state.theta[dof] = solved_[dof] && square_ ? start_[dof] : warm[dof];
     if (square_) state.base.position = target.cog - (data.cog - data.base_position);
-    solution.reached = damped(target, state, data) <= kEnough;
+    solution.reached = damped(target, state, data) <= kAcceptedResidual;
   }
   const Residual e = residual(target, state, data);
   solution.error = e.largest();

@@ -84,56 +84,6 @@ MatrixXd body_jacobian(const RobotModel& model, const RobotData& data, int body,
   return J;
 }
 
-MatrixXd cog_jacobian_floating(const RobotModel& model, RobotData& data) {
-  const std::vector<Body>& bodies = model.bodies();
-  MatrixXd J = MatrixXd::Zero(3, model.velocity_count());
-  J.leftCols<3>().setIdentity();
-  J.block<3, 3>(0, 3) = -skew(data.cog_offset);
-  // First moment of each subtree, leaves first.
-  for (size_t i = 0; i < bodies.size(); ++i)
-    data.composite[i].moment = bodies[i].inertia.mass * data.com[i];
-  for (size_t i = bodies.size() - 1; i > 0; --i) {
-    const Body& b = bodies[i];
-    const double mass = data.subtree_mass[i];
-    const Vector3d& moment = data.composite[i].moment;
-    const Vector3d a = b.ratio / model.mass() * data.axis[i];
-    if (b.prismatic)
-      J.col(6 + b.dof) += mass * a;
-    else
-      J.col(6 + b.dof) += a.cross(moment - mass * data.position[i]);
-    data.composite[b.parent].moment += moment;
-  }
-  return J;
-}
-
-namespace {
-
-// Base twist per joint rate that keeps a body's frame fixed: with the reference point at the base
-// origin the base part of J_F is inverted in closed form, J_Fb = [1 -[p x]; 0 1].
-MatrixXd base_map(const RobotModel& model, const RobotData& data, int body) {
-  const Vector3d p = data.position[body];
-  const MatrixXd J = body_jacobian(model, data, body, data.base_position + p);
-  MatrixXd base(6, model.dof_count());
-  base.bottomRows<3>() = -J.bottomRightCorner(3, model.dof_count());
-  base.topRows<3>() = -J.topRightCorner(3, model.dof_count()) + skew(p) * base.bottomRows<3>();
-  return base;
-}
-
-}  // namespace
-
-MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, Side support) {
-  MatrixXd map(model.velocity_count(), model.dof_count());
-  map.topRows<6>() = base_map(model, data, model.sole(support).body);
-  map.bottomRows(model.dof_count()).setIdentity();
-  return map;
-}
-
-MatrixXd cog_jacobian(const RobotModel& model, RobotData& data, Side support) {
-  const MatrixXd J = cog_jacobian_floating(model, data);
-  return J.rightCols(model.dof_count()) +
-         J.leftCols<6>() * base_map(model, data, model.sole(support).body);
-}
-
 namespace {
 
 /// Attitude (in link axes) and origin of a body in the base, by its own chain alone.

@@ -1,5 +1,6 @@
 #pragma once
-// Positions, velocities and Jacobians. (1)-(13) of the paper.
+// Positions, velocities and the Jacobians of links, (1)-(4) of the paper. The Jacobian of the COG
+// is in dynamics/cog_jacobian.hpp.
 
 #include "ayumi/dynamics/robot_data.hpp"
 
@@ -24,23 +25,14 @@ Eigen::Isometry3d sole_pose(const RobotModel& model, const RobotData& data, Side
 /// Velocity of a world point fixed to a body; needs update_velocities().
 Eigen::Vector3d point_velocity(const RobotData& data, int body, const Eigen::Vector3d& point);
 
-/// 6 x (6+dof): linear velocity of the world point `point` fixed to `body` (rows 0-2) and angular
-/// velocity of the body (rows 3-5) per generalised velocity, world axes; needs update_positions().
+/// (3)(4), 6 x (6+dof): linear velocity of the world point `point` fixed to `body` (rows 0-2) and
+/// angular velocity of the body (rows 3-5) per generalised velocity, world axes; needs
+/// update_positions().
 Eigen::MatrixXd body_jacobian(const RobotModel& model, const RobotData& data, int body,
                               const Eigen::Vector3d& point);
 
-/// 3 x (6+dof): COG velocity per generalised velocity (floating base); needs update_positions().
-Eigen::MatrixXd cog_jacobian_floating(const RobotModel& model, RobotData& data);
-
-/// 3 x dof, (13): COG velocity per joint rate with the sole of `support` fixed in the world,
-/// J_G = J_cth - J_cb J_Fb^-1 J_Fth with the floating Jacobians. Needs update_positions().
-Eigen::MatrixXd cog_jacobian(const RobotModel& model, RobotData& data, Side support);
-
-/// (6+dof) x dof: generalised velocity per joint rate while the sole of `support` is fixed.
-Eigen::MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, Side support);
-
-/// Moves the base of `state` so that the sole of `support` has the pose `sole` in the world, and
-/// updates the positions in `data`.
+/// (8)(9) for positions: moves the base of `state` so that the sole of `support` has the pose
+/// `sole` in the world, and updates the positions in `data`.
 void anchor_base(const RobotModel& model, Side support, const Eigen::Isometry3d& sole,
                  RobotState& state, RobotData& data);
 

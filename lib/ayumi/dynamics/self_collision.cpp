@@ -10,9 +10,15 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kHousingGap = 0.005;  // [m]
+// Bodies up to so many joints apart that are nearer than this in the home posture [m] are housings
+// of one compound joint, made to pass each other. Chosen: a hip or an ankle has up to three axes,
+// whose housings nearly touch.
+constexpr double kHousingGap = 0.005;
 constexpr int kHousingJoints = 3;
-constexpr double kRounding = 1e-6;  // of what touches [m]
+
+// Overlap in the home posture that counts as touching [m]. Chosen: above the rounding of the
+// distance, below any real overlap.
+constexpr double kTouchingOverlap = 1e-6;
 
 int joints_between(const RobotModel& model, int a, int b) {
   int steps = 0;
@@ -54,7 +60,8 @@ CollisionModel::CollisionModel(const RobotModel& model, MeshAs mesh_as)
       const int joints = joints_between(model, a, b);
       if (joints < 2) continue;
       const double home = clearance({a, b}, data, kHousingGap);
-      if (home > (joints <= kHousingJoints ? kHousingGap : -kRounding)) pairs_.push_back({a, b});
+      if (home > (joints <= kHousingJoints ? kHousingGap : -kTouchingOverlap))
+        pairs_.push_back({a, b});
     }
   }
 }

@@ -5,7 +5,7 @@
 
 namespace ayumi {
 
-/// The ground wrench that a motion needs, told as ZMP, force and yaw moment.
+/// The ground wrench that a motion needs, given as ZMP, force and yaw moment.
 struct GroundReaction {
   Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< world, on the plane z = height [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the robot [N]
@@ -21,9 +21,24 @@ GroundReaction ground_reaction(const Eigen::Vector3d& base_position,
 /// (17): omega^2 = f_z / (m (z_G - z_Z)) [1/s^2].
 double omega_squared(double fz, double mass, double height_above_zmp);
 
-/// (14)-(16): COG acceleration of the mass-concentrated model [m/s^2].
+/// (14)(15): horizontal COG acceleration of the mass-concentrated model [m/s^2].
+inline Eigen::Vector2d horizontal_acceleration(double omega2, const Eigen::Vector2d& cog,
+                                               const Eigen::Vector2d& zmp) {
+  return omega2 * (cog - zmp);
+}
+
+/// (16): vertical COG acceleration [m/s^2].
+double vertical_acceleration(double fz, double mass);
+
+/// (14)-(16) with (17).
 Eigen::Vector3d pendulum_acceleration(const Eigen::Vector3d& cog, const Eigen::Vector3d& zmp,
                                       double fz, double mass);
+
+/// DCM, the divergent component of motion x + dx / omega, which obeys dcm' = omega (dcm - zmp).
+inline Eigen::Vector3d divergent_component(const Eigen::Vector3d& cog, const Eigen::Vector3d& dcog,
+                                           double omega) {
+  return cog + dcog / omega;
+}
 
 /// (14)(15) solved for the ZMP, at the height of `ground`.
 Eigen::Vector3d pendulum_zmp(const Eigen::Vector3d& cog, const Eigen::Vector3d& ddcog,

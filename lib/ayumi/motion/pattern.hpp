@@ -13,6 +13,7 @@
 
 #include "ayumi/math/track.hpp"
 #include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/controller_spec.hpp"
 #include "ayumi/motion/scenario.hpp"
 #include "ayumi/motion/viip_goal.hpp"
 

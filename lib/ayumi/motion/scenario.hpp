@@ -59,10 +59,4 @@ const char* name_of(DisturbanceType type);
 /// The floor's motion that a disturbance of type floor is.
 FloorMotion floor_motion(const Disturbance& disturbance);
 
-/// Which controller, with which numbers; empty gains mean the robot's defaults.
-struct ControllerSpec {
-  std::string type = "dtad";  ///< "none", "dtad", "dtad-literal", "viip", "viip-nofeedback"
-  std::vector<std::pair<std::string, double>> gains;
-};
-
 }  // namespace ayumi

@@ -61,7 +61,7 @@ std::vector<PushRecord> all_pushes(const std::vector<LociRun>& runs, const Inter
 }
 
 std::string legend_name(const LociRun& run) {
-  if (run.log->controller.empty()) return run.label;  // a plan: nothing fell or stood
+  if (!run.log->controller) return run.label;  // a plan: nothing fell or stood
   const SimulationResult& result = run.log->result;
   return run.label +
          (has_fallen(*run.log)

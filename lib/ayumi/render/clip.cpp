@@ -330,13 +330,13 @@ void ClipRenderer::write_caption(Image& image, double t) const {
   double x = margin;
   const double top = margin + 0.7 * size, bottom = image.height - top;
   x += draw_text(image, x, top, title, bold);
-  if (!log_.controller.empty()) x += draw_text(image, x, top, log_.controller, plain);
+  if (log_.controller) x += draw_text(image, x, top, name_of(*log_.controller), plain);
   draw_text(image, x, top, "t = " + text::fixed(t, 3) + " s", plain);
   TextStyle verdict = bold;
   verdict.anchor = TextAnchor::right;
   verdict.color = log_.result.outcome == Outcome::stands ? Eigen::Vector4f(0.02f, 0.40f, 0.25f, 1)
                                                          : Eigen::Vector4f(0.70f, 0.08f, 0.08f, 1);
-  if (!log_.controller.empty())  // a plan neither stands nor falls
+  if (log_.controller)  // a plan neither stands nor falls
     draw_text(image, image.width - margin, top, verdict_text(log_.result), verdict);
   struct Entry {
     bool shown;

@@ -126,8 +126,8 @@ Table summary_table(const CheckSummary& summary) {
 }  // namespace
 
 std::string name_of(const ReportRun& run) {
-  const std::string& law = run.log->controller;
-  return law.empty() || law == "none" ? run.name : run.name + " (" + law + ")";
+  const std::optional<ControllerType>& law = run.log->controller;
+  return !law || law == ControllerKind::none ? run.name : run.name + " (" + name_of(*law) + ")";
 }
 
 std::string verdict_section(const ReportInput& input) {

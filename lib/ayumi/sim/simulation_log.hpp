@@ -4,10 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ayumi/model/robot_state.hpp"
+#include "ayumi/motion/controller_spec.hpp"
 #include "ayumi/motion/reference_trajectory.hpp"
 #include "ayumi/motion/scenario.hpp"
 #include "ayumi/sim/energy_balance.hpp"
@@ -76,9 +78,9 @@ struct SimulationResult {
 };
 
 struct SimulationLog {
-  double dt = 0.001;            ///< control tick [s]
-  std::string controller;       ///< "none", "dtad", ...
-  std::string plant = "ayumi";  ///< integrator of the motion: "ayumi" or "mujoco"
+  double dt = 0.001;                         ///< control tick [s]
+  std::optional<ControllerType> controller;  ///< empty for a plan that nothing carried out
+  std::string plant = "ayumi";               ///< what integrated the motion: "ayumi", "mujoco"
   Provenance provenance;
   World world;
   std::vector<Disturbance> scenario;

@@ -241,7 +241,7 @@ bool Simulator::advance(long ticks, const Progress& progress) {
     if (tick_ % 100 == 0)
       ayumi::report(progress,
                     {"simulate", static_cast<double>(tick_) / static_cast<double>(planned_),
-                     options_.controller.type});
+                     name_of(options_.controller.type)});
     step_once();
   }
   return tick_ < end_;

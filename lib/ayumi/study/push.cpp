@@ -261,7 +261,7 @@ PushCase Study::plan(size_t i) const {
 
 bool Study::plan_moves(const ControllerSpec& controller) const {
   return !series.viip.empty() ||
-         (controller.type == "dtad" && dtad_params(model, controller).step > 0);
+         (controller.type == ControllerKind::dtad && dtad_params(model, controller).step_share > 0);
 }
 
 void Study::search(size_t i, PushCase& found) {
@@ -286,11 +286,12 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
                                   const PushCaseDone& done, const Progress& progress) {
   check_options(options, series);
   // Phases and baseline are those of the gait that is studied: its gains set the step times.
-  const auto gait = std::find_if(options.controllers.begin(), options.controllers.end(),
-                                 [](const ControllerSpec& c) { return c.type == "viip"; });
-  ControllerSpec open{"none", {}};
+  const auto gait =
+      std::find_if(options.controllers.begin(), options.controllers.end(),
+                   [](const ControllerSpec& c) { return c.type == ControllerKind::viip; });
+  ControllerSpec open{ControllerKind::none, {}};
   if (!series.viip.empty()) {
-    open.type = "viip-nofeedback";
+    open.type = {ControllerKind::viip, Demonstration::no_feedback};
     if (gait != options.controllers.end()) open.gains = gait->gains;
   }
   Study study{model, series, options, standing_series(series), options.phases, {open}, {}};

@@ -31,7 +31,8 @@ std::vector<Interval> left_steps(const CommandSeries& series) {
 CommandSeries carried(const RobotModel& model, const CommandSeries& series,
                       const SimulateOptions& options) {
   SimulateOptions simulate = options;
-  if (simulate.controller.type != "viip") simulate.controller = {"viip", {}};
+  if (simulate.controller.type != ControllerKind::viip)
+    simulate.controller = {ControllerKind::viip, {}};
   simulate.scenario.clear();
   Simulator run(model, series, simulate);
   run.keep_samples(false);

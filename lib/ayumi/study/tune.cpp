@@ -25,9 +25,10 @@ using Gains = std::map<std::string, double>;
 
 /// The gains that may be tuned, of the numbers in force.
 Gains tunable(const DtadParams& p) {
-  return {{"q", p.q},         {"ka", p.ka},           {"ks", p.ks},          {"kd", p.kd},
-          {"tau_z", p.tau_z}, {"washout", p.washout}, {"kz", p.kz},          {"dz", p.dz},
-          {"kaz", p.kaz},     {"ankle", p.ankle},     {"conform", p.conform}};
+  return {{"q", p.pole_ratio},        {"ka", p.zmp_gain},       {"ks", p.pull_rate},
+          {"kd", p.pull_damping},     {"tau_z", p.zmp_filter},  {"washout", p.offset_time},
+          {"kz", p.height_stiffness}, {"dz", p.height_damping}, {"kaz", p.fz_gain},
+          {"ankle", p.ankle_share},   {"conform", p.compliance}};
 }
 
 double height(const CommandSample& command) { return command.cog.z() - command.zmp.z(); }
@@ -146,8 +147,9 @@ TuneFigures Tuner::judge(const Gains& gains) {
 void check(const TuneOptions& options, const CommandSeries& series, const Gains& known) {
   const auto refuse = [](const std::string& why) { fail(ErrorCode::usage, "tune: " + why); };
   if (series.samples.empty()) fail(ErrorCode::bad_pattern, "the command series is empty");
-  if (options.simulate.controller.type != "dtad")
-    refuse("controller '" + options.simulate.controller.type + "' has no gains to tune; use dtad");
+  if (options.simulate.controller.type != ControllerKind::dtad)
+    refuse("controller '" + name_of(options.simulate.controller.type) +
+           "' has no gains to tune; use dtad");
   if (options.directions < 1 || options.directions > 360) refuse("directions: give 1 to 360");
   if (!(options.level > 0)) refuse("level must be positive");
   if (!(options.factor > 1)) refuse("factor must exceed 1");

@@ -2,39 +2,42 @@
 // DTAD: dual-term absorption of disturbance, section 3 of the paper. The law, its derivation and
 // what each term is worth: docs/theory.md.
 
+#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
-#include "ayumi/control/reference_body.hpp"
-#include "ayumi/control/support.hpp"
-#include "ayumi/motion/command_series.hpp"
+#include "ayumi/control/feedback.hpp"
+#include "ayumi/control/support_region.hpp"
+#include "ayumi/control/whole_body.hpp"
+#include "ayumi/motion/controller_spec.hpp"
 
 namespace ayumi {
 
-/// Dimensionless gains: rates in units of omega = sqrt(g / z), lengths in units of the COG height
-/// z.
+/// Dimensionless gains: rates in units of omega = sqrt(g / z), times in units of 1 / omega, lengths
+/// in units of the COG height z. The names in files and on the command line are those in brackets.
+/// Where the values come from: docs/theory.md, "DTAD".
 struct DtadParams {
-  double q = 0.25;          ///< second pole of (18)(19): K = 1 + q, D = (1 + q)/omega
-  std::optional<double> k;  ///< K given directly, with d; must exceed 1
-  std::optional<double> d;  ///< D omega given directly, with k; must be positive
-  double long_term = 1;     ///< share of the long-term term; 0: ref ZMP is the commanded one
-  double as_printed = 0;    ///< 1: D of (18)(19) with the printed sign, a demonstration
-  double ka = 2.5;          ///< short-term loop on the measured ZMP; grows towards (14)
-  double ks = 2;            ///< pull of the reference COG to the command
-  double kd = 2;            ///< damping of that pull
-  double tau_z = 0.066;     ///< low-pass of the measured ZMP, times 1/omega
-  double margin = 0.01;     ///< kept inside the support polygon, times z
-  double washout = 6.6;     ///< forgetting of a constant ZMP offset, times 1/omega; 0: off
-  double kz = 1.0;          ///< K_z of (20), times omega^2
-  double dz = 2.0;          ///< D_z of (20), times omega
-  double kaz = 0.3;         ///< short-term loop on the measured f_z
-  double ankle = 0.5;       ///< share of the stance foot's measured tilt taken back at the ankle
-  double conform = 0.5;     ///< share of one foot's slope against the ground's that its ankle takes
-  double trunk = 1;      ///< turn of the trunk where the ZMP wanted is outside the support; 0: off
-  double step = 0;       ///< share of what the supports leave over that footholds take; 0: off
-  double hurry = 2.5;    ///< fastest clock of a pattern whose footholds move
-  bool literal = false;  ///< (14) integrated as printed, D sign corrected: a demonstration
+  double pole_ratio = 0.25;   ///< [q] second pole of (18)(19): K = 1 + q, D = (1 + q)/omega
+  std::optional<double> k;    ///< [k] K given directly, with d; must exceed 1
+  std::optional<double> d;    ///< [d] D omega given directly, with k; must be positive
+  double long_term = 1;       ///< [long] share of (18)(19); 0: ref ZMP is the commanded one
+  double as_printed = 0;      ///< [as_printed] 1: D with the printed sign, a demonstration
+  double zmp_gain = 2.5;      ///< [ka] short-term loop on the measured ZMP; grows towards (14)
+  double pull_rate = 2;       ///< [ks] pull of the reference COG to the command
+  double pull_damping = 2;    ///< [kd] damping of that pull
+  double zmp_filter = 0.066;  ///< [tau_z] low pass of the measured ZMP
+  double margin = 0.01;       ///< [margin] kept inside the support region
+  double offset_time = 6.6;   ///< [washout] after which a constant ZMP offset is accepted; 0: never
+  double height_stiffness = 1.0;  ///< [kz] K_z of (20), times omega^2
+  double height_damping = 2.0;    ///< [dz] D_z of (20), times omega
+  double fz_gain = 0.3;           ///< [kaz] short-term loop on the measured f_z
+  double ankle_share = 0.5;  ///< [ankle] share of the stance foot's tilt turned back at the ankle
+  double compliance = 0.5;   ///< [conform] share of one foot's ground slope against the ground at
+                             ///< large that its ankle gives in to
+  double trunk_gain = 1;     ///< [trunk] turn of the trunk where the ZMP wanted is outside; 0: off
+  double step_share = 0;     ///< [step] of the error the supports leave over, answered by
+                             ///< footholds; 0: off
+  double time_scale_limit = 2.5;  ///< [hurry] fastest clock of a pattern whose footholds move
+  bool literal = false;           ///< (14) integrated as printed, D sign corrected: a demonstration
 };
 
 /// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
@@ -47,38 +50,44 @@ double long_term_d(const DtadParams& params);
 
 class Dtad {
  public:
-  /// Starts at rest in the posture of `first`, which the servos hold with `target` [rad].
-  Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadParams& params, double dt,
-       const CommandSample& first, const Eigen::VectorXd& target);
+  /// Starts at rest in the posture of the command, which the servos hold with `target` [rad].
+  /// `torque_lead`: offsets of the servo targets by sample of the pattern [rad], one column:
+  /// throughout (control/torque_feedforward).
+  Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadParams& params,
+       CommandPlan command, std::shared_ptr<const Eigen::MatrixXd> torque_lead,
+       const Eigen::VectorXd& target);
 
-  /// Goes on from what another law left; `plan` is the first command.
-  void take_over(const Handover& handover, const CommandSample& plan);
+  /// Goes on from what another law left.
+  void take_over(const Handover& handover);
 
-  /// One tick: command now and one tick later, what is measured, and by how much the servos would
-  /// sag under the command (servo_sag()).
-  void update(const CommandSample& command, const CommandSample& next, const Estimate& estimate,
-              const Eigen::Ref<const Eigen::VectorXd>& sag, ControlOutput& out);
+  /// The command of the coming tick.
+  const CommandSample& plan() const { return command_.now(); }
 
-  const ReferenceBody& body() const { return body_; }
+  void update(const Estimate& estimate, ControlOutput& out);
+
+  Handover handover() const {
+    return {body_.state(), body_.dcog(), body_.target(), plan(), command_};
+  }
 
  private:
-  CogReference cog_reference(const CommandSample& command, const Estimate& estimate);
+  CogReference cog_reference(const Estimate& estimate);
+  Eigen::Vector2d zmp_gap(const Eigen::Vector2d& ref_zmp, double omega, double z);
   void lean_trunk(double omega, double z);
 
   const RobotModel* model_;
   DtadParams params_;
-  double dt_;
+  CommandPlan command_;
+  std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   ReferenceBody body_;
   SupportRegion region_;
-  Eigen::VectorXd offsets_;  // of the servo targets: ankles and sag [rad]
+  Eigen::VectorXd offsets_;  // of the servo targets: ankles and torque [rad]
   Side anchor_ = Side::left;
-  Eigen::Vector2d zmp_filtered_ = Eigen::Vector2d::Zero();  // z-hat [m]
-  Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();        // washed-out offset z-hat_d [m]
-  double fz_filtered_ = 0;                                  // [N]
-  Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();       // ZMP wanted less the one asked for [m]
-  Eigen::Vector3d lean_ = Eigen::Vector3d::Zero();          // of the trunk [rad]
-  Eigen::Vector3d lean_rate_ = Eigen::Vector3d::Zero();     // [rad/s]
-  bool first_ = true;                                       // no tick yet, from rest
+  ReactionFilter filter_;                                // measured ZMP and f_z
+  Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();     // accepted offset of the ZMP [m]
+  Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();    // ZMP wanted less the one asked for [m]
+  Eigen::Vector3d lean_ = Eigen::Vector3d::Zero();       // of the trunk [rad]
+  Eigen::Vector3d lean_rate_ = Eigen::Vector3d::Zero();  // [rad/s]
+  bool first_ = true;                                    // no tick yet, from rest
 };
 
 }  // namespace ayumi

@@ -1,18 +1,21 @@
-// Per axis x (y alike), hats measured, r reference, xi = x + dx/w, polygon Pi of the feet down:
-//   standing  Z(xi) = Pi[xd + (1 + q)(xi - xd)]
-//   stepping  Z(xi) = Pi[(xi_e - xi E) / (1 - E)],  E = exp(w T) to the landing, xi_e = p + b
+// Per axis x (y alike), hats measured, r reference, dcm = x + dx/w, Pi the support region:
+//   standing  Z(dcm) = Pi[xd + (1 + q)(dcm - xd)]                     (18)(19)
+//   stepping  Z(dcm) = Pi[(dcm_e - dcm E) / (1 - E)],  E = exp(w T) to the landing, dcm_e = p + b
 //   reffz = m (kz w)^2 (zd - zr) - 2 dz m kz w dzr + m g              (24), (25) with the mass
 //   w2    = reffz / (m zr)                                            (17)
-//   ddxr  = w2 (xr - Z(xi_r)) + ka w2 (zhat - Z(xi^)) + av w (dx^ - dxr) + ax w^2 (x^ - xr)
+//   ddxr  = w2 (xr - Z(dcm_r)) + ka w2 (zhat - Z(dcm^)) + av w (dx^ - dxr) + ax w^2 (x^ - xr)
 // The first term is (14) of the reference pendulum, the second the short-term absorption of
-// dtad.cpp, the others keep the reference at the robot. A foot lands where xi^ will need it:
-// Z + (xi^ - Z) E - b.
+// laws/dtad.cpp, the others keep the reference at the robot. A foot lands where dcm^ will need it:
+// Z + (dcm^ - Z) E - b. The joints follow by (28)(29), control/whole_body.
 #include "ayumi/control/laws/viip.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
-#include "ayumi/control/support.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/control/support_region.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -27,20 +30,42 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kMinForceShare = 0.1;    // of the weight: f_min of the projection of f_z
-constexpr double kLeastToLanding = 0.06;  // a landing is never aimed at from nearer than this [s]
-constexpr double kShiftNear = 0.027;      // xi is where the first step starts, times z
-constexpr double kShiftTime = 2.4;        // least length of the shift, times 1/omega
-constexpr double kSettle = 5;             // kept for standing after timed steps, times 1/omega
-constexpr double kTouchShare = 0.1;       // of the weight: the swing foot has landed
-constexpr double kTouchAfter = 0.6;       // of the swing: earlier forces are not a landing
-constexpr double kMostHurry = 4;          // of a step that comes sooner, times its own pace
-constexpr double kHabit = 0.5;            // of what a foot misses is learned at each landing
-constexpr double kMostHabit = 0.015;      // and at most this, times z
-constexpr double kLeastReplan = 0.03;     // a swing is not planned for less than this [s]
-constexpr double kFootClearance = 0.008;  // between the soles' sides [m]
+// Least time to a landing from which the regulator aims at it [s]. Chosen: the ZMP it asks for
+// grows with 1 / (1 - E); later only the foothold can still answer.
+constexpr double kLeastTimeToLanding = 0.06;
 
-GroundPose middle(const RobotModel& model, const std::array<Isometry3d, 2>& feet) {
+// Distance of the DCM from where the first step starts at which the weight shift ends, times z:
+// 6 mm on HOAP-1. Chosen with the prototype: nearer costs time, farther throws the DCM off.
+constexpr double kShiftDone = 0.027;
+
+// Least length of the weight shift, times 1/omega: 0.36 s on HOAP-1. Chosen with the prototype: the
+// regulator settles in it.
+constexpr double kShiftTime = 2.4;
+
+// Time kept for standing after timed steps, times 1/omega. Chosen: exp(-5) of an error is left.
+constexpr double kSettleTime = 5;
+
+// Share of the swing before which a force on the swing foot is not a landing. Chosen with the
+// prototype: a foot still drags after its lift-off, and lands early at most by a third of a swing.
+constexpr double kStepLandingAfter = 0.6;
+
+// Fastest clock of a step that comes sooner, times its own pace. Chosen: joint speeds bound the
+// swing before.
+constexpr double kStepTimeScaleLimit = 4;
+
+// Share of the difference between a landing error and the known bias that is taken over at each
+// landing. Chosen: the bias is known after three steps, a single push moves it by half.
+constexpr double kBiasShare = 0.5;
+
+// Largest landing bias, times z: 3.3 mm on HOAP-1. Chosen: twice the error that lagging servos make
+// (1.5 mm); what is more is a push.
+constexpr double kLandingBiasLimit = 0.015;
+
+// Time after which a lasting tilt of the stance foot counts as the ground's, times 1/omega: 1 s on
+// HOAP-1, as the offset time of DTAD.
+constexpr double kSlopeTime = 6.6;
+
+GroundPose ground_middle(const RobotModel& model, const std::array<Isometry3d, 2>& feet) {
   const GroundPose left = ground_pose(model, Side::left, feet[0]);
   const GroundPose right = ground_pose(model, Side::right, feet[1]);
   return {0.5 * (left.position + right.position),
@@ -51,15 +76,79 @@ Vector3d rotated(const Vector3d& v, double yaw) { return rpy_to_matrix({0, 0, ya
 
 }  // namespace
 
+ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
+  ViipParams p;
+  const std::map<std::string, double*> fields = {{"q", &p.pole_ratio},
+                                                 {"goal", &p.goal_lag},
+                                                 {"ka", &p.zmp_gain},
+                                                 {"av", &p.velocity_leak},
+                                                 {"ax", &p.position_leak},
+                                                 {"tau_z", &p.zmp_filter},
+                                                 {"margin", &p.margin},
+                                                 {"kz", &p.height_rate},
+                                                 {"dz", &p.height_damping},
+                                                 {"ankle", &p.ankle_share},
+                                                 {"single", &p.single_support},
+                                                 {"both", &p.double_support},
+                                                 {"lift", &p.lift},
+                                                 {"reach", &p.reach},
+                                                 {"hold", &p.recovery},
+                                                 {"inside", &p.zmp_inset},
+                                                 {"hurry", &p.early_step_bound},
+                                                 {"soonest", &p.least_step_time}};
+  std::vector<std::string> names;
+  for (const auto& [name, field] : fields) names.push_back(name);
+  auto set = [&](const std::string& name, double value, const std::string& where) {
+    if (!std::isfinite(value) || value < 0)
+      fail(ErrorCode::usage, where + ": gain " + name + " is " + text::brief(value) +
+                                 "; gains are finite and not negative");
+    const auto found = fields.find(name);
+    if (found == fields.end())
+      fail(ErrorCode::usage, where + ": viip has no gain '" + name + "'" +
+                                 text::suggestion(name, names) +
+                                 " (known: " + text::join(names, ", ") + ")");
+    *found->second = value;
+  };
+  for (const auto& [name, value] : model.description().control.viip)
+    set(name, value, model.name() + " sidecar");
+  if (spec.type.kind == ControllerKind::viip)
+    for (const auto& [name, value] : spec.gains) set(name, value, "controller gains");
+  for (const char* name : {"q", "goal", "tau_z", "kz", "single", "both", "lift"})
+    if (!(*fields.at(name) > 0))
+      fail(ErrorCode::usage, std::string("controller gains: ") + name + " must be positive");
+  if (p.height_damping < 1 - 1e-9)
+    fail(ErrorCode::usage, "controller gains: dz = " + text::brief(p.height_damping) +
+                               " overshoots; (25) asks for K_Dz^2 >= 4 m K_Pz, dz >= 1");
+  if (p.recovery > 1) fail(ErrorCode::usage, "controller gains: hold is a share, at most 1");
+  p.landings = spec.type.demonstration != Demonstration::no_feedback;
+  p.feedback = p.landings && spec.type.demonstration != Demonstration::landings_only;
+  return p;
+}
+
 double stepping_time(const ViipParams& p, double omega, int steps) {
-  return (kShiftTime + steps * (p.single + p.both) + kSettle) / omega;
+  return (kShiftTime + steps * (p.single_support + p.double_support) + kSettleTime) / omega;
 }
 
 double viip_force(const ViipParams& p, double mass, double omega, double goal, double z,
                   double dz) {
-  const double rate = p.kz * omega;
-  const double kp_z = mass * rate * rate, kd_z = 2 * p.dz * std::sqrt(mass * kp_z);
-  return kp_z * (goal - z) - kd_z * dz + mass * kGravity;
+  const double rate = p.height_rate * omega;
+  HeightGains gains;
+  gains.stiffness = mass * rate * rate;
+  gains.damping = 2 * p.height_damping * std::sqrt(mass * gains.stiffness);
+  return height_force(gains, mass * kGravity, goal, z, dz);
+}
+
+Vector2d viip_acceleration(const ViipParams& p, double omega, double omega2, double dt,
+                           const ReferencePendulum& reference, const Vector2d& measured_zmp,
+                           const Estimate& e, ReactionFilter& filter) {
+  Vector2d ddcog = horizontal_acceleration(omega2, reference.cog, reference.zmp);
+  if (!p.feedback) return ddcog;
+  ddcog += p.velocity_leak * omega * (e.dcog.head<2>() - reference.dcog) +
+           p.position_leak * omega * omega * (e.cog.head<2>() - reference.cog);
+  if (!e.contact) return ddcog;
+  filter.update(e, low_pass_share(dt, omega, p.zmp_filter));
+  ddcog += short_term_acceleration(p.zmp_gain, omega2, filter.zmp() - measured_zmp);
+  return ddcog;
 }
 
 Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipParams& params,
@@ -69,34 +158,40 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
       dt_(dt),
       omega_(std::sqrt(kGravity / (held.cog.z() - ground_of(held.feet)))),
       height_(held.cog.z() - ground_of(held.feet)),
+      command_(start.command),
       body_(model, limits, dt, start.reference, start.target, {.in_order = false}),
       data_(model),
       held_(held),
       plan_(held),
-      footsteps_(model, start.plan.feet, (params.single + params.both) / omega_,
-                 std::exp(params.single + params.both), params.hold, params.inside * height_) {
+      footsteps_(new_path(start.plan.feet)),
+      filter_(start.plan.zmp.head<2>(), start.plan.fz) {
   body_.take_over(start);
-  const GroundPose from = middle(model, held.feet);
+  const GroundPose from = ground_middle(model, held.feet);
   Vector3d from3(from.position.x(), from.position.y(), ground_of(held.feet));
   offset_ = rotated(held.cog - from3, -from.yaw);
   plan_.feet = start.plan.feet;
   plan_.support = Support::both;
   plan_.state.dtheta.setZero();
   if (start.plan.support == Support::right) anchor_ = Side::right;
-  zmp_filtered_ = start.plan.zmp.head<2>();
-  zmp_ = zmp_before_ = {zmp_filtered_, zmp_filtered_};
+  zmp_ = zmp_before_ = {filter_.zmp(), filter_.zmp()};
   next_ = plan_;
   body_.anchor(anchor_, plan_.feet[index(anchor_)]);
   finish_plan();
   plan_ = next_;
 }
 
+Footsteps Viip::new_path(const std::array<Isometry3d, 2>& feet) const {
+  const double period = params_.single_support + params_.double_support;
+  return Footsteps(*model_, feet, period / omega_, std::exp(period), params_.recovery,
+                   params_.zmp_inset * height_);
+}
+
 void Viip::set_goal(const ViipGoal& goal, long ticks) {
   ticks_left_ = ticks;
   if (const auto* cog = std::get_if<CogGoal>(&goal)) {
     displacement_[0] = cog->displacement;
-    steps_left_ = stage_ == Stage::single ? 1 : 0;  // a foot in the air comes down first
-    if (stage_ == Stage::shift) stage_ = Stage::stand;
+    steps_left_ = stage_ == Stage::single_support ? 1 : 0;  // a foot in the air comes down first
+    if (stage_ == Stage::weight_shift) stage_ = Stage::stand;
   } else if (const auto* steps = std::get_if<StepGoal>(&goal)) {
     steps_ = *steps;
     displacement_[0].setZero();
@@ -108,185 +203,174 @@ void Viip::set_goal(const ViipGoal& goal, long ticks) {
 
 // How many swings: as asked, or as many as fit.
 void Viip::start_steps() {
-  const double period = (params_.single + params_.both) / omega_;
-  const double time = static_cast<double>(ticks_left_) * dt_ - (kSettle + kShiftTime) / omega_;
+  const double period = (params_.single_support + params_.double_support) / omega_;
+  const double time = static_cast<double>(ticks_left_) * dt_ - (kSettleTime + kShiftTime) / omega_;
   steps_left_ = steps_.steps > 0 ? steps_.steps : std::max(0, static_cast<int>(time / period));
   if (steps_left_ == 0 || stage_ != Stage::stand) return;
-  footsteps_ = Footsteps(*model_, plan_.feet, period, std::exp(params_.single + params_.both),
-                         params_.hold, params_.inside * height_);
+  footsteps_ = new_path(plan_.feet);
   const bool left_first = steps_.velocity.y() > 0 || steps_.turn > 0;
   anchor_ = left_first ? Side::right : Side::left;
-  stage_ = Stage::shift;
+  stage_ = Stage::weight_shift;
   elapsed_ = 0;
 }
 
 Vector3d Viip::standing_goal(const Vector3d& displacement) const {
-  const GroundPose feet = middle(*model_, next_.feet);
+  const GroundPose feet = ground_middle(*model_, next_.feet);
   const Vector3d on_ground(feet.position.x(), feet.position.y(), ground_of(next_.feet));
   return on_ground + rotated(offset_ + displacement, feet.yaw);
 }
 
-Vector2d Viip::clipped(const Vector2d& zmp) const {
+// The nearest admissible ZMP, section 3.3 of the paper.
+Vector2d Viip::inside_support(const Vector2d& zmp) const {
   const ConvexPolygon polygon =
       support_polygon(*model_, plan_.feet, plan_.support).shrunk(params_.margin * height_);
   return polygon.empty() ? zmp : polygon.project(zmp);
 }
 
-Vector2d Viip::regulate(const Vector2d& xi, int state) const {
+PlannedStep Viip::planned_step(Side stance) const {
+  return footsteps_.step(steps_, stance, ground_pose(*model_, stance, plan_.feet[index(stance)]),
+                         steps_left_, offset_.head<2>());
+}
+
+Vector2d Viip::regulate(const Vector2d& dcm, int state) const {
   const auto standing = [&](const Vector2d& goal) -> Vector2d {
-    return goal + (1 + params_.q) * (xi - goal);
+    return regulating_zmp(goal, params_.pole_ratio, dcm);
   };
-  const auto arriving = [&](Side stance, int left, double time) {
-    const PlannedStep step =
-        footsteps_.step(steps_, stance, ground_pose(*model_, stance, plan_.feet[index(stance)]),
-                        left, offset_.head<2>());
-    return zmp_to_arrive(xi, step.landing.position + step.offset, std::exp(omega_ * time));
+  const auto arriving = [&](Side stance, double time) {
+    const PlannedStep step = planned_step(stance);
+    return zmp_to_arrive(dcm, step.landing.position + step.offset, std::exp(omega_ * time));
   };
-  const double single = params_.single / omega_, both = params_.both / omega_;
+  const double single = params_.single_support / omega_, both = params_.double_support / omega_;
   switch (stage_) {
     case Stage::stand:
       break;
-    case Stage::shift: {
-      const PlannedStep step = footsteps_.step(
-          steps_, anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]), steps_left_,
-          offset_.head<2>());
-      const Vector2d way = step.landing.position + step.offset - step.stance_place;
-      return clipped(standing(step.stance_place + way * std::exp(-params_.single)));
+    case Stage::weight_shift: {
+      const PlannedStep step = planned_step(anchor_);
+      const Vector2d to_landing = step.landing.position + step.offset - step.stance_place;
+      return inside_support(
+          standing(step.stance_place + to_landing * std::exp(-params_.single_support)));
     }
-    case Stage::single:
+    case Stage::single_support:
       // Shortly before the landing only the foothold can still answer.
-      if (to_landing() < kLeastToLanding) return clipped(zmp_[state]);
-      return clipped(arriving(anchor_, steps_left_, to_landing()));
-    case Stage::both: {
+      if (time_to_landing() < kLeastTimeToLanding) return inside_support(zmp_[state]);
+      return inside_support(arriving(anchor_, time_to_landing()));
+    case Stage::double_support: {
       const double share = std::min(1.0, elapsed_ / both);
       const Vector2d& before = zmp_before_[state];
       if (steps_left_ == 0) {
         const Vector2d after = standing(standing_goal(displacement_[2]).head<2>());
-        return clipped((1 - share) * before + share * after);
+        return inside_support((1 - share) * before + share * after);
       }
-      // From foot to foot the ZMP goes gradually; what a push asks for beside that, at once.
+      // From foot to foot the ZMP moves gradually; the answer to a push is added at once.
       const Side foot = other(anchor_);
       const Vector2d place =
           footsteps_.zmp_on(foot, ground_pose(*model_, foot, plan_.feet[index(foot)]));
-      const Vector2d after = arriving(foot, steps_left_, both - elapsed_ + single);
-      return clipped((1 - share) * before + share * place + (after - place));
+      const Vector2d after = arriving(foot, both - elapsed_ + single);
+      return inside_support((1 - share) * before + share * place + (after - place));
     }
   }
-  return clipped(standing(standing_goal(displacement_[2]).head<2>()));
+  return inside_support(standing(standing_goal(displacement_[2]).head<2>()));
 }
 
+// (24), (16), (17), then (14)(15) closed on the measured ZMP.
 CogReference Viip::cog_reference(const Estimate& e) {
   const double m = model_->mass(), ground = ground_of(plan_.feet);
   const Vector3d goal = standing_goal(displacement_[2]);
   const double z = body_.cog().z() - ground;
   CogReference ref;
-  ref.fz = std::max(kMinForceShare * m * kGravity,
-                    viip_force(params_, m, omega_, goal.z() - ground, z, body_.dcog().z()));
-  ref.ddcog.z() = ref.fz / m - kGravity;
+  ref.fz =
+      admissible_force(viip_force(params_, m, omega_, goal.z() - ground, z, body_.dcog().z()), m);
+  ref.ddcog.z() = vertical_acceleration(ref.fz, m);
   const double w2 = omega_squared(ref.fz, m, z);
 
-  const Vector2d x = body_.cog().head<2>(), dx = body_.dcog().head<2>();
-  const Vector2d x_hat = e.cog.head<2>(), dx_hat = e.dcog.head<2>();
-  zmp_[1] = regulate(x + dx / omega_, 1);
-  zmp_[0] = params_.feedback ? regulate(x_hat + dx_hat / omega_, 0) : zmp_[1];
+  zmp_[1] = regulate(divergent_component(body_.cog(), body_.dcog(), omega_).head<2>(), 1);
+  zmp_[0] = params_.feedback ? regulate(divergent_component(e.cog, e.dcog, omega_).head<2>(), 0)
+                             : zmp_[1];
   ref.zmp << zmp_[0], ground;
-  Vector2d ddx = w2 * (x - zmp_[1]);
-  if (params_.feedback) {
-    ddx += params_.av * omega_ * (dx_hat - dx) + params_.ax * omega_ * omega_ * (x_hat - x);
-    if (e.contact) {
-      const double filter = 1.0 - std::exp(-dt_ * omega_ / params_.tau_z);
-      zmp_filtered_ += filter * (e.zmp.head<2>() - zmp_filtered_);
-      ddx += params_.ka * w2 * (zmp_filtered_ - zmp_[0]);
-    }
-  }
-  ref.ddcog.head<2>() = ddx;
+  const ReferencePendulum reference = {body_.cog().head<2>(), body_.dcog().head<2>(), zmp_[1]};
+  ref.ddcog.head<2>() = viip_acceleration(params_, omega_, w2, dt_, reference, zmp_[0], e, filter_);
   return ref;
 }
 
-void Viip::start_single() {
-  stage_ = Stage::single;
+void Viip::start_single_support() {
+  stage_ = Stage::single_support;
   elapsed_ = 0;
-  swing_rate_.setZero();
-  swing_acceleration_.setZero();
+  swing_.stop();
   if (steps_.steps == 0) {
-    const double period = (params_.single + params_.both) / omega_;
-    const double time = static_cast<double>(ticks_left_) * dt_ - kSettle / omega_;
+    const double period = (params_.single_support + params_.double_support) / omega_;
+    const double time = static_cast<double>(ticks_left_) * dt_ - kSettleTime / omega_;
     steps_left_ = std::max(1, static_cast<int>(time / period));
   }
   footsteps_.meet(anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]));
 }
 
-double Viip::to_landing() const {
-  return std::max(params_.single / omega_ - elapsed_, 0.0) / rate_;
+double Viip::time_to_landing() const {
+  return std::max(params_.single_support / omega_ - elapsed_, 0.0) / time_scale_;
 }
 
-// With Z at the edge xi gets away from where the foot was to meet it by a + c E, E = exp(w T): the
-// step comes as much sooner as keeps that within `hurry` z.
-void Viip::hurry(const PlannedStep& step, const Vector2d& xi) {
-  const double left = std::max(params_.single / omega_ - elapsed_, 0.0);
-  rate_ = 1;
+// With Z at the edge the DCM misses the place where the foot was to meet it by a + c E,
+// E = exp(w T): the step comes as much sooner as keeps that within `early_step_bound` z.
+void Viip::choose_time_scale(const PlannedStep& step, const Vector2d& dcm) {
+  const double left = std::max(params_.single_support / omega_ - elapsed_, 0.0);
+  time_scale_ = 1;
   if (!params_.feedback || left <= dt_) return;
-  const Vector2d a = zmp_[0] - step.offset - step.landing.position, c = xi - zmp_[0];
-  const double bound = params_.hurry * height_, grown = std::exp(omega_ * left);
+  const Vector2d a = zmp_[0] - step.offset - step.landing.position, c = dcm - zmp_[0];
+  const double bound = params_.early_step_bound * height_, grown = std::exp(omega_ * left);
   if ((a + c * grown).norm() <= bound) return;
   // The larger root of |a + c E| = bound.
   const double cc = c.squaredNorm(), ac = a.dot(c);
   const double root = ac * ac - cc * (a.squaredNorm() - bound * bound);
   const double growth = root > 0 ? (std::sqrt(root) - ac) / cc : 1.0;
-  const double time = std::max(std::log(std::max(growth, 1.0)), params_.soonest) / omega_;
-  rate_ = std::clamp(left / time, 1.0, kMostHurry);
+  const double time = std::max(std::log(std::max(growth, 1.0)), params_.least_step_time) / omega_;
+  time_scale_ = std::clamp(left / time, 1.0, kStepTimeScaleLimit);
 }
 
-// The swing foot lifts off, goes to the landing point, which moves, and comes down.
-void Viip::swing(const Vector2d& xi) {
-  const double length = params_.single / omega_;
+// Where the DCM will need the foot, within reach and beside the stance foot.
+Vector2d Viip::landing_point(const PlannedStep& step, const Vector2d& dcm) const {
   const Side foot = other(anchor_);
-  const PlannedStep step =
-      footsteps_.step(steps_, anchor_, ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]),
-                      steps_left_, offset_.head<2>());
-  const Vector2d zmp = zmp_[0];
-  hurry(step, xi);
-  const double growth = std::exp(omega_ * to_landing());
-  Vector2d target = zmp + (xi - zmp) * growth - step.offset;
+  const double growth = std::exp(omega_ * time_to_landing());
+  Vector2d target = zmp_[0] + (dcm - zmp_[0]) * growth - step.offset;
   const Vector2d nominal = step.landing.position;
   const double reach = params_.reach * height_;
   for (int i = 0; i < 2; ++i)
     target[i] = std::clamp(target[i], nominal[i] - reach, nominal[i] + reach);
-  target -= Eigen::Rotation2Dd(step.landing.yaw) * habit_[index(foot)];
-  // Soles side by side, seen from the stance foot.
+  target -= Eigen::Rotation2Dd(step.landing.yaw) * landing_bias_[index(foot)];
   const GroundPose stance = ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]);
-  Vector2d way = Eigen::Rotation2Dd(-stance.yaw) * (target - stance.position);
-  const double beside = 2 * sole_half_width(*model_) + kFootClearance;
+  Vector2d beside_stance = Eigen::Rotation2Dd(-stance.yaw) * (target - stance.position);
+  const double beside = 2 * sole_half_width(*model_) + kSoleClearance;
   if (foot == Side::left)
-    way.y() = std::max(way.y(), beside);
+    beside_stance.y() = std::max(beside_stance.y(), beside);
   else
-    way.y() = std::min(way.y(), -beside);
-  target = stance.position + Eigen::Rotation2Dd(stance.yaw) * way;
-
-  // Least jerk from where the foot is to rest on the target, planned anew in every tick.
-  GroundPose at = ground_pose(*model_, foot, plan_.feet[index(foot)]);
-  const double begin = kSwingMargin * length;
-  const double time = ((1 - kSwingMargin) * length - elapsed_) / rate_;
-  if (elapsed_ > begin && time > dt_) {
-    const Vector3d way_left(target.x() - at.position.x(), target.y() - at.position.y(),
-                            std::remainder(step.landing.yaw - at.yaw, 2 * M_PI));
-    const double t = std::max(time, kLeastReplan);
-    const Vector3d jerk =
-        60 / (t * t * t) * way_left - 36 / (t * t) * swing_rate_ - 9 / t * swing_acceleration_;
-    swing_acceleration_ += dt_ * jerk;
-    swing_rate_ += dt_ * swing_acceleration_;
-    at.position += dt_ * swing_rate_.head<2>();
-    at.yaw += dt_ * swing_rate_.z();
-  }
-  const double after = std::min(1.0, (elapsed_ + rate_ * dt_) / length);
-  const double up = std::pow(4 * after * (1 - after), 3);
-  const double ground = plan_.feet[index(anchor_)].translation().z();
-  next_.feet[index(foot)] = sole_frame(*model_, foot, at, ground + up * params_.lift * height_);
+    beside_stance.y() = std::min(beside_stance.y(), -beside);
+  return stance.position + Eigen::Rotation2Dd(stance.yaw) * beside_stance;
 }
 
-// Where the landed foot stands beside the other one, from where the plan has it: the plan does not
-// follow, its path does. To be asked when it bears: at first touch it is still on its way.
-Vector2d Viip::missed(const Estimate& e, Side foot) {
+// The swing foot lifts off, goes to the landing point, which moves, and comes down.
+void Viip::move_swing_foot(const Vector2d& dcm) {
+  const double length = params_.single_support / omega_;
+  const Side foot = other(anchor_);
+  const PlannedStep step = planned_step(anchor_);
+  choose_time_scale(step, dcm);
+  const Vector2d target = landing_point(step, dcm);
+  GroundPose at = ground_pose(*model_, foot, plan_.feet[index(foot)]);
+  const double begin = kSwingMargin * length;
+  const double time = ((1 - kSwingMargin) * length - elapsed_) / time_scale_;
+  if (elapsed_ > begin && time > dt_) {
+    const Vector3d remaining(target.x() - at.position.x(), target.y() - at.position.y(),
+                             std::remainder(step.landing.yaw - at.yaw, 2 * M_PI));
+    const Vector3d move = swing_.step(remaining, time, dt_);
+    at.position += move.head<2>();
+    at.yaw += move.z();
+  }
+  const double after = std::min(1.0, (elapsed_ + time_scale_ * dt_) / length);
+  const double ground = plan_.feet[index(anchor_)].translation().z();
+  next_.feet[index(foot)] =
+      sole_frame(*model_, foot, at, ground + swing_height(after) * params_.lift * height_);
+}
+
+// Where the landed foot stands beside the other one, less where the plan has it: the plan does not
+// follow, its path does. It is asked when the foot bears: at first touch it still moves.
+Vector2d Viip::landing_error(const Estimate& e, Side foot) {
   update_positions(*model_, e.state, data_);
   const auto off = [&](Side side) -> Vector3d {
     return sole_pose(*model_, data_, side).translation() - plan_.feet[index(side)].translation();
@@ -294,63 +378,62 @@ Vector2d Viip::missed(const Estimate& e, Side foot) {
   return (off(foot) - off(other(foot))).head<2>();
 }
 
-// What a foot misses step after step it is aimed off by; what a push made it miss once, hardly.
-void Viip::learn(const Vector2d& miss) {
-  footsteps_.shift(miss);
+// First-order estimate of the systematic landing error, which landing_point() subtracts.
+void Viip::update_landing_bias(const Vector2d& error) {
+  footsteps_.shift(error);
   const double yaw = ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]).yaw;
-  Vector2d& habit = habit_[index(anchor_)];
-  habit += kHabit * (Eigen::Rotation2Dd(-yaw) * miss - habit);
-  const double most = kMostHabit * height_;
-  if (habit.norm() > most) habit *= most / habit.norm();
+  Vector2d& bias = landing_bias_[index(anchor_)];
+  bias += kBiasShare * (Eigen::Rotation2Dd(-yaw) * error - bias);
+  const double most = kLandingBiasLimit * height_;
+  if (bias.norm() > most) bias *= most / bias.norm();
 }
 
-// Stages, feet and support of the next tick.
-void Viip::go_on(const Estimate& e) {
+// Stage, feet and support of the next tick.
+void Viip::step_state_machine(const Estimate& e) {
   next_ = plan_;
-  elapsed_ += rate_ * dt_;
+  elapsed_ += time_scale_ * dt_;
   --ticks_left_;
-  const double lag = 1 - std::exp(-dt_ * omega_ / params_.goal);
+  const double lag = low_pass_share(dt_, omega_, params_.goal_lag);
   for (int i : {1, 2}) displacement_[i] += lag * (displacement_[i - 1] - displacement_[i]);
-  const Vector2d xi = params_.feedback
-                          ? Vector2d(e.cog.head<2>() + e.dcog.head<2>() / omega_)
-                          : Vector2d(body_.cog().head<2>() + body_.dcog().head<2>() / omega_);
-  const double single = params_.single / omega_, both = params_.both / omega_;
-  if (stage_ == Stage::shift) {
-    // xi is where the regulator wants it when the ZMP it asks for is xi itself.
-    const double gap = (zmp_[0] - xi).norm() / params_.q;
+  const Vector3d dcm = params_.feedback ? divergent_component(e.cog, e.dcog, omega_)
+                                        : divergent_component(body_.cog(), body_.dcog(), omega_);
+  const double single = params_.single_support / omega_, both = params_.double_support / omega_;
+  if (stage_ == Stage::weight_shift) {
+    // The DCM is where the regulator wants it when the ZMP it asks for is the DCM itself.
+    const double gap = (zmp_[0] - dcm.head<2>()).norm() / params_.pole_ratio;
     if (steps_left_ == 0)
       stage_ = Stage::stand;
-    else if (elapsed_ > kShiftTime / omega_ && gap < kShiftNear * height_)
-      start_single();
-  } else if (stage_ == Stage::single) {
+    else if (elapsed_ > kShiftTime / omega_ && gap < kShiftDone * height_)
+      start_single_support();
+  } else if (stage_ == Stage::single_support) {
     const Side foot = other(anchor_);
-    swing(xi);
-    const bool touched = params_.landings && elapsed_ > kTouchAfter * single &&
-                         e.foot_fz[index(foot)] > kTouchShare * model_->mass() * kGravity;
-    if (touched || elapsed_ >= single) {
+    move_swing_foot(dcm.head<2>());
+    const bool landed =
+        params_.landings && elapsed_ > kStepLandingAfter * single && bears(*model_, e, foot);
+    if (landed || elapsed_ >= single) {
       next_.feet[index(foot)].translation().z() = plan_.feet[index(anchor_)].translation().z();
       footsteps_.advance(steps_, anchor_, steps_left_);
       --steps_left_;
       zmp_before_ = zmp_;
-      stage_ = Stage::both;
+      stage_ = Stage::double_support;
       elapsed_ = 0;
-      rate_ = 1;
+      time_scale_ = 1;
     }
-  } else if (stage_ == Stage::both && elapsed_ >= both) {
+  } else if (stage_ == Stage::double_support && elapsed_ >= both) {
     if (steps_left_ > 0) {
       anchor_ = other(anchor_);
-      if (params_.feedback) learn(missed(e, anchor_));
-      start_single();
+      if (params_.feedback) update_landing_bias(landing_error(e, anchor_));
+      start_single_support();
     } else {
       stage_ = Stage::stand;
     }
   }
-  next_.support = stage_ == Stage::single ? on(anchor_) : Support::both;
+  next_.support = stage_ == Stage::single_support ? on(anchor_) : Support::both;
 }
 
 // COG, ZMP and trunk of the plan that the judge and the resolution see.
 void Viip::finish_plan() {
-  const GroundPose feet = middle(*model_, next_.feet);
+  const GroundPose feet = ground_middle(*model_, next_.feet);
   const double yaw_before = matrix_to_rpy(plan_.state.base.attitude.toRotationMatrix()).z();
   next_.state.base = body_.state().base;
   next_.state.base.attitude =
@@ -370,20 +453,18 @@ void Viip::finish_plan() {
   next_.fz = model_->mass() * kGravity;
 }
 
-ControlOutput Viip::update(const Estimate& estimate) {
-  ControlOutput out;
+void Viip::update(const Estimate& estimate, ControlOutput& out) {
   next_ = plan_;
   body_.anchor(anchor_, plan_.feet[index(anchor_)]);
   out.cog = body_.cog();
   const CogReference wanted = cog_reference(estimate);
-  const double ankle = params_.feedback ? params_.ankle : 0;
+  const double ankle = params_.feedback ? params_.ankle_share : 0;
   const Eigen::VectorXd offsets =
-      body_.ankle_offsets(estimate, {.share = ankle, .forget = 6.6 / omega_});
-  go_on(estimate);
+      body_.ankle_offsets(estimate, {.share = ankle, .slope_time = kSlopeTime / omega_});
+  step_state_machine(estimate);
   body_.advance(wanted, height_, plan_, next_, offsets, out);
   finish_plan();
   plan_ = next_;
-  return out;
 }
 
 }  // namespace ayumi

@@ -3,44 +3,63 @@
 // motion is the pendulum's own: a regulator chooses ref ZMP, (24) the vertical force, the feet are
 // placed where the pendulum will need them. Law and derivation: docs/theory.md.
 
+#include "ayumi/control/feedback.hpp"
 #include "ayumi/control/footsteps.hpp"
-#include "ayumi/control/reference_body.hpp"
+#include "ayumi/control/swing_foot.hpp"
+#include "ayumi/control/whole_body.hpp"
+#include "ayumi/motion/controller_spec.hpp"
 #include "ayumi/motion/viip_goal.hpp"
 
 namespace ayumi {
 
-/// Dimensionless: rates in units of omega = sqrt(g / z), lengths in units of the COG height z.
+/// Dimensionless gains: rates in units of omega = sqrt(g / z), times in units of 1 / omega, lengths
+/// in units of the COG height z. The names in files and on the command line are those in brackets.
+/// Where the values come from: docs/theory.md, "VIIP".
 struct ViipParams {
-  double q = 0.75;        ///< second pole of the standing regulator
-  double goal = 0.3;      ///< time constant of each of two lags of a displacement, times 1/omega
-  double ka = 2;          ///< short-term loop on the measured ZMP
-  double av = 3;          ///< leak of the reference velocity to the measured one
-  double ax = 1;          ///< leak of the reference COG to the measured one
-  double tau_z = 0.066;   ///< low-pass of the measured ZMP, times 1/omega
-  double margin = 0.01;   ///< kept inside the support polygon, times z
-  double kz = 1.5;        ///< sqrt(K_Pz / m) of (24), times omega
-  double dz = 1;          ///< K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
-  double ankle = 0.5;     ///< share of the stance foot's tilt taken back at the ankle
-  double single = 1.7;    ///< length of a single support, times 1/omega
-  double both = 0.4;      ///< of a double support, times 1/omega
-  double lift = 0.09;     ///< of the swing sole, times z
-  double reach = 0.5;     ///< largest departure from a nominal foothold, times z
-  double hurry = 0.1;     ///< a foothold moved farther than this comes sooner, times z
-  double soonest = 0.75;  ///< least time left to a step that comes sooner, times 1/omega
-  double inside = 0.05;   ///< nominal ZMP, from the sole's centre to the other foot, times z
-  double hold = 0.5;      ///< share of a foot's error of place taken back by the next step
-  bool feedback = true;   ///< false: the reference pendulum alone, a demonstration
-  bool landings = true;   ///< false: a foot lands when its time is up, whatever its cells say
+  double pole_ratio = 0.75;       ///< [q] second pole of the standing regulator
+  double goal_lag = 0.3;          ///< [goal] time constant of each of two lags of a displacement
+  double zmp_gain = 2;            ///< [ka] short-term loop on the measured ZMP
+  double velocity_leak = 3;       ///< [av] pull of the reference velocity to the measured one
+  double position_leak = 1;       ///< [ax] pull of the reference COG to the measured one
+  double zmp_filter = 0.066;      ///< [tau_z] low pass of the measured ZMP
+  double margin = 0.01;           ///< [margin] kept inside the support region
+  double height_rate = 1.5;       ///< [kz] sqrt(K_Pz / m) of (24)
+  double height_damping = 1;      ///< [dz] K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
+  double ankle_share = 0.5;       ///< [ankle] share of the stance foot's tilt turned back
+  double single_support = 1.7;    ///< [single] length of a single support
+  double double_support = 0.4;    ///< [both] length of a double support
+  double lift = 0.09;             ///< [lift] of the swing sole
+  double reach = 0.5;             ///< [reach] largest distance of a foothold from the nominal one
+  double early_step_bound = 0.1;  ///< [hurry] a foothold moved farther than this comes sooner
+  double least_step_time = 0.75;  ///< [soonest] least time left to a step that comes sooner
+  double zmp_inset = 0.05;  ///< [inside] nominal ZMP, from the sole's centre to the other foot
+  double recovery = 0.5;    ///< [hold] share of a foot's error that the next step takes back
+  bool feedback = true;     ///< false: the reference pendulum alone, a demonstration
+  bool landings = true;     ///< false: a foot lands when its time is up, a demonstration
 };
 
 /// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
 /// unknown gain or a value out of range, for dz with (25).
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec);
 
-/// What `steps` counted steps take from standing to standing [s].
+/// The pendulum that VIIP regulates: its state and the ZMP its regulator asks for [m], [m/s].
+struct ReferencePendulum {
+  Eigen::Vector2d cog, dcog, zmp;
+};
+
+/// Horizontal acceleration of the reference [m/s^2]: (14)(15) of the reference pendulum, the
+/// short-term absorption of DTAD, and pulls to the measured COG and its velocity. `measured_zmp` is
+/// what the regulator asks for by the measured state. `filter` takes in the estimate.
+Eigen::Vector2d viip_acceleration(const ViipParams& params, double omega, double omega2, double dt,
+                                  const ReferencePendulum& reference,
+                                  const Eigen::Vector2d& measured_zmp, const Estimate& estimate,
+                                  ReactionFilter& filter);
+
+/// How long `steps` counted steps take from standing to standing [s].
 double stepping_time(const ViipParams& params, double omega, int steps);
 
-/// Ref f_z of (24) [N] for a COG at height z moving at dz that is to be at `goal`.
+/// Ref f_z of (24) with the gains of `params` [N] for a COG at height z moving at dz that is to be
+/// at `goal`.
 double viip_force(const ViipParams& params, double mass, double omega, double goal, double z,
                   double dz);
 
@@ -59,51 +78,57 @@ class Viip {
   /// Feet, support, COG and ZMP of the coming tick.
   const CommandSample& plan() const { return plan_; }
 
-  ControlOutput update(const Estimate& estimate);
+  void update(const Estimate& estimate, ControlOutput& out);
 
-  const ReferenceBody& body() const { return body_; }
+  Handover handover() const {
+    return {body_.state(), body_.dcog(), body_.target(), plan_, command_};
+  }
 
  private:
-  enum class Stage { stand, shift, single, both };
+  enum class Stage { stand, weight_shift, single_support, double_support };
 
   Eigen::Vector3d standing_goal(const Eigen::Vector3d& displacement) const;
-  Eigen::Vector2d regulate(const Eigen::Vector2d& xi, int state) const;
-  Eigen::Vector2d clipped(const Eigen::Vector2d& zmp) const;
+  Eigen::Vector2d regulate(const Eigen::Vector2d& dcm, int state) const;
+  Eigen::Vector2d inside_support(const Eigen::Vector2d& zmp) const;
   CogReference cog_reference(const Estimate& estimate);
-  void go_on(const Estimate& estimate);
+  PlannedStep planned_step(Side stance) const;
+  Footsteps new_path(const std::array<Eigen::Isometry3d, 2>& feet) const;
+  void step_state_machine(const Estimate& estimate);
   void start_steps();
-  void start_single();
-  double to_landing() const;
-  void hurry(const PlannedStep& step, const Eigen::Vector2d& xi);
-  void swing(const Eigen::Vector2d& xi);
-  void learn(const Eigen::Vector2d& miss);
-  Eigen::Vector2d missed(const Estimate& estimate, Side foot);
+  void start_single_support();
+  double time_to_landing() const;
+  void choose_time_scale(const PlannedStep& step, const Eigen::Vector2d& dcm);
+  Eigen::Vector2d landing_point(const PlannedStep& step, const Eigen::Vector2d& dcm) const;
+  void move_swing_foot(const Eigen::Vector2d& dcm);
+  Eigen::Vector2d landing_error(const Estimate& estimate, Side foot);
+  void update_landing_bias(const Eigen::Vector2d& error);
   void finish_plan();
 
   const RobotModel* model_;
   ViipParams params_;
   double dt_, omega_, height_;
+  CommandPlan command_;  // of the pattern, for the next law
   ReferenceBody body_;
   RobotData data_;
   CommandSample held_, plan_, next_;
   Eigen::Vector3d offset_;  // held COG from the middle of the feet, axes of the feet [m]
-  // Asked, and on the way there through two lags.
+  // COG displacement: as asked, after one lag and after two, where it is followed [m].
   std::array<Eigen::Vector3d, 3> displacement_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                                                   Eigen::Vector3d::Zero()};
   StepGoal steps_;
   int steps_left_ = 0;
   long ticks_left_ = 0;
   Stage stage_ = Stage::stand;
-  double elapsed_ = 0;        // in this stage [s]
-  double rate_ = 1;           // of its clock: a step that comes sooner runs faster
+  double elapsed_ = 0;        // in this stage, by its clock [s]
+  double time_scale_ = 1;     // of that clock: a step that comes sooner runs faster
   Side anchor_ = Side::left;  // foot the reference stands on
   Footsteps footsteps_;
-  // What each foot always misses of its plan when it lands, axes of the foot [m].
-  std::array<Eigen::Vector2d, 2> habit_ = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-  Eigen::Vector2d zmp_filtered_;
-  Eigen::Vector3d swing_rate_, swing_acceleration_;  // of x, y, yaw of the foot in the air
-  // Clipped ref ZMP by the measured and by the reference state: now, and at the end of the last
-  // single support.
+  // Systematic error of each foot's landing, axes of the foot [m].
+  std::array<Eigen::Vector2d, 2> landing_bias_ = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  ReactionFilter filter_;  // measured ZMP
+  SwingReplan<3> swing_;   // x, y, yaw of the foot in the air
+  // Ref ZMP inside the support by the measured and by the reference state: now, and at the end of
+  // the last single support.
   std::array<Eigen::Vector2d, 2> zmp_, zmp_before_;
 };
 

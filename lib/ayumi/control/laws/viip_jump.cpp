@@ -1,12 +1,14 @@
 // Heights above the ground, r = ref z_G, per unit mass; the reference body obeys z'' = f_z/m - g.
-//   stoop   f_z/m = (kz w)^2 (r - zd - z) - 2 dz kz w z' + g            (24)(25)
-//   push    f_z/m = k (r - z) + g,  k = 2 g zH / zd^2, until z = r      (26)
-//           in its last tick z' = sqrt(2 g (r + zH - z)): the planned apex whatever the tick
-//   flight  ballistic; base velocity V_b = M_bb^-1 ([m v; L] - M_bq dtheta), L its own at release
-//   absorb  f_z/m = k (z1 - z) + g, k = z1'^2 / zd^2, until z' = 0      (27)
-//   settle  as the stoop, towards r
-// Zero angular momentum at release: that of a resolution is affine in the trunk's rate, so four
-// resolutions give the rate that leaves none; it is blended in along the push, out along (27).
+//   stoop    f_z/m = (kz w)^2 (r - zd - z) - 2 dz kz w z' + g            (24)(25)
+//   push     f_z/m = k (r - z) + g,  k = 2 g zH / zd^2, until z = r      (26)
+//            in its last tick z' = sqrt(2 g (r + zH - z)): the planned apex whatever the tick
+//   flight   ballistic; no foot is anchored and momentum gives the base velocity,
+//            V_b = M_bb^-1 ([m v; L_B] - M_bq dtheta),  L_B = L + (p_G - p_B) x m v,
+//            with L its own at release; the IMU gives the attitude, the parabola the position
+//   landing  f_z/m = k (z1 - z) + g, k = z1'^2 / zd^2, until z' = 0      (27)
+//   settle   as the stoop, towards r
+// Zero angular momentum at release: that of a resolution (28) is affine in the trunk's rate, so
+// four resolutions give the rate that leaves none; it is blended in along the push, out along (27).
 #include "ayumi/control/laws/viip_jump.hpp"
 
 #include <Eigen/LU>
@@ -15,17 +17,17 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/control/laws/jump_parts.hpp"
-#include "ayumi/control/support.hpp"
+#include "ayumi/control/support_region.hpp"
+#include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/math/weighted_solve.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
-using namespace jump;
 using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
@@ -35,21 +37,99 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kMinForceShare = 0.1;  // of the weight, where feet are to stay on the ground
-constexpr double kStoopTime = 5;        // least length of the stoop, times 1/omega
-constexpr double kStoopNear = 0.01;     // of ref z_G: the stoop is reached
-constexpr double kLean = 1.2;           // of the trunk when stooped, times z_d / ref z_G [rad]
-constexpr double kSettleRate = 2.2;     // sqrt(K_Pz / m) after the landing, times omega
-constexpr double kLift = 0.5;           // ground force that counts as none [N]
-constexpr double kLiftTime = 0.015;     // for which it must last [s]
-constexpr double kTargetRate = 3;       // of servo targets, times the joint's speed: they lead it
-constexpr double kForwardTime = 0.3;    // over which torques are faded in and out [s]
+// Least length of the stoop, times 1/omega: 0.75 s on HOAP-1. Measured with the prototype: a stoop
+// of 0.4 s leaves the apex 5 mm low, one of 0.8 s does not.
+constexpr double kStoopTime = 5;
+
+// Distance from its depth at which the stoop is reached, times ref z_G: 2 mm on HOAP-1. Chosen: an
+// error of the depth that changes the apex by less than the acceptance of 5 %.
+constexpr double kStoopReached = 0.01;
+
+// Lean of the trunk when stooped, times z_d / ref z_G [rad]. Measured: docs/theory.md, "Lean"; 0
+// leaves the apex of springs 8 to 10 % low.
+constexpr double kStoopLean = 1.2;
+
+// sqrt(K_Pz / m) after the landing, times omega. Chosen: back at ref z_G within the 0.6 s that the
+// acceptance asks for.
+constexpr double kSettleRate = 2.2;
+
+// Ground force that counts as none [N], and the time for which it must last [s]. Measured with the
+// prototype: without that time the release goes by chattering contacts, apex 10 mm instead of 20.
+constexpr double kNoForce = 0.5;
+constexpr double kNoForceTime = 0.015;
+
+// Largest step of a servo target, times the joint's speed limit: targets lead the joint by
+// (kd dtheta + tau) / kp, and that lead must build up within the push. Chosen.
+constexpr double kTargetRate = 3;
+
+// Time over which the torque feedforward is faded in and out [s]. Chosen: within the stoop, and
+// long against the servos' kd / kp of 20 ms.
+constexpr double kTorqueFadeTime = 0.3;
+
+// The legs run on after release with this time constant [s]: stopping them at once asks for tens of
+// newton metres (docs/theory.md, "Flight"). The prototype had 20 ms.
+constexpr double kRunOnTime = 0.030;
+
+// Before touchdown the legs give way to the ground for this time [s], up to this share of the
+// falling speed. Measured with the prototype: a share of 1 retracts too far.
+constexpr double kRetractionTime = 0.050;
+constexpr double kRetractionShare = 0.6;
+
+// Longest retraction as a share of the flight. Chosen: the legs still have the flight's middle to
+// swing to where they land.
+constexpr double kRetractionFlightShare = 0.4;
+
+// Time after release in which forces are not a touchdown yet [s]. Chosen with the prototype: the
+// feet may still touch the ground they leave.
+constexpr double kTouchdownBlindTime = 0.040;
+
+// Touchdown: a force of this share of the weight that lasts this long [s], or at once from the
+// harder share on. Chosen: above the noise of the load cells, within three ticks of the impact.
+constexpr double kTouchdownShare = 0.1;
+constexpr double kTouchdownTime = 0.003;
+constexpr double kHardTouchdownShare = 0.4;
+
+// A flight that is longer than planned by this ends as if it had touched down [s]. Chosen: half of
+// a flight of 0.1 m; the landing then meets a ground that is lower than planned.
+constexpr double kLateTouchdown = 0.15;
+
+// Correction of the feet in flight [1/s], pull towards the held posture [1/s], damping of the
+// flight's solve (times trace / rows) and the length that makes its angular rows comparable with
+// linear ones [m]. Chosen as in control/whole_body; the feet have only the flight's 0.1 s.
+constexpr double kFlightFootRate = 40;
+constexpr double kFlightPostureRate = 2;
+constexpr double kFlightDamping = 1e-5;
+constexpr double kFlightLength = 0.2;
+
+double smooth_rise(double x) {
+  const double s = std::clamp(x, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+Vector2d middle_of_soles(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Side side : {Side::left, Side::right}) {
+    const Eigen::Vector2d& c = model.sole(side).center;
+    sum += 0.5 * (feet[static_cast<size_t>(side)] * Eigen::Vector3d(c.x(), c.y(), 0)).head<2>();
+  }
+  return sum;
+}
+
+double heading_of_feet(const std::array<Eigen::Isometry3d, 2>& feet) {
+  const Eigen::Vector3d x = feet[0].linear().col(0) + feet[1].linear().col(0);
+  return std::atan2(x.y(), x.x());
+}
+
+/// Angular momentum about the COG per generalised velocity: 3 x (6 + dof).
+Eigen::MatrixXd angular_momentum_rows(const RobotData& data, const Eigen::MatrixXd& M) {
+  return M.middleRows<3>(3) - skew(data.cog_offset) * M.topRows<3>();
+}
 
 }  // namespace
 
 JumpFigures jump_figures(const JumpGoal& goal) {
   JumpFigures f;
-  const double k = 2 * kGravity * goal.height / (goal.stoop * goal.stoop);
+  const double k = push_stiffness(goal.height, goal.stoop);
   const bool spring = goal.release == JumpGoal::Release::spring;
   f.lift_off = spring ? kGravity / k : 0.0;
   f.apex = goal.height + (spring ? 0.5 * kGravity / k : 0.0);
@@ -71,6 +151,7 @@ ViipJump::ViipJump(const RobotModel& model, const ActuatorLimits& limits, const 
       goal_(goal),
       height_(held.cog.z() - ground_of(held.feet)),
       omega_(std::sqrt(kGravity / height_)),
+      command_(start.command),
       held_(held),
       plan_(held),
       data_(model),
@@ -79,8 +160,8 @@ ViipJump::ViipJump(const RobotModel& model, const ActuatorLimits& limits, const 
       target_(start.target),
       reference_(start.reference),
       dcog_(start.dcog),
-      zmp_filtered_(start.plan.zmp.head<2>()),
-      zmp_(zmp_filtered_),
+      filter_(start.plan.zmp.head<2>(), start.plan.fz),
+      zmp_(filter_.zmp()),
       left_(goal.times) {
   if (!(goal.height > 0) || !(goal.stoop > 0) || goal.times < 1)
     fail(ErrorCode::bad_pattern, "jump: height " + text::brief(goal.height) + " m, stoop " +
@@ -96,7 +177,7 @@ ViipJump::ViipJump(const RobotModel& model, const ActuatorLimits& limits, const 
          "jump: released by the spring, a height of " + text::brief(goal.height) +
              " m needs a stoop below twice that, not " + text::brief(goal.stoop) +
              " m: f_z would never be zero; deepen the height or release at ref_z");
-  offset_ = held.cog.head<2>() - middle_of(model, held.feet);
+  offset_ = held.cog.head<2>() - middle_of_soles(model, held.feet);
   plan_.feet = start.plan.feet;
   plan_.support = Support::both;
   if (start.plan.support == Support::right) anchor_ = Side::right;
@@ -112,37 +193,40 @@ void ViipJump::enter(Stage stage) {
   from_ = data_.cog.z() - ground_of(plan_.feet);
   if (stage == Stage::push) {
     depth_ = height_ - from_;
-    stiffness_ = 2 * kGravity * goal_.height / (depth_ * depth_);
-  } else if (stage == Stage::absorb) {
+    stiffness_ = push_stiffness(goal_.height, depth_);
+  } else if (stage == Stage::landing) {
     depth_ = goal_.stoop;
-    stiffness_ = dcog_.z() * dcog_.z() / (depth_ * depth_);
+    stiffness_ = landing_stiffness(dcog_.z(), depth_);
   }
 }
 
-// Per unit mass times m: ref f_z of the stage.
+// Ref f_z of the stage, (24)-(27) with gains per unit mass.
 double ViipJump::vertical_force() const {
   const double m = model_->mass();
   const double z = data_.cog.z() - ground_of(plan_.feet), dz = dcog_.z();
   const auto towards = [&](double goal, double rate) {
-    const double f = m * (rate * rate * (goal - z) - 2 * params_.dz * rate * dz + kGravity);
-    return std::max(kMinForceShare * m * kGravity, f);
+    const HeightGains gains = {rate * rate, 2 * params_.height_damping * rate};
+    return admissible_force(m * height_force(gains, kGravity, goal, z, dz), m);
+  };
+  const auto spring = [&](double middle) {
+    return m * height_force({stiffness_, 0}, kGravity, middle, z, dz);
   };
   switch (stage_) {
     case Stage::stoop:
-      return towards(height_ - goal_.stoop, params_.kz * omega_);
+      return towards(height_ - goal_.stoop, params_.height_rate * omega_);
     case Stage::push:
-      return std::max(0.0, m * (stiffness_ * (height_ - z) + kGravity));
+      return std::max(0.0, spring(height_));
     case Stage::flight:
       return 0;
-    case Stage::absorb:
-      return m * (stiffness_ * (from_ - z) + kGravity);
+    case Stage::landing:
+      return spring(from_);
     case Stage::settle:
       break;
   }
   return towards(height_, kSettleRate * omega_);
 }
 
-// Of a push or an absorption, 0 to 1.
+// Share of a push or a landing that is done, 0 to 1.
 double ViipJump::progress() const {
   const double z = data_.cog.z() - ground_of(plan_.feet);
   return std::clamp(std::abs(z - from_) / depth_, 0.0, 1.0);
@@ -152,42 +236,35 @@ CogReference ViipJump::cog_reference(const Estimate& e) {
   const double m = model_->mass(), ground = ground_of(plan_.feet);
   CogReference ref;
   ref.fz = vertical_force();
-  ref.ddcog.z() = ref.fz / m - kGravity;
+  ref.ddcog.z() = vertical_acceleration(ref.fz, m);
   const double w2 = omega_squared(ref.fz, m, data_.cog.z() - ground);
 
-  Vector2d goal = middle_of(*model_, plan_.feet) + offset_;
+  Vector2d goal = middle_of_soles(*model_, plan_.feet) + offset_;
   Vector2d rate = Vector2d::Zero(), acceleration = Vector2d::Zero();
   if (stage_ == Stage::push && goal_.forward != 0) {
-    // Speed for the way over push, flight and the same again on landing.
+    // Speed for the distance over push, flight and the same again on landing.
     const JumpFigures f = jump_figures(goal_);
-    const double yaw = heading_of(plan_.feet), s = std::min(1.0, elapsed_ / f.push);
+    const double yaw = heading_of_feet(plan_.feet), s = std::min(1.0, elapsed_ / f.push);
     const Vector2d speed =
         goal_.forward / (f.push + f.flight) * Vector2d(std::cos(yaw), std::sin(yaw));
     goal += speed * f.push * (s * s * s - 0.5 * s * s * s * s);
-    rate = speed * smooth(s);
+    rate = speed * smooth_rise(s);
     acceleration = speed / f.push * 6 * s * (1 - s);
   }
   const ConvexPolygon polygon =
       support_polygon(*model_, plan_.feet, Support::both).shrunk(params_.margin * height_);
+  // (18)(19) about the moving goal.
   const auto regulate = [&](const Vector3d& x, const Vector3d& dx) -> Vector2d {
-    const Vector2d xi = x.head<2>() - goal + (dx.head<2>() - rate) / omega_;
-    const Vector2d zmp = goal + (1 + params_.q) * xi - acceleration / std::max(w2, 1.0);
+    const Vector2d dcm = x.head<2>() - goal + (dx.head<2>() - rate) / omega_;
+    const Vector2d zmp = goal + (1 + params_.pole_ratio) * dcm - acceleration / std::max(w2, 1.0);
     return polygon.empty() ? zmp : polygon.project(zmp);
   };
   const Vector2d by_reference = regulate(data_.cog, dcog_);
   zmp_ = params_.feedback ? regulate(e.cog, e.dcog) : by_reference;
   ref.zmp << zmp_, ground;
-  Vector2d ddx = w2 * (data_.cog.head<2>() - by_reference);
-  if (params_.feedback) {
-    ddx += params_.av * omega_ * (e.dcog - dcog_).head<2>() +
-           params_.ax * omega_ * omega_ * (e.cog - data_.cog).head<2>();
-    if (e.contact) {
-      const double filter = 1.0 - std::exp(-dt_ * omega_ / params_.tau_z);
-      zmp_filtered_ += filter * (e.zmp.head<2>() - zmp_filtered_);
-      ddx += params_.ka * w2 * (zmp_filtered_ - zmp_);
-    }
-  }
-  // What turning the body takes of the ground's moment.
+  const ReferencePendulum reference = {data_.cog.head<2>(), dcog_.head<2>(), by_reference};
+  Vector2d ddx = viip_acceleration(params_, omega_, w2, dt_, reference, zmp_, e, filter_);
+  // The share of the ground's moment that turns the body.
   const double lever = m * (data_.cog.z() - ground);
   ddx += Vector2d(-momentum_rate_.y(), momentum_rate_.x()) / lever;
   ref.ddcog.head<2>() = ddx;
@@ -200,15 +277,15 @@ bool ViipJump::leaves_now() {
   const double spring = goal_.release == JumpGoal::Release::spring ? kGravity / stiffness_ : 0.0;
   const double z = data_.cog.z() - ground_of(plan_.feet) - height_;
   if (z + dt_ * dcog_.z() < spring) return false;
-  const double way = std::max(0.0, goal_.height + 0.5 * spring - z);
-  dcog_.z() = std::sqrt(kGravity * (kGravity * dt_ * dt_ + 2 * way)) - kGravity * dt_;
+  const double rise = std::max(0.0, goal_.height + 0.5 * spring - z);
+  dcog_.z() = std::sqrt(kGravity * (kGravity * dt_ * dt_ + 2 * rise)) - kGravity * dt_;
   return true;
 }
 
 // Forwards, as far as the legs' push and landing turn the trunk back [rad].
 double ViipJump::lean() const {
-  const double most = kLean * goal_.stoop / height_;
-  if (stage_ == Stage::stoop) return most * smooth(elapsed_ * omega_ / kStoopTime);
+  const double most = kStoopLean * goal_.stoop / height_;
+  if (stage_ == Stage::stoop) return most * smooth_rise(elapsed_ * omega_ / kStoopTime);
   return stage_ == Stage::push ? most : 0.0;
 }
 
@@ -220,7 +297,7 @@ Resolution ViipJump::resolve_standing(const Vector3d& trunk_rate, double level) 
   ResolverOptions options;
   options.trunk_rate *= level;
   options.in_order = false;  // docs/theory.md says why
-  const double yaw = heading_of(plan_.feet);
+  const double yaw = heading_of_feet(plan_.feet);
   options.lean = lean() * Vector3d(-std::sin(yaw), std::cos(yaw), 0);
   return resolve(*model_, limits_, reference_, data_, anchor_, dcog_, wanted, wanted, dt_, weight_,
                  options);
@@ -268,8 +345,8 @@ VectorXd ViipJump::torque(const VectorXd& velocity) {
 // The servo target leads by what damping and torque would hold the joint back.
 void ViipJump::move_joints(const VectorXd& velocity, ControlOutput& out) {
   const VectorXd tau = torque(velocity);
-  const bool last = stage_ == Stage::settle && elapsed_ > kForwardTime;
-  forward_ = std::clamp(forward_ + (last ? -dt_ : dt_) / kForwardTime, 0.0, 1.0);
+  const bool last = stage_ == Stage::settle && elapsed_ > kTorqueFadeTime;
+  forward_ = std::clamp(forward_ + (last ? -dt_ : dt_) / kTorqueFadeTime, 0.0, 1.0);
   reference_.dtheta = velocity.tail(model_->dof_count());
   reference_.theta += dt_ * reference_.dtheta;
   out.reference = reference_;
@@ -278,7 +355,7 @@ void ViipJump::move_joints(const VectorXd& velocity, ControlOutput& out) {
     const Dof& dof = model_->dofs()[j];
     const double most = limits_.peak_torque[j], step = kTargetRate * limits_.speed[j] * dt_;
     if (dof.servo.kp > 0)
-      out.target[j] += smooth(forward_) * std::clamp(tau[j], -most, most) / dof.servo.kp;
+      out.target[j] += smooth_rise(forward_) * std::clamp(tau[j], -most, most) / dof.servo.kp;
     out.target[j] = std::clamp(out.target[j], target_[j] - step, target_[j] + step);
     if (dof.limited) out.target[j] = std::clamp(out.target[j], dof.lower, dof.upper);
   }
@@ -292,9 +369,9 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
   dcog_ += dt_ * out.cog_reference.ddcog;
   const bool last = stage_ == Stage::push && leaves_now();
   out.cog_reference.dcog = dcog_;
-  const double share = stage_ == Stage::push     ? smooth(2 * progress())
-                       : stage_ == Stage::absorb ? 1 - smooth(progress())
-                                                 : 0.0;
+  const double share = stage_ == Stage::push      ? smooth_rise(2 * progress())
+                       : stage_ == Stage::landing ? 1 - smooth_rise(progress())
+                                                  : 0.0;
   const Resolution r = resolve_with_momentum(share);
   for (const std::string& note : limit_notes(*model_, r)) out.notes.push_back(note);
   dcog_ *= r.scale;
@@ -312,14 +389,14 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
   switch (stage_) {
     case Stage::stoop:
       if (elapsed_ > kStoopTime / omega_ &&
-          std::abs(z - height_ + goal_.stoop) < kStoopNear * height_)
+          std::abs(z - height_ + goal_.stoop) < kStoopReached * height_)
         enter(Stage::push);
       break;
     case Stage::push: {
-      unloaded_ = e.fz < kLift ? unloaded_ + dt_ : 0;
+      unloaded_ = e.fz < kNoForce ? unloaded_ + dt_ : 0;
       // Legs that cannot follow the spring any more leave the ground there.
       const bool behind = r.scale < 1 && z > height_;
-      if (last || behind || unloaded_ > kLiftTime) {
+      if (last || behind || unloaded_ > kNoForceTime) {
         release();
       } else if (elapsed_ > 3 * figures.push) {
         out.notes.push_back("no lift-off: the push does not reach its height");
@@ -328,7 +405,7 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
       }
       break;
     }
-    case Stage::absorb:
+    case Stage::landing:
       if (dcog_.z() >= 0) {
         --left_;
         enter(left_ > 0 ? Stage::stoop : Stage::settle);
@@ -339,9 +416,131 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
   }
 }
 
+// The flight begins at the posture the joints have just been moved to.
+void ViipJump::release() {
+  const VectorXd rates = anchored_velocity_map(*model_, data_, anchor_) * reference_.dtheta;
+  MatrixXd M;
+  mass_matrix(*model_, data_, M);
+  flight_.momentum = angular_momentum_rows(data_, M) * rates;
+  flight_.velocity = M.topRows<3>() * rates / model_->mass();
+  anchor_base(*model_, anchor_, plan_.feet[static_cast<size_t>(anchor_)], reference_, data_);
+  flight_.cog = data_.cog;
+  const double v = flight_.velocity.z(), ground = ground_of(plan_.feet);
+  const double fall = std::max(0.0, flight_.cog.z() - ground - height_);
+  const double down = std::sqrt(v * v + 2 * kGravity * fall);
+  flight_.duration = (v + down) / kGravity;
+  flight_.retraction = kRetractionShare * down *
+                       std::min(kRetractionTime, kRetractionFlightShare * flight_.duration) / 2;
+
+  const double yaw = heading_of_feet(plan_.feet);
+  const Vector3d forward = goal_.forward * Vector3d(std::cos(yaw), std::sin(yaw), 0);
+  Vector3d landing = flight_.cog + flight_.duration * flight_.velocity;
+  landing.z() = ground + height_ + flight_.retraction;
+  for (const Side side : {Side::left, Side::right}) {
+    const auto s = static_cast<size_t>(side);
+    flight_.feet[s] = plan_.feet[s].translation() - flight_.cog;
+    plan_.feet[s].translation() += forward;
+    flight_.landing[s] = plan_.feet[s].translation() - landing;
+  }
+  enter(Stage::flight);
+}
+
+// Of a sole from the COG, t after release. The legs run on with the speed they had, swing to where
+// they land, and begin to give way shortly before that.
+Vector3d ViipJump::foot_position(int side, double t) const {
+  const Flight& f = flight_;
+  const auto s = static_cast<size_t>(side);
+  const double T = f.duration;
+  Vector3d place = f.feet[s] + smooth_rise((t / T - 0.05) / 0.75) * (f.landing[s] - f.feet[s]) -
+                   f.velocity * t * std::exp(-t / kRunOnTime);
+  const double last = std::min(kRetractionTime, kRetractionFlightShare * T),
+               u = (t - (T - last)) / last;
+  if (u > 0) place.z() += f.retraction * (u < 1 ? u * u : 2 * u - 1);
+  return place;
+}
+
+void ViipJump::fly(const Estimate& e, ControlOutput& out) {
+  const double t = elapsed_;
+  const Vector3d fall(0, 0, -kGravity);
+  const Vector3d cog = flight_.cog + t * flight_.velocity + 0.5 * t * t * fall;
+  dcog_ = flight_.velocity + t * fall;
+  reference_.base.attitude = e.state.base.attitude;
+  reference_.base.position.setZero();
+  update_positions(*model_, reference_, data_);
+  reference_.base.position = cog - data_.cog;
+  move_base(reference_.base, data_);
+  out.cog = cog;
+  out.cog_reference = {Vector3d(zmp_.x(), zmp_.y(), ground_of(plan_.feet)), 0, fall, dcog_};
+
+  MatrixXd M;
+  mass_matrix(*model_, data_, M);
+  const int n = model_->dof_count();
+  Eigen::Matrix<double, 6, 1> momentum;  // about the base origin
+  momentum << model_->mass() * dcog_,
+      flight_.momentum + data_.cog_offset.cross(model_->mass() * dcog_);
+  const Eigen::PartialPivLU<MatrixXd> base_inertia(MatrixXd(M.topLeftCorner<6, 6>()));
+  const MatrixXd base_map = -base_inertia.solve(M.topRightCorner(6, n));
+  const VectorXd base_drift = base_inertia.solve(momentum);
+
+  MatrixXd J(12, n);
+  VectorXd u(12);
+  for (const Side side : {Side::left, Side::right}) {
+    const int s = static_cast<int>(side);
+    const Isometry3d sole = sole_pose(*model_, data_, side);
+    const MatrixXd rows =
+        body_jacobian(*model_, data_, model_->sole(side).body, sole.translation());
+    Eigen::Matrix<double, 6, 1> wanted;
+    const Vector3d now = foot_position(s, t), next = foot_position(s, t + dt_);
+    wanted.head<3>() =
+        (next - now) / dt_ + dcog_ + kFlightFootRate * (cog + now - sole.translation());
+    wanted.tail<3>() =
+        kFlightFootRate *
+        log_rotation(Eigen::Quaterniond(
+            Matrix3d(plan_.feet[static_cast<size_t>(s)].linear() * sole.linear().transpose())));
+    J.middleRows<6>(6 * s) = rows.rightCols(n) + rows.leftCols<6>() * base_map;
+    u.segment<6>(6 * s) = wanted - rows.leftCols<6>() * base_drift;
+    J.middleRows<3>(6 * s + 3) *= kFlightLength;
+    u.segment<3>(6 * s + 3) *= kFlightLength;
+  }
+  const VectorXd bias = kFlightPostureRate * (held_.state.theta - reference_.theta);
+  VectorXd dtheta = weighted_least_norm(J, u, weight_, bias, kFlightDamping);
+  for (int j = 0; j < n; ++j) {
+    const Dof& dof = model_->dofs()[j];
+    dtheta[j] = std::clamp(dtheta[j], -limits_.speed[j], limits_.speed[j]);
+    if (dof.limited)
+      dtheta[j] = std::clamp(dtheta[j], (dof.lower - reference_.theta[j]) / dt_,
+                             (dof.upper - reference_.theta[j]) / dt_);
+  }
+  VectorXd velocity(6 + n);
+  velocity << base_map * dtheta + base_drift, dtheta;
+  move_joints(velocity, out);
+  elapsed_ += dt_;
+  const double load = e.fz / (model_->mass() * kGravity);
+  loaded_ = load > kTouchdownShare ? loaded_ + dt_ : 0;
+  const bool touched =
+      elapsed_ > kTouchdownBlindTime && (loaded_ >= kTouchdownTime || load > kHardTouchdownShare);
+  if (touched || elapsed_ > flight_.duration + kLateTouchdown) touch_down(e);
+}
+
+// The reference goes on from the posture and speed of the landing.
+void ViipJump::touch_down(const Estimate& e) {
+  momentum_rate_.setZero();
+  velocity_.resize(0);
+  zmp_ = e.zmp.head<2>();
+  filter_ = ReactionFilter(zmp_, e.fz);
+  const auto a = static_cast<size_t>(anchor_), f = static_cast<size_t>(other(anchor_));
+  anchor_base(*model_, anchor_, plan_.feet[a], reference_, data_);
+  // The other foot stays where it has come down.
+  const Isometry3d sole = sole_pose(*model_, data_, other(anchor_));
+  const double height = plan_.feet[f].translation().z();
+  plan_.feet[f].translation() << sole.translation().head<2>(), height;
+  plan_.feet[f].linear() = rpy_to_matrix({0, 0, matrix_to_rpy(sole.linear()).z()});
+  enter(Stage::landing);
+}
+
 void ViipJump::finish_plan() {
   plan_.support = stage_ == Stage::flight ? Support::none : Support::both;
-  const Vector2d goal = middle_of(*model_, plan_.feet) + offset_;
+  const Vector2d goal = middle_of_soles(*model_, plan_.feet) + offset_;
   plan_.cog << goal, height_ + ground_of(plan_.feet);
   plan_.dcog.setZero();
   plan_.ddcog.setZero();
@@ -353,14 +552,12 @@ void ViipJump::finish_plan() {
   plan_.state.dtheta.setZero();
 }
 
-ControlOutput ViipJump::update(const Estimate& estimate) {
-  ControlOutput out;
+void ViipJump::update(const Estimate& estimate, ControlOutput& out) {
   if (stage_ == Stage::flight)
     fly(estimate, out);
   else
     stand(estimate, out);
   finish_plan();
-  return out;
 }
 
 }  // namespace ayumi

@@ -26,15 +26,14 @@ class ViipJump {
   /// Feet, support, COG and ZMP of the coming tick.
   const CommandSample& plan() const { return plan_; }
 
-  ControlOutput update(const Estimate& estimate);
+  void update(const Estimate& estimate, ControlOutput& out);
 
-  /// What the next law goes on from.
-  Handover handover() const { return {reference_, dcog_, target_, plan_}; }
+  Handover handover() const { return {reference_, dcog_, target_, plan_, command_}; }
 
  private:
-  enum class Stage { stoop, push, flight, absorb, settle };
+  enum class Stage { stoop, push, flight, landing, settle };
 
-  // Of one flight, fixed at release.
+  // What one flight keeps from its release on.
   struct Flight {
     Eigen::Vector3d cog = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // angular, about the COG [N m s]
@@ -54,7 +53,7 @@ class ViipJump {
   Resolution resolve_with_momentum(double share);
   void release();
   void fly(const Estimate& estimate, ControlOutput& out);
-  Eigen::Vector3d foot_place(int side, double t) const;
+  Eigen::Vector3d foot_position(int side, double t) const;
   void touch_down(const Estimate& estimate);
   Eigen::VectorXd torque(const Eigen::VectorXd& velocity);
   void move_joints(const Eigen::VectorXd& velocity, ControlOutput& out);
@@ -66,6 +65,7 @@ class ViipJump {
   double dt_;
   JumpGoal goal_;
   double height_, omega_;  // ref z_G above the ground, sqrt(g / z)
+  CommandPlan command_;    // of the pattern, for the next law
   CommandSample held_, plan_;
   Eigen::Vector2d offset_;  // held COG from the middle of the feet [m]
   mutable RobotData data_;
@@ -73,17 +73,18 @@ class ViipJump {
   RobotState reference_;
   Side anchor_ = Side::left;
   Eigen::Vector3d dcog_ = Eigen::Vector3d::Zero();
-  Eigen::Vector2d zmp_filtered_, zmp_;
+  ReactionFilter filter_;  // measured ZMP
+  Eigen::Vector2d zmp_;    // ref ZMP [m]
   Stage stage_ = Stage::stoop;
   double elapsed_ = 0;        // in this stage [s]
   double unloaded_ = 0;       // time without ground force at the end of a spring push [s]
   double loaded_ = 0;         // time with ground force at the end of a flight [s]
-  double forward_ = 0;        // share of the torque that is fed forward
+  double forward_ = 0;        // share of the torque that is fed forward, 0 to 1
   Eigen::VectorXd velocity_;  // generalised, of the last tick; empty after an impact
   int left_ = 1;              // jumps to go, this one included
   double from_ = 0;           // COG height at which the stage began [m]
   double stiffness_ = 0;      // K_Pz / m of (26) or (27) [1/s^2]
-  double depth_ = 0;          // way of the push or of the absorption [m]
+  double depth_ = 0;          // of the push or of the landing [m]
   Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();       // of the reference, angular [N m s]
   Eigen::Vector3d momentum_rate_ = Eigen::Vector3d::Zero();  // on the ground [N m]
   Flight flight_;

@@ -129,8 +129,7 @@ Keyframe read_keyframe(const JsonNode& node, PatternScope& scope) {
 ControllerSpec read_controller(const JsonNode& node, PatternScope& scope) {
   only_pattern_keys(node, "controller");
   ControllerSpec controller;
-  controller.type = node.at("type").one_of(
-      {"none", "dtad", "dtad-literal", "viip", "viip-landings", "viip-nofeedback"});
+  controller.type = controller_type(node.at("type").one_of(controller_names()));
   const auto gains = node.find("gains");
   if (!gains) return controller;
   if (gains->has("q") && (gains->has("k") || gains->has("d")))

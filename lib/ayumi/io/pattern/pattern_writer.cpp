@@ -186,7 +186,7 @@ class Writer {
 
   void add_controller(Members& top) const {
     Members members;
-    members.add("type", quoted(pattern_.controller.type));
+    members.add("type", quoted(name_of(pattern_.controller.type)));
     Members gains;
     for (const auto& [name, value] : pattern_.controller.gains) gains.add(name, number(value));
     if (!gains.empty()) members.add("gains", gains.object());

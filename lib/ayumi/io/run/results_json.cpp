@@ -62,7 +62,7 @@ std::string simulation_json(const SimulationLog& log) {
     events.push_back({{"t_s", event.t}, {"kind", event.kind}, {"text", event.text}});
   const double duration =
       log.samples.empty() ? 0 : log.dt * static_cast<double>(log.samples.size() - 1);
-  return text_of({{"controller", log.controller},
+  return text_of({{"controller", log.controller ? name_of(*log.controller) : ""},
                   {"plant", log.plant},
                   {"outcome", name_of(r.outcome)},
                   {"fell_at_s", figure(r.fell_at, r.fell_at >= 0)},

@@ -45,8 +45,9 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
   json["unfit"] = run.unfit;
   json["logs"] = OrderedJson::object();
   for (const auto& [name, log] : run.logs)
-    json["logs"][name] = {
-        {"file", log_file_name(name)}, {"controller", log.controller}, {"log_hash", log_hash(log)}};
+    json["logs"][name] = {{"file", log_file_name(name)},
+                          {"controller", log.controller ? name_of(*log.controller) : ""},
+                          {"log_hash", log_hash(log)}};
   json["files"] = hashes;
   return json;
 }

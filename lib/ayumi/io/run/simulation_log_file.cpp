@@ -224,7 +224,7 @@ std::string header_of(const SimulationLog& log, const std::string& command_line)
                         {"frame", "world: x forward, y left, z up"},
                         {"quaternion_order", "w x y z, base to world"},
                         {"dt", log.dt},
-                        {"controller", log.controller},
+                        {"controller", log.controller ? name_of(*log.controller) : ""},
                         {"plant", log.plant}};
   OrderedJson provenance;
   for_each_provenance(log.provenance,
@@ -247,7 +247,8 @@ std::string header_of(const SimulationLog& log, const std::string& command_line)
 
 void read_header(const JsonNode& header, SimulationLog& log) {
   log.dt = header.at("dt").number();
-  log.controller = header.at("controller").string();
+  const std::string controller = header.at("controller").string();
+  if (!controller.empty()) log.controller = controller_type(controller);
   if (const auto plant = header.find("plant")) log.plant = plant->string();
   const JsonNode provenance = header.at("provenance");
   for_each_provenance(log.provenance, [&](const char* key, std::string& value) {

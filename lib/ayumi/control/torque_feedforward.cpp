@@ -1,4 +1,4 @@
-#include "ayumi/control/feedforward.hpp"
+#include "ayumi/control/torque_feedforward.hpp"
 
 #include <algorithm>
 
@@ -6,20 +6,20 @@
 
 namespace ayumi {
 
-Eigen::MatrixXd servo_sag(const RobotModel& model, const ActuatorLimits& limits,
-                          const CommandSeries& series) {
+Eigen::MatrixXd torque_feedforward(const RobotModel& model, const ActuatorLimits& limits,
+                                   const CommandSeries& series) {
   const auto samples = static_cast<Eigen::Index>(series.samples.size());
-  Eigen::MatrixXd sag = Eigen::MatrixXd::Zero(model.dof_count(), samples);
+  Eigen::MatrixXd lead = Eigen::MatrixXd::Zero(model.dof_count(), samples);
   const ContactPlan contacts = contact_plan(series);
   MotionDynamics dynamics(model, series, contacts);
   for (Eigen::Index k = 0; k < samples; ++k) {
     const Eigen::VectorXd& torque = dynamics.at(static_cast<int>(k)).torque;
     for (int j = 0; j < model.dof_count(); ++j) {
       const double kp = model.dofs()[j].servo.kp, peak = limits.peak_torque[j];
-      if (kp > 0) sag(j, k) = std::clamp(torque[j], -peak, peak) / kp;
+      if (kp > 0) lead(j, k) = std::clamp(torque[j], -peak, peak) / kp;
     }
   }
-  return sag;
+  return lead;
 }
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
-// What servos are told beyond the posture: the torque of the motion, within the motor's, and
+// What servos receive beyond the posture: the torque of the motion, within the motor's, and
 // nothing where it is in the table already. An integrator judges it in scenarios/open_loop_test.
-#include "ayumi/control/feedforward.hpp"
+#include "ayumi/control/torque_feedforward.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,10 +24,10 @@ const CommandSeries& squat() {
 }
 
 // From rest to the deepest point, where the COG rests again, the motors' work is the weight's.
-TEST(ServoSag, WorksAsTheWeightDoes) {
+TEST(TorqueFeedforward, WorksAsTheWeightDoes) {
   const std::vector<CommandSample>& samples = squat().samples;
-  const Eigen::MatrixXd sag = servo_sag(hoap1(), hoap1().limits("hoap1-strong"), squat());
-  ASSERT_EQ(sag.cols(), static_cast<Eigen::Index>(samples.size()));
+  const Eigen::MatrixXd lead = torque_feedforward(hoap1(), hoap1().limits("hoap1-strong"), squat());
+  ASSERT_EQ(lead.cols(), static_cast<Eigen::Index>(samples.size()));
   size_t deepest = 0;
   for (size_t k = 0; k < samples.size(); ++k)
     if (samples[k].cog.z() < samples[deepest].cog.z()) deepest = k;
@@ -36,7 +36,7 @@ TEST(ServoSag, WorksAsTheWeightDoes) {
     for (int j = 0; j < hoap1().dof_count(); ++j) {
       const auto column = static_cast<Eigen::Index>(k);
       work += hoap1().dofs()[static_cast<size_t>(j)].servo.kp * 0.5 *
-              (sag(j, column) + sag(j, column + 1)) *
+              (lead(j, column) + lead(j, column + 1)) *
               (samples[k + 1].state.theta[j] - samples[k].state.theta[j]);
     }
   const double weight = hoap1().mass() * kGravity;
@@ -45,14 +45,14 @@ TEST(ServoSag, WorksAsTheWeightDoes) {
   EXPECT_NEAR(work, weight * drop, 1e-4 * std::abs(weight * drop));
 }
 
-TEST(ServoSag, StaysWithinTheMotor) {
+TEST(TorqueFeedforward, StaysWithinTheMotor) {
   ActuatorLimits limits = hoap1().limits();
   limits.peak_torque.setConstant(0.5);
-  const Eigen::MatrixXd sag = servo_sag(hoap1(), limits, squat());
+  const Eigen::MatrixXd lead = torque_feedforward(hoap1(), limits, squat());
   double most = 0;
   for (int j = 0; j < hoap1().dof_count(); ++j)
     most = std::max(
-        most, hoap1().dofs()[static_cast<size_t>(j)].servo.kp * sag.row(j).cwiseAbs().maxCoeff());
+        most, hoap1().dofs()[static_cast<size_t>(j)].servo.kp * lead.row(j).cwiseAbs().maxCoeff());
   EXPECT_NEAR(most, 0.5, 1e-12);
 }
 

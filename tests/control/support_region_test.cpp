@@ -1,4 +1,4 @@
-#include "ayumi/control/support.hpp"
+#include "ayumi/control/support_region.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What gives way where a joint is at its limit, on the real HOAP-1.
-#include "ayumi/control/resolver.hpp"
+#include "ayumi/control/whole_body.hpp"
 
 #include <gtest/gtest.h>
 

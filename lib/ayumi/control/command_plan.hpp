@@ -1,0 +1,65 @@
+#pragma once
+// The command of a pattern where the robot's feet are: as sampled, or moved over the ground, after
+// steps that VIIP placed or by footholds that answer a push. The laws that follow a command take
+// their plan from here.
+
+#include <optional>
+
+#include "ayumi/control/foothold_shift.hpp"
+#include "ayumi/control/plan_shift.hpp"
+
+namespace ayumi {
+
+class CommandPlan {
+ public:
+  /// As sampled, from the first sample on. The series outlives this and its copies.
+  explicit CommandPlan(const CommandSeries& series);
+
+  double dt() const { return series_->dt; }  ///< [s]
+
+  /// The command of the coming tick.
+  const CommandSample& now() const { return now_; }
+
+  /// The command of tick k where the feet are; after the end of the series its last sample.
+  CommandSample at(long k) const;
+
+  /// Sample of the series that now() comes from; a moved plan has a clock of its own.
+  long sample() const;
+
+  /// Goes on at tick k after another law: the command is turned to where the feet of `from` are. A
+  /// foot that is not quite there stays until it next swings; an offset of the COG is taken back
+  /// slowly.
+  void go_on_from(const CommandSample& from, long k);
+
+  /// From now on footholds answer pushes; only before the first tick.
+  void move_footholds(const RobotModel& model, const FootholdParams& params);
+
+  /// The command one tick after now(), chosen by what is measured. Where a foot has landed before
+  /// its time, the feet of now() jump to where they are. Holds until the next call.
+  const CommandSample& look_ahead(const Estimate& estimate);
+
+  /// What look_ahead() gave becomes now().
+  void advance();
+
+ private:
+  /// How the command has been moved after another law.
+  struct Placement {
+    Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
+    /// Of each foot, from its turned command to where it stands; it fades when the foot swings.
+    std::array<Eigen::Isometry3d, 2> rest = {Eigen::Isometry3d::Identity(),
+                                             Eigen::Isometry3d::Identity()};
+    std::array<double, 2> share = {1, 1};           ///< of `rest` that still holds
+    Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< of COG and ZMP, taken back slowly [m]
+    long since = 0;                                 ///< tick at which it began
+    bool moved = false;
+  };
+  const CommandSample& sampled(long k) const;
+
+  const CommandSeries* series_;
+  Placement placement_;
+  std::optional<FootholdShift> footholds_;
+  CommandSample now_, next_;
+  long tick_ = 0;  // of now_
+};
+
+}  // namespace ayumi

@@ -1,0 +1,52 @@
+// Delta = cmd - measured. For a body that obeys (14), (18) gives
+//   s^2 + omega^2 D s + omega^2 (K - 1) = 0,
+// so K > 1 and D > 0 bring the COG back, and poles -omega and -q omega need K = 1 + q and
+// D = (1 + q)/omega: cmdZ - K Dx - D Ddx = cmdZ + (1 + q)(dcm - cmd dcm). As printed, with + D Ddx,
+// the error grows.
+// (26), (27): a spring kappa = K_Pz/m with gravity compensated keeps dz^2/2 + kappa z^2/2, so the
+// speed at its middle is z_d sqrt(kappa): sqrt(2 g z_H) for a push, the falling speed for a
+// landing.
+#include "ayumi/control/feedback.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/model/gravity.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// f_min of the projection of ref f_z, as a share of the weight. Chosen: twice the 5 % below which
+// there is no ZMP (control/estimator), so that omega^2 of (17) keeps a meaning.
+constexpr double kAdmissibleForceShare = 0.1;
+
+}  // namespace
+
+CogError cog_error(const CommandSample& command, const Estimate& estimate) {
+  return {command.cog - estimate.cog, command.dcog - estimate.dcog};
+}
+
+Eigen::Vector2d long_term_zmp(const Eigen::Vector2d& command_zmp, double K, double D,
+                              const CogError& error) {
+  return command_zmp - K * error.position.head<2>() - D * error.velocity.head<2>();
+}
+
+double long_term_force(double command_fz, double mass, double K_z, double D_z,
+                       const CogError& error) {
+  return command_fz + mass * (K_z * error.position.z() + D_z * error.velocity.z());
+}
+
+double admissible_force(double fz, double mass) {
+  return std::max(kAdmissibleForceShare * mass * kGravity, fz);
+}
+
+double push_stiffness(double z_H, double z_d) { return 2 * kGravity * z_H / (z_d * z_d); }
+
+double landing_stiffness(double speed, double z_d) { return speed * speed / (z_d * z_d); }
+
+double low_pass_share(double dt, double omega, double tau) {
+  return 1.0 - std::exp(-dt * omega / tau);
+}
+
+}  // namespace ayumi

@@ -1,0 +1,88 @@
+#pragma once
+// The feedback law of DTAD and VIIP, (18)-(21) and (24)-(27) of the paper, one function per
+// equation. The laws put these functions together (control/laws); (14)-(17) are in dynamics/zmp.
+// Derivations: docs/theory.md, "DTAD" and "VIIP".
+
+#include "ayumi/control/estimator.hpp"
+#include "ayumi/motion/command_series.hpp"
+
+namespace ayumi {
+
+/// (21): command less measured.
+struct CogError {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+};
+CogError cog_error(const CommandSample& command, const Estimate& estimate);
+
+/// (18)(19), long-term absorption: ref ZMP before it is projected into the support region [m]. The
+/// sign of D is corrected (docs/notation.md); K > 1 without unit, D > 0 [s].
+Eigen::Vector2d long_term_zmp(const Eigen::Vector2d& command_zmp, double K, double D,
+                              const CogError& error);
+
+/// (18)(19) with the poles -omega and -q omega, K = 1 + q and D = (1 + q)/omega, about a goal at
+/// rest: only the divergent component `dcm` is fed back [m].
+inline Eigen::Vector2d regulating_zmp(const Eigen::Vector2d& goal, double q,
+                                      const Eigen::Vector2d& dcm) {
+  return goal + (1 + q) * (dcm - goal);
+}
+
+/// (20), long-term absorption: ref f_z before it is bounded [N]. K_z [1/s^2], D_z [1/s].
+double long_term_force(double command_fz, double mass, double K_z, double D_z,
+                       const CogError& error);
+
+/// The nearest admissible vertical force [N] to `fz` where the feet are to stay on the ground: at
+/// least 10 % of the weight.
+double admissible_force(double fz, double mass);
+
+/// Short-term absorption, (14)(15) closed on the measured ZMP: `gap` is the measured ZMP less ref
+/// ZMP [m]. The ground gives omega^2 (x - measured), ref ZMP asks for omega^2 (x - ref); the
+/// difference is what the reference lacks. Gain 0 is replay; a large gain tends to (14) [m/s^2].
+inline Eigen::Vector2d short_term_acceleration(double gain, double omega2,
+                                               const Eigen::Vector2d& gap) {
+  return gain * omega2 * gap;
+}
+
+/// Stiffness and damping of the vertical force: forces per metre, or per unit of mass where the
+/// caller multiplies by the mass.
+struct HeightGains {
+  double stiffness = 0;  ///< K_Pz [N/m]
+  double damping = 0;    ///< K_Dz [N s/m]
+};
+
+/// (24): ref f_z for a COG at height z [m] with speed dz [m/s] that is to rest at `goal`.
+inline double height_force(const HeightGains& gains, double weight, double goal, double z,
+                           double dz) {
+  return gains.stiffness * (goal - z) - gains.damping * dz + weight;
+}
+
+/// (26): K_Pz / m [1/s^2] of a push from rest at depth z_d [m] that ends in an apex z_H [m].
+double push_stiffness(double z_H, double z_d);
+
+/// (27): K_Pz / m [1/s^2] of a landing at `speed` [m/s] that sinks by z_d [m].
+double landing_stiffness(double speed, double z_d);
+
+/// Share of a first-order low pass with time constant tau / omega in one tick of dt [s].
+double low_pass_share(double dt, double omega, double tau);
+
+/// The measured ZMP [m] and vertical force [N] behind a first-order low pass. They are held while
+/// there is no contact.
+class ReactionFilter {
+ public:
+  ReactionFilter() = default;
+  ReactionFilter(const Eigen::Vector2d& zmp, double fz) : zmp_(zmp), fz_(fz) {}
+
+  void update(const Estimate& estimate, double share) {
+    if (!estimate.contact) return;
+    zmp_ += share * (estimate.zmp.head<2>() - zmp_);
+    fz_ += share * (estimate.fz - fz_);
+  }
+  const Eigen::Vector2d& zmp() const { return zmp_; }
+  double fz() const { return fz_; }
+
+ private:
+  Eigen::Vector2d zmp_ = Eigen::Vector2d::Zero();
+  double fz_ = 0;
+};
+
+}  // namespace ayumi

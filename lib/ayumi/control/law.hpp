@@ -1,0 +1,38 @@
+#pragma once
+// What every control law takes and gives. A law (control/laws) has plan(), the command of the
+// coming tick; update(), which measures one tick and fills a ControlOutput; and handover(), from
+// which the next law goes on.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/control/command_plan.hpp"
+
+namespace ayumi {
+
+/// What a law asks of the body: the reference of (14)-(21) and (24).
+struct CogReference {
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< ref p_Z, plan frame [m]
+  double fz = 0;                                    ///< ref f_z [N]
+  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();  ///< ref acceleration [m/s^2]
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();   ///< its integral [m/s]
+};
+
+struct ControlOutput {
+  Eigen::VectorXd target;  ///< what the servos receive [rad]
+  RobotState reference;    ///< reference posture, plan frame
+  CogReference cog_reference;
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< of the reference posture [m]
+  std::vector<std::string> notes;  ///< what gave way in this tick: saturated joints, held limits
+};
+
+/// What one law leaves to the next.
+struct Handover {
+  RobotState reference;                            ///< plan frame
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();  ///< of the reference [m/s]
+  Eigen::VectorXd target;                          ///< last servo targets [rad]
+  CommandSample plan;                              ///< of the coming tick: feet and support
+  CommandPlan command;                             ///< the pattern, where the last law has left it
+};
+
+}  // namespace ayumi

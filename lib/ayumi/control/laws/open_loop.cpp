@@ -1,0 +1,30 @@
+#include "ayumi/control/laws/open_loop.hpp"
+
+#include <utility>
+
+#include "ayumi/control/torque_feedforward.hpp"
+#include "ayumi/motion/servo_feedforward.hpp"
+
+namespace ayumi {
+
+OpenLoop::OpenLoop(const RobotModel& model, CommandPlan command,
+                   std::shared_ptr<const Eigen::MatrixXd> torque_lead,
+                   const Eigen::VectorXd& target)
+    : command_(std::move(command)),
+      torque_lead_(std::move(torque_lead)),
+      velocity_lead_(servo_lead(model)),
+      target_(target) {}
+
+void OpenLoop::update(const Estimate& estimate, ControlOutput& out) {
+  const auto torque_lead = lead_at(*torque_lead_, command_.sample());
+  command_.look_ahead(estimate);
+  const CommandSample& now = plan();
+  out.reference = now.state;
+  out.target = now.state.theta + velocity_lead_.cwiseProduct(now.state.dtheta) + torque_lead;
+  out.cog = now.cog;
+  out.cog_reference = {now.zmp, now.fz, Eigen::Vector3d::Zero(), now.dcog};
+  target_ = out.target;
+  command_.advance();
+}
+
+}  // namespace ayumi

@@ -1,0 +1,30 @@
+#pragma once
+// Open loop: the servos receive the command with its feedforward; nothing is measured.
+
+#include <memory>
+
+#include "ayumi/control/law.hpp"
+
+namespace ayumi {
+
+class OpenLoop {
+ public:
+  /// `torque_lead`: offsets of the servo targets by sample of the pattern [rad], one column:
+  /// throughout (control/torque_feedforward). `target`: last servo targets [rad].
+  OpenLoop(const RobotModel& model, CommandPlan command,
+           std::shared_ptr<const Eigen::MatrixXd> torque_lead, const Eigen::VectorXd& target);
+
+  /// The command of the coming tick.
+  const CommandSample& plan() const { return command_.now(); }
+
+  void update(const Estimate& estimate, ControlOutput& out);
+
+  Handover handover() const { return {plan().state, plan().dcog, target_, plan(), command_}; }
+
+ private:
+  CommandPlan command_;
+  std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
+  Eigen::VectorXd velocity_lead_, target_;
+};
+
+}  // namespace ayumi

@@ -1,0 +1,58 @@
+#pragma once
+// The foot in the air, for every law that places feet: its path to a foothold that may move until
+// the landing, how high it is lifted, when it has landed, and how near it may come to the other
+// foot.
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/control/estimator.hpp"
+
+namespace ayumi {
+
+/// Least distance between the inner sides of two soles beside each other [m]. Chosen: a few times
+/// the error with which a foot lands (1.5 mm on HOAP-1, docs/theory.md, "Footholds").
+inline constexpr double kSoleClearance = 0.008;
+
+/// Half the distance between a sole's sides [m].
+double sole_half_width(const RobotModel& model);
+
+/// Whether the load cells of the foot read 10 % of the weight or more: it stands on the ground.
+bool bears(const RobotModel& model, const Estimate& estimate, Side side);
+
+/// Height of a swing foot as a share of the lift, `share` of the swing after its lift-off (0 to 1):
+/// 64 (s (1 - s))^3, with rate and acceleration zero at both ends.
+inline double swing_height(double share) { return std::pow(4 * share * (1 - share), 3); }
+
+/// The path of least jerk from where something is, with its rate and acceleration, to rest at a
+/// target in a given time, planned anew in every tick, so that the target may move.
+template <int N>
+class SwingReplan {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  /// At rest from now on.
+  void stop() {
+    rate_.setZero();
+    acceleration_.setZero();
+  }
+
+  /// One tick of dt [s]: the distance made when `remaining` is left to go in `time` [s].
+  Vector step(const Vector& remaining, double time, double dt) {
+    const double t = std::max(time, kLeastTime);
+    const Vector jerk = 60 / (t * t * t) * remaining - 36 / (t * t) * rate_ - 9 / t * acceleration_;
+    acceleration_ += dt * jerk;
+    rate_ += dt * acceleration_;
+    return dt * rate_;
+  }
+
+ private:
+  // A path is never planned for less than this [s]: jerks grow with 1 / t^3. Chosen: 30 ticks of
+  // 1 ms; at half of it a target that moves in the last ticks asks for eight times the jerk.
+  static constexpr double kLeastTime = 0.03;
+
+  Vector rate_ = Vector::Zero(), acceleration_ = Vector::Zero();
+};
+
+}  // namespace ayumi

@@ -1,0 +1,25 @@
+#pragma once
+// What the servos must receive before anything is measured, beside the velocity feedforward of
+// motion/servo_feedforward. A position servo gives torque only where it is off its target,
+// kp (target - theta) + kd (dtarget - dtheta) = tau at best, so that a posture that is sent as it
+// is sags under the weight by tau / kp.
+
+#include <algorithm>
+
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/command_series.hpp"
+
+namespace ayumi {
+
+/// dof x samples [rad]: tau / kp, by which a target must lie beyond the posture so that the joint
+/// does not sag, with tau of the planned motion on its planned contacts (the torque that the check
+/// judges), at most what the motor gives at `limits`. Zero for joints without a motor.
+Eigen::MatrixXd torque_feedforward(const RobotModel& model, const ActuatorLimits& limits,
+                                   const CommandSeries& series);
+
+/// The column of sample k; the last column holds after the end.
+inline auto lead_at(const Eigen::MatrixXd& torque_lead, long k) {
+  return torque_lead.col(std::min<Eigen::Index>(k, torque_lead.cols() - 1));
+}
+
+}  // namespace ayumi

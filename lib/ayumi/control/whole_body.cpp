@@ -1,0 +1,370 @@
+// (22): of all joint rates that give the COG its reference velocity and do the task, J_U x = u, the
+// ones nearest to the commanded rates in the norm W; (23) is the solution. A law without commanded
+// rates (VIIP) has (28)(29), the same with the bias 0. Here the bias also pulls the joints towards
+// the posture that is commanded, or held.
+// The anchored sole moves with the plan (at rest in stance), so the floating velocity is
+// V = map dtheta + rigid(anchor motion). Angular rows are scaled by a length so that the damping
+// treats them like metres.
+// A joint at a limit takes rates away. Then the COG height gives way first, the trunk's attitude
+// next: their rows are scaled down, so that the damping outweighs them. Feet and horizontal COG,
+// which keep the robot upright, come last: only then the whole motion becomes slower.
+#include "ayumi/control/whole_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/dynamics/cog_jacobian.hpp"
+#include "ayumi/dynamics/kernels/tree_kernels.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/math/weighted_solve.hpp"
+#include "ayumi/model/gravity.hpp"
+
+namespace ayumi {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+// Factor on the rows of a task that gives way. Chosen: its square, 1e-5, is the damping's share of
+// the trace, so such rows have no more weight than the damping.
+constexpr double kSoftness = 0.003;
+
+// Largest residual of a task that counts as done [m/s]: 2 um per tick of 1 ms. Chosen: what the
+// damping leaves of a task with bent knees is below it.
+constexpr double kDone = 0.002;
+
+// How often joints that reach a position limit are fixed and the rest solved again. Chosen: both
+// knees and both ankles may come in one after the other.
+constexpr int kLimitPasses = 4;
+
+// Speed limit of the reference COG, times omega z: 1.2 m/s on HOAP-1. Chosen: a DCM that far off
+// has left every support; without a limit an integrator could run away.
+constexpr double kCogSpeedLimit = 0.8;
+
+// Acceleration limit of the reference COG, times g. Chosen: the force of a leg in its strongest
+// motion, a landing; only a law that runs away asks for more.
+constexpr double kCogAccelerationLimit = 4;
+
+// Distance of the centre of pressure from the nearest edge of the sole, as a share of the most
+// there is, from which a tilted foot lies on the ground instead of tipping over an edge. Chosen: 5
+// mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A foot on a bump".
+constexpr double kInsideSole = 0.15;
+
+constexpr char kTooFast = 1, kTooFar = 2;  // what a servo target was held to, as bits
+
+Vector3d rotation_between(const Matrix3d& from, const Matrix3d& to) {
+  return log_rotation(Eigen::Quaterniond(Matrix3d(to * from.transpose())));
+}
+
+/// Adds what a unit rate of every joint from the root to `body` gives a point at p (from the base
+/// origin) on it, times `sign`: linear velocity from row `linear` on where that is not negative,
+/// angular velocity times `length` from row `angular` on.
+void add_chain(const RobotModel& model, const RobotData& data, int body, const Vector3d& p,
+               double sign, int linear, int angular, double length, StackedTask& task) {
+  for (int i = body; i > 0; i = model.bodies()[i].parent) {
+    const Body& b = model.bodies()[i];
+    const Vector3d s = sign * b.ratio * data.axis[i];
+    double* column = task.J.data() + StackedTask::kRows * b.dof;
+    if (linear >= 0)
+      Eigen::Map<Vector3d>(column + linear) +=
+          b.prismatic ? s : Vector3d(s.cross(p - data.position[i]));
+    if (!b.prismatic) Eigen::Map<Vector3d>(column + angular) += length * s;
+  }
+}
+
+/// Joint rates for work.softened; a joint that would leave its position limits is held there and
+/// the rest solved again, a joint too fast slows all down.
+void within_limits(const RobotModel& model, const ActuatorLimits& limits,
+                   const RobotState& reference, const VectorXd& weight, double dt,
+                   const ResolverOptions& options, ResolverWork& work, Resolution& result) {
+  const int n = model.dof_count();
+  result.scale = 1;
+  result.limiting_dof = -1;
+  result.held.clear();
+  const StackedTask* task = &work.softened;
+  work.start = work.bias;
+  for (int pass = 0; pass < kLimitPasses; ++pass) {
+    solve_stacked_task(*task, weight, work.start, options.damping, work.weighted, result.dtheta);
+    bool changed = false;
+    for (int j = 0; j < n; ++j) {
+      const Dof& dof = model.dofs()[j];
+      if (!dof.limited || std::find(result.held.begin(), result.held.end(), j) != result.held.end())
+        continue;
+      const double after = reference.theta[j] + dt * result.dtheta[j];
+      const double stop = std::clamp(after, dof.lower, dof.upper);
+      if (stop == after) continue;
+      const double rate = (stop - reference.theta[j]) / dt;
+      if (task == &work.softened) {
+        work.moving = work.softened;
+        task = &work.moving;
+      }
+      work.moving.u -= work.moving.J.col(j) * rate;
+      work.moving.J.col(j).setZero();
+      work.start[j] = rate;
+      result.held.push_back(j);
+      changed = true;
+    }
+    if (!changed) break;
+  }
+  for (int j = 0; j < n; ++j) {
+    const double speed = options.speed_share * limits.speed[j];
+    const double share = std::abs(result.dtheta[j]) > 0 ? speed / std::abs(result.dtheta[j]) : 2.0;
+    if (share < result.scale) {
+      result.scale = share;
+      result.limiting_dof = j;
+    }
+  }
+  result.dtheta *= result.scale;
+}
+
+void soften(StackedTask& task, int first, int count) {
+  task.J.middleRows(first, count) *= kSoftness;
+  task.u.segment(first, count) *= kSoftness;
+}
+
+/// Whether the rates do the task; softened rows count as little as they weigh.
+bool task_done(const StackedTask& task, const VectorXd& dtheta) {
+  return (task.J.lazyProduct(dtheta) - task.u).cwiseAbs().maxCoeff() < kDone;
+}
+
+}  // namespace
+
+// (23) and (29).
+void solve_stacked_task(const StackedTask& task, const VectorXd& w, const VectorXd& bias,
+                        double damping, StackedTask::Rows& weighted, VectorXd& x) {
+  constexpr int kRows = StackedTask::kRows;
+  const kernels::Kernels& kernels = kernels::best_kernels();
+  const int n = static_cast<int>(task.J.cols());
+  weighted.resize(kRows, n);
+  for (int j = 0; j < n; ++j) weighted.col(j) = task.J.col(j) * (1 / w[j]);
+  Eigen::Matrix<double, kRows, kRows> A;
+  kernels.gram(weighted.data(), kRows, task.J.data(), kRows, n, kRows, kRows, A.data(), kRows);
+  if (damping > 0) A.diagonal().array() += damping * A.trace() / kRows;
+  StackedTask::Vector y = -task.u;  // -v of (23)
+  kernels.multiply_add(task.J.data(), kRows, n, kRows, bias.data(), y.data());
+  if (!kernels.solve_positive(A.data(), kRows, kRows, y.data())) {
+    x = weighted_least_norm(task.J, task.u, w, bias, damping);  // rows that contradict each other
+    return;
+  }
+  x = bias;
+  for (int j = 0; j < n; ++j) x[j] -= weighted.col(j).dot(y);
+}
+
+void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotState& reference,
+             RobotData& data, Side anchor, const Vector3d& cog_velocity,
+             const CommandSample& command, const CommandSample& next, double dt,
+             const VectorXd& weight, const ResolverOptions& options, ResolverWork& work,
+             Resolution& result) {
+  const int n = model.dof_count();
+  const Side free = other(anchor);
+  const int a = static_cast<int>(anchor), f = static_cast<int>(free);
+  const int stance = model.sole(anchor).body;
+
+  // Motion of the planned anchor, as the rigid motion it gives to the whole robot.
+  const Vector3d anchor_velocity =
+      (next.feet[a].translation() - command.feet[a].translation()) / dt;
+  const Vector3d anchor_rate =
+      rotation_between(command.feet[a].linear(), next.feet[a].linear()) / dt;
+  auto carried = [&](const Vector3d& point) -> Vector3d {
+    return anchor_velocity + anchor_rate.cross(point - command.feet[a].translation());
+  };
+
+  // COG: J_G of (13) and ref dp_G. All rows are relative to the anchored sole, whose own chain
+  // counts backwards.
+  StackedTask& task = work.task;
+  StackedTask::Vector& u = task.u;
+  cog_jacobian(model, data, anchor, work.cog);
+  task.J.resize(StackedTask::kRows, n);
+  task.J.topRows<3>() = work.cog;
+  task.J.bottomRows<9>().setZero();
+  u.head<3>() = cog_velocity - carried(data.cog);
+
+  // The other foot.
+  const Isometry3d foot = sole_pose(model, data, free);
+  const double length = options.angular_length;
+  const Vector3d foot_point = foot.translation() - data.base_position;
+  add_chain(model, data, model.sole(free).body, foot_point, 1, 3, 6, length, task);
+  add_chain(model, data, stance, foot_point, -1, 3, 6, length, task);
+  u.segment<3>(3) = (next.feet[f].translation() - command.feet[f].translation()) / dt +
+                    options.foot_rate * (command.feet[f].translation() - foot.translation()) -
+                    carried(foot.translation());
+  u.segment<3>(6) =
+      length *
+      (rotation_between(command.feet[f].linear(), next.feet[f].linear()) / dt +
+       options.foot_rate * rotation_between(foot.linear(), command.feet[f].linear()) - anchor_rate);
+
+  // Trunk: attitude and angular velocity of the commanded posture.
+  const int trunk = model.trunk_body();
+  add_chain(model, data, trunk, data.position[trunk], 1, -1, 9, length, task);
+  add_chain(model, data, stance, data.position[trunk], -1, -1, 9, length, task);
+  Matrix3d commanded = command.state.base.attitude.toRotationMatrix();
+  Vector3d commanded_rate = command.state.base_angular_velocity;
+  if (trunk != 0) {
+    if (!work.planned) work.planned.emplace(model);
+    update_velocities(model, command.state, *work.planned);
+    commanded = work.planned->rotation[trunk];
+    commanded_rate = work.planned->angular_velocity[trunk];
+  }
+  if (!options.lean.isZero(0)) commanded = exp_rotation(options.lean) * commanded;
+  commanded_rate += options.lean_rate;
+  u.tail<3>() = length * (commanded_rate - anchor_rate +
+                          options.trunk_rate * rotation_between(data.rotation[trunk], commanded));
+
+  // (22): the commanded rates, zero in (28), and the pull towards the posture.
+  work.bias = command.state.dtheta + options.posture_rate * (command.state.theta - reference.theta);
+
+  result.held.clear();
+  result.limiting_dof = -1;
+  for (const YieldingTasks yielding : {YieldingTasks{}, YieldingTasks{.height = true},
+                                       YieldingTasks{.height = true, .trunk = true}}) {
+    work.softened = task;
+    if (yielding.height) soften(work.softened, 2, 1);
+    if (yielding.trunk) soften(work.softened, 9, 3);
+    Resolution& attempt = work.attempt;
+    within_limits(model, limits, reference, weight, dt, options, work, attempt);
+    if (yielding.height) {  // keep the joints that made it yield
+      attempt.held.insert(attempt.held.end(), result.held.begin(), result.held.end());
+      std::sort(attempt.held.begin(), attempt.held.end());
+      attempt.held.erase(std::unique(attempt.held.begin(), attempt.held.end()), attempt.held.end());
+      if (attempt.limiting_dof < 0) attempt.limiting_dof = result.limiting_dof;
+    }
+    attempt.yielding = yielding;
+    std::swap(result, attempt);
+    if (!options.in_order) break;
+    if (result.scale == 1 && (result.held.empty() || task_done(work.softened, result.dtheta)))
+      break;
+  }
+}
+
+Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
+                   const RobotState& reference, RobotData& data, Side anchor,
+                   const Vector3d& cog_velocity, const CommandSample& command,
+                   const CommandSample& next, double dt, const VectorXd& weight,
+                   const ResolverOptions& options) {
+  ResolverWork work;
+  Resolution result;
+  resolve(model, limits, reference, data, anchor, cog_velocity, command, next, dt, weight, options,
+          work, result);
+  return result;
+}
+
+std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& resolution) {
+  std::string yields;
+  if (resolution.yielding.height) yields = "the COG height";
+  if (resolution.yielding.trunk) yields += " and the trunk attitude";
+  if (resolution.scale < 1)
+    yields = (yields.empty() ? "" : yields + " give way and ") + "the whole motion becomes slower";
+  else if (!yields.empty())
+    yields += resolution.yielding.trunk ? " give way" : " gives way";
+  else
+    yields = "no task gives way";
+  std::vector<std::string> notes;
+  if (resolution.limiting_dof >= 0)
+    notes.push_back("speed limit of " + model.dofs()[resolution.limiting_dof].name + ": " + yields);
+  for (const int j : resolution.held)
+    notes.push_back("position limit of " + model.dofs()[j].name + ": " + yields);
+  return notes;
+}
+
+ReferenceBody::ReferenceBody(const RobotModel& model, const ActuatorLimits& limits, double dt,
+                             const RobotState& start, const VectorXd& target,
+                             const ResolverOptions& options)
+    : model_(&model),
+      limits_(limits),
+      options_(options),
+      dt_(dt),
+      data_(model),
+      weight_(model.joint_weight()),
+      lead_(servo_lead(model)),
+      previous_target_(target),
+      noted_(static_cast<size_t>(model.dof_count())),
+      reference_(start) {}
+
+void ReferenceBody::take_over(const Handover& handover) {
+  reference_ = handover.reference;
+  dcog_ = handover.dcog;
+  previous_target_ = handover.target;
+}
+
+void ReferenceBody::anchor(Side side, const Eigen::Isometry3d& sole) {
+  anchor_ = side;
+  anchor_base(*model_, side, sole, reference_, data_);
+}
+
+// A foot that has tipped is turned back flat. A tilt that lasts belongs to the ground (or to the
+// sensor) and is accepted like a lasting offset of the ZMP: levelling a foot that lies flat on a
+// slope would lean the body downhill. A foot that tips bears on an edge of its sole; one that bears
+// inside its sole lies on a bump or a stone, and its tilt is soon taken for the ground's. The body
+// above need not lean with one foot: the ankle gives in.
+const VectorXd& ReferenceBody::ankle_offsets(const Estimate& estimate, const AnkleLaw& law) {
+  const bool lies = law.contact_tilt_time > 0 && estimate.stance_inside > kInsideSole;
+  const auto share_of = [&](double time) { return time > 0 ? std::min(1.0, dt_ / time) : 0.0; };
+  Vector3d& under = slope_[static_cast<int>(estimate.stance)];
+  Vector3d& swing = slope_[static_cast<int>(other(estimate.stance))];
+  under += share_of(lies ? law.contact_tilt_time : law.slope_time) * (estimate.foot_tilt - under);
+  ground_ += share_of(law.slope_time) * (under - ground_);
+  if (law.contact_tilt_time > 0)
+    swing += share_of(law.contact_tilt_time) * (ground_ - swing);
+  else
+    swing = under;
+  offsets_.setZero(model_->dof_count());
+  for (Side side : {Side::left, Side::right}) {
+    Vector3d turn = law.compliance * (slope_[static_cast<int>(side)] - ground_);
+    if (side == estimate.stance) turn -= law.share * (estimate.foot_tilt - under);
+    const std::vector<int>& leg = model_->leg(side);
+    for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i)
+      offsets_[leg[i]] = data_.axis[model_->dofs()[leg[i]].body].dot(turn);
+  }
+  return offsets_;
+}
+
+void ReferenceBody::advance(const CogReference& wanted, double z, const CommandSample& command,
+                            const CommandSample& next, const VectorXd& offsets,
+                            ControlOutput& out) {
+  out.cog_reference = wanted;
+  CogReference& ref = out.cog_reference;
+  const double w = std::sqrt(kGravity / z);
+  const double limit = kCogAccelerationLimit * kGravity;
+  if (ref.ddcog.norm() > limit) ref.ddcog *= limit / ref.ddcog.norm();
+  dcog_ += dt_ * ref.ddcog;
+  const double speed = kCogSpeedLimit * w * z;
+  if (dcog_.norm() > speed) dcog_ *= speed / dcog_.norm();
+  ref.dcog = dcog_;
+
+  resolve(*model_, limits_, reference_, data_, anchor_, dcog_, command, next, dt_, weight_,
+          options_, work_, resolution_);
+  if (resolution_.limiting_dof >= 0 || !resolution_.held.empty())
+    for (const std::string& note : limit_notes(*model_, resolution_)) out.notes.push_back(note);
+
+  reference_.dtheta = resolution_.dtheta;
+  reference_.theta += dt_ * resolution_.dtheta;
+  out.reference = reference_;
+  out.target = reference_.theta + lead_.cwiseProduct(resolution_.dtheta) + offsets;
+  bound_target(out);
+}
+
+// The feedforward and the ankles may ask for more than the resolution did. Each joint is noted
+// once.
+void ReferenceBody::bound_target(ControlOutput& out) {
+  const auto hold = [&](int j, double low, double high, char what, const char* text) {
+    double& target = out.target[j];
+    if (target >= low && target <= high) return;
+    target = std::clamp(target, low, high);
+    if (noted_[static_cast<size_t>(j)] & what) return;
+    noted_[static_cast<size_t>(j)] |= what;
+    out.notes.push_back("servo target of " + model_->dofs()[j].name + " held to its " + text);
+  };
+  for (int j = 0; j < out.target.size(); ++j) {
+    const Dof& dof = model_->dofs()[j];
+    const double step = limits_.speed[j] * dt_, before = previous_target_[j];
+    hold(j, before - step, before + step, kTooFast, "speed limit");
+    if (dof.limited) hold(j, dof.lower, dof.upper, kTooFar, "position limit");
+  }
+  previous_target_ = out.target;
+}
+
+}  // namespace ayumi

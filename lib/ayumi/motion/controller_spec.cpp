@@ -1,0 +1,51 @@
+#include "ayumi/motion/controller_spec.hpp"
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+namespace {
+
+struct NamedController {
+  std::string name;
+  ControllerType type;
+};
+
+const std::vector<NamedController>& named_controllers() {
+  static const std::vector<NamedController> table = {
+      {"none", ControllerKind::none},
+      {"dtad", ControllerKind::dtad},
+      {"dtad-literal", {ControllerKind::dtad, Demonstration::literal}},
+      {"viip", ControllerKind::viip},
+      {"viip-landings", {ControllerKind::viip, Demonstration::landings_only}},
+      {"viip-nofeedback", {ControllerKind::viip, Demonstration::no_feedback}}};
+  return table;
+}
+
+}  // namespace
+
+const std::string& name_of(const ControllerType& type) {
+  for (const NamedController& each : named_controllers())
+    if (each.type == type) return each.name;
+  fail(ErrorCode::internal, "a controller and a demonstration that do not belong together");
+}
+
+const std::vector<std::string>& controller_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const NamedController& each : named_controllers()) list.push_back(each.name);
+    return list;
+  }();
+  return names;
+}
+
+ControllerType controller_type(const std::string& name) {
+  for (const NamedController& each : named_controllers())
+    if (each.name == name) return each.type;
+  const std::vector<std::string>& names = controller_names();
+  fail(ErrorCode::usage, "unknown controller '" + name + "'" + text::suggestion(name, names) +
+                             " (known: " + text::join(names, ", ") + ")");
+}
+
+}  // namespace ayumi

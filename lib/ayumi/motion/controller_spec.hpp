@@ -1,0 +1,51 @@
+#pragma once
+// Which law controls the robot, and with which gains. The names "none", "dtad", "viip-landings" and
+// so on exist only in files and on the command line; one table in controller_spec.cpp holds them.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ayumi {
+
+/// The laws.
+enum class ControllerKind {
+  none,  ///< open loop: the servos receive the command; VIIP phases hold their posture
+  dtad,  ///< DTAD, section 3 of the paper; VIIP in phases that carry goals
+  viip,  ///< the same laws in the same phases, but the gains given are those of VIIP
+};
+
+/// Variants that show what a part of a law is worth. They are not meant for a robot.
+enum class Demonstration {
+  none,
+  literal,        ///< DTAD: (14) is integrated as printed, only the sign of D is corrected
+  no_feedback,    ///< VIIP: nothing is measured, feet land by the clock; open loop elsewhere
+  landings_only,  ///< VIIP: as no_feedback, but the landing of a foot is noticed
+};
+
+struct ControllerType {
+  ControllerKind kind = ControllerKind::dtad;
+  Demonstration demonstration = Demonstration::none;
+
+  ControllerType() = default;
+  ControllerType(ControllerKind law) : kind(law) {}  // NOLINT: a law is a type
+  ControllerType(ControllerKind law, Demonstration variant) : kind(law), demonstration(variant) {}
+  bool operator==(const ControllerType&) const = default;
+};
+
+/// The name in files and on the command line: "none", "dtad", "dtad-literal", ...
+const std::string& name_of(const ControllerType& type);
+
+/// All names, law by law.
+const std::vector<std::string>& controller_names();
+
+/// The type of that name. Throws Error(usage) with the known names.
+ControllerType controller_type(const std::string& name);
+
+/// A controller with its gains; gains that are not given are the robot's defaults.
+struct ControllerSpec {
+  ControllerType type;
+  std::vector<std::pair<std::string, double>> gains;
+};
+
+}  // namespace ayumi
