@@ -306,4 +306,18 @@ SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& referenc
   return result;
 }
 
+void add_violations(SafeTable& safe, const std::vector<SafetyViolation>& violations) {
+  std::vector<SafetyViolation>& list = safe.report.violations;
+  list.insert(list.end(), violations.begin(), violations.end());
+  safe.report.safe = list.empty();
+}
+
+SafeTable make_safe_run(const RobotModel& model, const ReferenceTrajectory& reference,
+                        const Eigen::MatrixXd& torque, const SafetyOptions& options) {
+  SafeTable safe = make_safe(model, reference, options);
+  add_violations(safe,
+                 torque_violations(model, torque, reference.dt, safe.report.ramp, options.profile));
+  return safe;
+}
+
 }  // namespace ayumi

@@ -1,0 +1,35 @@
+#include "ayumi/check/judge.hpp"
+
+#include <algorithm>
+
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+std::string Judgement::reason() const {
+  if (good()) return "";
+  const auto is_error = [](const Finding& f) { return f.severity == Severity::error; };
+  const auto first = std::find_if(report.findings.begin(), report.findings.end(), is_error);
+  if (first == report.findings.end()) return "the pattern is inconsistent: " + need().text;
+  const auto errors = std::count_if(report.findings.begin(), report.findings.end(), is_error);
+  std::string text = "the pattern is inconsistent: " + first->kind + " " + first->where + " at " +
+                     text::fixed(first->at, 3) + " s: " + text::brief(first->worst) + " " +
+                     first->unit + ", limit " + text::brief(first->limit) + " " + first->unit;
+  if (errors > 1)
+    text +=
+        " (and " + std::to_string(errors - 1) + (errors == 2 ? " more error)" : " more errors)");
+  return text;
+}
+
+Judgement judge(const RobotModel& model, const CommandSeries& series,
+                const std::vector<KeyedGoal>& goals, const CheckOptions& options) {
+  Judgement judgement;
+  judgement.report = check_consistency(model, series, options);
+  judgement.motion_consistent = judgement.report.consistent;
+  judgement.motion_need = actuator_need(model, series, options, judgement.report);
+  judgement.goal_need = actuator_need(model, goals, options);
+  judgement.report.consistent = judgement.motion_consistent && judgement.goal_need.text.empty();
+  return judgement;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,28 @@
+#pragma once
+// Is this pattern good? The one answer that every command gives: the motion is consistent, and the
+// actuators suffice for the motion and for the goals of VIIP, for which the motion only holds a
+// posture.
+
+#include "ayumi/check/actuator_need.hpp"
+
+namespace ayumi {
+
+struct Judgement {
+  ConsistencyReport report;  ///< of the motion; `consistent` is the verdict on motion and goals
+  bool motion_consistent = true;  ///< false: errors of the motion itself, which a repair can move
+  ActuatorNeed motion_need;       ///< what the profile lacks for the motion
+  ActuatorNeed goal_need;         ///< what it lacks for the goals
+
+  bool good() const { return report.consistent; }
+  /// What the profile lacks: for the motion, else for the goals.
+  const ActuatorNeed& need() const { return motion_need.text.empty() ? goal_need : motion_need; }
+  /// "the pattern is inconsistent: joint_torque r_knee at 1.200 s: 5.2 N m, limit 4.5 N m (and 3
+  /// more errors)"; empty when it is good.
+  std::string reason() const;
+};
+
+/// `goals` are the goals of the series in their keyed forms. Throws as check_consistency().
+Judgement judge(const RobotModel& model, const CommandSeries& series,
+                const std::vector<KeyedGoal>& goals, const CheckOptions& options);
+
+}  // namespace ayumi
