@@ -5,6 +5,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/sim/run_caution.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/sim/step_check.hpp"
@@ -97,6 +98,13 @@ std::string words(const Disturbance& d) {
 }
 
 }  // namespace
+
+std::string words_of(const std::vector<Disturbance>& scenario) {
+  std::vector<std::string> parts;
+  for (const Disturbance& d : scenario)
+    parts.push_back(words(d) + " at " + text::brief(d.at) + " s");
+  return text::join(parts, "; ");
+}
 
 FloorPose moving_floor(const World& world, const std::vector<FloorMotion>& motions, double t,
                        double step) {

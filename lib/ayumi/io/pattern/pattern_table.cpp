@@ -26,7 +26,8 @@ std::vector<fs::path> pattern_files(const fs::path& path) {
 }
 
 void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
-                             const std::vector<std::string>& comments) {
+                             const std::vector<std::string>& comments,
+                             const TableCaution& caution) {
   if (!pattern.table) {
     write_pattern(path, pattern, comments);
     return;
@@ -40,7 +41,7 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
   // Written as it holds from the pattern's old folder, which write_pattern turns into the new one.
   const fs::path from = fs::absolute(pattern.file.empty() ? path : fs::path(pattern.file));
   named.table->file = fs::absolute(table).lexically_relative(from.parent_path()).string();
-  write_file(table, dense_table_csv(*pattern.table));
+  write_file(table, dense_table_csv(*pattern.table, caution));
   try {
     write_pattern(path, named, comments);
   } catch (...) {
@@ -48,6 +49,11 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
     fs::remove(table, ignored);
     throw;
   }
+}
+
+TableCaution caution_of(const Pattern& pattern) {
+  if (!pattern.table) return {};
+  return read_table_caution(fs::path(pattern.file).parent_path() / pattern.table->file);
 }
 
 }  // namespace ayumi

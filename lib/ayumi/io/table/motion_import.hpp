@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ayumi/author/import/contact_reconstruction.hpp"
+#include "ayumi/motion/table_caution.hpp"
 
 namespace ayumi {
 
@@ -26,6 +27,7 @@ struct ImportedMotion {
   std::string format;               ///< "hoap", "csv" or "json"
   int rows = 0;                     ///< data rows of the file
   bool commands = false;            ///< motion.theta is what servos receive
+  TableCaution caution = {};        ///< of the run that the table is from
   std::vector<std::string> filled;  ///< what the file does not say, or says beside the motion
 };
 

@@ -1,8 +1,10 @@
 #include "ayumi/io/table/table.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/json/json_reader.hpp"
@@ -73,12 +75,6 @@ std::string header_value(const std::string& value) {
   return plain ? value : Json(value).dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
-std::string read_header_value(const std::string& text) {
-  if (text.empty() || text.front() != '"') return text;
-  const Json value = Json::parse(text, nullptr, false);
-  return value.is_string() ? value.get<std::string>() : text;
-}
-
 // Key and value of the lines above a table, in order.
 using HeaderLines = std::vector<std::pair<std::string, std::string>>;
 
@@ -107,6 +103,14 @@ HeaderLines provenance_lines(const Provenance& p) {
           {"profile", p.profile},
           {"controller", p.controller},
           {"command_line", p.command_line}};
+}
+
+// What a person has to know before a robot receives the table; nothing for most tables.
+HeaderLines caution_lines(const TableCaution& caution) {
+  HeaderLines lines;
+  if (!caution.disturbances.empty()) lines.emplace_back("disturbances", caution.disturbances);
+  if (!caution.unfit.empty()) lines.emplace_back("unfit", caution.unfit);
+  return lines;
 }
 
 Provenance provenance_of(const std::map<std::string, std::string>& header) {
@@ -142,9 +146,10 @@ Eigen::VectorXd theta_of(const NumberTable& table, Eigen::Index row, const std::
 
 }  // namespace
 
-std::string reference_csv(const ReferenceTrajectory& reference) {
+std::string reference_csv(const ReferenceTrajectory& reference, const TableCaution& caution) {
   std::string text = csv_header(common_header(kReferenceFormat, reference.dt)) +
                      csv_header(provenance_lines(reference.provenance)) +
+                     csv_header(caution_lines(caution)) +
                      text::join(reference_columns(reference), ",") + "\n";
   for (size_t k = 0; k < reference.rows.size(); ++k) {
     append_cells(text, cells_of(reference, k), false);
@@ -153,7 +158,7 @@ std::string reference_csv(const ReferenceTrajectory& reference) {
   return text;
 }
 
-std::string reference_json(const ReferenceTrajectory& reference) {
+std::string reference_json(const ReferenceTrajectory& reference, const TableCaution& caution) {
   const auto quoted = [](const std::string& value) {
     return Json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
   };
@@ -162,6 +167,8 @@ std::string reference_json(const ReferenceTrajectory& reference) {
     const bool number = key == "gravity" || key == "dt" || key == "rate_hz";
     text += "  " + quoted(key) + ": " + (number ? value : quoted(value)) + ",\n";
   }
+  for (const auto& [key, value] : caution_lines(caution))
+    text += "  " + quoted(key) + ": " + quoted(value) + ",\n";
   std::vector<std::string> members;
   for (const auto& [key, value] : provenance_lines(reference.provenance))
     members.push_back("    " + quoted(key) + ": " + quoted(value));
@@ -211,6 +218,18 @@ ReferenceTrajectory read_reference(const std::filesystem::path& path) {
   return reference;
 }
 
+TableCaution read_table_caution(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  if (!bytes.starts_with('#')) return caution_of(number_table(bytes, path.string()));
+  std::string head;
+  for (size_t at = 0; at < bytes.size() && bytes[at] == '#';) {
+    const size_t end = std::min(bytes.find('\n', at), bytes.size() - 1) + 1;
+    head += bytes.substr(at, end - at);
+    at = end;
+  }
+  return caution_of(parse_csv(head + "\nt[s]\n0\n", path.string()));
+}
+
 void require_joints(const ReferenceTrajectory& reference, const std::vector<std::string>& joints,
                     const std::string& file) {
   if (reference.joints.size() != joints.size())
@@ -247,7 +266,7 @@ DenseTable read_dense_table(const std::filesystem::path& path) {
   return dense;
 }
 
-std::string dense_table_csv(const DenseTable& table) {
+std::string dense_table_csv(const DenseTable& table, const TableCaution& caution) {
   std::vector<std::string> columns = {"t[s]"};
   for (const std::string& joint : table.joints) columns.push_back(theta_column(joint));
   if (!table.cog.empty()) append(columns, kCogColumns);
@@ -256,6 +275,7 @@ std::string dense_table_csv(const DenseTable& table) {
   if (!table.base.empty()) append(columns, kBaseColumns);
   auto header = common_header(kMotionFormat, table.dt);
   if (table.commands) header.emplace_back("theta", "commands");
+  for (const auto& line : caution_lines(caution)) header.push_back(line);
   std::string text = csv_header(header) + text::join(columns, ",") + "\n";
   for (Eigen::Index k = 0; k < table.theta.rows(); ++k) {
     const auto at = static_cast<size_t>(k);

@@ -9,14 +9,20 @@
 
 #include "ayumi/motion/pattern.hpp"
 #include "ayumi/motion/reference_trajectory.hpp"
+#include "ayumi/motion/table_caution.hpp"
 
 namespace ayumi {
 
 /// "# key: value" lines, one head row, one row per tick; numbers read back to the same bits.
-/// Throws Error(internal) for a value that is not finite or a row with another number of joints.
-std::string reference_csv(const ReferenceTrajectory& reference);
+/// The head says what there is to say of the table's run. Throws Error(internal) for a value that
+/// is not finite or a row with another number of joints.
+std::string reference_csv(const ReferenceTrajectory& reference, const TableCaution& caution = {});
 /// The same columns and rows as one JSON object.
-std::string reference_json(const ReferenceTrajectory& reference);
+std::string reference_json(const ReferenceTrajectory& reference, const TableCaution& caution = {});
+
+/// What the head of a table says of the run that it is from. Throws Error(bad_file) where the file
+/// is no table.
+TableCaution read_table_caution(const std::filesystem::path& path);
 
 /// Reads what reference_csv or reference_json wrote, told apart by the first character. Throws
 /// Error(bad_file) naming file and line or pointer: another format, missing or unknown columns,
@@ -32,6 +38,6 @@ void require_joints(const ReferenceTrajectory& reference, const std::vector<std:
 /// Throws Error(bad_file) as read_reference.
 DenseTable read_dense_table(const std::filesystem::path& path);
 /// The text read_dense_table reads.
-std::string dense_table_csv(const DenseTable& table);
+std::string dense_table_csv(const DenseTable& table, const TableCaution& caution = {});
 
 }  // namespace ayumi

@@ -152,6 +152,20 @@ bool holds_commands(const NumberTable& table) {
   return says("format", kReferenceFormat) || says("theta", "commands");
 }
 
+std::string read_header_value(const std::string& text) {
+  if (text.empty() || text.front() != '"') return text;
+  const Json value = Json::parse(text, nullptr, false);
+  return value.is_string() ? value.get<std::string>() : text;
+}
+
+TableCaution caution_of(const NumberTable& table) {
+  const auto line = [&](const char* key) {
+    const auto found = table.header.find(key);
+    return found == table.header.end() ? std::string() : read_header_value(found->second);
+  };
+  return {line("disturbances"), line("unfit")};
+}
+
 BasePose base_of(const NumberTable& table, const TableLayout& layout, Eigen::Index row,
                  const std::string& file) {
   const auto cell = [&](size_t i) { return table.values(row, layout.base[i]); };

@@ -7,6 +7,7 @@
 
 #include "ayumi/io/table/number_table.hpp"
 #include "ayumi/model/robot_state.hpp"
+#include "ayumi/motion/table_caution.hpp"
 
 namespace ayumi {
 
@@ -33,6 +34,12 @@ TableLayout layout_of(const NumberTable& table, const std::string& file);
 
 /// Whether theta is what servos receive: a reference table, or the header says theta: commands.
 bool holds_commands(const NumberTable& table);
+
+/// The text of a header line, which is quoted as in JSON where it is not plain.
+std::string read_header_value(const std::string& text);
+
+/// What the header says of the run that the table is from ("disturbances", "unfit").
+TableCaution caution_of(const NumberTable& table);
 
 /// dt of a table whose rows are k dt: the header's "dt", else from the time column. Throws
 /// Error(bad_file) for a time that is not k dt, naming the row.

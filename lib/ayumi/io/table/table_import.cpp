@@ -276,6 +276,7 @@ ImportedMotion read_table_motion(const std::string& bytes, const std::string& fi
                       : "csv";
   result.rows = static_cast<int>(table.values.rows());
   result.commands = holds_commands(table);
+  result.caution = caution_of(table);
   rename_columns(table, model, options, file);
   add_time(table, options, file);
   const TableLayout layout = layout_of(table, file);

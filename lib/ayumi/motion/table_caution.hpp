@@ -1,0 +1,26 @@
+#pragma once
+// What a person has to know before a robot receives a joint table.
+
+#include <string>
+
+namespace ayumi {
+
+struct TableCaution {
+  /// The scripted disturbances of the run that the table is from; empty for an undisturbed run. The
+  /// table holds the reactions to them, which no robot should repeat.
+  std::string disturbances;
+  /// Why no robot should receive the table ("the run fell at 2.31 s"); empty where nothing is known
+  /// against it.
+  std::string unfit;
+};
+
+/// What holds of one part of a table holds of the whole.
+inline void add_caution(TableCaution& caution, const TableCaution& more) {
+  const auto add = [](std::string& text, const std::string& other) {
+    if (!other.empty()) text += (text.empty() ? "" : "; ") + other;
+  };
+  add(caution.disturbances, more.disturbances);
+  add(caution.unfit, more.unfit);
+}
+
+}  // namespace ayumi
