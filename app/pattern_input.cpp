@@ -10,7 +10,9 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/controller.hpp"
+#include "ayumi/control/viip_goals.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
 
@@ -98,13 +100,15 @@ Pattern read_given_pattern(const std::filesystem::path& file,
 PatternInput load_pattern(const Context& context, const std::filesystem::path& file,
                           const PatternOptions& options, bool meshes) {
   Pattern pattern = read_given_pattern(file, read_pairs(options.set, "--set"));
-  RobotModel model = load_robot(robot_of(pattern), robot_search(context), {.meshes = meshes});
+  RobotModel model = load_robot(options.robot.empty() ? robot_of(pattern) : options.robot,
+                                robot_search(context), {.meshes = meshes});
   check_against_robot(pattern, model);
   const std::string wanted = options.profile.empty() ? pattern.profile : options.profile;
   const std::string profile = model.limits(wanted).name;
   CommandSeries series =
       sample(model, pattern, {.dt = model.description().servo_period}, context.progress());
-  return {std::move(pattern), std::move(model), std::move(series), profile};
+  TableCaution caution = caution_of(pattern);
+  return {std::move(pattern), std::move(model), std::move(series), profile, std::move(caution)};
 }
 
 std::string robot_as_written(const std::string& robot) {
@@ -122,6 +126,11 @@ CheckOptions check_options(const PatternInput& input, const std::vector<std::str
   return options;
 }
 
+Judgement judge_pattern(const PatternInput& input, const CheckOptions& options) {
+  return judge(input.model, input.series,
+               keyed_goals(input.model, input.series, input.pattern.controller), options);
+}
+
 Provenance provenance(const Context& context, const PatternInput& input,
                       const std::string& controller) {
   return {.robot = robot_of(input.pattern),  // holds from the working folder
@@ -134,8 +143,8 @@ Provenance provenance(const Context& context, const PatternInput& input,
 }
 
 void refuse_overwriting(const Context& context, const std::filesystem::path& path) {
-  if (!context.force && std::filesystem::exists(path))
-    fail(ErrorCode::bad_file, path.string() + ": exists already; choose another name or --force");
+  require_file_target(path);
+  if (!context.force) refuse_existing(path);
 }
 
 }  // namespace ayumi::app

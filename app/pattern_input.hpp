@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/check/consistency.hpp"
+#include "ayumi/check/judge.hpp"
 #include "ayumi/motion/command_series.hpp"
+#include "ayumi/motion/table_caution.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "commands.hpp"
 
@@ -17,6 +18,7 @@ namespace ayumi::app {
 struct PatternOptions {
   std::vector<std::string> set;  ///< "name=value" for declared parameters
   std::string profile;           ///< actuator profile; "" = the pattern's, then the robot's default
+  std::string robot = {};        ///< in place of the pattern's; "" = the pattern's
 };
 void add_pattern_options(CLI::App& command, PatternOptions& options);
 
@@ -24,7 +26,8 @@ struct PatternInput {
   Pattern pattern;
   RobotModel model;
   CommandSeries series;
-  std::string profile;  ///< by name
+  std::string profile;        ///< by name
+  TableCaution caution = {};  ///< of the run that the pattern's table is from
 };
 
 /// The bytes of a file; `-` is standard input.
@@ -52,6 +55,9 @@ std::string robot_as_written(const std::string& robot);
 CheckOptions check_options(const PatternInput& input,
                            const std::vector<std::string>& overrides = {});
 
+/// The verdict on the pattern: the one that check, run, simulate and export give.
+Judgement judge_pattern(const PatternInput& input, const CheckOptions& options);
+
 Provenance provenance(const Context& context, const PatternInput& input,
                       const std::string& controller);
 
@@ -59,7 +65,8 @@ Provenance provenance(const Context& context, const PatternInput& input,
 std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
                                          const std::string& option);
 
-/// Throws Error(bad_file) when `path` exists and --force was not given.
+/// Throws Error(bad_file) when `path` exists and --force was not given, and where no regular file
+/// can be written (require_file_target).
 void refuse_overwriting(const Context& context, const std::filesystem::path& path);
 
 }  // namespace ayumi::app

@@ -11,7 +11,7 @@
 #include "ayumi/model/diagnose.hpp"
 #include "ayumi/model/outline.hpp"
 #include "ayumi/render/clip.hpp"
-#include "commands.hpp"
+#include "pattern_input.hpp"
 
 namespace ayumi::app {
 
@@ -274,8 +274,7 @@ std::vector<std::string> write_picture(const Context& context, const RobotModel&
                                        const std::string& file, const std::string& view) {
   if (std::filesystem::path(file).extension() != ".png")
     fail(ErrorCode::usage, "--picture " + file + ": a picture is a .png");
-  if (!context.force && std::filesystem::exists(file))
-    fail(ErrorCode::bad_file, file + ": exists already; choose another name or --force");
+  refuse_overwriting(context, file);
   ClipOptions options;
   options.camera.view = view;
   OverlayOptions& marks = options.overlay;  // of those, a robot without motion has a COG

@@ -10,7 +10,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
-#include "commands.hpp"
+#include "pattern_input.hpp"
 #include "run_robot.hpp"
 
 namespace ayumi::app {
@@ -51,9 +51,10 @@ std::vector<LabelledLog> logs_of(const PlotOptions& options) {
       continue;
     }
     std::map<std::string, SimulationLog> all;
-    if (options.logs.empty())
+    if (options.logs.empty()) {
       all = read_run(input).logs;
-    else
+      all.erase("undisturbed");  // the plot shows the runs under the scenario
+    } else
       for (const std::string& name : options.logs) all[name] = read_run_log(input, name);
     const auto first = static_cast<std::ptrdiff_t>(logs.size());
     for (auto& [name, log] : all) {
@@ -79,8 +80,7 @@ std::optional<RobotModel> robot_at_hand(const std::string& recorded, const PlotO
 }
 
 void plot(const PlotOptions& options, Context& context) {
-  if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
-    fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
+  refuse_overwriting(context, options.output);
   const std::vector<LabelledLog> logs = logs_of(options);
   std::vector<LociRun> runs;
   for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});

@@ -130,6 +130,7 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
       robot_of_run(context, options.robot, log.provenance.robot, {.meshes = true});
   PreviewOptions own = options;
   own.clip.threads = threads;
+  own.clip.overwrite = context.force;
   std::optional<SimulationLog> ghost;
   if (options.ghost == "command")
     own.clip.ghost.command = true;
@@ -167,8 +168,8 @@ nlohmann::ordered_json json_of(const std::string& output, const ClipSummary& sum
 }
 
 void preview_one(const PreviewOptions& options, Context& context) {
-  if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
-    fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
+  const bool frames = fs::path(options.output).extension().empty();
+  if (!frames) refuse_overwriting(context, options.output);
   const auto start = std::chrono::steady_clock::now();
   const ClipSummary summary = draw_run(options, options.inputs.front(), options.output,
                                        options.clip.threads, context, context.progress());

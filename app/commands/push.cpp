@@ -226,6 +226,7 @@ void find_limits(Context& context, const PushCommand& options) {
       fail(ErrorCode::usage, "--map " + options.map + ": the name must end in .svg or .png");
     refuse_overwriting(context, options.map);
   }
+  if (!options.out.empty()) require_file_target(options.out);
   const PatternInput input = load_pattern(context, options.pattern, options.input);
   const PushOptions push = push_options(context, input, options);
   const Json study = study_json(input, push);

@@ -1,5 +1,8 @@
 #include "ayumi/base/file.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -34,13 +37,57 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   return bytes;
 }
 
-void write_file_with(const fs::path& path, const std::function<void(const fs::path&)>& produce) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder))
+namespace {
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+}  // namespace
+
+void require_file_target(const fs::path& path) {
+  const fs::path folder = folder_of(path);
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
     fail(ErrorCode::bad_file,
          path.string() + ": the folder " + folder.string() + " does not exist; create it first");
-  if (fs::is_directory(path))
-    fail(ErrorCode::bad_file, path.string() + ": is a directory, a file name is needed");
+  const auto refuse = [&](const std::string& reason) {
+    fail(ErrorCode::bad_file, path.string() + ": " + reason);
+  };
+  switch (fs::symlink_status(path, error).type()) {
+    case fs::file_type::not_found:
+    case fs::file_type::regular:
+      return;
+    case fs::file_type::directory:
+      refuse("is a directory, a file name is needed");
+      break;
+    case fs::file_type::symlink:
+      refuse("is a symbolic link, which Ayumi neither replaces nor follows; name the file itself");
+      break;
+    case fs::file_type::character:
+    case fs::file_type::block:
+      refuse("is a device, a regular file is needed");
+      break;
+    case fs::file_type::fifo:
+      refuse("is a named pipe, a regular file is needed");
+      break;
+    case fs::file_type::socket:
+      refuse("is a socket, a regular file is needed");
+      break;
+    default:
+      refuse("cannot be written (" + (error ? error.message() : "unknown type of file") + ")");
+  }
+}
+
+void refuse_existing(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::exists(fs::symlink_status(path, ignored)))
+    fail(ErrorCode::bad_file, path.string() + ": exists already; choose another name or --force");
+}
+
+void write_file_with(const fs::path& path, const std::function<void(const fs::path&)>& produce) {
+  require_file_target(path);
+  const fs::path folder = folder_of(path);
   const fs::path temporary = folder / (path.stem().string() + ".part" + std::to_string(getpid()) +
                                        path.extension().string());
   try {
@@ -68,6 +115,51 @@ void write_file(const fs::path& path, const std::string& bytes) {
       fail(ErrorCode::bad_file,
            path.string() + ": cannot be written (" + std::strerror(errno) + ")");
   });
+}
+
+namespace {
+
+// Whether the open file still is the one of that name: its last holder may have removed it between
+// our opening and locking it.
+bool is_file_of(int descriptor, const fs::path& path) {
+  struct stat opened {
+  }, named{};
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const fs::path& folder) : folder_(folder), file_(folder / ".ayumi_lock") {
+  constexpr int kTries = 100;  // another process may remove folder or file between two calls
+  const auto stop = [&](const std::string& reason) {
+    fail(ErrorCode::bad_file, folder_.string() + ": " + reason);
+  };
+  for (int i = 0; i < kTries; ++i) {
+    std::error_code error;
+    made_ = fs::create_directories(folder_, error) || made_;
+    if (error) stop("cannot be made (" + error.message() + ")");
+    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+    if (descriptor_ < 0 && errno == ENOENT) continue;
+    if (descriptor_ < 0) stop(std::string("cannot be written (") + std::strerror(errno) + ")");
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const int reason = errno;
+      ::close(descriptor_);
+      if (reason == EWOULDBLOCK)
+        stop("another run is being written there; wait for its end or choose another folder");
+      stop(std::string("cannot be locked (") + std::strerror(reason) + ")");
+    }
+    if (is_file_of(descriptor_, file_)) return;
+    ::close(descriptor_);
+  }
+  stop("cannot be locked, other processes lock it again and again");
+}
+
+FolderLock::~FolderLock() {
+  std::error_code ignored;
+  fs::remove(file_, ignored);
+  ::close(descriptor_);
+  if (made_) fs::remove(folder_, ignored);  // succeeds on an empty folder only
 }
 
 }  // namespace ayumi

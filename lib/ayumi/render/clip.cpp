@@ -189,10 +189,29 @@ std::string with_name(std::string message, const std::string& temporary, const s
   return message;
 }
 
+bool is_frame(const fs::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  return fs::is_regular_file(entry.symlink_status()) && name.starts_with("frame_") &&
+         name.ends_with(".png");
+}
+
+/// Throws unless frames may be written to a folder of that name: nothing is there, an empty folder,
+/// or, to be overwritten, a folder that holds frames only.
+void require_frame_folder(const fs::path& path, bool overwrite) {
+  const fs::file_status status = fs::symlink_status(path);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status)) {
+    require_file_target(path);
+    refuse_existing(path);
+  }
+  for (const auto& entry : fs::directory_iterator(path))
+    if (!overwrite || !is_frame(entry)) refuse_existing(path);
+}
+
 /// Fills a new folder beside `path`, then gives it that name.
-void write_folder(const fs::path& path, const std::function<void(const fs::path&)>& produce) {
-  if (fs::exists(path) && !(fs::is_directory(path) && fs::is_empty(path)))
-    fail(ErrorCode::bad_file, path.string() + ": exists already; remove it or choose another");
+void write_folder(const fs::path& path, bool overwrite,
+                  const std::function<void(const fs::path&)>& produce) {
+  require_frame_folder(path, overwrite);
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(parent))
     fail(ErrorCode::bad_file,
@@ -203,6 +222,8 @@ void write_folder(const fs::path& path, const std::function<void(const fs::path&
     fs::remove_all(temporary);
     fs::create_directory(temporary);
     produce(temporary);
+    require_frame_folder(path, overwrite);
+    if (fs::exists(path)) fs::remove_all(path);
     fs::rename(temporary, path);
   } catch (const fs::filesystem_error& error) {
     fs::remove_all(temporary, ignored);
@@ -369,7 +390,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
     }
   };
   if (path.extension().empty()) {
-    write_folder(path, [&](const fs::path& folder) {
+    write_folder(path, options.overwrite, [&](const fs::path& folder) {
       frames([&](int k, const Image& image) { write_png(folder / frame_name(k), image); });
     });
   } else {

@@ -36,6 +36,7 @@ struct ClipOptions {
   std::string title;               ///< first words of the caption; empty: the pattern's name
   int threads = 1;                 ///< renderers at work; the bytes do not depend on it
   std::string encoder = "ffmpeg";  ///< program
+  bool overwrite = false;          ///< a folder of frames takes the place of an earlier one
 };
 
 struct ClipSummary {
