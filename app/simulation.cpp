@@ -99,6 +99,21 @@ SimulationLog simulate_once(const Context& context, const PatternInput& input,
   return log;
 }
 
+TableCaution table_caution(const PatternInput& input, const SimulationLog& log,
+                           const std::vector<std::string>& unfit) {
+  TableCaution caution = {words_of(log.scenario), text::join(unfit, "; ")};
+  add_caution(caution, input.caution);
+  return caution;
+}
+
+Eigen::MatrixXd torques_of(const SimulationLog& log) {
+  Eigen::MatrixXd torque(static_cast<Eigen::Index>(log.samples.size()),
+                         static_cast<Eigen::Index>(log.joints.size()));
+  for (Eigen::Index k = 0; k < torque.rows(); ++k)
+    torque.row(k) = log.samples[static_cast<size_t>(k)].torque.transpose();
+  return torque;
+}
+
 std::string outcome_text(const SimulationLog& log) {
   const SimulationResult& r = log.result;
   std::string text =

@@ -2,6 +2,7 @@
 // Simulating a pattern from the command line: choices over the pattern's own, and verdicts in
 // words.
 
+#include "ayumi/sim/run_caution.hpp"
 #include "pattern_input.hpp"
 
 namespace ayumi::app {
@@ -35,6 +36,14 @@ ControllerSpec chosen_controller(const PatternInput& input, const SimulationChoi
 /// Runs the pattern; the log carries its provenance. Throws as refuse_unstable_gains().
 SimulationLog simulate_once(const Context& context, const PatternInput& input,
                             const SimulationChoice& choice);
+
+/// What the head of the table of a run has to say: its disturbances and those that the pattern's
+/// own table is from, and why the run is `unfit` for a robot.
+TableCaution table_caution(const PatternInput& input, const SimulationLog& log,
+                           const std::vector<std::string>& unfit);
+
+/// Torques that the motors gave, samples x dof [N m].
+Eigen::MatrixXd torques_of(const SimulationLog& log);
 
 /// "DTAD stands: final COG error 0.2 mm, largest trunk tilt 1.3 deg, ..."
 std::string outcome_text(const SimulationLog& log);

@@ -50,11 +50,13 @@ ForceRange force_range(const CommandSeries& series) {
 struct Result {
   CommandSeries series;
   ConsistencyReport report;
+  TableCaution caution;  ///< of the tables that went into it
 };
 
 Result check_edited(const Context& context, const EditCommand& options, const PatternInput& input,
                     const Pattern& edited) {
   Result result;
+  result.caution = input.caution;
   result.series = sample(input.model, edited, {.dt = input.series.dt}, context.progress());
   result.report =
       check_consistency(input.model, result.series, check_options(input, options.tolerances));
@@ -65,7 +67,7 @@ void write_edited(Context& context, const EditCommand& options, const Pattern& e
                   const Result& result, const std::string& words, Json json) {
   refuse_overwriting(context, options.out);
   if (edited.table) refuse_overwriting(context, table_beside(options.out));
-  write_pattern_and_table(options.out, edited);
+  write_pattern_and_table(options.out, edited, {}, result.caution);
   context.print(options.out + ": " + (result.report.consistent ? "consistent" : "INCONSISTENT") +
                 ", " + text::fixed(result.series.duration(), 2) + " s\n" + words +
                 check_table(result.report));
@@ -174,6 +176,7 @@ void join(Context& context, const EditCommand& options) {
                                        "' is another robot than '" + input.pattern.robot + "' of " +
                                        options.patterns.front());
     joins.push_back(input.series.duration());
+    add_caution(input.caution, next.caution);
     input.pattern = joined(input.model, {input.pattern, input.series}, {next.pattern, next.series},
                            options.over, table);
     input.series = sample(input.model, input.pattern, {.dt = input.series.dt}, context.progress());

@@ -1,28 +1,26 @@
 // Joint tables for a robot or another program: the reference of a run, or of a pattern replayed
 // open loop, with ramp and hold around it. Unsafe tables are refused.
 
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/consistency.hpp"
 #include "ayumi/check/table_safety.hpp"
 #include "ayumi/control/laws/dtad.hpp"
 #include "ayumi/io/formats/hoap.hpp"
-#include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/table/table.hpp"
-#include "ayumi/plan/sample.hpp"
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "commands.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "run_robot.hpp"
+#include "simulation.hpp"
 
 namespace ayumi::app {
 
@@ -34,14 +32,16 @@ struct ExportOptions {
   std::string input, format, output, robot, log;
   std::vector<std::string> set;
   SafetyOptions safety;
-  bool force_unsafe = false;
+  bool pushed = false, force_unsafe = false;
 };
 
 struct Source {
   RobotModel model;
   ReferenceTrajectory reference;
-  Eigen::MatrixXd torque;             ///< of a run's motors, rows x dof; empty where not known
-  std::optional<CommandSeries> plan;  ///< of a pattern: the check knows what it needs
+  std::string disturbances;          ///< of the run that the table is from; empty: none
+  Eigen::MatrixXd torque;            ///< of a run's motors, rows x dof; empty where not known
+  std::optional<PatternInput> plan;  ///< of a pattern: the check knows what it needs
+  std::vector<std::string> unfit;    ///< why no robot should receive the table
 };
 
 // What the servos receive when a pattern is replayed as it is.
@@ -63,51 +63,92 @@ ReferenceTrajectory open_loop_reference(const RobotModel& model, const CommandSe
   return reference;
 }
 
+bool draws(const ExportOptions& options) { return options.format == "gltf"; }
+
 /// The robot asked for, else `recorded`; with meshes where they are drawn.
 RobotModel robot_named(const ExportOptions& options, const std::string& recorded,
                        const Context& context) {
-  return robot_of_run(context, options.robot, recorded, {.meshes = options.format == "gltf"});
+  return robot_of_run(context, options.robot, recorded, {.meshes = draws(options)});
 }
 
 Source source_of_pattern(const ExportOptions& options, const Context& context) {
-  const Pattern pattern = read_given_pattern(options.input, read_pairs(options.set, "--set"));
-  Source source{load_robot(options.robot.empty() ? robot_of(pattern) : options.robot,
-                           robot_search(context), {.meshes = options.format == "gltf"}),
-                {},
-                {},
-                {}};
-  check_against_robot(pattern, source.model);
-  const CommandSeries series = sample(source.model, pattern, {}, context.progress());
-  if (!series.viip.empty())
+  PatternInput input = load_pattern(context, options.input,
+                                    {.set = options.set, .robot = options.robot}, draws(options));
+  if (!input.series.viip.empty())
     fail(ErrorCode::bad_pattern, options.input +
                                      ": phases: the pattern has VIIP goals, which it holds still "
                                      "for: run it (ayumi run), then export the RUN");
-  source.reference = open_loop_reference(source.model, series);
-  source.reference.provenance = {
-      source.model.name(), source.model.description().sha256,         pattern.name,
-      pattern.sha256,      source.model.limits(pattern.profile).name, "none",
-      context.command_line};
-  source.plan = series;
+  Source source{input.model,
+                open_loop_reference(input.model, input.series),
+                input.caution.disturbances,
+                {},
+                {},
+                {}};
+  source.reference.provenance = provenance(context, input, "none");
+  if (!options.robot.empty()) source.reference.provenance.robot = options.robot;
+  if (!input.caution.unfit.empty()) source.unfit.push_back(input.caution.unfit);
+  if (!draws(options) && input.model.has_soles()) {
+    const std::string reason = judge_pattern(input, check_options(input)).reason();
+    if (!reason.empty()) source.unfit.push_back(reason);
+  }
+  source.plan = std::move(input);
   return source;
 }
 
 Source source_of_table(const ExportOptions& options, const Context& context,
-                       ReferenceTrajectory reference) {
+                       ReferenceTrajectory reference, const TableCaution& caution) {
   const Provenance& made = reference.provenance;
-  Source source{robot_named(options, made.robot, context), std::move(reference), {}, {}};
+  Source source{robot_named(options, made.robot, context),
+                std::move(reference),
+                caution.disturbances,
+                {},
+                {},
+                {}};
   require_joints(source.reference, source.model.dof_names(), options.input);
   if (!made.robot_sha256.empty() && made.robot_sha256 != source.model.description().sha256)
     fail(ErrorCode::bad_file, options.input + ": robot '" + source.model.name() +
                                   "' has changed since this was made; run the pattern again");
+  if (!caution.unfit.empty()) source.unfit.push_back(caution.unfit);
   return source;
 }
 
-ReferenceTrajectory reference_of_run(const ExportOptions& options, const Context& context) {
-  if (options.log.empty() && fs::exists(fs::path(options.input) / "reference.csv"))
-    return read_reference(fs::path(options.input) / "reference.csv");
-  const SimulationLog log = read_run_log(options.input, options.log);
+struct CautiousTable {
+  ReferenceTrajectory reference;
+  TableCaution caution;
+};
+
+// The table of a run that is asked for; `log` is the one that it is from.
+CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
+                           const SimulationLog& log, const RobotModel& model) {
+  if (!options.log.empty()) return {extract_reference(model, log), caution_of(log)};
+  if (options.pushed && !run.pushed)
+    fail(ErrorCode::usage,
+         options.input + ": --pushed: the run has no disturbances; leave --pushed out");
+  if (!options.pushed && run.reference) return {*run.reference, run.reference_caution};
+  if (run.pushed) return {*run.pushed, run.pushed_caution};
+  fail(ErrorCode::bad_file, options.input + ": the run holds no joint table");
+}
+
+std::string log_of_table(const ExportOptions& options, const RunFolder& run) {
+  if (!options.log.empty()) return options.log;
+  return !options.pushed && run.logs.contains("undisturbed") ? "undisturbed" : "";
+}
+
+// Every file of the folder is first compared with what run.json says of it.
+Source source_of_run(const ExportOptions& options, const Context& context) {
+  verify_run(options.input);
+  const RunFolder run = read_run(options.input);
+  const SimulationLog log = read_run_log(options.input, log_of_table(options, run));
   const RobotModel model = robot_of_run(context, options.robot, log.provenance.robot);
-  return extract_reference(model, log);
+  const CautiousTable table = table_of_run(options, run, log, model);
+  Source source = source_of_table(options, context, table.reference, table.caution);
+  if (log.samples.size() == source.reference.rows.size()) source.torque = torques_of(log);
+  source.unfit = run.unfit;
+  // What the run says of itself, and what is known of an open loop that is asked for.
+  const std::string& own = table.caution.unfit;
+  if (!own.empty() && text::join(run.unfit, "; ").find(own) == std::string::npos)
+    source.unfit.push_back(own);
+  return source;
 }
 
 // A CSV, or JSON that says so at its head.
@@ -116,25 +157,21 @@ bool is_reference_table(const std::string& path) {
          read_file(path).substr(0, 200).find("\"ayumi.reference/") != std::string::npos;
 }
 
-// What the motors gave in the run. A folder that holds tables alone knows of none.
-Eigen::MatrixXd torque_of_run(const ExportOptions& options, const Source& source) {
-  const SimulationLog log = read_run_log(options.input, options.log);
-  if (log.samples.size() != source.reference.rows.size()) return {};
-  Eigen::MatrixXd torque(static_cast<Eigen::Index>(log.samples.size()), source.model.dof_count());
-  for (Eigen::Index k = 0; k < torque.rows(); ++k)
-    torque.row(k) = log.samples[static_cast<size_t>(k)].torque.transpose();
-  return torque;
+// A table of a run folder is part of that run: what holds of the folder holds of it.
+void verify_run_of(const fs::path& table) {
+  const fs::path folder = table.has_parent_path() ? table.parent_path() : fs::path(".");
+  if (!is_run_folder(folder)) return;
+  const std::vector<std::string> names = run_file_names(folder);
+  if (std::find(names.begin(), names.end(), table.filename().string()) != names.end())
+    verify_run(folder);
 }
 
 Source source_of(const ExportOptions& options, const Context& context) {
-  if (fs::is_directory(options.input)) {
-    Source source = source_of_table(options, context, reference_of_run(options, context));
-    if (options.format == "hoap") source.torque = torque_of_run(options, source);
-    return source;
-  }
-  if (is_reference_table(options.input))
-    return source_of_table(options, context, read_reference(options.input));
-  return source_of_pattern(options, context);
+  if (fs::is_directory(options.input)) return source_of_run(options, context);
+  if (!is_reference_table(options.input)) return source_of_pattern(options, context);
+  verify_run_of(options.input);
+  return source_of_table(options, context, read_reference(options.input),
+                         read_table_caution(options.input));
 }
 
 constexpr double kGltfRate = 60;  // keys of an animation [Hz]; viewers draw evenly between them
@@ -158,9 +195,10 @@ void export_gltf(const ExportOptions& options, Context& context) {
 }
 
 std::string bytes_of(const std::string& format, const Source& source,
-                     const ReferenceTrajectory& table, const SafetyOptions& safety) {
+                     const ReferenceTrajectory& table, const TableCaution& caution,
+                     const SafetyOptions& safety) {
   if (format == "hoap") return hoap_csv(source.model, table, safety);
-  return format == "json" ? reference_json(table) : reference_csv(table);
+  return format == "json" ? reference_json(table, caution) : reference_csv(table, caution);
 }
 
 bool knows_torque(const Source& source) { return source.plan || source.torque.size() > 0; }
@@ -170,10 +208,10 @@ std::vector<SafetyViolation> torque_violations_of(const Source& source, const Sa
   const double begin = static_cast<double>(safe.first) * safe.table.dt;
   if (!source.plan)
     return torque_violations(source.model, source.torque, safe.table.dt, begin, profile);
-  CheckOptions check;
+  CheckOptions check = check_options(*source.plan);
   check.profile = profile;
   std::vector<SafetyViolation> found;
-  for (const Finding& f : check_consistency(source.model, *source.plan, check).findings)
+  for (const Finding& f : check_consistency(source.model, source.plan->series, check).findings)
     if (f.kind == FindingKind::joint_torque && f.severity == Severity::error)
       found.push_back({"torque", f.where, begin + f.at, std::abs(f.worst), std::abs(f.limit),
                        f.unit,
@@ -186,11 +224,8 @@ SafeTable judged(const ExportOptions& options, const Source& source, const std::
   SafetyOptions safety = options.safety;
   safety.profile = profile;
   SafeTable safe = make_safe(source.model, source.reference, safety);
-  if (options.format != "hoap" || !knows_torque(source)) return safe;
-  for (const SafetyViolation& found : torque_violations_of(source, safe, profile)) {
-    safe.report.violations.push_back(found);
-    safe.report.safe = false;
-  }
+  if (options.format == "hoap" && knows_torque(source))
+    add_violations(safe, torque_violations_of(source, safe, profile));
   return safe;
 }
 
@@ -205,13 +240,31 @@ std::vector<std::string> sufficient_profiles(ExportOptions options, const Source
   return names;
 }
 
-std::string in_words(const ExportOptions& options, const SafeTable& safe, bool written) {
+/// Why the table is not written, the reasons of its run or pattern first; empty: it is.
+std::vector<std::string> refusals(const ExportOptions& options, const Source& source,
+                                  const SafeTable& safe) {
+  std::vector<std::string> reasons;
+  const std::string& disturbances = source.disturbances;
+  if (!options.force_unsafe) reasons = source.unfit;
+  if (!disturbances.empty() && !options.pushed)
+    reasons.push_back("the table is from a run with disturbances (" + disturbances +
+                      ") and holds the reactions to them; --pushed exports it all the same");
+  if (!safe.report.safe && !options.force_unsafe) reasons.emplace_back("the table is unsafe");
+  return reasons;
+}
+
+std::string in_words(const ExportOptions& options, const Source& source, const SafeTable& safe,
+                     const std::vector<std::string>& refused) {
   const SafetyReport& report = safe.report;
-  std::string text = written ? options.output + ": " + std::to_string(safe.table.rows.size()) +
-                                   " rows at " + text::brief(1 / safe.table.dt) + " Hz, " +
-                                   std::to_string(safe.table.joints.size()) + " joints (" +
-                                   options.format + ")\n"
-                             : options.output + ": not written, the table is unsafe\n";
+  std::string text;
+  if (refused.empty())
+    text = options.output + ": " + std::to_string(safe.table.rows.size()) + " rows at " +
+           text::brief(1 / safe.table.dt) + " Hz, " + std::to_string(safe.table.joints.size()) +
+           " joints (" + options.format + ")\n";
+  else
+    text = options.output + ": not written, " + text::join(refused, "\n  and ") + "\n";
+  if (refused.empty())
+    for (const std::string& reason : source.unfit) text += "  written although " + reason + "\n";
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) + " s";
   if (!report.worst_joint.empty())
     text += "; largest step " + text::fixed(100 * report.max_step_ratio, 1) + " % of the limit (" +
@@ -222,15 +275,49 @@ std::string in_words(const ExportOptions& options, const SafeTable& safe, bool w
   text += "\n";
   for (const SafetyViolation& violation : report.violations)
     text += "  unsafe: " + text_of(violation) + "\n";
-  if (!written) text += "  --force-unsafe writes it all the same\n";
+  if (!options.force_unsafe && (!source.unfit.empty() || !report.safe))
+    text += "  --force-unsafe writes it all the same\n";
   return text;
 }
 
+/// What the head of the written table has to say.
+TableCaution caution_of_written(const Source& source, const SafeTable& safe) {
+  std::vector<std::string> words = source.unfit;
+  for (const SafetyViolation& violation : safe.report.violations)
+    words.push_back("unsafe: " + text_of(violation));
+  return {source.disturbances, text::join(words, "; ")};
+}
+
+/// A HOAP sequence has no head that the robot's program would skip: what has to be said stands in a
+/// file beside it.
+std::string note_beside(const std::string& sequence) { return sequence + ".txt"; }
+
+std::string note_text(const TableCaution& caution) {
+  std::string text;
+  if (!caution.disturbances.empty()) text += "disturbances: " + caution.disturbances + "\n";
+  if (!caution.unfit.empty()) text += "unfit: " + caution.unfit + "\n";
+  return text;
+}
+
+void write_table(const ExportOptions& options, const Context& context, const Source& source,
+                 const SafeTable& safe) {
+  const TableCaution caution = caution_of_written(source, safe);
+  const std::string note = note_text(caution);
+  const bool beside = options.format == "hoap" && !note.empty();
+  if (beside) refuse_overwriting(context, note_beside(options.output));
+  write_file(options.output, bytes_of(options.format, source, safe.table, caution, options.safety));
+  if (!beside) return;
+  write_file(note_beside(options.output), note);
+  context.print(note_beside(options.output) + ": what to know before a robot receives it\n");
+}
+
 std::string as_json(const ExportOptions& options, const SafeTable& safe,
-                    const std::vector<std::string>& sufficient, bool written) {
+                    const std::vector<std::string>& sufficient,
+                    const std::vector<std::string>& refused) {
   const nlohmann::ordered_json json = {
       {"format", options.format},
-      {"output", written ? nlohmann::ordered_json(options.output) : nullptr},
+      {"output", refused.empty() ? nlohmann::ordered_json(options.output) : nullptr},
+      {"refused", refused},
       {"rows", safe.table.rows.size()},
       {"first_row", safe.first},
       {"rate_hz", 1 / safe.table.dt},
@@ -242,8 +329,7 @@ std::string as_json(const ExportOptions& options, const SafeTable& safe,
 }
 
 void export_table(ExportOptions options, Context& context) {
-  if (fs::exists(options.output) && !fs::is_directory(options.output) && !context.force)
-    fail(ErrorCode::usage, options.output + ": exists already; --force overwrites it");
+  refuse_overwriting(context, options.output);
   if (options.format == "gltf") return export_gltf(options, context);
   const Source source = source_of(options, context);
   // What goes to the robot is judged by its own actuators, not by those a study has assumed.
@@ -253,10 +339,9 @@ void export_table(ExportOptions options, Context& context) {
   const SafeTable safe = judged(options, source, options.safety.profile);
   std::vector<std::string> others;
   if (!safe.report.safe) others = sufficient_profiles(options, source);
-  const bool write = safe.report.safe || options.force_unsafe;
-  if (write)
-    write_file(options.output, bytes_of(options.format, source, safe.table, options.safety));
-  context.print(in_words(options, safe, write));
+  const std::vector<std::string> refused = refusals(options, source, safe);
+  if (refused.empty()) write_table(options, context, source, safe);
+  context.print(in_words(options, source, safe, refused));
   if (!safe.report.safe)
     context.print("  judged by profile " + options.safety.profile + "; " +
                   (others.empty() ? "the motors of no other profile would do"
@@ -264,8 +349,8 @@ void export_table(ExportOptions options, Context& context) {
                   "\n");
   if (options.format == "hoap" && !knows_torque(source))
     context.print("  torque not judged: a table alone does not tell it; export the RUN\n");
-  context.print_json(as_json(options, safe, others, write));
-  context.exit_code = write ? 0 : 1;
+  context.print_json(as_json(options, safe, others, refused));
+  context.exit_code = refused.empty() ? 0 : 1;
 }
 
 }  // namespace
@@ -296,11 +381,14 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--set", options->set, "parameter of the pattern")
       ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);
-  command->add_flag("--force-unsafe", options->force_unsafe, "write even an unsafe table");
+  command->add_flag("--pushed", options->pushed,
+                    "export the table of the run with its disturbances; the table says so");
+  command->add_flag("--force-unsafe", options->force_unsafe,
+                    "write even an unsafe table; the table says so");
   command->footer(
       "Examples:\n"
       "  ayumi export out/ --format hoap -o walk_hoap.csv\n"
-      "  ayumi export out/ --format csv --log open_loop -o open_loop.csv\n"
+      "  ayumi export out/ --format csv --pushed -o pushed.csv\n"
       "  ayumi export out/ --format gltf -o walk.glb\n"
       "  ayumi export patterns/hoap1_walk.json --format json --ramp 3 -o walk_table.json");
   command->callback([options, &context] { export_table(*options, context); });

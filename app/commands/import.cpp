@@ -65,7 +65,7 @@ void import_motion(const Context& context, const ImportCommand& options) {
   motion.pattern.name = "imported from " + fs::path(name).filename().string();
   motion.pattern.robot = robot_as_written(options.robot);
   motion.pattern.file = "imported";  // relative names hold from the working folder
-  write_pattern_and_table(options.out, motion.pattern, imported.filled);
+  write_pattern_and_table(options.out, motion.pattern, imported.filled, imported.caution);
   tell(context, options, imported, motion);
 }
 

@@ -56,7 +56,7 @@ void write_repaired(const Context& context, const RepairCommand& options, const 
     refuse_overwriting(context, table);
     write_pattern_and_table(options.out,
                             baked(input.model, corrected, result.series, table.filename().string()),
-                            marks(result));
+                            marks(result), input.caution);
     return;
   }
   const std::string text = read_file(options.pattern);

@@ -1,8 +1,6 @@
 // The main job: check -> (repair when asked) -> simulate, open loop beside closed loop -> joint
-// tables -> clip, snapshots, loci. Results are made in a folder beside DIR and moved there when all
-// of them are there.
-
-#include <unistd.h>
+// tables -> clip, snapshots, loci. The table for the robot is that of the law without the scripted
+// disturbances; the run under them is the one that is judged.
 
 #include <algorithm>
 #include <memory>
@@ -13,13 +11,12 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/actuator_need.hpp"
 #include "ayumi/check/table_safety.hpp"
-#include "ayumi/control/viip_goals.hpp"
 #include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
+#include "ayumi/io/run/run_output.hpp"
 #include "ayumi/io/table/table.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/render/snapshots.hpp"
@@ -45,55 +42,25 @@ struct RunCommand {
   bool pictures = true;
 };
 
-/// A folder that becomes DIR only when everything in it is there.
-class Workshop {
- public:
-  explicit Workshop(const fs::path& target) : target_(target) {
-    const fs::path clean = (target / "").parent_path();
-    const fs::path parent = clean.has_parent_path() ? clean.parent_path() : fs::path(".");
-    std::error_code error;
-    fs::create_directories(parent, error);
-    folder_ = parent / (clean.filename().string() + ".part" + std::to_string(getpid()));
-    fs::create_directory(folder_, error);
-    if (error)
-      fail(ErrorCode::bad_file, target.string() + ": cannot be made (" + error.message() + ")");
-  }
-  ~Workshop() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  Workshop(const Workshop&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
-
-  fs::path file(const std::string& name) const { return folder_ / name; }
-  const fs::path& folder() const { return folder_; }
-
-  /// Moves every file to its place, run.json last.
-  void deliver() const {
-    try {
-      fs::create_directories(target_);
-      std::vector<fs::path> files;
-      for (const auto& entry : fs::directory_iterator(folder_)) files.push_back(entry.path());
-      std::stable_sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-        return (a.filename() == "run.json") < (b.filename() == "run.json");
-      });
-      for (const fs::path& file : files) fs::rename(file, target_ / file.filename());
-    } catch (const fs::filesystem_error& error) {
-      fail(ErrorCode::bad_file,
-           target_.string() + ": cannot be written (" + error.code().message() + ")");
-    }
-  }
-
- private:
-  fs::path target_, folder_;
-};
+/// What the run writes, as far as it is known before the run.
+std::vector<std::string> names_of_files(const Options& options) {
+  std::vector<std::string> names = {
+      "run.json",      "log_open_loop.bin", "log_closed_loop.bin",  "log_undisturbed.bin",
+      "reference.csv", "reference.json",    "reference_pushed.csv", "hoap.csv"};
+  if (options.repair) names.emplace_back("repaired.json");
+  if (options.pictures)
+    for (const char* name : {"loci.svg", "loci.png", "snapshots.png", "clip.mp4", "report.html"})
+      names.emplace_back(name);
+  return names;
+}
 
 class MainJob {
  public:
   MainJob(Context& context, const RunCommand& options, const fs::path& target)
       : context_(context), options_(options), target_(target) {}
 
-  /// Returns whether check and closed loop are good.
+  /// Returns whether the pattern is consistent and the law keeps the robot upright, with the
+  /// disturbances and without.
   bool run(const std::string& pattern);
   const Json& summary() const { return summary_; }
 
@@ -104,18 +71,29 @@ class MainJob {
   }
   void note_file(const std::string& name) { folder_.files.push_back(name); }
 
-  bool check(PatternInput& input);
-  void repair_pattern(PatternInput& input);
-  bool simulate(const PatternInput& input);
+  void check(PatternInput& input);
+  void repair_pattern(PatternInput& input, bool goals_reachable);
+  void simulate(const PatternInput& input);
+  void note_what_is_against_a_table();
   void export_tables(const PatternInput& input);
+  void write_hoap(const PatternInput& input, const SimulationLog& log);
   void draw(const RobotModel& model, const std::string& title);
   void write_report(const RobotModel& model, const std::string& title);
+  std::vector<std::string> file_names() const;
+
+  const SimulationLog& judged_log() const { return folder_.logs.at("closed_loop"); }
+  /// The run from which the table for the robot comes: the one without the disturbances.
+  const SimulationLog& table_log() const {
+    const auto undisturbed = folder_.logs.find("undisturbed");
+    return undisturbed == folder_.logs.end() ? judged_log() : undisturbed->second;
+  }
 
   Context& context_;
   const RunCommand& options_;
   fs::path target_;
-  std::optional<Workshop>
-      workshop_;  // opened when the input has been read: bad input leaves nothing
+  std::optional<RunOutput>
+      output_;                // opened when the input has been read: bad input leaves nothing
+  std::string inconsistent_;  // why the pattern, repaired where asked, is; empty: it is not
   RunFolder folder_;
   Json summary_ = Json::object();
 };
@@ -135,27 +113,22 @@ std::string check_text(const ConsistencyReport& report) {
   return text;
 }
 
-bool MainJob::check(PatternInput& input) {
-  const CheckOptions judged = check_options(input);
-  ConsistencyReport report = check_consistency(input.model, input.series, judged);
-  const ActuatorNeed need = actuator_need(
-      input.model, keyed_goals(input.model, input.series, input.pattern.controller), judged);
-  const bool mendable = !report.consistent;
-  report.consistent = report.consistent && need.text.empty();
-  say("check", check_text(report) + (need.text.empty() ? "" : "\n            " + need.text));
-  summary_["check"] = Json::parse(check_json(report));
+void MainJob::check(PatternInput& input) {
+  const Judgement judged = judge_pattern(input, check_options(input));
+  const std::string& need = judged.need().text;
+  say("check", check_text(judged.report) + (need.empty() ? "" : "\n            " + need));
+  summary_["check"] = Json::parse(check_json(judged.report));
   summary_["repair"] = nullptr;  // stays so unless a repair was asked for and needed
-  folder_.sections.emplace_back("check", check_json(report));
-  if (!mendable) return report.consistent;  // goals of VIIP are not keys that repair could move
-  if (!options_.repair) {
+  folder_.sections.emplace_back("check", check_json(judged.report));
+  inconsistent_ = judged.reason();
+  if (judged.motion_consistent) return;  // goals of VIIP are not keys that repair could move
+  if (options_.repair)
+    repair_pattern(input, judged.goal_need.text.empty());
+  else
     say("repair", "not asked for; --repair looks for the nearest consistent pattern");
-    return false;
-  }
-  repair_pattern(input);
-  return summary_["repair"]["status"] == "repaired" && need.text.empty();
 }
 
-void MainJob::repair_pattern(PatternInput& input) {
+void MainJob::repair_pattern(PatternInput& input, bool goals_reachable) {
   RepairOptions options = wished_options(input.pattern);
   options.check = check_options(input);
   const RepairResult result = repair_input(context_, input, options);
@@ -166,43 +139,82 @@ void MainJob::repair_pattern(PatternInput& input) {
   summary_["repair"] = Json::parse(repair_json(result));
   folder_.sections.emplace_back("repair", repair_json(result));
   if (result.status != RepairStatus::repaired) return;
+  if (goals_reachable) inconsistent_.clear();
   input.series = result.series;
   input.pattern.correction = result.correction;
-  write_pattern(workshop_->file("repaired.json"), input.pattern);
+  write_pattern(output_->file("repaired.json"), input.pattern);
   note_file("repaired.json");
 }
 
-bool MainJob::simulate(const PatternInput& input) {
+void MainJob::simulate(const PatternInput& input) {
+  const auto run = [&](const char* name, const SimulationChoice& choice) -> const SimulationLog& {
+    return folder_.logs[name] = simulate_once(context_, input, choice);
+  };
   SimulationChoice open = options_.choice;
   open.controller = "none";
   open.gains.clear();
-  folder_.logs["open_loop"] = simulate_once(context_, input, open);
-  say("simulate", outcome_text(folder_.logs["open_loop"]));
-  folder_.logs["closed_loop"] = simulate_once(context_, input, options_.choice);
-  const SimulationLog& closed = folder_.logs["closed_loop"];
+  say("simulate", outcome_text(run("open_loop", open)));
+  const SimulationLog& closed = run("closed_loop", options_.choice);
   say("", outcome_text(closed));
   folder_.provenance = closed.provenance;
   Json both;
   for (const char* name : {"open_loop", "closed_loop"})
     both[name] = Json::parse(simulation_json(folder_.logs[name]));
-  folder_.sections.emplace_back("simulate", both.dump());
   summary_["simulate"] = both;
-  return closed.result.outcome == Outcome::stands;
+  summary_["undisturbed"] = nullptr;
+  folder_.sections.emplace_back("simulate", both.dump());
+  if (closed.scenario.empty()) return;
+  SimulationChoice calm = options_.choice;
+  calm.scenario = "none";
+  const SimulationLog& undisturbed = run("undisturbed", calm);
+  say("", "without disturbances " + outcome_text(undisturbed));
+  summary_["undisturbed"] = Json::parse(simulation_json(undisturbed));
+  folder_.sections.emplace_back("undisturbed", simulation_json(undisturbed));
+}
+
+void MainJob::note_what_is_against_a_table() {
+  if (!inconsistent_.empty()) folder_.unfit.push_back(inconsistent_);
+  const bool disturbed = &table_log() != &judged_log();
+  for (const SimulationLog* log : {&judged_log(), &table_log()}) {
+    const std::string words = unfit_words(*log);
+    if (words.empty()) continue;
+    const std::string which =
+        log == &judged_log() ? "under its disturbances" : "without disturbances";
+    folder_.unfit.push_back(disturbed ? which + " " + words : words);
+    if (!disturbed) return;
+  }
 }
 
 void MainJob::export_tables(const PatternInput& input) {
-  const ReferenceTrajectory reference = extract_reference(input.model, folder_.logs["closed_loop"]);
-  folder_.reference = reference;
-  write_file(workshop_->file("reference.json"), reference_json(reference));
+  folder_.reference = extract_reference(input.model, table_log());
+  folder_.reference_caution = table_caution(input, table_log(), folder_.unfit);
+  write_file(output_->file("reference.json"),
+             reference_json(*folder_.reference, folder_.reference_caution));
   note_file("reference.json");
+  if (&table_log() != &judged_log()) {
+    folder_.pushed = extract_reference(input.model, judged_log());
+    folder_.pushed_caution = table_caution(input, judged_log(), folder_.unfit);
+  }
+  write_hoap(input, table_log());
+}
+
+// What goes to the robot is judged by its own actuators, not by those a study has assumed.
+void MainJob::write_hoap(const PatternInput& input, const SimulationLog& log) {
   SafetyOptions safety;
-  safety.profile = input.profile;
-  const SafeTable safe = make_safe(input.model, reference, safety);
+  safety.profile = input.model.limits().name;
+  const SafeTable safe = make_safe_run(input.model, *folder_.reference, torques_of(log), safety);
   folder_.sections.emplace_back("export", safety_json(safe.report));
   std::string text = "reference.csv, reference.json";
+  if (folder_.pushed) text += ", reference_pushed.csv (with the reactions to the disturbances)";
   const bool encoders = input.model.dofs().front().encoder.device > 0;
-  if (encoders && safe.report.safe) {
-    write_file(workshop_->file("hoap.csv"), hoap_csv(input.model, safe.table, safety));
+  const TableCaution& caution = folder_.reference_caution;
+  if (!caution.unfit.empty()) {
+    text = "no table for a robot: " + caution.unfit + "\n            " + text;
+  } else if (!caution.disturbances.empty()) {
+    text = "no table for a robot: the pattern's table is from a run with disturbances: " +
+           caution.disturbances + "\n            " + text;
+  } else if (encoders && safe.report.safe) {
+    write_file(output_->file("hoap.csv"), hoap_csv(input.model, safe.table, safety));
     note_file("hoap.csv");
     text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) + " rows, largest step " +
             text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit)";
@@ -213,21 +225,21 @@ void MainJob::export_tables(const PatternInput& input) {
 }
 
 void MainJob::draw(const RobotModel& model, const std::string& title) {
-  const SimulationLog& closed = folder_.logs["closed_loop"];
-  const std::vector<LociRun> runs = {{"open loop", &folder_.logs["open_loop"]},
+  const SimulationLog& closed = judged_log();
+  const std::vector<LociRun> runs = {{"open loop", &folder_.logs.at("open_loop")},
                                      {closed.controller, &closed}};
   LociOptions loci;
   loci.title = title;
   loci.model = &model;
   for (const char* name : {"loci.svg", "loci.png"}) {
-    write_loci(runs, workshop_->file(name), loci);
+    write_loci(runs, output_->file(name), loci);
     note_file(name);
   }
   StripOptions strip;
   strip.clip.title = title;
   strip.clip.picture.width = 640;
   strip.clip.picture.height = 480;
-  write_strip(model, closed, workshop_->file("snapshots.png"), strip);
+  write_strip(model, closed, output_->file("snapshots.png"), strip);
   note_file("snapshots.png");
   say("plot", "loci.svg, loci.png, snapshots.png");
   ClipOptions clip;
@@ -236,7 +248,7 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
                      ? context_.threads
                      : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const ClipSummary summary =
-      write_clip(model, closed, workshop_->file("clip.mp4"), clip, context_.progress());
+      write_clip(model, closed, output_->file("clip.mp4"), clip, context_.progress());
   note_file("clip.mp4");
   say("preview", "clip.mp4 (" + std::to_string(summary.frames) + " frames, " +
                      std::to_string(summary.width) + "x" + std::to_string(summary.height) + ")");
@@ -246,33 +258,41 @@ void MainJob::write_report(const RobotModel& model, const std::string& title) {
   ReportInput input = report_input(folder_, target_.string());
   if (!title.empty()) input.title = title;
   const Report made = make_report(model, input, {}, context_.progress());
-  write_file(workshop_->file("report.html"), made.html);
+  write_file(output_->file("report.html"), made.html);
   note_file("report.html");
   say("report", "report.html (" + std::to_string(made.html.size() / 1000) + " kB" +
                     (has_replay() ? ")" : "; without replay, the program was built without npm)"));
+}
+
+std::vector<std::string> MainJob::file_names() const {
+  std::vector<std::string> names = folder_.files;
+  names.emplace_back("run.json");
+  names.emplace_back("reference.csv");
+  if (folder_.pushed) names.emplace_back("reference_pushed.csv");
+  for (const auto& [name, log] : folder_.logs) names.push_back(log_file_name(name));
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 bool MainJob::run(const std::string& file) {
   context_.print(file + "\n");
   PatternInput input = load_pattern(context_, file, options_.input, options_.pictures);
   refuse_unstable_gains(input, chosen_controller(input, options_.choice), options_.choice.unstable);
-  workshop_.emplace(target_);
-  const bool consistent = check(input);
-  const bool stands = simulate(input);
+  output_.emplace(target_, context_.force);
+  check(input);
+  simulate(input);
+  note_what_is_against_a_table();
   export_tables(input);
   if (options_.pictures) {
     draw(input.model, input.pattern.name);
     write_report(input.model, input.pattern.name);
   }
-  write_run(workshop_->folder(), folder_);
-  workshop_->deliver();
-  std::vector<std::string> files = folder_.files;
-  for (const char* name : {"run.json", "log_open_loop.bin", "log_closed_loop.bin", "reference.csv"})
-    files.emplace_back(name);
-  std::sort(files.begin(), files.end());
-  summary_["files"] = files;
+  write_run(output_->folder(), folder_);
+  output_->deliver();
+  summary_["unfit"] = folder_.unfit;
+  summary_["files"] = file_names();
   say("written", (target_ / "").string());
-  return consistent && stands;
+  return folder_.unfit.empty();
 }
 
 void run_patterns(Context& context, const RunCommand& options) {
@@ -283,9 +303,7 @@ void run_patterns(Context& context, const RunCommand& options) {
         several ? fs::path(options.out) / fs::path(pattern).stem() : fs::path(options.out);
     if (std::find(targets.begin(), targets.end(), target) != targets.end())
       fail(ErrorCode::usage, pattern + ": two inputs would be written to " + target.string());
-    if (fs::exists(target) && !fs::is_directory(target))
-      fail(ErrorCode::bad_file, target.string() + ": is a file, a folder is needed");
-    if (fs::exists(target / "run.json")) refuse_overwriting(context, target);
+    require_run_target(target, context.force, names_of_files(options));
     targets.push_back(target);
   }
   Json results = Json::array();

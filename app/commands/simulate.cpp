@@ -7,6 +7,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
+#include "ayumi/io/run/run_output.hpp"
 #include "pattern_input.hpp"
 #include "simulation.hpp"
 
@@ -20,8 +21,26 @@ struct SimulateCommand {
   SimulationChoice choice;
 };
 
+RunFolder run_of(const PatternInput& input, const SimulationLog& log) {
+  RunFolder run;
+  run.provenance = log.provenance;
+  run.logs["closed_loop"] = log;
+  const Judgement judged = judge_pattern(input, check_options(input));
+  run.sections.emplace_back("check", check_json(judged.report));
+  run.sections.emplace_back("simulate", simulation_json(log));
+  for (const std::string& reason : {judged.reason(), unfit_words(log)})
+    if (!reason.empty()) run.unfit.push_back(reason);
+  const bool pushed = !log.scenario.empty();
+  (pushed ? run.pushed : run.reference) = extract_reference(input.model, log);
+  (pushed ? run.pushed_caution : run.reference_caution) = table_caution(input, log, run.unfit);
+  return run;
+}
+
 void simulate_pattern(Context& context, const SimulateCommand& options) {
-  if (!options.out.empty()) refuse_overwriting(context, options.out);
+  if (!options.out.empty())
+    require_run_target(
+        options.out, context.force,
+        {"run.json", "log_closed_loop.bin", "reference.csv", "reference_pushed.csv"});
   const PatternInput input = load_pattern(context, options.pattern, options.input);
   const auto begin = std::chrono::steady_clock::now();
   const SimulationLog log = simulate_once(context, input, options.choice);
@@ -30,12 +49,12 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
 
   context.print(options.pattern + ": " + outcome_text(log) + "\n");
   if (!options.out.empty()) {
-    RunFolder run;
-    run.provenance = log.provenance;
-    run.logs["closed_loop"] = log;
-    run.reference = extract_reference(input.model, log);
-    run.sections.emplace_back("simulate", simulation_json(log));
-    write_run(options.out, run);
+    const RunFolder run = run_of(input, log);
+    RunOutput output(options.out, context.force);
+    write_run(output.folder(), run);
+    output.deliver();
+    for (const std::string& reason : run.unfit)
+      context.print("  no table for a robot: " + reason + "\n");
     context.print("  written to " + options.out + "\n");
   }
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(simulation_json(log));

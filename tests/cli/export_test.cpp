@@ -117,8 +117,8 @@ TEST_F(Export, GoalsOfViipHaveNoTableUntilTheyAreRun) {
 TEST_F(Export, ParametersAndExistingFiles) {
   ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--set", "lifted=70"}).exit_code, 0);
   const Output again = ayumi({"p.json", "--format", "csv", "-o", "a.csv"});
-  EXPECT_EQ(again.exit_code, 2);
-  EXPECT_NE(again.err.find("exists already; --force overwrites it"), std::string::npos);
+  EXPECT_EQ(again.exit_code, 3);
+  EXPECT_NE(again.err.find("exists already; choose another name or --force"), std::string::npos);
   EXPECT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--force"}).exit_code, 0);
   const Output typo = ayumi({"p.json", "--format", "csv", "-o", "b.csv", "--set", "lift=1"});
   EXPECT_EQ(typo.exit_code, 2);

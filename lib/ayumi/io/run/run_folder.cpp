@@ -19,6 +19,8 @@ using OrderedJson = nlohmann::ordered_json;
 constexpr const char* kRunFormat = "ayumi.run/1";
 constexpr const char* kRunFile = "run.json";
 constexpr const char* kReferenceFile = "reference.csv";
+constexpr const char* kPushedFile = "reference_pushed.csv";
+constexpr const char* kSealKey = "contents_sha256";
 constexpr size_t kLargestFile = size_t{4} << 30;  // [bytes]
 
 void make_folder(const fs::path& folder) {
@@ -40,6 +42,7 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
     require(!json.contains(key), "a section of run.json appears twice");
     json[key] = OrderedJson::parse(text);
   }
+  json["unfit"] = run.unfit;
   json["logs"] = OrderedJson::object();
   for (const auto& [name, log] : run.logs)
     json["logs"][name] = {
@@ -48,13 +51,26 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
   return json;
 }
 
+// The last member of run.json is the SHA-256 of the text before it.
+std::string seal_before(const std::string& text) {
+  return std::string(",\n  \"") + kSealKey + "\": \"" + sha256(text) + "\"\n}\n";
+}
+
+std::string sealed(const std::string& object) {
+  const std::string text = object.substr(0, object.rfind("\n}"));
+  return text + seal_before(text);
+}
+
+[[noreturn]] void complain_of_change(const fs::path& file) {
+  fail(ErrorCode::bad_file, file.string() +
+                                ": has changed since the run was written (its SHA-256 is not the "
+                                "one in run.json)");
+}
+
 std::string checked_bytes(const fs::path& folder, const JsonNode& files, const std::string& name) {
   const std::string bytes = read_file(folder / name, kLargestFile);
   const auto recorded = files.find(name);
-  if (recorded && recorded->string() != sha256(bytes))
-    fail(ErrorCode::bad_file, (folder / name).string() +
-                                  ": has changed since the run was written (its SHA-256 is not the "
-                                  "one in run.json)");
+  if (recorded && recorded->string() != sha256(bytes)) complain_of_change(folder / name);
   return bytes;
 }
 
@@ -62,13 +78,20 @@ std::string checked_bytes(const fs::path& folder, const JsonNode& files, const s
 struct RunFile {
   explicit RunFile(const fs::path& folder)
       : path((folder / kRunFile).string()),
-        document(parse_json(read(folder), path, ErrorCode::bad_file)) {
+        text(read(folder)),
+        document(parse_json(text, path, ErrorCode::bad_file)) {
     const JsonNode root = this->root();
     root.expect_object();
     const std::string format = root.at("format").string();
     if (format != kRunFormat)
       root.at("format").complain("'" + format + "' is not readable here; this version reads '" +
                                  kRunFormat + "'");
+    // Runs of versions before 0.2.0 are not sealed.
+    if (root.has(kSealKey) && !is_sealed()) complain_of_change(path);
+  }
+  bool is_sealed() const {
+    const size_t at = text.rfind(std::string(",\n  \"") + kSealKey + "\"");
+    return at != std::string::npos && text.substr(at) == seal_before(text.substr(0, at));
   }
   JsonNode root() const { return root_of(document, path, ErrorCode::bad_file); }
 
@@ -84,7 +107,7 @@ struct RunFile {
     return read_file(folder / kRunFile);
   }
 
-  std::string path;
+  std::string path, text;
   Json document;
 };
 
@@ -109,10 +132,30 @@ void write_run(const fs::path& folder, const RunFolder& run) {
     hashes[name] = sha256(bytes);
   };
   for (const auto& [name, log] : run.logs) write(log_file_name(name), log_bytes(log));
-  if (run.reference) write(kReferenceFile, reference_csv(*run.reference));
+  if (run.reference) write(kReferenceFile, reference_csv(*run.reference, run.reference_caution));
+  if (run.pushed) write(kPushedFile, reference_csv(*run.pushed, run.pushed_caution));
   for (const std::string& name : run.files)
     hashes[name] = sha256(read_file(folder / name, kLargestFile));
-  write_file(folder / kRunFile, summary_of(run, hashes).dump(2) + "\n");
+  write_file(folder / kRunFile, sealed(summary_of(run, hashes).dump(2)));
+}
+
+std::vector<std::string> run_file_names(const fs::path& folder) {
+  const RunFile file(folder);
+  std::vector<std::string> names = {kRunFile};
+  for (const auto& [name, hash] : file.root().at("files").members())
+    if (fs::path(name).filename() == name && name != "." && name != "..") names.push_back(name);
+  return names;
+}
+
+void verify_run(const fs::path& folder) {
+  const RunFile file(folder);
+  const JsonNode root = file.root();
+  if (!file.is_sealed())
+    root.complain(std::string("the member '") + kSealKey +
+                  "' is missing: the file has changed, or an older version wrote it; make the run "
+                  "again");
+  for (const auto& [name, hash] : root.at("files").members())
+    checked_bytes(folder, root.at("files"), name);
 }
 
 RunFolder read_run(const fs::path& folder) {
@@ -123,18 +166,22 @@ RunFolder read_run(const fs::path& folder) {
   for_each_provenance(run.provenance, [&](const char* key, std::string& value) {
     value = provenance.at(key).string();
   });
+  if (root.has("unfit")) run.unfit = root.at("unfit").strings();
   for (const auto& [name, node] : root.at("logs").members())
     run.logs.emplace(name, log_of(folder, root, name));
   for (const auto& [name, hash] : root.at("files").members()) {
-    if (name == kReferenceFile) {
+    if (name == kReferenceFile || name == kPushedFile) {
       checked_bytes(folder, root.at("files"), name);
-      run.reference = read_reference(folder / name);
+      const bool pushed = name == kPushedFile;
+      (pushed ? run.pushed : run.reference) = read_reference(folder / name);
+      (pushed ? run.pushed_caution : run.reference_caution) = read_table_caution(folder / name);
     } else if (!name.starts_with("log_")) {
       run.files.push_back(name);
     }
   }
   for (const auto& [key, node] : root.members())
-    if (key != "format" && key != "tool" && key != "provenance" && key != "logs" && key != "files")
+    if (key != "format" && key != "tool" && key != "provenance" && key != "logs" &&
+        key != "files" && key != "unfit" && key != kSealKey)
       run.sections.emplace_back(key, node.value().dump(2));
   return run;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ayumi/motion/table_caution.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
@@ -18,14 +19,28 @@ struct RunFolder {
   Provenance provenance;
   /// Further members of run.json: key and JSON text, in order ("check", check_json(report)).
   std::vector<std::pair<std::string, std::string>> sections;
-  std::map<std::string, SimulationLog> logs;     ///< "open_loop", "closed_loop"
-  std::optional<ReferenceTrajectory> reference;  ///< reference.csv
-  std::vector<std::string> files;                ///< others in the folder, relative, existing
+  std::map<std::string, SimulationLog> logs;     ///< "open_loop", "closed_loop", "undisturbed"
+  std::optional<ReferenceTrajectory> reference;  ///< reference.csv, of an undisturbed run
+  std::optional<ReferenceTrajectory> pushed;     ///< reference_pushed.csv, of a disturbed run
+  TableCaution reference_caution = {}, pushed_caution = {};  ///< heads of these tables
+  std::vector<std::string> files;  ///< others in the folder, relative, existing
+  /// Why the run gives no table for a robot: an inconsistent pattern, a run that fell or did not
+  /// settle. Empty where nothing is known against it.
+  std::vector<std::string> unfit = {};
 };
 
-/// Writes the folder, making it where needed; run.json comes last, with the SHA-256 of every file.
+/// Writes the folder, making it where needed; run.json comes last, with the SHA-256 of every file
+/// and of its own text.
 /// Throws Error(bad_file) when something cannot be written or a named file does not exist.
 void write_run(const std::filesystem::path& folder, const RunFolder& run);
+
+/// Names of the files that the run in `folder` consists of, run.json included. Throws
+/// Error(bad_file) when its run.json cannot be read as one.
+std::vector<std::string> run_file_names(const std::filesystem::path& folder);
+
+/// Throws Error(bad_file) naming the file unless the run is as it was written: run.json by the
+/// SHA-256 of its own text, every file that it lists by that file's.
+void verify_run(const std::filesystem::path& folder);
 
 /// Reads it back. Throws Error(bad_file) naming the file: not a run, another format, a log missing,
 /// truncated or changed since (by its fingerprint).
