@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/io/run/run_results.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
 
 namespace ayumi {
@@ -44,6 +45,21 @@ TEST(ResultsJson, CheckHasTheKeysOfTheCommandLine) {
   EXPECT_TRUE(json.at("summary").at("min_self_clearance_m").is_null());
   report.consistent = true;
   EXPECT_EQ(Json::parse(check_json(report)).at("verdict"), "consistent");
+}
+
+// All figures of a check, each with a value of its own, survive run.json.
+TEST(ResultsJson, EveryFigureOfACheckIsReadBack) {
+  ConsistencyReport report;
+  report.profile = "hoap1";
+  double value = 0;
+  for (const FindingSpec* spec : summary_figures()) report.summary[spec->kind] = value += 0.125;
+  RunFolder run;
+  run.sections = {{"check", check_json(report)}};
+  const RunResults results = read_results(run, "run.json");
+  ASSERT_TRUE(results.check);
+  EXPECT_GE(summary_figures().size(), 20u);
+  for (const FindingSpec* spec : summary_figures())
+    EXPECT_EQ(results.check->summary[spec->kind], report.summary[spec->kind]) << spec->figure.key;
 }
 
 TEST(ResultsJson, SimulationHasTheKeysOfTheCommandLine) {
