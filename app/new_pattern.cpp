@@ -44,7 +44,7 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
   pattern.robot = robot_as_written(robot);
   pattern.name = std::filesystem::path(out).stem().string();
   pattern.file = out;
-  const CommandSeries series = sample(model, pattern, {}, context.progress());
+  const CommandSeries series = sample_at_servo_period(model, pattern, context.progress());
   const bool consistent =
       !series.viip.empty() || !model.has_soles() || choose_profile(context, model, pattern, series);
   pattern.file = "new";  // relative names hold from the working folder

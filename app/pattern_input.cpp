@@ -97,6 +97,11 @@ Pattern read_given_pattern(const std::filesystem::path& file,
   return pattern_of_text(read_input(file), "standard input", set);
 }
 
+CommandSeries sample_at_servo_period(const RobotModel& model, const Pattern& pattern,
+                                     const Progress& progress) {
+  return sample(model, pattern, {.dt = model.description().servo_period}, progress);
+}
+
 PatternInput load_pattern(const Context& context, const std::filesystem::path& file,
                           const PatternOptions& options, bool meshes) {
   Pattern pattern = read_given_pattern(file, read_pairs(options.set, "--set"));
@@ -105,8 +110,7 @@ PatternInput load_pattern(const Context& context, const std::filesystem::path& f
   check_against_robot(pattern, model);
   const std::string wanted = options.profile.empty() ? pattern.profile : options.profile;
   const std::string profile = model.limits(wanted).name;
-  CommandSeries series =
-      sample(model, pattern, {.dt = model.description().servo_period}, context.progress());
+  CommandSeries series = sample_at_servo_period(model, pattern, context.progress());
   TableCaution caution = caution_of(pattern);
   return {std::move(pattern), std::move(model), std::move(series), profile, std::move(caution)};
 }

@@ -42,6 +42,10 @@ Pattern read_given_pattern(const std::filesystem::path& file,
 /// robot does not have, and for unknown gains and tolerances.
 void check_against_robot(const Pattern& pattern, const RobotModel& model);
 
+/// The pattern at the robot's servo period. Throws as sample().
+CommandSeries sample_at_servo_period(const RobotModel& model, const Pattern& pattern,
+                                     const Progress& progress = {});
+
 /// Reads the pattern (as read_given_pattern) and its robot and samples it at the robot's servo
 /// period.
 PatternInput load_pattern(const Context& context, const std::filesystem::path& file,

@@ -72,8 +72,9 @@ RobotModel robot_named(const ExportOptions& options, const std::string& recorded
 }
 
 Source source_of_pattern(const ExportOptions& options, const Context& context) {
-  PatternInput input = load_pattern(context, options.input,
-                                    {.set = options.set, .robot = options.robot}, draws(options));
+  PatternInput input =
+      load_pattern(context, options.input,
+                   {.set = options.set, .profile = {}, .robot = options.robot}, draws(options));
   if (!input.series.viip.empty())
     fail(ErrorCode::bad_pattern, options.input +
                                      ": phases: the pattern has VIIP goals, which it holds still "
@@ -153,8 +154,8 @@ Source source_of_run(const ExportOptions& options, const Context& context) {
 
 // A CSV, or JSON that says so at its head.
 bool is_reference_table(const std::string& path) {
-  return path.ends_with(".csv") ||
-         read_file(path).substr(0, 200).find("\"ayumi.reference/") != std::string::npos;
+  return path.ends_with(".csv") || (path != "-" && read_file(path).substr(0, 200).find(
+                                                       "\"ayumi.reference/") != std::string::npos);
 }
 
 // A table of a run folder is part of that run: what holds of the folder holds of it.
@@ -292,8 +293,10 @@ TableCaution caution_of_written(const Source& source, const SafeTable& safe) {
 /// file beside it.
 std::string note_beside(const std::string& sequence) { return sequence + ".txt"; }
 
+constexpr const char* kNoteHead = "About the joint table beside this file, by ayumi export\n";
+
 std::string note_text(const TableCaution& caution) {
-  std::string text;
+  std::string text = kNoteHead;
   if (!caution.disturbances.empty()) text += "disturbances: " + caution.disturbances + "\n";
   if (!caution.unfit.empty()) text += "unfit: " + caution.unfit + "\n";
   return text;
@@ -302,13 +305,16 @@ std::string note_text(const TableCaution& caution) {
 void write_table(const ExportOptions& options, const Context& context, const Source& source,
                  const SafeTable& safe) {
   const TableCaution caution = caution_of_written(source, safe);
-  const std::string note = note_text(caution);
-  const bool beside = options.format == "hoap" && !note.empty();
-  if (beside) refuse_overwriting(context, note_beside(options.output));
+  const bool nothing = caution.disturbances.empty() && caution.unfit.empty();
+  const std::string note = note_beside(options.output);
+  const bool old_note = fs::is_regular_file(note) && read_file(note).starts_with(kNoteHead);
+  const bool beside = options.format == "hoap" && !nothing;
+  if (beside) refuse_overwriting(context, note);
   write_file(options.output, bytes_of(options.format, source, safe.table, caution, options.safety));
+  if (old_note && !beside) fs::remove(note);  // it was about the table that was there before
   if (!beside) return;
-  write_file(note_beside(options.output), note);
-  context.print(note_beside(options.output) + ": what to know before a robot receives it\n");
+  write_file(note, note_text(caution));
+  context.print(note + ": what to know before a robot receives it\n");
 }
 
 std::string as_json(const ExportOptions& options, const SafeTable& safe,

@@ -150,7 +150,7 @@ double height_for_steps(const RobotModel& model, Pattern pattern) {
   for (const double share : {1.0, 0.97, 0.94, 0.91, 0.88, 0.85}) {
     pattern.cog_height = share == 1 ? 0 : std::round(1e3 * share * home) / 1e3;
     try {
-      require_reachable_goals(model, sample(model, pattern), pattern.controller);
+      require_reachable_goals(model, sample_at_servo_period(model, pattern), pattern.controller);
       return pattern.cog_height;
     } catch (const Error& error) {
       if (error.code() == ErrorCode::internal) throw;
@@ -208,7 +208,7 @@ void new_viip(const Context& context, const NewOptions& options) {
     phase(kDisplaced, CogGoal{});
     comments = {"The COG goes to a displacement over both feet, and back."};
   }
-  const CommandSeries series = sample(model, pattern);
+  const CommandSeries series = sample_at_servo_period(model, pattern);
   require_reachable_goals(model, series, pattern.controller);
   pattern.profile = profile_for(context, model, keyed_goals(model, series, pattern.controller));
   write_new(context, model, pattern, options, comments);

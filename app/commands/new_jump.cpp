@@ -23,7 +23,7 @@ struct JumpOptions {
 
 bool passes(const RobotModel& model, const JumpParameters& p, const std::string& profile) {
   try {
-    const CommandSeries series = sample(model, jump_pattern(model, p));
+    const CommandSeries series = sample_at_servo_period(model, jump_pattern(model, p));
     CheckOptions options;
     options.profile = profile;
     return check_consistency(model, series, options).consistent;

@@ -103,6 +103,38 @@ TEST_F(Export, UnsafeTablesAreRefused) {
   EXPECT_TRUE(fs::exists(folder.path() / "h.csv"));
 }
 
+// HOAP-1 whose servos take a target every 2 ms.
+TEST_F(Export, TablesAreAtTheServoPeriodOfTheRobot) {
+  fs::copy(AYUMI_SOURCE_DIR "/robots/hoap1", folder.path() / "slow", fs::copy_options::recursive);
+  const fs::path sidecar = folder.path() / "slow/robot.json";
+  std::string text = contents(sidecar);
+  const std::string period = "\"servo_period\": 0.001";
+  text.replace(text.find(period), period.size(), "\"servo_period\": 0.002");
+  write(sidecar, text);
+  const Output made = run_program(
+      {"new", "stand", "--robot", "slow", "--duration", "0.501", "-o", "s.json", "--json"},
+      folder.path());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NEAR(nlohmann::json::parse(made.out).at("duration_s").get<double>(), 0.502, 1e-9);
+  const Output output = ayumi({"s.json", "--format", "hoap", "-o", "h.csv", "--json"});
+  ASSERT_EQ(output.exit_code, 0) << output.err << output.out;
+  EXPECT_EQ(nlohmann::json::parse(output.out).at("rate_hz"), 500);
+  EXPECT_EQ(cells(lines("h.csv").front()).front(), "2");
+}
+
+// The elbow moves at 87 % of its speed limit: consistent unless the pattern asks for more.
+TEST_F(Export, APatternIsJudgedByItsOwnTolerances) {
+  ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv"}).exit_code, 0);
+  std::string strict = kArmUp;
+  strict.insert(strict.find("\"parameters\""), "\"tolerances\": { \"joint_speed\": 0.01 }, ");
+  write(folder.path() / "strict.json", strict);
+  const Output refused = ayumi({"strict.json", "--format", "csv", "-o", "b.csv", "--json"});
+  EXPECT_EQ(refused.exit_code, 1) << refused.out << refused.err;
+  const std::string reason = nlohmann::json::parse(refused.out).at("refused").at(0);
+  EXPECT_EQ(reason.find("the pattern is inconsistent: joint_speed"), 0u) << reason;
+  EXPECT_FALSE(fs::exists(folder.path() / "b.csv"));
+}
+
 TEST_F(Export, GoalsOfViipHaveNoTableUntilTheyAreRun) {
   write(folder.path() / "v.json", R"({ "format": "ayumi.pattern/1", "name": "v", "robot": "hoap1",
     "phases": [{ "until": 1, "viip": { "cog": [0.01, 0, 0] } }],
