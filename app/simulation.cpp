@@ -57,9 +57,24 @@ ControllerSpec chosen_controller(const PatternInput& input, const SimulationChoi
   return spec;
 }
 
+namespace {
+
+#ifdef AYUMI_HAS_MUJOCO
+constexpr const char* kPlantHelp = "simulator of the robot: ayumi (the default) or mujoco";
+#else
+#define AYUMI_HOW_TO_GET_MUJOCO                                                            \
+  "this program was built without MuJoCo. To get it: sudo apt-get install libmujoco-dev, " \
+  "then configure and build again (cmake -S . -B build/release && cmake --build build/release)"
+constexpr const char* kHowToGetMujoco = AYUMI_HOW_TO_GET_MUJOCO;
+constexpr const char* kPlantHelp =
+    "simulator of the robot: ayumi (the default), or mujoco; " AYUMI_HOW_TO_GET_MUJOCO;
+#undef AYUMI_HOW_TO_GET_MUJOCO
+#endif
+
+}  // namespace
+
 void add_plant_option(CLI::App& command, std::string& plant) {
-  command.add_option("--plant", plant, "what moves the robot: ayumi, or mujoco where built in")
-      ->type_name("NAME");
+  command.add_option("--plant", plant, kPlantHelp)->type_name("NAME");
 }
 
 PlantKind plant_of(const std::string& name) {
@@ -67,10 +82,7 @@ PlantKind plant_of(const std::string& name) {
 #ifdef AYUMI_HAS_MUJOCO
   if (name == "mujoco") return mujoco_plant_kind();
 #else
-  if (name == "mujoco")
-    fail(ErrorCode::usage,
-         "--plant: this program was built without MuJoCo; install libmujoco-dev and configure "
-         "with AYUMI_WITH_MUJOCO=ON, or use ayumi");
+  if (name == "mujoco") fail(ErrorCode::usage, std::string("--plant mujoco: ") + kHowToGetMujoco);
 #endif
   fail(ErrorCode::usage, "--plant: unknown plant '" + name + "'" +
                              text::suggestion(name, {"ayumi", "mujoco"}) +

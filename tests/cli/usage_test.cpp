@@ -40,6 +40,22 @@ TEST_F(Usage, HelpShowsSwitchesAsTyped) {
   EXPECT_EQ(help.out.find("{false}"), std::string::npos) << help.out;
 }
 
+// Where the program was built without MuJoCo, help and error say how to get it.
+TEST_F(Usage, PlantMujocoIsThereOrTheWayToIt) {
+  for (const char* command : {"run", "simulate", "push"}) {
+    const Output help = ayumi({command, "--help"});
+    const Output chosen = ayumi({command, "absent.json", "-o", "out", "--plant", "mujoco"});
+    if (help.out.find("libmujoco-dev") == std::string::npos) {  // built with MuJoCo
+      EXPECT_EQ(chosen.exit_code, 3) << "absent.json: no such file";
+      continue;
+    }
+    EXPECT_NE(help.out.find("configure"), std::string::npos) << help.out;
+    EXPECT_EQ(chosen.exit_code, 2);
+    EXPECT_NE(chosen.err.find("sudo apt-get install libmujoco-dev"), std::string::npos)
+        << chosen.err;
+  }
+}
+
 TEST_F(Usage, VersionNamesTheLibraries) {
   const Output version = ayumi({"--version"});
   EXPECT_EQ(version.exit_code, 0);
