@@ -72,6 +72,22 @@ std::string cost_words(const WeightedChange& cost) {
   return "  weighted change " + text::brief(cost.change) + missing;
 }
 
+std::string origin_words(const std::map<std::string, std::string>& origin) {
+  constexpr std::pair<const char*, const char*> kTracks[] = {
+      {"joints", "joints"}, {"base", "base"}, {"feet", "feet"},
+      {"torso", "torso"},   {"cog", "COG"},   {"cog_height", "COG height"},
+      {"zmp", "ZMP"},       {"fz", "f_z"},    {"viip", "VIIP"}};
+  std::string out = "  sampled from\n";
+  for (const auto& [key, name] : kTracks) {
+    const auto found = origin.find(key);
+    if (found == origin.end()) continue;
+    std::string label = name;
+    label.resize(12, ' ');
+    out += "    " + label + found->second + "\n";
+  }
+  return out;
+}
+
 namespace {
 
 // Whether what is commanded is another thing than what the motion does.

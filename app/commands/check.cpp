@@ -8,11 +8,10 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/actuator_need.hpp"
-#include "ayumi/control/viip_goals.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "check_table.hpp"
+#include "motion_words.hpp"
 #include "pattern_input.hpp"
 #include "signals.hpp"
 
@@ -59,12 +58,9 @@ Json check_one(const Context& context, const CheckCommand& options, const std::s
   const auto begin = std::chrono::steady_clock::now();
   const PatternInput input = load_pattern(context, file, options.input);
   const CheckOptions judged = check_options(input, options.tolerances);
-  ConsistencyReport report = check_consistency(input.model, input.series, judged);
-  ActuatorNeed need = actuator_need(input.model, input.series, judged, report);
-  if (need.text.empty())
-    need = actuator_need(input.model,
-                         keyed_goals(input.model, input.series, input.pattern.controller), judged);
-  report.consistent = report.consistent && need.text.empty();
+  const Judgement judgement = judge_pattern(input, judged);
+  const ConsistencyReport& report = judgement.report;
+  const ActuatorNeed& need = judgement.need();
   const ActuatorNeed own = own_need(input, judged);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -77,13 +73,14 @@ Json check_one(const Context& context, const CheckCommand& options, const std::s
            : "  the robot as it is: " + own.text +
                  (has_encoders(input.model) ? " (`export --format hoap` judges by it)" : "") +
                  "\n") +
-      check_table(report));
+      check_table(report) + origin_words(input.series.origin));
   Json json = {{"pattern", file}};
   json.update(Json::parse(check_json(report)));
   json["actuators"] = {{"enough", need.text.empty()},
                        {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
                        {"sufficient_profiles", need.sufficient},
                        {"own", own.text.empty() ? Json(nullptr) : Json(own.text)}};
+  json["sampled_from"] = input.series.origin;
   json["wall_s"] = wall;
   return json;
 }

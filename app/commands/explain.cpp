@@ -10,6 +10,7 @@
 #include "ayumi/io/run/run_folder.hpp"
 #include "commands.hpp"
 #include "equations.hpp"
+#include "motion_words.hpp"
 #include "pattern_input.hpp"
 #include "run_robot.hpp"
 
@@ -76,6 +77,7 @@ struct Numbers {
   std::vector<std::string> lines;
   std::string where, controller;
   double t = 0;
+  std::map<std::string, std::string> sampled_from;  ///< of the pattern's tracks, by track
 };
 
 Numbers numbers_of(const Context& context, const Equation& e, const ExplainCommand& options) {
@@ -100,6 +102,8 @@ Numbers numbers_of(const Context& context, const Equation& e, const ExplainComma
   result.where = place.run;
   result.controller = log.controller;
   result.t = log.dt * static_cast<double>(instant.k);
+  const std::string origin = read_run_section(place.run, "sampled_from");
+  if (!origin.empty()) result.sampled_from = Json::parse(origin);
   return result;
 }
 
@@ -112,7 +116,11 @@ void explain(Context& context, const ExplainCommand& options) {
     out += n.where + ", " + n.controller + ", t = " + text::fixed(n.t, 3) + " s\n";
     if (n.lines.empty()) out += "  a log keeps no numbers of this one\n";
     for (const std::string& line : n.lines) out += "  " + line + "\n";
-    json.update({{"controller", n.controller}, {"t_s", n.t}, {"numbers", n.lines}});
+    if (!n.sampled_from.empty()) out += origin_words(n.sampled_from);
+    json.update({{"controller", n.controller},
+                 {"t_s", n.t},
+                 {"numbers", n.lines},
+                 {"sampled_from", n.sampled_from}});
   }
   context.print(out);
   context.print_json(json.dump(2));

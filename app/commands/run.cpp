@@ -119,6 +119,7 @@ void MainJob::check(PatternInput& input) {
   say("check", check_text(judged.report) + (need.empty() ? "" : "\n            " + need));
   summary_["check"] = Json::parse(check_json(judged.report));
   summary_["repair"] = nullptr;  // stays so unless a repair was asked for and needed
+  folder_.sections.emplace_back("sampled_from", Json(input.series.origin).dump());
   folder_.sections.emplace_back("check", check_json(judged.report));
   inconsistent_ = judged.reason();
   if (judged.motion_consistent) return;  // goals of VIIP are not keys that repair could move
@@ -296,6 +297,7 @@ bool MainJob::run(const std::string& file) {
 }
 
 void run_patterns(Context& context, const RunCommand& options) {
+  plant_of(options.choice.plant);  // one that is missing is told before anything is computed
   const bool several = options.patterns.size() > 1;
   std::vector<fs::path> targets;
   for (const std::string& pattern : options.patterns) {

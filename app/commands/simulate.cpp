@@ -26,6 +26,7 @@ RunFolder run_of(const PatternInput& input, const SimulationLog& log) {
   run.provenance = log.provenance;
   run.logs["closed_loop"] = log;
   const Judgement judged = judge_pattern(input, check_options(input));
+  run.sections.emplace_back("sampled_from", nlohmann::ordered_json(input.series.origin).dump());
   run.sections.emplace_back("check", check_json(judged.report));
   run.sections.emplace_back("simulate", simulation_json(log));
   for (const std::string& reason : {judged.reason(), unfit_words(log)})
@@ -37,6 +38,7 @@ RunFolder run_of(const PatternInput& input, const SimulationLog& log) {
 }
 
 void simulate_pattern(Context& context, const SimulateCommand& options) {
+  plant_of(options.choice.plant);  // one that is missing is told before anything is computed
   if (!options.out.empty())
     require_run_target(
         options.out, context.force,

@@ -51,6 +51,20 @@ TEST_F(CheckRepair, TheWalkIsConsistent) {
   EXPECT_TRUE(folder.files().empty());
 }
 
+TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {
+  const std::string people = ayumi({"check", kWalk, "-q"}).out;
+  EXPECT_NE(people.find("  sampled from\n    joints      legs by inverse kinematics"),
+            std::string::npos)
+      << people;
+  for (const char* track :
+       {"    base        solved from feet, torso and COG",
+        "    COG         solved from the ZMP keys for the full model", "    ZMP         keys"})
+    EXPECT_NE(people.find(track), std::string::npos) << track << "\n" << people;
+  const Json json = Json::parse(ayumi({"check", kWalk, "-q", "--json"}).out);
+  EXPECT_EQ(json.at("sampled_from").at("base"), "solved from feet, torso and COG");
+  EXPECT_EQ(json.at("sampled_from").at("zmp").get<std::string>().find("keys"), 0u);
+}
+
 TEST_F(CheckRepair, TolerancesAreListedAndSet) {
   const Output people = ayumi({"check", "--tolerances"});
   EXPECT_EQ(people.exit_code, 0);

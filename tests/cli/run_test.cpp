@@ -169,6 +169,16 @@ TEST_F(Run, AnInconsistentPatternGivesNoTableForARobot) {
   EXPECT_FALSE(fs::exists(folder / "t"));
 }
 
+TEST_F(Run, ExplainSaysWhereTheTracksOfTheRunComeFrom) {
+  ASSERT_EQ(run("calm.json").exit_code, 0);
+  const Output people = ayumi({"explain", "18", "out@0.5"});
+  ASSERT_EQ(people.exit_code, 0) << people.err;
+  EXPECT_NE(people.out.find("  sampled from\n    joints "), std::string::npos) << people.out;
+  const Json json = Json::parse(ayumi({"explain", "18", "out@0.5", "--json"}).out);
+  for (const char* track : {"joints", "base", "cog", "zmp"})
+    EXPECT_TRUE(json.at("sampled_from").contains(track)) << track;
+}
+
 TEST_F(Run, ExportRefusesAFolderThatHasChanged) {
   ASSERT_EQ(run("calm.json").exit_code, 0);
   for (const std::string name :

@@ -186,6 +186,13 @@ RunFolder read_run(const fs::path& folder) {
   return run;
 }
 
+std::string read_run_section(const fs::path& path, const std::string& key) {
+  if (fs::is_regular_file(path)) return "";
+  const RunFile file(path);
+  const auto section = file.root().find(key);
+  return section ? section->value().dump(2) : "";
+}
+
 SimulationLog read_run_log(const fs::path& path, const std::string& name) {
   if (fs::is_regular_file(path)) return read_log(path);
   const RunFile file(path);

@@ -46,6 +46,10 @@ void verify_run(const std::filesystem::path& folder);
 /// truncated or changed since (by its fingerprint).
 RunFolder read_run(const std::filesystem::path& folder);
 
+/// The JSON text of one member of run.json ("check"); empty where there is none, and for a log
+/// file. Throws as read_run().
+std::string read_run_section(const std::filesystem::path& path, const std::string& key);
+
 /// One log of a run: by name, or closed_loop when there is one, else the only one. `path` may also
 /// be a log file itself.
 SimulationLog read_run_log(const std::filesystem::path& path, const std::string& name = "");
