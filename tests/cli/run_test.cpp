@@ -109,7 +109,7 @@ TEST_F(Run, APatternMadeOfAPushedTableIsNotForARobotEither) {
       ayumi({"import", "out/reference_pushed.csv", "--robot", "hoap1", "-o", "i.json"}).exit_code,
       0);
   const std::vector<std::string> words = {"export", "i.json", "--format", "hoap",
-                                          "-o",     "i.csv",  "-q",       "--force-unsafe"};
+                                          "-o",     "h.csv",  "-q",       "--force-unsafe"};
   const Output refused = ayumi(words);
   EXPECT_EQ(refused.exit_code, 1) << refused.out;
   EXPECT_NE(refused.out.find("--pushed"), std::string::npos) << refused.out;
