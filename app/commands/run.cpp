@@ -43,7 +43,7 @@ struct RunCommand {
 };
 
 /// What the run writes, as far as it is known before the run.
-std::vector<std::string> names_of_files(const Options& options) {
+std::vector<std::string> names_of_files(const RunCommand& options) {
   std::vector<std::string> names = {
       "run.json",      "log_open_loop.bin", "log_closed_loop.bin",  "log_undisturbed.bin",
       "reference.csv", "reference.json",    "reference_pushed.csv", "hoap.csv"};
