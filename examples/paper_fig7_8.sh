@@ -14,7 +14,7 @@ for name in hoap1_viip_shift hoap1_viip_step hoap1_viip_walk; do
   run=$out/$name
   "$ayumi" run "patterns/$name.json" -o "$run" --force
   # Against time: COG, ref ZMP and ZMP in the frame of the feet. From above: with the footholds.
-  "$ayumi" --force plot "$run" --log closed_loop -o "$run/loci.svg"
+  "$ayumi" --force plot "$run" --log closed_loop -o "$run/fig8_loci.svg"
   "$ayumi" --force plot "$run" --log closed_loop --top -o "$run/top.png"
 done
 echo "Figures in $out/hoap1_viip_shift, hoap1_viip_step and hoap1_viip_walk"
