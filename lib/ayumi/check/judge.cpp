@@ -12,9 +12,10 @@ std::string Judgement::reason() const {
   const auto first = std::find_if(report.findings.begin(), report.findings.end(), is_error);
   if (first == report.findings.end()) return "the pattern is inconsistent: " + need().text;
   const auto errors = std::count_if(report.findings.begin(), report.findings.end(), is_error);
-  std::string text = "the pattern is inconsistent: " + first->kind + " " + first->where + " at " +
-                     text::fixed(first->at, 3) + " s: " + text::brief(first->worst) + " " +
-                     first->unit + ", limit " + text::brief(first->limit) + " " + first->unit;
+  std::string text = std::string("the pattern is inconsistent: ") + name_of(first->kind) + " " +
+                     first->where + " at " + text::fixed(first->at, 3) +
+                     " s: " + text::brief(first->worst) + " " + first->unit + ", limit " +
+                     text::brief(first->limit) + " " + first->unit;
   if (errors > 1)
     text +=
         " (and " + std::to_string(errors - 1) + (errors == 2 ? " more error)" : " more errors)");

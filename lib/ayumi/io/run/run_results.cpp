@@ -31,6 +31,8 @@ Finding finding_of(const JsonNode& node) {
   f.unit = node.at("unit").string();
   f.where = node.at("where").string();
   f.hint = node.at("hint").string();
+  const auto cause = node.find("follows_from");
+  if (cause && !cause->value().is_null()) f.follows_from = cause->string();
   return f;
 }
 
