@@ -6,6 +6,7 @@
 #include "ayumi/check/actuator_need.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "ayumi/task/task.hpp"
 
 namespace ayumi::app {
 

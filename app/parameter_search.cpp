@@ -56,9 +56,9 @@ class Search {
     Context silent = context_;
     silent.quiet = true;
     try {
-      const PatternInput input = load_pattern(silent, pattern_, options);
+      const Task input = load_pattern(silent, pattern_, options);
       return total_excess(
-          check_consistency(input.model, input.series, check_options(input, tolerances_)));
+          check_consistency(input.robot, input.series, check_options(input, tolerances_)));
     } catch (const Interrupted&) {
       throw;
     } catch (const Error&) {
@@ -179,15 +179,15 @@ std::vector<std::pair<double, double>> segments_around(const Pattern& pattern,
   return merged(std::move(all));
 }
 
-bool stretched_passes(const Context& context, const PatternInput& input, const CheckOptions& check,
+bool stretched_passes(const Context& context, const Task& input, const CheckOptions& check,
                       const std::vector<std::pair<double, double>>& windows, double factor) {
   report(context.progress(), {"slower", -1, "times " + text::brief(factor)});
   try {
     Pattern pattern = input.pattern;
     for (auto w = windows.rbegin(); w != windows.rend(); ++w)
-      pattern = stretched(input.model, pattern, w->first, w->second, factor);
-    const CommandSeries series = sample(input.model, pattern, {.dt = input.series.dt});
-    return check_consistency(input.model, series, check).consistent;
+      pattern = stretched(input.robot, pattern, w->first, w->second, factor);
+    const CommandSeries series = sample(input.robot, pattern, {.dt = input.series.dt});
+    return check_consistency(input.robot, series, check).consistent;
   } catch (const Interrupted&) {
     throw;
   } catch (const Error&) {
@@ -195,7 +195,7 @@ bool stretched_passes(const Context& context, const PatternInput& input, const C
   }
 }
 
-double passing_stretch(const Context& context, const PatternInput& input, const CheckOptions& check,
+double passing_stretch(const Context& context, const Task& input, const CheckOptions& check,
                        const std::vector<std::pair<double, double>>& windows) {
   double low = 1, high = kPaceStep;
   while (high < kSlowest && !stretched_passes(context, input, check, windows, high)) {
@@ -230,8 +230,7 @@ std::vector<PassingValues> passing_parameters(const Context& context, const std:
   return result;
 }
 
-PassingPace passing_pace(const Context& context, const PatternInput& input,
-                         const ConsistencyReport& check,
+PassingPace passing_pace(const Context& context, const Task& input, const ConsistencyReport& check,
                          const std::vector<std::string>& tolerances) {
   PassingPace pace;
   if (!input.series.viip.empty()) return pace;
@@ -251,7 +250,7 @@ PassingPace passing_pace(const Context& context, const PatternInput& input,
   retime.dt = input.series.dt;
   retime.slowest = kSlowest;
   retime.resolution = kPaceResolution;
-  const FastestPace found = fastest_pace(input.model, input.pattern, retime, context.progress());
+  const FastestPace found = fastest_pace(input.robot, input.pattern, retime, context.progress());
   if (found.found) pace.whole = found.scale;
   return pace;
 }

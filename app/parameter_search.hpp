@@ -35,8 +35,7 @@ struct PassingPace {
 };
 /// Where what is wrong is a matter of time: the segments of the pattern around it, and all of it,
 /// taking longer, until the pattern passes as it is.
-PassingPace passing_pace(const Context& context, const PatternInput& input,
-                         const ConsistencyReport& check,
+PassingPace passing_pace(const Context& context, const Task& input, const ConsistencyReport& check,
                          const std::vector<std::string>& tolerances);
 
 }  // namespace ayumi::app

@@ -79,9 +79,9 @@ bool names_pattern(const std::string& file) {
 SimulationLog log_of(const Context& context, const std::string& run_or_pattern,
                      const std::string& log) {
   if (!names_pattern(run_or_pattern)) return read_run_log(run_or_pattern, log);
-  const PatternInput input = load_pattern(context, run_or_pattern, {});
-  SimulationLog plan = plan_log(input.model, input.series, input.series);
-  plan.provenance = provenance(context, input, "");
+  const Task input = load_pattern(context, run_or_pattern, {});
+  SimulationLog plan = plan_log(input.robot, input.series, input.series);
+  plan.provenance = provenance(input, "", context.command_line);
   plan.provenance.pattern = std::filesystem::path(run_or_pattern).stem().string();
   plan.world = input.pattern.world;
   return plan;

@@ -25,7 +25,7 @@ bool read_number(const std::string& word, double& value) {
   fail(ErrorCode::usage, "--lock '" + word + "': " + why);
 }
 
-void lock_keyframe(const std::string& word, const PatternInput& input, RepairOptions& options) {
+void lock_keyframe(const std::string& word, const Task& input, RepairOptions& options) {
   double number = 0;
   const auto& keys = input.pattern.keyframes;
   if (!read_number(word.substr(9), number) || number != std::floor(number) || number < 0 ||
@@ -36,7 +36,7 @@ void lock_keyframe(const std::string& word, const PatternInput& input, RepairOpt
   options.locked_windows.emplace_back(t, t);
 }
 
-void lock_window(const std::string& word, const PatternInput& input, RepairOptions& options) {
+void lock_window(const std::string& word, const Task& input, RepairOptions& options) {
   const size_t dots = word.find("..");
   double begin = 0, end = 0;
   if (!read_number(word.substr(0, dots), begin) || !read_number(word.substr(dots + 2), end))
@@ -61,8 +61,7 @@ bool stays_inside(const fs::path& name) {
 
 }  // namespace
 
-void read_locks(const std::vector<std::string>& words, const PatternInput& input,
-                RepairOptions& options) {
+void read_locks(const std::vector<std::string>& words, const Task& input, RepairOptions& options) {
   for (const std::string& word : words) {
     if (word == "foot:left" || word == "foot:right")
       options.locked_feet[word == "foot:left" ? 0 : 1] = true;
@@ -90,15 +89,14 @@ RepairOptions wished_options(const Pattern& pattern) {
   return options;
 }
 
-RepairResult repair_input(const Context& context, const PatternInput& input,
-                          const RepairOptions& options) {
-  RepairResult result = repair(input.model, input.series, options, context.progress());
+RepairResult repair_input(const Context& context, const Task& input, const RepairOptions& options) {
+  RepairResult result = repair(input.robot, input.series, options, context.progress());
   if (result.status == RepairStatus::already_consistent || !input.pattern.correction) return result;
   Pattern plain = input.pattern;
   plain.correction.reset();
   const CommandSeries series =
-      sample(input.model, plain, {.dt = input.series.dt}, context.progress());
-  return repair(input.model, series, options, context.progress());
+      sample(input.robot, plain, {.dt = input.series.dt}, context.progress());
+  return repair(input.robot, series, options, context.progress());
 }
 
 bool write_with_companions(const Context& context, const std::string& from, const std::string& to,

@@ -15,13 +15,11 @@ RepairOptions wished_options(const Pattern& pattern);
 
 /// Locks in words: a joint ("l_elbow"), a foot ("foot:left"), a keyframe ("keyframe:3", counted
 /// from 0 as in messages) or a time window ("1.2..1.8"). Throws Error(usage) for anything else.
-void read_locks(const std::vector<std::string>& words, const PatternInput& input,
-                RepairOptions& options);
+void read_locks(const std::vector<std::string>& words, const Task& input, RepairOptions& options);
 
 /// repair() of what the pattern samples to; where an older correction is there and does not do, of
 /// what the author wrote without it.
-RepairResult repair_input(const Context& context, const PatternInput& input,
-                          const RepairOptions& options);
+RepairResult repair_input(const Context& context, const Task& input, const RepairOptions& options);
 
 /// Writes `text`, a pattern read from `from`, as `to`: byte for byte, with the table and the
 /// posture libraries it names beside it when that is another folder. False, and nothing written,

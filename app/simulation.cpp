@@ -42,16 +42,16 @@ void add_unstable_flag(CLI::App& command, bool& allowed) {
                    "Run gains although their loop is unstable (a demonstration).");
 }
 
-void refuse_unstable_gains(const PatternInput& input, const ControllerSpec& spec, bool allowed) {
+void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool allowed) {
   if (allowed) return;
   const CommandSample& first = input.series.samples.front();
   const std::string reason =
-      instability(input.model, spec, first.cog.z() - first.zmp.z(), input.series.dt);
+      instability(input.robot, spec, first.cog.z() - first.zmp.z(), input.series.dt);
   if (!reason.empty())
     fail(ErrorCode::bad_pattern, reason + "; --allow-unstable runs it all the same");
 }
 
-ControllerSpec chosen_controller(const PatternInput& input, const SimulationChoice& choice) {
+ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choice) {
   ControllerSpec spec = input.pattern.controller;
   if (!choice.controller.empty()) {
     const ControllerType type = controller_type(choice.controller);
@@ -94,14 +94,11 @@ PlantKind plant_of(const std::string& name) {
                              " (known: ayumi, mujoco)");
 }
 
-SimulationLog simulate_once(const Context& context, const PatternInput& input,
+SimulationLog simulate_once(const Context& context, const Task& input,
                             const SimulationChoice& choice) {
-  SimulateOptions options;
+  SimulateOptions options = simulate_options(input);
   options.controller = chosen_controller(input, choice);
   refuse_unstable_gains(input, options.controller, choice.unstable);
-  options.profile = input.profile;
-  options.world = input.pattern.world;
-  options.scenario = input.pattern.scenario;
   if (choice.scenario == "none")
     options.scenario.clear();
   else if (!choice.scenario.empty())
@@ -111,12 +108,10 @@ SimulationLog simulate_once(const Context& context, const PatternInput& input,
   options.substeps = choice.substeps;
   options.plant = plant_of(choice.plant);
   options.seed = context.seed;
-  SimulationLog log = simulate(input.model, input.series, options, context.progress());
-  log.provenance = provenance(context, input, name_of(options.controller.type));
-  return log;
+  return simulate(input, options, context.progress(), context.command_line);
 }
 
-TableCaution table_caution(const PatternInput& input, const SimulationLog& log,
+TableCaution table_caution(const Task& input, const SimulationLog& log,
                            const std::vector<std::string>& unfit) {
   TableCaution caution = {words_of(log.scenario), text::join(unfit, "; ")};
   add_caution(caution, input.caution);

@@ -28,18 +28,18 @@ PlantKind plant_of(const std::string& name);
 /// --allow-unstable.
 void add_unstable_flag(CLI::App& command, bool& allowed);
 /// Throws Error(bad_pattern) with the reason for DTAD gains that `ayumi gains` refuses.
-void refuse_unstable_gains(const PatternInput& input, const ControllerSpec& spec, bool allowed);
+void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool allowed);
 
 /// The pattern's controller under the choice.
-ControllerSpec chosen_controller(const PatternInput& input, const SimulationChoice& choice);
+ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choice);
 
 /// Runs the pattern; the log carries its provenance. Throws as refuse_unstable_gains().
-SimulationLog simulate_once(const Context& context, const PatternInput& input,
+SimulationLog simulate_once(const Context& context, const Task& input,
                             const SimulationChoice& choice);
 
 /// What the head of the table of a run has to say: its disturbances and those that the pattern's
 /// own table is from, and why the run is `unfit` for a robot.
-TableCaution table_caution(const PatternInput& input, const SimulationLog& log,
+TableCaution table_caution(const Task& input, const SimulationLog& log,
                            const std::vector<std::string>& unfit);
 
 /// Torques that the motors gave, samples x dof [N m].

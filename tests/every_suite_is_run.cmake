@@ -1,4 +1,5 @@
 # Compares the suites of a test program with those that CTest runs: -DPROGRAM= -DSUITES=a;b;c
+cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE output
                 COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "(^|\n)[A-Za-z0-9_/]+\\." found "${output}")

@@ -46,19 +46,19 @@ bool has_encoders(const RobotModel& model) {
 
 // What the robot's own actuators, by which a table for it is judged, lack where the pattern assumes
 // others.
-ActuatorNeed own_need(const PatternInput& input, CheckOptions judged) {
-  const std::string own = input.model.limits().name;
+ActuatorNeed own_need(const Task& input, CheckOptions judged) {
+  const std::string own = input.robot.limits().name;
   if (judged.profile.empty() || judged.profile == own) return {};
   judged.profile = own;
-  return actuator_need(input.model, input.series, judged,
-                       check_consistency(input.model, input.series, judged));
+  return actuator_need(input.robot, input.series, judged,
+                       check_consistency(input.robot, input.series, judged));
 }
 
 Json check_one(const Context& context, const CheckCommand& options, const std::string& file) {
   const auto begin = std::chrono::steady_clock::now();
-  const PatternInput input = load_pattern(context, file, options.input);
+  const Task input = load_pattern(context, file, options.input);
   const CheckOptions judged = check_options(input, options.tolerances);
-  const Judgement judgement = judge_pattern(input, judged);
+  const Judgement judgement = judge(input, judged);
   const ConsistencyReport& report = judgement.report;
   const ActuatorNeed& need = judgement.need();
   const ActuatorNeed own = own_need(input, judged);
@@ -71,7 +71,7 @@ Json check_one(const Context& context, const CheckCommand& options, const std::s
       (own.text.empty()
            ? ""
            : "  the robot as it is: " + own.text +
-                 (has_encoders(input.model) ? " (`export --format hoap` judges by it)" : "") +
+                 (has_encoders(input.robot) ? " (`export --format hoap` judges by it)" : "") +
                  "\n") +
       check_table(report) + origin_words(input.series.origin));
   Json json = {{"pattern", file}};

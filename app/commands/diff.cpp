@@ -32,22 +32,21 @@ double contacts_differ_at(const CommandSeries& a, const CommandSeries& b) {
   return -1;
 }
 
-Json side_json(const std::string& file, const PatternInput& input,
-               const ConsistencyReport& report) {
+Json side_json(const std::string& file, const Task& input, const ConsistencyReport& report) {
   return {{"pattern", file},
           {"duration_s", input.series.duration()},
           {"verdict", report.consistent ? "consistent" : "inconsistent"},
           {"min_zmp_margin_m", report.summary[FindingKind::support_margin]}};
 }
 
-std::string side_words(const std::string& file, const PatternInput& input,
+std::string side_words(const std::string& file, const Task& input,
                        const ConsistencyReport& report) {
   return file + ": " + (report.consistent ? "consistent" : "inconsistent") + ", " +
          text::fixed(input.series.duration(), 2) + " s\n";
 }
 
 // Weighed as a repair of A would.
-WeightedChange weighted(const DiffCommand& options, const PatternInput& a, const PatternInput& b,
+WeightedChange weighted(const DiffCommand& options, const Task& a, const Task& b,
                         const ConsistencyReport& check_a) {
   RepairOptions repair = wished_options(a.pattern);
   repair.check = check_options(a);
@@ -55,8 +54,8 @@ WeightedChange weighted(const DiffCommand& options, const PatternInput& a, const
     repair.joint_weights[joint] = factor;
   if (options.safety) repair.safety = *options.safety;
   WeightedChange change =
-      weighted_change(a.model, a.series, b.series, weight_factors(a.model, repair.joint_weights));
-  change.safety = safety_price(a.model, a.series, b.series, repair, check_a);
+      weighted_change(a.robot, a.series, b.series, weight_factors(a.robot, repair.joint_weights));
+  change.safety = safety_price(a.robot, a.series, b.series, repair, check_a);
   return change;
 }
 
@@ -66,15 +65,15 @@ std::string label_of(const std::string& file) {
 
 void diff(Context& context, const DiffCommand& options) {
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
-  const PatternInput a = load_pattern(context, options.a, options.input);
-  const PatternInput b = load_pattern(context, options.b, options.input);
-  if (a.model.dof_names() != b.model.dof_names())
-    fail(ErrorCode::bad_pattern, options.b + ": is for '" + b.model.name() + "', " + options.a +
-                                     " for '" + a.model.name() +
+  const Task a = load_pattern(context, options.a, options.input);
+  const Task b = load_pattern(context, options.b, options.input);
+  if (a.robot.dof_names() != b.robot.dof_names())
+    fail(ErrorCode::bad_pattern, options.b + ": is for '" + b.robot.name() + "', " + options.a +
+                                     " for '" + a.robot.name() +
                                      "': patterns of different robots cannot be compared");
-  const ConsistencyReport check_a = check_consistency(a.model, a.series, check_options(a));
-  const ConsistencyReport check_b = check_consistency(b.model, b.series, check_options(b));
-  const MotionChange change = motion_change(a.model, a.series, b.series);
+  const ConsistencyReport check_a = check_consistency(a.robot, a.series, check_options(a));
+  const ConsistencyReport check_b = check_consistency(b.robot, b.series, check_options(b));
+  const MotionChange change = motion_change(a.robot, a.series, b.series);
   const WeightedChange cost = weighted(options, a, b, check_a);
   const double contacts = contacts_differ_at(a.series, b.series);
   const bool same_length = a.series.samples.size() == b.series.samples.size();
@@ -85,12 +84,12 @@ void diff(Context& context, const DiffCommand& options) {
   if (same)
     words += "  the same motion and commands\n";
   else
-    words += motion_words(a.model, change, check_a, check_b) + cost_words(cost) + "\n";
+    words += motion_words(a.robot, change, check_a, check_b) + cost_words(cost) + "\n";
   if (!same_length)
     words += "  compared over the first " + text::fixed(change.compared, 3) + " s\n";
   if (contacts >= 0) words += "  contacts differ from " + text::fixed(contacts, 3) + " s on\n";
   if (!options.plot.empty()) {
-    plot_motions(a.model, a.series, b.series,
+    plot_motions(a.robot, a.series, b.series,
                  {label_of(options.a) + " and " + label_of(options.b), a.profile,
                   label_of(options.a), label_of(options.b)},
                  options.plot);

@@ -53,13 +53,13 @@ struct Result {
   TableCaution caution;  ///< of the tables that went into it
 };
 
-Result check_edited(const Context& context, const EditCommand& options, const PatternInput& input,
+Result check_edited(const Context& context, const EditCommand& options, const Task& input,
                     const Pattern& edited) {
   Result result;
   result.caution = input.caution;
-  result.series = sample(input.model, edited, {.dt = input.series.dt}, context.progress());
+  result.series = sample(input.robot, edited, {.dt = input.series.dt}, context.progress());
   result.report =
-      check_consistency(input.model, result.series, check_options(input, options.tolerances));
+      check_consistency(input.robot, result.series, check_options(input, options.tolerances));
   return result;
 }
 
@@ -79,22 +79,22 @@ void write_edited(Context& context, const EditCommand& options, const Pattern& e
   context.exit_code = result.report.consistent ? 0 : 1;
 }
 
-PatternInput load(const Context& context, const EditCommand& options) {
+Task load(const Context& context, const EditCommand& options) {
   refuse_overwriting(context, options.out);
   return load_pattern(context, options.pattern, options.input);
 }
 
 void bake(Context& context, const EditCommand& options) {
-  const PatternInput input = load(context, options);
+  const Task input = load(context, options);
   const Pattern edited =
-      baked(input.model, input.pattern, input.series, table_beside(options.out).string());
+      baked(input.robot, input.pattern, input.series, table_beside(options.out).string());
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json{{"rows", input.series.samples.size()}});
 }
 
 void mirror(Context& context, const EditCommand& options) {
-  const PatternInput input = load(context, options);
-  const Pattern edited = mirrored(input.model, input.pattern);
+  const Task input = load(context, options);
+  const Pattern edited = mirrored(input.robot, input.pattern);
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json::object());
 }
@@ -127,12 +127,11 @@ Json in_json(double scale, const ConsistencyReport& before, const ForceRange& fo
   return json;
 }
 
-FastestPace limits_of(const Context& context, const EditCommand& options,
-                      const PatternInput& input) {
+FastestPace limits_of(const Context& context, const EditCommand& options, const Task& input) {
   RetimeOptions retime;
   retime.check = check_options(input, options.tolerances);
   retime.dt = input.series.dt;
-  FastestPace pace = fastest_pace(input.model, input.pattern, retime, context.progress());
+  FastestPace pace = fastest_pace(input.robot, input.pattern, retime, context.progress());
   if (pace.by_posture)
     fail(ErrorCode::solver, options.pattern + ": no pace passes the check: " + pace.limited_by +
                                 "; the posture of the table itself is wrong, and no pace changes "
@@ -147,13 +146,13 @@ FastestPace limits_of(const Context& context, const EditCommand& options,
 void retime(Context& context, const EditCommand& options) {
   if (options.to_limits == (options.scale != 0))
     fail(ErrorCode::usage, "edit retime: give either --scale S or --to-limits");
-  const PatternInput input = load(context, options);
+  const Task input = load(context, options);
   const ConsistencyReport before =
-      check_consistency(input.model, input.series, check_options(input, options.tolerances));
+      check_consistency(input.robot, input.series, check_options(input, options.tolerances));
   FastestPace pace;
   if (options.to_limits) pace = limits_of(context, options, input);
   const double scale = options.to_limits ? pace.scale : options.scale;
-  const Pattern edited = retimed(input.model, input.pattern, scale);
+  const Pattern edited = retimed(input.robot, input.pattern, scale);
   const Result result = check_edited(context, options, input, edited);
   const ForceRange force = force_range(input.series);
   const FastestPace* const found = options.to_limits ? &pace : nullptr;
@@ -167,19 +166,19 @@ void join(Context& context, const EditCommand& options) {
     fail(ErrorCode::usage, "edit concat, edit blend: give two patterns or more, in their order");
   refuse_overwriting(context, options.out);
   const std::string table = table_beside(options.out).string();
-  PatternInput input = load_pattern(context, options.patterns.front(), options.input);
+  Task input = load_pattern(context, options.patterns.front(), options.input);
   Json joins = Json::array();
   for (size_t i = 1; i < options.patterns.size(); ++i) {
-    const PatternInput next = load_pattern(context, options.patterns[i], options.input);
-    if (next.model.description().sha256 != input.model.description().sha256)
+    const Task next = load_pattern(context, options.patterns[i], options.input);
+    if (next.robot.description().sha256 != input.robot.description().sha256)
       fail(ErrorCode::bad_pattern, options.patterns[i] + ": /robot: '" + next.pattern.robot +
                                        "' is another robot than '" + input.pattern.robot + "' of " +
                                        options.patterns.front());
     joins.push_back(input.series.duration());
     add_caution(input.caution, next.caution);
-    input.pattern = joined(input.model, {input.pattern, input.series}, {next.pattern, next.series},
+    input.pattern = joined(input.robot, {input.pattern, input.series}, {next.pattern, next.series},
                            options.over, table);
-    input.series = sample(input.model, input.pattern, {.dt = input.series.dt}, context.progress());
+    input.series = sample(input.robot, input.pattern, {.dt = input.series.dt}, context.progress());
   }
   write_edited(context, options, input.pattern,
                check_edited(context, options, input, input.pattern), "", Json{{"joins_s", joins}});
@@ -188,8 +187,8 @@ void join(Context& context, const EditCommand& options) {
 void ramp(Context& context, const EditCommand& options) {
   if (options.ramps.in <= 0 && options.ramps.out <= 0)
     fail(ErrorCode::usage, "edit ramp: --from or --back must be above 0");
-  const PatternInput input = load(context, options);
-  const Pattern edited = ramped(input.model, {input.pattern, input.series}, options.ramps,
+  const Task input = load(context, options);
+  const Pattern edited = ramped(input.robot, {input.pattern, input.series}, options.ramps,
                                 table_beside(options.out).string());
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json{{"in_s", options.ramps.in}, {"out_s", options.ramps.out}});

@@ -38,10 +38,10 @@ struct ExportOptions {
 struct Source {
   RobotModel model;
   ReferenceTrajectory reference;
-  std::string disturbances;          ///< of the run that the table is from; empty: none
-  Eigen::MatrixXd torque;            ///< of a run's motors, rows x dof; empty where not known
-  std::optional<PatternInput> plan;  ///< of a pattern: the check knows what it needs
-  std::vector<std::string> unfit;    ///< why no robot should receive the table
+  std::string disturbances;        ///< of the run that the table is from; empty: none
+  Eigen::MatrixXd torque;          ///< of a run's motors, rows x dof; empty where not known
+  std::optional<Task> plan;        ///< of a pattern: the check knows what it needs
+  std::vector<std::string> unfit;  ///< why no robot should receive the table
 };
 
 // What the servos receive when a pattern is replayed as it is.
@@ -72,24 +72,24 @@ RobotModel robot_named(const ExportOptions& options, const std::string& recorded
 }
 
 Source source_of_pattern(const ExportOptions& options, const Context& context) {
-  PatternInput input =
+  Task input =
       load_pattern(context, options.input,
                    {.set = options.set, .profile = {}, .robot = options.robot}, draws(options));
   if (!input.series.viip.empty())
     fail(ErrorCode::bad_pattern, options.input +
                                      ": phases: the pattern has VIIP goals, which it holds still "
                                      "for: run it (ayumi run), then export the RUN");
-  Source source{input.model,
-                open_loop_reference(input.model, input.series),
+  Source source{input.robot,
+                open_loop_reference(input.robot, input.series),
                 input.caution.disturbances,
                 {},
                 {},
                 {}};
-  source.reference.provenance = provenance(context, input, "none");
+  source.reference.provenance = provenance(input, "none", context.command_line);
   if (!options.robot.empty()) source.reference.provenance.robot = options.robot;
   if (!input.caution.unfit.empty()) source.unfit.push_back(input.caution.unfit);
-  if (!draws(options) && input.model.has_soles()) {
-    const std::string reason = judge_pattern(input, check_options(input)).reason();
+  if (!draws(options) && input.robot.has_soles()) {
+    const std::string reason = judge(input, check_options(input)).reason();
     if (!reason.empty()) source.unfit.push_back(reason);
   }
   source.plan = std::move(input);

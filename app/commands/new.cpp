@@ -16,6 +16,7 @@
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "ayumi/task/task.hpp"
 #include "new_pattern.hpp"
 #include "pattern_input.hpp"
 #include "walk_that_fits.hpp"

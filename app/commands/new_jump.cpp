@@ -7,6 +7,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "ayumi/task/task.hpp"
 #include "new_pattern.hpp"
 
 namespace ayumi::app {

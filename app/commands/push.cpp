@@ -33,8 +33,7 @@ struct PushCommand {
   PushOptions push;
 };
 
-std::vector<ControllerSpec> chosen_controllers(const PatternInput& input,
-                                               const PushCommand& options) {
+std::vector<ControllerSpec> chosen_controllers(const Task& input, const PushCommand& options) {
   std::vector<ControllerSpec> specs;
   for (const std::string& name : options.controllers) {
     const ControllerType type = controller_type(name);
@@ -49,14 +48,13 @@ std::vector<ControllerSpec> chosen_controllers(const PatternInput& input,
   for (ControllerSpec& spec : specs) {
     for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
       spec.gains.emplace_back(name, value);
-    check_controller(input.model, spec);  // says what is wrong
+    check_controller(input.robot, spec);  // says what is wrong
     refuse_unstable_gains(input, spec, options.unstable);
   }
   return specs;
 }
 
-PushOptions push_options(const Context& context, const PatternInput& input,
-                         const PushCommand& options) {
+PushOptions push_options(const Context& context, const Task& input, const PushCommand& options) {
   PushOptions push = options.push;
   push.threads = context.threads;
   push.simulate.profile = input.profile;
@@ -71,13 +69,13 @@ PushOptions push_options(const Context& context, const PatternInput& input,
     for (const ControllerSpec& c : push.controllers)
       if (c.type == ControllerKind::viip && gait.controller.type != ControllerKind::viip)
         gait.controller = c;
-    push.phases = default_push_phases(input.model, input.series, gait);
+    push.phases = default_push_phases(input.robot, input.series, gait);
   }
   return push;
 }
 
 /// What was asked, for the results file: the same answers only under the same of these.
-Json study_json(const PatternInput& input, const PushOptions& push) {
+Json study_json(const Task& input, const PushOptions& push) {
   Json controllers = Json::array(), phases = Json::array();
   for (const ControllerSpec& c : push.controllers) {
     Json gains = Json::object();
@@ -89,7 +87,7 @@ Json study_json(const PatternInput& input, const PushOptions& push) {
   return {{"version", version()},
           {"pattern_sha256", input.pattern.sha256},
           {"parameters", input.pattern.parameters},
-          {"robot_sha256", input.model.description().sha256},
+          {"robot_sha256", input.robot.description().sha256},
           {"profile", input.profile},
           {"controllers", controllers},
           {"phases", phases},
@@ -181,10 +179,9 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
   return out + "B = largest push that a point mass could absorb; + = largest push tried\n";
 }
 
-PushMap push_map(const PatternInput& input, const std::vector<PushCase>& cases,
-                 const PushOptions& push) {
+PushMap push_map(const Task& input, const std::vector<PushCase>& cases, const PushOptions& push) {
   PushMap map;
-  map.title = input.pattern.name + ", " + input.model.name() +
+  map.title = input.pattern.name + ", " + input.robot.name() +
               (input.profile.empty() ? "" : ", actuators " + input.profile) + ": pushes of " +
               text::fixed(1e3 * push.duration, 0) + " ms";
   for (const ControllerSpec& c : push.controllers) map.laws.push_back(name_of(c.type));
@@ -239,7 +236,7 @@ void find_limits(Context& context, const PushCommand& options) {
     refuse_overwriting(context, options.map);
   }
   if (!options.out.empty()) require_file_target(options.out);
-  const PatternInput input = load_pattern(context, options.pattern, options.input);
+  const Task input = load_pattern(context, options.pattern, options.input);
   const PushOptions push = push_options(context, input, options);
   const Json study = study_json(input, push);
   KnownCases known(push.phases.size() * static_cast<size_t>(push.directions));
@@ -248,7 +245,7 @@ void find_limits(Context& context, const PushCommand& options) {
   const KnownCases before = known;
   const auto begin = std::chrono::steady_clock::now();
   const std::vector<PushCase> cases = push_limits(
-      input.model, input.series, push, before,
+      input.robot, input.series, push, before,
       [&](size_t i, const PushCase& found) {
         known[i] = found;
         if (!options.out.empty()) write_file(options.out, results_text(study, known));

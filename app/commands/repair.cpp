@@ -46,7 +46,7 @@ std::vector<std::string> marks(const RepairResult& result) {
 
 // The author's text as it is but for the correction; parameters given on the command line, or
 // relative names that would break in another folder, make it a text of our own.
-void write_repaired(const Context& context, const RepairCommand& options, const PatternInput& input,
+void write_repaired(const Context& context, const RepairCommand& options, const Task& input,
                     const RepairResult& result) {
   Pattern corrected = input.pattern;
   const bool unchanged = result.status == RepairStatus::already_consistent;
@@ -55,7 +55,7 @@ void write_repaired(const Context& context, const RepairCommand& options, const 
     const fs::path table = table_beside(options.out);
     refuse_overwriting(context, table);
     write_pattern_and_table(options.out,
-                            baked(input.model, corrected, result.series, table.filename().string()),
+                            baked(input.robot, corrected, result.series, table.filename().string()),
                             marks(result), input.caution);
     return;
   }
@@ -91,9 +91,9 @@ std::string steering_words(const RepairCommand& options, const Pattern& pattern)
   return out;
 }
 
-std::string in_words(const RepairCommand& options, const PatternInput& input,
-                     const RepairResult& result, double wall) {
-  const RobotModel& model = input.model;
+std::string in_words(const RepairCommand& options, const Task& input, const RepairResult& result,
+                     double wall) {
+  const RobotModel& model = input.robot;
   std::string out = options.pattern + ": " +
                     (result.partial ? "stopped, partial" : name_of(result.status)) + "\n";
   if (result.status == RepairStatus::already_consistent)
@@ -168,7 +168,7 @@ std::string see_words(const RepairCommand& options, const RepairResult& result) 
 }
 
 // A pattern that cannot even be sampled may pass with other values of its parameters.
-PatternInput load(const Context& context, const RepairCommand& options) {
+Task load(const Context& context, const RepairCommand& options) {
   try {
     return load_pattern(context, options.pattern, options.input);
   } catch (const Error& error) {
@@ -190,7 +190,7 @@ Trust trust_of(const std::string& word) {
 }
 
 // The pattern's wishes, with the command line's locks beside them and its other words over them.
-RepairOptions repair_options(const RepairCommand& options, const PatternInput& input) {
+RepairOptions repair_options(const RepairCommand& options, const Task& input) {
   RepairOptions repair = wished_options(input.pattern);
   repair.check = check_options(input, options.tolerances);
   if (!options.trust.empty()) repair.trust = trust_of(options.trust);
@@ -220,7 +220,7 @@ void repair_pattern(Context& context, RepairCommand options) {
          "in place of -");
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
-  const PatternInput input = load(context, options);
+  const Task input = load(context, options);
   options.repair = repair_options(options, input);
   const auto begin = std::chrono::steady_clock::now();
   const RepairResult result = repair_input(context, input, options.repair);
@@ -236,7 +236,7 @@ void repair_pattern(Context& context, RepairCommand options) {
   if (context.exit_code == 4)
     pace = passing_pace(context, input, result.before, options.tolerances);
   if (!options.plot.empty() && !result.series.samples.empty())
-    plot_motions(input.model, input.series, result.series,
+    plot_motions(input.robot, input.series, result.series,
                  {fs::path(options.pattern).stem().string() + ", before and after its repair",
                   input.profile},
                  options.plot);

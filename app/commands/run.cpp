@@ -71,12 +71,12 @@ class MainJob {
   }
   void note_file(const std::string& name) { folder_.files.push_back(name); }
 
-  void check(PatternInput& input);
-  void repair_pattern(PatternInput& input, bool goals_reachable);
-  void simulate(const PatternInput& input);
+  void check(Task& input);
+  void repair_pattern(Task& input, bool goals_reachable);
+  void simulate(const Task& input);
   void note_what_is_against_a_table();
-  void export_tables(const PatternInput& input);
-  void write_hoap(const PatternInput& input, const SimulationLog& log);
+  void export_tables(const Task& input);
+  void write_hoap(const Task& input, const SimulationLog& log);
   void draw(const RobotModel& model, const std::string& title);
   void write_report(const RobotModel& model, const std::string& title);
   std::vector<std::string> file_names() const;
@@ -113,8 +113,8 @@ std::string check_text(const ConsistencyReport& report) {
   return text;
 }
 
-void MainJob::check(PatternInput& input) {
-  const Judgement judged = judge_pattern(input, check_options(input));
+void MainJob::check(Task& input) {
+  const Judgement judged = judge(input, check_options(input));
   const std::string& need = judged.need().text;
   say("check", check_text(judged.report) + (need.empty() ? "" : "\n            " + need));
   summary_["check"] = Json::parse(check_json(judged.report));
@@ -129,7 +129,7 @@ void MainJob::check(PatternInput& input) {
     say("repair", "not asked for; --repair looks for the nearest consistent pattern");
 }
 
-void MainJob::repair_pattern(PatternInput& input, bool goals_reachable) {
+void MainJob::repair_pattern(Task& input, bool goals_reachable) {
   RepairOptions options = wished_options(input.pattern);
   options.check = check_options(input);
   const RepairResult result = repair_input(context_, input, options);
@@ -147,7 +147,7 @@ void MainJob::repair_pattern(PatternInput& input, bool goals_reachable) {
   note_file("repaired.json");
 }
 
-void MainJob::simulate(const PatternInput& input) {
+void MainJob::simulate(const Task& input) {
   const auto run = [&](const char* name, const SimulationChoice& choice) -> const SimulationLog& {
     return folder_.logs[name] = simulate_once(context_, input, choice);
   };
@@ -186,28 +186,28 @@ void MainJob::note_what_is_against_a_table() {
   }
 }
 
-void MainJob::export_tables(const PatternInput& input) {
-  folder_.reference = extract_reference(input.model, table_log());
+void MainJob::export_tables(const Task& input) {
+  folder_.reference = extract_reference(input.robot, table_log());
   folder_.reference_caution = table_caution(input, table_log(), folder_.unfit);
   write_file(output_->file("reference.json"),
              reference_json(*folder_.reference, folder_.reference_caution));
   note_file("reference.json");
   if (&table_log() != &judged_log()) {
-    folder_.pushed = extract_reference(input.model, judged_log());
+    folder_.pushed = extract_reference(input.robot, judged_log());
     folder_.pushed_caution = table_caution(input, judged_log(), folder_.unfit);
   }
   write_hoap(input, table_log());
 }
 
 // What goes to the robot is judged by its own actuators, not by those a study has assumed.
-void MainJob::write_hoap(const PatternInput& input, const SimulationLog& log) {
+void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
   SafetyOptions safety;
-  safety.profile = input.model.limits().name;
-  const SafeTable safe = make_safe_run(input.model, *folder_.reference, torques_of(log), safety);
+  safety.profile = input.robot.limits().name;
+  const SafeTable safe = make_safe_run(input.robot, *folder_.reference, torques_of(log), safety);
   folder_.sections.emplace_back("export", safety_json(safe.report));
   std::string text = "reference.csv, reference.json";
   if (folder_.pushed) text += ", reference_pushed.csv (with the reactions to the disturbances)";
-  const bool encoders = input.model.dofs().front().encoder.device > 0;
+  const bool encoders = input.robot.dofs().front().encoder.device > 0;
   const TableCaution& caution = folder_.reference_caution;
   if (!caution.unfit.empty()) {
     text = "no table for a robot: " + caution.unfit + "\n            " + text;
@@ -215,7 +215,7 @@ void MainJob::write_hoap(const PatternInput& input, const SimulationLog& log) {
     text = "no table for a robot: the pattern's table is from a run with disturbances: " +
            caution.disturbances + "\n            " + text;
   } else if (encoders && safe.report.safe) {
-    write_file(output_->file("hoap.csv"), hoap_csv(input.model, safe.table, safety));
+    write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
     note_file("hoap.csv");
     text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) + " rows, largest step " +
             text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit)";
@@ -277,7 +277,7 @@ std::vector<std::string> MainJob::file_names() const {
 
 bool MainJob::run(const std::string& file) {
   context_.print(file + "\n");
-  PatternInput input = load_pattern(context_, file, options_.input, options_.pictures);
+  Task input = load_pattern(context_, file, options_.input, options_.pictures);
   refuse_unstable_gains(input, chosen_controller(input, options_.choice), options_.choice.unstable);
   output_.emplace(target_, context_.force);
   check(input);
@@ -285,8 +285,8 @@ bool MainJob::run(const std::string& file) {
   note_what_is_against_a_table();
   export_tables(input);
   if (options_.pictures) {
-    draw(input.model, input.pattern.name);
-    write_report(input.model, input.pattern.name);
+    draw(input.robot, input.pattern.name);
+    write_report(input.robot, input.pattern.name);
   }
   write_run(output_->folder(), folder_);
   output_->deliver();

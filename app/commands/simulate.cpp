@@ -21,18 +21,18 @@ struct SimulateCommand {
   SimulationChoice choice;
 };
 
-RunFolder run_of(const PatternInput& input, const SimulationLog& log) {
+RunFolder run_of(const Task& input, const SimulationLog& log) {
   RunFolder run;
   run.provenance = log.provenance;
   run.logs["closed_loop"] = log;
-  const Judgement judged = judge_pattern(input, check_options(input));
+  const Judgement judged = judge(input, check_options(input));
   run.sections.emplace_back("sampled_from", nlohmann::ordered_json(input.series.origin).dump());
   run.sections.emplace_back("check", check_json(judged.report));
   run.sections.emplace_back("simulate", simulation_json(log));
   for (const std::string& reason : {judged.reason(), unfit_words(log)})
     if (!reason.empty()) run.unfit.push_back(reason);
   const bool pushed = !log.scenario.empty();
-  (pushed ? run.pushed : run.reference) = extract_reference(input.model, log);
+  (pushed ? run.pushed : run.reference) = extract_reference(input.robot, log);
   (pushed ? run.pushed_caution : run.reference_caution) = table_caution(input, log, run.unfit);
   return run;
 }
@@ -43,7 +43,7 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
     require_run_target(
         options.out, context.force,
         {"run.json", "log_closed_loop.bin", "reference.csv", "reference_pushed.csv"});
-  const PatternInput input = load_pattern(context, options.pattern, options.input);
+  const Task input = load_pattern(context, options.pattern, options.input);
   const auto begin = std::chrono::steady_clock::now();
   const SimulationLog log = simulate_once(context, input, options.choice);
   const double wall =

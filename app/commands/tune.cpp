@@ -44,7 +44,7 @@ std::string line(const std::string& label, const TuneFigures& f) {
 }
 
 void tune(Context& context, TuneCommand& options) {
-  const PatternInput input = load_pattern(context, options.pattern, options.input);
+  const Task input = load_pattern(context, options.pattern, options.input);
   TuneOptions& t = options.tune;
   t.threads = context.threads;
   t.simulate.profile = input.profile;
@@ -57,7 +57,7 @@ void tune(Context& context, TuneCommand& options) {
     t.simulate.controller.gains.emplace_back(name, value);
   for (const double at : options.times)
     t.phases.push_back({"t = " + text::fixed(at, 3) + " s", at, false});
-  const TuneResult result = tune_gains(input.model, input.series, t, context.progress());
+  const TuneResult result = tune_gains(input.robot, input.series, t, context.progress());
   std::string out = options.pattern + ": pushes of " + text::brief(t.level) + " B, actuators " +
                     input.profile + "\n";
   out += line("before", result.before) + line("after ", result.after) + "  \"gains\": {";

@@ -26,12 +26,6 @@ namespace ayumi {
 
 using Eigen::VectorXd;
 
-const char* name_of(RepairStatus status) {
-  constexpr const char* kNames[] = {"already_consistent", "repaired", "infeasible",
-                                    "not_converged"};
-  return kNames[static_cast<int>(status)];
-}
-
 namespace {
 
 using FoundAt = std::pair<FindingKind, std::string>;  // kind and place

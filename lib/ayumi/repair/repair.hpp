@@ -39,7 +39,12 @@ struct RepairOptions {
 };
 
 enum class RepairStatus { already_consistent, repaired, infeasible, not_converged };
-const char* name_of(RepairStatus status);
+/// In the header, so that results are written as text without the solver.
+inline const char* name_of(RepairStatus status) {
+  constexpr const char* kNames[] = {"already_consistent", "repaired", "infeasible",
+                                    "not_converged"};
+  return kNames[static_cast<int>(status)];
+}
 
 /// Something that no correction could mend.
 struct Obstacle {

@@ -4,8 +4,7 @@
 #include <filesystem>
 
 #include "ayumi/author/generate/generate.hpp"
-#include "ayumi/io/robot/robot_file.hpp"
-#include "ayumi/plan/sample.hpp"
+#include "ayumi/ayumi.hpp"
 #include "ayumi/render/renderer.hpp"
 #include "ayumi/render/robot_surface.hpp"
 #include "ayumi/repair/repair.hpp"

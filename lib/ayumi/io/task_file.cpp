@@ -1,0 +1,23 @@
+#include "ayumi/io/task_file.hpp"
+
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
+
+namespace ayumi {
+
+Task load_task(Pattern pattern, const TaskOptions& options, const Progress& progress) {
+  const std::string name = options.robot.empty() ? robot_of(pattern) : options.robot;
+  RobotModel robot = load_robot(name, options.robots, {.meshes = options.meshes});
+  TableCaution caution = caution_of(pattern);
+  Task task = make_task(std::move(pattern), std::move(robot), options.profile, progress);
+  task.robot_name = name;
+  task.caution = std::move(caution);
+  return task;
+}
+
+Task load_task(const std::filesystem::path& pattern, const TaskOptions& options,
+               const Progress& progress) {
+  return load_task(read_pattern(pattern, options.set), options, progress);
+}
+
+}  // namespace ayumi

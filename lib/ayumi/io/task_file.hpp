@@ -1,0 +1,28 @@
+#pragma once
+// A task from files: the pattern by its file, and the robot that the pattern names.
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/task/task.hpp"
+
+namespace ayumi {
+
+struct TaskOptions {
+  std::map<std::string, double> set = {};  ///< values of parameters that the pattern declares
+  std::string profile = {};                ///< actuator profile; "" = that of the pattern
+  std::string robot = {};                  ///< in place of the robot that the pattern names
+  RobotSearch robots = {};                 ///< folders in which robots are looked for by name
+  bool meshes = false;                     ///< load what only pictures need
+};
+
+/// Throws as read_pattern(), load_robot() and make_task().
+Task load_task(const std::filesystem::path& pattern, const TaskOptions& options = {},
+               const Progress& progress = {});
+
+/// The same with a pattern that has been read.
+Task load_task(Pattern pattern, const TaskOptions& options = {}, const Progress& progress = {});
+
+}  // namespace ayumi

@@ -1,0 +1,130 @@
+#include "ayumi/task/task.hpp"
+
+#include <algorithm>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/control/controller.hpp"
+#include "ayumi/control/viip_goals.hpp"
+#include "ayumi/limits/limit.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/sim/run_caution.hpp"
+
+namespace ayumi {
+
+namespace {
+
+void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
+  std::vector<std::string> links = {"cog"};
+  for (const Link& link : robot.links()) links.push_back(link.name);
+  const std::vector<std::string> joints = robot.dof_names();
+  for (size_t i = 0; i < pattern.scenario.size(); ++i) {
+    const Disturbance& d = pattern.scenario[i];
+    const std::string place = pattern.file + ": /scenario/" + std::to_string(i);
+    if (std::find(links.begin(), links.end(), d.on) == links.end())
+      fail(ErrorCode::bad_pattern, place + "/on: " + robot.name() + " has no link '" + d.on + "'" +
+                                       text::suggestion(d.on, links) +
+                                       "; 'cog' pushes through the centre of gravity");
+    if (!d.joint.empty() && std::find(joints.begin(), joints.end(), d.joint) == joints.end())
+      fail(ErrorCode::bad_pattern, place + "/joint: " + robot.name() + " has no joint '" + d.joint +
+                                       "'" + text::suggestion(d.joint, joints));
+  }
+}
+
+// A wrong name is wrong use of the library; where a file contains it, it is bad input.
+template <class Check>
+void with_place(const std::string& place, const Check& check) {
+  try {
+    check();
+  } catch (const Error& error) {
+    fail(ErrorCode::bad_pattern, place + ": " + error.what());
+  }
+}
+
+void refuse_unknown_gains(const Pattern& pattern, const RobotModel& robot) {
+  with_place(robot.description().sidecar_file + ": /control",
+             [&] { check_controller(robot, {.type = pattern.controller.type, .gains = {}}); });
+  with_place(pattern.file + ": /controller", [&] { check_controller(robot, pattern.controller); });
+  with_place(pattern.file + ": /tolerances",
+             [&] { tolerances({.tolerances = pattern.tolerances}); });
+}
+
+}  // namespace
+
+CommandSeries sample_at_servo_period(const RobotModel& robot, const Pattern& pattern,
+                                     const Progress& progress) {
+  return sample(robot, pattern, {.dt = robot.description().servo_period}, progress);
+}
+
+Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
+               const Progress& progress) {
+  refuse_unknown_places(pattern, robot);
+  refuse_unknown_gains(pattern, robot);
+  const std::string name = robot.limits(profile.empty() ? pattern.profile : profile).name;
+  const double tick = robot.description().servo_period;
+  CommandSeries series = sample_at_servo_period(robot, pattern, progress);
+  std::string robot_name = robot.name();
+  return {.pattern = std::move(pattern),
+          .robot = std::move(robot),
+          .robot_name = std::move(robot_name),
+          .profile = name,
+          .tick = tick,
+          .series = std::move(series)};
+}
+
+CheckOptions check_options(const Task& task) {
+  CheckOptions options;
+  options.profile = task.profile;
+  options.friction = task.pattern.world.friction;
+  options.tolerances = task.pattern.tolerances;
+  return options;
+}
+
+SimulateOptions simulate_options(const Task& task) {
+  SimulateOptions options;
+  options.controller = task.pattern.controller;
+  options.profile = task.profile;
+  options.world = task.pattern.world;
+  options.scenario = task.pattern.scenario;
+  return options;
+}
+
+SafetyOptions safety_options(const Task& task) {
+  SafetyOptions options;
+  options.profile = task.profile;
+  return options;
+}
+
+Provenance provenance(const Task& task, const std::string& controller,
+                      const std::string& command_line) {
+  return {.robot = task.robot_name,
+          .robot_sha256 = task.robot.description().sha256,
+          .pattern = task.pattern.name,
+          .pattern_sha256 = task.pattern.sha256,
+          .profile = task.profile,
+          .controller = controller,
+          .command_line = command_line};
+}
+
+Judgement judge(const Task& task, const CheckOptions& options) {
+  return judge(task.robot, task.series,
+               keyed_goals(task.robot, task.series, task.pattern.controller), options);
+}
+
+Judgement judge(const Task& task) { return judge(task, check_options(task)); }
+
+SimulationLog simulate(const Task& task, const SimulateOptions& options, const Progress& progress,
+                       const std::string& command_line) {
+  SimulationLog log = simulate(task.robot, task.series, options, progress);
+  log.provenance = provenance(task, name_of(options.controller.type), command_line);
+  return log;
+}
+
+std::vector<std::string> unfit_reasons(const Judgement& judgement, const SimulationLog& log) {
+  std::vector<std::string> reasons;
+  for (const std::string& reason : {judgement.reason(), unfit_words(log)})
+    if (!reason.empty()) reasons.push_back(reason);
+  return reasons;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,27 @@
+# A header is public, and installed, when public_headers.txt lists it or a public header includes
+# it. Everything else is private. tests/architecture/layers.hpp reads the same list.
+
+# ayumi_public_headers(out): paths below lib.
+function(ayumi_public_headers out)
+  file(STRINGS ${PROJECT_SOURCE_DIR}/lib/cmake/public_headers.txt waiting)
+  if(NOT TARGET ayumi_plant_mujoco)
+    list(FILTER waiting EXCLUDE REGEX "/plant_mujoco/")
+  endif()
+  set(found)
+  while(waiting)
+    list(POP_FRONT waiting header)
+    if(header IN_LIST found)
+      continue()
+    endif()
+    list(APPEND found ${header})
+    set(file ${PROJECT_SOURCE_DIR}/lib/${header})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    file(STRINGS ${file} includes REGEX "^#include \"ayumi/")
+    foreach(line ${includes})
+      string(REGEX REPLACE "^#include \"(.*)\".*" "\\1" header "${line}")
+      list(APPEND waiting ${header})
+    endforeach()
+  endwhile()
+  list(SORT found)
+  set(${out} ${found} PARENT_SCOPE)
+endfunction()
