@@ -1,4 +1,4 @@
 # Suites that are left out of `ctest -L quick`: each takes more than two seconds alone.
 set(ayumi_slow_suites
-  docs.CommandsOfPage
+  cli.Run docs.CommandsOfPage
 )

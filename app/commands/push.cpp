@@ -228,7 +228,7 @@ Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, do
 }
 
 void find_limits(Context& context, const PushCommand& options) {
-  plant_of(options.plant);  // one that is missing is told before anything is computed
+  plant_of(options.plant);  // a missing plant is refused before anything is computed
   if (!options.map.empty()) {
     const std::string type = std::filesystem::path(options.map).extension().string();
     if (type != ".svg" && type != ".png")

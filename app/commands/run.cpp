@@ -297,7 +297,7 @@ bool MainJob::run(const std::string& file) {
 }
 
 void run_patterns(Context& context, const RunCommand& options) {
-  plant_of(options.choice.plant);  // one that is missing is told before anything is computed
+  plant_of(options.choice.plant);  // a missing plant is refused before anything is computed
   const bool several = options.patterns.size() > 1;
   std::vector<fs::path> targets;
   for (const std::string& pattern : options.patterns) {

@@ -38,7 +38,7 @@ RunFolder run_of(const Task& input, const SimulationLog& log) {
 }
 
 void simulate_pattern(Context& context, const SimulateCommand& options) {
-  plant_of(options.choice.plant);  // one that is missing is told before anything is computed
+  plant_of(options.choice.plant);  // a missing plant is refused before anything is computed
   if (!options.out.empty())
     require_run_target(
         options.out, context.force,

@@ -304,7 +304,7 @@ TEST_F(Run, NoCommandReplacesALinkADeviceOrAPipe) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-TEST_F(Run, WhatExistsAlreadyIsToldInOneWayByAllCommands) {
+TEST_F(Run, AllCommandsRefuseAnExistingFileInOneSentence) {
   ASSERT_EQ(run("calm.json").exit_code, 0);
   for (const std::string name : {"x.json", "x.csv", "x.svg", "x.html", "x.png", "x.glb"})
     write(folder / name, "mine");

@@ -41,7 +41,7 @@ TEST_F(Usage, HelpShowsSwitchesAsTyped) {
 }
 
 // Where the program was built without MuJoCo, help and error say how to get it.
-TEST_F(Usage, PlantMujocoIsThereOrTheWayToIt) {
+TEST_F(Usage, PlantMujocoIsThereOrHowToGetItIsSaid) {
   for (const char* command : {"run", "simulate", "push"}) {
     const Output help = ayumi({command, "--help"});
     const Output chosen = ayumi({command, "absent.json", "-o", "out", "--plant", "mujoco"});
