@@ -167,7 +167,7 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
          [](const PushCase& c) { return text::fixed(c.direction * 180 / M_PI, 0); });
     line(open + ", N s", [](const PushCase& c) { return impulse_text(c.open_loop); });
     for (size_t k = 0; k < push.controllers.size(); ++k)
-      line(push.controllers[k].type + ", N s",
+      line(name_of(push.controllers[k].type) + ", N s",
            [k](const PushCase& c) { return impulse_text(c.limits[k]); });
     line("B, N s", [](const PushCase& c) { return text::fixed(c.bound, 2); });
     line(open + " / B", [](const PushCase& c) { return ratio_text(c.open_loop, c.bound); });
