@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "ayumi/base/text.hpp"
 
@@ -18,6 +19,7 @@ std::string mm(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 
 std::string quantity(double value, const std::string& unit) {
   if (unit == "m") return mm(value);
+  if (unit == "rad") return text::brief(value * 180 / std::numbers::pi) + " deg";
   if (unit == "1") return text::fixed(value, 2);
   return text::brief(value) + " " + unit;
 }
@@ -41,19 +43,19 @@ std::string check_table(const ConsistencyReport& report) {
   const auto at = [&](FindingKind kind) { return report.summary[kind]; };
   const double margin = at(FindingKind::support_margin);
   out += "  ZMP " + mm(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
-         " the support; residuals COG " + mm(at(FindingKind::cog_residual)) + ", ZMP " +
-         mm(at(FindingKind::zmp_residual)) + ", f_z " +
-         text::fixed(at(FindingKind::fz_residual), 2) + " N; point mass off by " +
+         " the support; posture against the keys: COG " + mm(at(FindingKind::cog_residual)) +
+         ", ZMP " + mm(at(FindingKind::zmp_residual)) + ", force " +
+         text::fixed(at(FindingKind::fz_residual), 2) + " N off; point-mass model off by " +
          mm(at(FindingKind::point_mass_gap)) + "\n";
   std::vector<std::string> shares;
   for (const FindingSpec* spec : summary_figures())
     if (spec->figure.share_name)
       shares.push_back(std::string(spec->figure.share_name) + " " + percent(at(spec->kind)));
-  out += "  of the limits: " + text::join(shares, ", ") + "\n";
-  out += "  feet: slip " + mm(at(FindingKind::foot_slip)) + ", into the ground " +
-         mm(at(FindingKind::foot_penetration)) + ", above it in contact " +
-         mm(at(FindingKind::foot_float)) + "; bodies " + mm(at(FindingKind::self_collision)) +
-         " apart\n";
+  out += "  share of the limits: " + text::join(shares, ", ") + "\n";
+  out += "  feet: slip " + mm(at(FindingKind::foot_slip)) + ", sink " +
+         mm(at(FindingKind::foot_penetration)) + ", lift-off while standing " +
+         mm(at(FindingKind::foot_float)) + "; nearest bodies " +
+         mm(at(FindingKind::self_collision)) + " apart\n";
   return out;
 }
 

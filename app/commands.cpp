@@ -60,17 +60,19 @@ int exit_code_of(ErrorCode code) {
 void complain(const std::string& message) { std::fprintf(stderr, "ayumi: %s\n", message.c_str()); }
 
 void add_global_options(CLI::App& app, Context& context) {
-  app.set_help_flag("-h,--help", "this page");
+  app.set_help_flag("-h,--help", "Print this page.");
   app.set_version_flag("--version", std::string("ayumi ") + version() + " (" AYUMI_LIBRARIES ")",
-                       "version, and those of the libraries");
-  app.add_flag("--json", context.json, "one JSON object on stdout instead of text");
-  app.add_flag("-q,--quiet", context.quiet, "no progress on stderr");
-  app.add_flag("--force", context.force, "overwrite existing output");
-  app.add_option("--threads", context.threads, "threads, 0 for all; results do not depend on it")
+                       "Print the version, and those of the libraries.");
+  app.add_flag("--json", context.json, "Print one JSON object in place of text.");
+  app.add_flag("-q,--quiet", context.quiet, "Print no progress.");
+  app.add_flag("--force", context.force, "Overwrite existing results.");
+  app.add_option("--threads", context.threads,
+                 "Number of threads, 0 for all. Results do not depend on it.")
       ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N");
-  app.add_option("--seed", context.seed, "of noise and random choices")->type_name("N");
-  app.add_option("--robot-path", context.robot_path, "folder with robots, searched first")
+  app.add_option("--seed", context.seed, "Seed of noise and random choices.")->type_name("N");
+  app.add_option("--robot-path", context.robot_path,
+                 "Folder with robots, searched before the bundled ones.")
       ->type_name("DIR")
       ->allow_extra_args(false);
 }

@@ -8,13 +8,13 @@ std::string overview(const CLI::App& app) {
   std::string text =
       "Ayumi checks, stabilizes and exports motion patterns of humanoid robots.\n\n"
       "  robot + pattern -> check -> repair -> simulate (DTAD, VIIP) -> tables, clips, report\n\n"
-      "Usage: ayumi COMMAND ...     ayumi COMMAND --help shows examples first\n\n";
+      "Usage: ayumi COMMAND ...     ayumi COMMAND --help begins with examples.\n\n";
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     std::string line = "  " + command->get_name();
     line.resize(std::max<size_t>(line.size() + 1, 14), ' ');
     text += line + command->get_description() + "\n";
   }
-  text += "\nEverywhere:\n";
+  text += "\nOptions of every command:\n";
   for (const CLI::Option* option : app.get_options()) {
     std::string line = "  " + option->get_name(false, true);
     if (option->get_type_size() > 0) line += " " + option->get_type_name();
@@ -22,8 +22,8 @@ std::string overview(const CLI::App& app) {
     text += line + option->get_description() + "\n";
   }
   return text +
-         "\nExit status: 0 done, 1 verdict negative, 2 usage, 3 bad input, 4 solver failed, "
-         "5 internal\n";
+         "\nExit code: 0 done, 1 the verdict is negative, 2 wrong usage, 3 bad input, 4 a solver "
+         "failed, 5 internal error\n";
 }
 
 }  // namespace

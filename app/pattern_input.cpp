@@ -19,10 +19,12 @@
 namespace ayumi::app {
 
 void add_pattern_options(CLI::App& command, PatternOptions& options) {
-  command.add_option("--set", options.set, "a parameter the pattern declares, as NAME=VALUE")
+  command.add_option("--set", options.set, "Set a parameter that the pattern declares.")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command.add_option("--profile", options.profile, "actuator profile of the robot")
+  command
+      .add_option("--profile", options.profile,
+                  "Actuator profile of the robot (default: the pattern's).")
       ->type_name("NAME");
 }
 

@@ -14,21 +14,23 @@ namespace ayumi::app {
 
 void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   command
-      .add_option(
-          "--controller", choice.controller,
-          "none, dtad, viip, or for demonstration dtad-literal, viip-landings, viip-nofeedback")
+      .add_option("--controller", choice.controller,
+                  "none (open loop), dtad, viip, or for demonstration dtad-literal, viip-landings, "
+                  "viip-nofeedback (default: the pattern's).")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,
-                  "none, or a pattern file whose scenario is used instead")
+                  "none, or a pattern file whose scenario replaces the pattern's.")
       ->type_name("F");
-  command.add_option("--gain", choice.gains, "a controller gain, as NAME=VALUE")
+  command.add_option("--gain", choice.gains, "Set a gain of the controller.")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command.add_flag("--noise", choice.noise, "sensor noise, bias and latency of the sidecar");
+  command.add_flag(
+      "--noise", choice.noise,
+      "Simulate noise, bias and latency of the sensors as the sidecar describes them.");
   command.add_flag("--true-state", choice.true_state,
-                   "the controller sees the true state in the world instead of its sensors");
-  command.add_option("--substeps", choice.substeps, "integrator steps per servo period")
+                   "Give the controller the true state in place of the estimate.");
+  command.add_option("--substeps", choice.substeps, "Integrator steps per servo period.")
       ->check(CLI::Range(1, 100).description(""))
       ->type_name("N");
   add_unstable_flag(command, choice.unstable);
@@ -37,7 +39,7 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
 
 void add_unstable_flag(CLI::App& command, bool& allowed) {
   command.add_flag("--allow-unstable", allowed,
-                   "run gains whose loop is unstable all the same, for demonstration");
+                   "Run gains although their loop is unstable (a demonstration).");
 }
 
 void refuse_unstable_gains(const PatternInput& input, const ControllerSpec& spec, bool allowed) {
@@ -60,14 +62,14 @@ ControllerSpec chosen_controller(const PatternInput& input, const SimulationChoi
 namespace {
 
 #ifdef AYUMI_HAS_MUJOCO
-constexpr const char* kPlantHelp = "simulator of the robot: ayumi (the default) or mujoco";
+constexpr const char* kPlantHelp = "Simulator: ayumi or mujoco (default: ayumi).";
 #else
 #define AYUMI_HOW_TO_GET_MUJOCO                                                            \
   "this program was built without MuJoCo. To get it: sudo apt-get install libmujoco-dev, " \
   "then configure and build again (cmake -S . -B build/release && cmake --build build/release)"
 constexpr const char* kHowToGetMujoco = AYUMI_HOW_TO_GET_MUJOCO;
 constexpr const char* kPlantHelp =
-    "simulator of the robot: ayumi (the default), or mujoco; " AYUMI_HOW_TO_GET_MUJOCO;
+    "Simulator: ayumi or mujoco (default: ayumi); " AYUMI_HOW_TO_GET_MUJOCO;
 #undef AYUMI_HOW_TO_GET_MUJOCO
 #endif
 

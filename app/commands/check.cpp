@@ -172,22 +172,24 @@ void check(Context& context, const CheckCommand& options) {
 }  // namespace
 
 void add_check(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
-      "check", "posture, COG, ZMP and f_z against each other and the robot's limits");
+  CLI::App* command = app.add_subcommand("check", "say whether a motion is physically consistent");
   command->footer(
       "Examples:\n  ayumi check patterns/hoap1_walk.json\n"
       "  ayumi check walk.json --profile hoap1-strong --tolerance support_margin=0.01\n"
-      "  ayumi check a.json b.json --json\n  ayumi check walk.json --watch\n  ayumi check "
-      "--tolerances");
+      "  ayumi check a.json b.json --json\n  ayumi check walk.json --watch\n"
+      "  ayumi check --tolerances\n"
+      "check assumes level ground; slopes, bumps and moving floors are tested by simulate only.");
   static CheckCommand options;
-  command->add_option("PATTERN", options.patterns, "pattern files");
+  command->add_option("PATTERN", options.patterns, "Pattern files.");
   command
-      ->add_option("--tolerance", options.tolerances, "of one kind of finding, over the pattern's")
+      ->add_option("--tolerance", options.tolerances,
+                   "Tolerance of one kind of finding (default: the pattern's).")
       ->type_name("KIND=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--tolerances", options.list_tolerances,
-                    "list all kinds of findings with their tolerances");
-  command->add_flag("--watch", options.watch, "check again at every change, until Ctrl-C");
+                    "List all kinds of findings with their tolerances.");
+  command->add_flag("--watch", options.watch,
+                    "Check again at every change of the files, until Ctrl-C.");
   add_pattern_options(*command, options.input);
   command->callback([&context] { check(context, options); });
 }

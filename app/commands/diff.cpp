@@ -116,22 +116,25 @@ void diff(Context& context, const DiffCommand& options) {
 }  // namespace
 
 void add_diff(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("diff", "what moved from one pattern to another");
+  CLI::App* command = app.add_subcommand("diff", "say what moved from one pattern to another");
   command->footer(
       "Examples:\n  ayumi diff walk.json repaired.json\n"
       "  ayumi diff walk.json repaired.json --plot moved.svg --json");
   static DiffCommand options;
-  command->add_option("A", options.a, "pattern file")->required();
-  command->add_option("B", options.b, "pattern file, as it became")->required();
-  command->add_option("--plot", options.plot, "both against time, .svg or .png")->type_name("F");
+  command->add_option("A", options.a, "Pattern file.")->required();
+  command->add_option("B", options.b, "Pattern file that is compared with A.")->required();
+  command->add_option("--plot", options.plot, "Draw both over time, .svg or .png.")->type_name("F");
   command
       ->add_option("--weight", options.weights,
-                   "of a joint in the weighted change, as for repair; left out: the pattern's")
+                   "Cost of moving this joint relative to the others, as for repair (default: the "
+                   "pattern's, 1).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
-      ->add_option("--safety", options.safety,
-                   "factor on the price of safety in it, as for repair; left out: the pattern's, 1")
+      ->add_option(
+          "--safety", options.safety,
+          "Weight of safety against staying close to the original, as for repair (default: "
+          "the pattern's, 1).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   add_pattern_options(*command, options.input);

@@ -106,13 +106,13 @@ std::string in_words(double scale, const ConsistencyReport& before, const ForceR
   const auto newtons = [](const ForceRange& f) {
     return text::fixed(f.least, 1) + " to " + text::fixed(f.most, 1) + " N";
   };
-  std::string out = "  " + text::brief(scale) + " of the time\n";
+  std::string out = "  takes " + text::brief(scale) + " of the original time\n";
   if (pace)
-    out += pace->bounded ? "  faster breaks " + pace->limited_by + "\n"
-                         : "  nothing limits it down to this scale\n";
+    out += pace->bounded ? "  a faster pace fails: " + pace->limited_by + "\n"
+                         : "  no limit was found down to this scale\n";
   return out + "  ZMP margin " + mm(before.summary[FindingKind::support_margin]) + " mm before, " +
-         mm(after.report.summary[FindingKind::support_margin]) + " mm now; f_z " +
-         newtons(force_before) + " before, " + newtons(force) + " now\n";
+         mm(after.report.summary[FindingKind::support_margin]) + " mm after; f_z " +
+         newtons(force_before) + " before, " + newtons(force) + " after\n";
 }
 
 Json in_json(double scale, const ConsistencyReport& before, const ForceRange& force_before,
@@ -135,12 +135,12 @@ FastestPace limits_of(const Context& context, const EditCommand& options,
   FastestPace pace = fastest_pace(input.model, input.pattern, retime, context.progress());
   if (pace.by_posture)
     fail(ErrorCode::solver, options.pattern + ": no pace passes the check: " + pace.limited_by +
-                                "; that is in the posture of the table, which no pace changes; "
-                                "try repair");
+                                "; the posture of the table itself is wrong, and no pace changes "
+                                "it; try repair");
   if (!pace.found)
     fail(ErrorCode::solver, options.pattern + ": no uniform scaling up to " +
                                 text::brief(retime.slowest) + " passes the check; last: " +
-                                pace.limited_by + "; time alone does not mend it, try repair");
+                                pace.limited_by + "; more time alone is not enough, try repair");
   return pace;
 }
 
@@ -164,7 +164,7 @@ void retime(Context& context, const EditCommand& options) {
 // Patterns one after the other; the table of what is joined so far is only in memory.
 void join(Context& context, const EditCommand& options) {
   if (options.patterns.size() < 2)
-    fail(ErrorCode::usage, "edit concat, edit blend: two patterns or more, in their order");
+    fail(ErrorCode::usage, "edit concat, edit blend: give two patterns or more, in their order");
   refuse_overwriting(context, options.out);
   const std::string table = table_beside(options.out).string();
   PatternInput input = load_pattern(context, options.patterns.front(), options.input);
@@ -187,7 +187,7 @@ void join(Context& context, const EditCommand& options) {
 
 void ramp(Context& context, const EditCommand& options) {
   if (options.ramps.in <= 0 && options.ramps.out <= 0)
-    fail(ErrorCode::usage, "edit ramp: one of --from and --back must be above 0");
+    fail(ErrorCode::usage, "edit ramp: --from or --back must be above 0");
   const PatternInput input = load(context, options);
   const Pattern edited = ramped(input.model, {input.pattern, input.series}, options.ramps,
                                 table_beside(options.out).string());
@@ -196,9 +196,10 @@ void ramp(Context& context, const EditCommand& options) {
 }
 
 void add_edit_options(CLI::App& command, EditCommand& options) {
-  command.add_option("-o,--out", options.out, "pattern file to write")->required()->type_name("F");
+  command.add_option("-o,--out", options.out, "Pattern file to write.")->required()->type_name("F");
   command
-      .add_option("--tolerance", options.tolerances, "of one kind of finding, over the pattern's")
+      .add_option("--tolerance", options.tolerances,
+                  "Tolerance of one kind of finding; see ayumi check --tolerances.")
       ->type_name("KIND=VALUE")
       ->allow_extra_args(false);
   add_pattern_options(command, options.input);
@@ -207,7 +208,7 @@ void add_edit_options(CLI::App& command, EditCommand& options) {
 CLI::App& add_join_of(CLI::App& parent, const std::string& name, const std::string& what,
                       EditCommand& options) {
   CLI::App* command = parent.add_subcommand(name, what);
-  command->add_option("PATTERN", options.patterns, "pattern files, in their order")->required();
+  command->add_option("PATTERN", options.patterns, "Pattern files, in their order.")->required();
   add_edit_options(*command, options);
   return *command;
 }
@@ -215,7 +216,7 @@ CLI::App& add_join_of(CLI::App& parent, const std::string& name, const std::stri
 CLI::App& add_edit_of(CLI::App& parent, const std::string& name, const std::string& what,
                       EditCommand& options) {
   CLI::App* command = parent.add_subcommand(name, what);
-  command->add_option("PATTERN", options.pattern, "pattern file")->required();
+  command->add_option("PATTERN", options.pattern, "Pattern file.")->required();
   add_edit_options(*command, options);
   return *command;
 }
@@ -223,10 +224,10 @@ CLI::App& add_edit_of(CLI::App& parent, const std::string& name, const std::stri
 }  // namespace
 
 void add_edit(CLI::App& app, Context& context) {
-  CLI::App* command =
-      app.add_subcommand("edit",
-                         "pattern surgery that re-checks the result: bake, mirror, retime, concat, "
-                         "blend, ramp");
+  CLI::App* command = app.add_subcommand(
+      "edit",
+      "change a whole pattern and check the result: bake, mirror, retime, concat, blend, "
+      "ramp");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  ayumi edit mirror walk.json -o mirrored.json\n"
@@ -237,42 +238,47 @@ void add_edit(CLI::App& app, Context& context) {
       "  ayumi edit blend squat.json sway.json --over 0.8 -o both.json\n"
       "  ayumi edit ramp imported.json --from 1.5 --back 1.5 -o from_home.json");
   static EditCommand options;
-  add_edit_of(*command, "bake", "the motion as a dense table of theta, COG, ZMP, f_z and base",
-              options)
+  add_edit_of(*command, "bake",
+              "write the motion as a dense table of joint angles, COG, ZMP, f_z and base", options)
       .callback([&context] { bake(context, options); });
-  add_edit_of(*command, "mirror", "left for right", options).callback([&context] {
+  add_edit_of(*command, "mirror", "exchange left and right", options).callback([&context] {
     mirror(context, options);
   });
-  add_join_of(*command, "concat", "one after the other, without a pause", options)
+  add_join_of(*command, "concat", "play one pattern after the other, without a pause", options)
       .callback([&context] { join(context, options); });
-  CLI::App& blend_command =
-      add_join_of(*command, "blend", "one after the other, with a transition between", options);
-  blend_command.add_option("--over", options.over, "time of the transition [s]")
+  CLI::App& blend_command = add_join_of(
+      *command, "blend", "play one pattern after the other, with a transition between", options);
+  blend_command.add_option("--over", options.over, "Duration of the transition [s].")
       ->required()
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
   blend_command.callback([&context] { join(context, options); });
-  CLI::App& ramp_command =
-      add_edit_of(*command, "ramp", "from a posture to the motion, and back at its end", options);
-  ramp_command.add_option("--from", options.ramps.in, "time of the way there [s]; 0: none")
+  CLI::App& ramp_command = add_edit_of(
+      *command, "ramp", "move from a posture to the motion, and back at its end", options);
+  ramp_command
+      .add_option("--from", options.ramps.in,
+                  "Time to move from the posture to the motion [s]; 0 = none.")
       ->check(number_within(0.0, 60.0))
       ->type_name("S")
       ->capture_default_str();
-  ramp_command.add_option("--back", options.ramps.out, "time of the way back [s]; 0: none")
+  ramp_command
+      .add_option("--back", options.ramps.out, "Time to move back to the posture [s]; 0 = none.")
       ->check(number_within(0.0, 60.0))
       ->type_name("S")
       ->capture_default_str();
-  ramp_command.add_option("--posture", options.ramps.posture, "a posture of the pattern or robot")
+  ramp_command
+      .add_option("--posture", options.ramps.posture, "A posture of the pattern or of the robot.")
       ->type_name("NAME")
       ->capture_default_str();
   ramp_command.callback([&context] { ramp(context, options); });
   CLI::App& retime_command =
-      add_edit_of(*command, "retime", "the same motion in another time", options);
-  retime_command.add_option("--scale", options.scale, "of the time: 0.8 is faster")
+      add_edit_of(*command, "retime", "play the same motion faster or more slowly", options);
+  retime_command
+      .add_option("--scale", options.scale, "Factor on the time: 0.8 is faster, 1.25 is slower.")
       ->check(number_within(0.01, 100.0))
       ->type_name("S");
   retime_command.add_flag("--to-limits", options.to_limits,
-                          "the fastest scale that passes the check");
+                          "Find the fastest scale that passes the check.");
   retime_command.callback([&context] { retime(context, options); });
 }
 

@@ -129,19 +129,19 @@ void explain(Context& context, const ExplainCommand& options) {
 }  // namespace
 
 void add_explain(CLI::App& app, Context& context) {
-  CLI::App* command =
-      app.add_subcommand("explain", "an equation of the paper in words, and in numbers of a run");
+  CLI::App* command = app.add_subcommand(
+      "explain", "explain an equation of the paper in words, and with the numbers of a run");
   command->footer(
       "Examples:\n  ayumi explain 18\n"
       "  ayumi explain 14 out/hoap1_walk@3.05\n"
       "  ayumi explain 14 out/hoap1_walk@3.05 --log open_loop\n"
       "Gains are those of the robot, unless --gain names those of the run's pattern.");
   auto options = std::make_shared<ExplainCommand>();
-  command->add_option("EQ", options->equation, "number of the equation, 1 to 29")->required();
-  command->add_option("RUN@t", options->run, "a RUN folder or log file, and a time [s]");
-  command->add_option("--log", options->log, "which log of the RUN, e.g. open_loop");
-  command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
-  command->add_option("--gain", options->gains, "a gain of that run, as NAME=VALUE")
+  command->add_option("EQ", options->equation, "Number of the equation, 1 to 29.")->required();
+  command->add_option("RUN@t", options->run, "Run folder or log file, and a time [s].");
+  command->add_option("--log", options->log, "Log of the run, for example open_loop.");
+  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
+  command->add_option("--gain", options->gains, "A gain of that run.")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->callback([options, &context] { explain(context, *options); });

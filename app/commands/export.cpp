@@ -363,34 +363,37 @@ void export_table(ExportOptions options, Context& context) {
 
 void add_export(CLI::App& app, Context& context) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "joint tables of a run or pattern for replay");
-  command->add_option("input", options->input, "a RUN folder, a pattern, or a reference table")
+  CLI::App* command =
+      app.add_subcommand("export", "write a joint table of a run or pattern for the robot");
+  command->add_option("input", options->input, "Run folder, pattern or reference table.")
       ->required()
       ->type_name("RUN_OR_PATTERN");
-  command->add_option("--format", options->format, "csv, json, hoap or gltf")
+  command->add_option("--format", options->format, "Format of the file: csv, json, hoap or gltf.")
       ->required()
       ->check(CLI::IsMember({"csv", "json", "hoap", "gltf"}));
-  command->add_option("-o,--out", options->output, "file to write")->required()->type_name("FILE");
-  command->add_option("--ramp", options->safety.ramp, "approach ramp, at least this long [s]")
+  command->add_option("-o,--out", options->output, "File to write.")->required()->type_name("FILE");
+  command
+      ->add_option("--ramp", options->safety.ramp, "Shortest approach ramp before the motion [s].")
       ->check(number_within(0.0, 60.0))
       ->capture_default_str();
-  command->add_option("--hold", options->safety.hold, "hold the end this long [s]")
+  command->add_option("--hold", options->safety.hold, "How long the last posture is held [s].")
       ->check(number_within(0.0, 60.0))
       ->capture_default_str();
   command
       ->add_option("--from", options->safety.from,
-                   "posture the robot stands in before the ramp, or 'first'")
+                   "Posture of the robot before the ramp, or 'first' for that of the motion.")
       ->capture_default_str();
-  command->add_option("--profile", options->safety.profile, "actuator profile of the speed limits");
-  command->add_option("--log", options->log, "which log of the RUN, e.g. open_loop");
-  command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
-  command->add_option("--set", options->set, "parameter of the pattern")
+  command->add_option("--profile", options->safety.profile,
+                      "Actuator profile that the table is judged by (default: see docs/cli.md).");
+  command->add_option("--log", options->log, "Log of the run, for example open_loop.");
+  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
+  command->add_option("--set", options->set, "Set a parameter that the pattern declares.")
       ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);
   command->add_flag("--pushed", options->pushed,
-                    "export the table of the run with its disturbances; the table says so");
+                    "Export the table of the run with its disturbances. The table says so.");
   command->add_flag("--force-unsafe", options->force_unsafe,
-                    "write even an unsafe table; the table says so");
+                    "Write the table although it is unsafe. The table says so.");
   command->footer(
       "Examples:\n"
       "  ayumi export out/ --format hoap -o walk_hoap.csv\n"

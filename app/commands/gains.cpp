@@ -136,9 +136,9 @@ std::vector<std::pair<std::string, double>> gain_list(const DtadParams& p) {
 }
 
 std::string mode_text(const Complex& pole) {
-  std::string line = "  decays with " + text::brief(-1 / pole.real()) + " s";
+  std::string line = "  decays with the time constant " + text::brief(-1 / pole.real()) + " s";
   if (std::abs(pole.imag()) > 1e-6)
-    line += ", swings at " + text::fixed(std::abs(pole.imag()) / (2 * M_PI), 2) + " Hz";
+    line += ", oscillates at " + text::fixed(std::abs(pole.imag()) / (2 * M_PI), 2) + " Hz";
   return line + "\n";
 }
 
@@ -147,27 +147,28 @@ std::string report(const RobotModel& model, const Design& d) {
   const double w = d.omega;
   std::string out = model.name() + ": COG " + text::fixed(d.loop.height, 3) +
                     " m above the soles, omega " + text::fixed(w, 2) + " /s\n";
-  out += "gains, as a pattern or sidecar names them\n ";
+  out += "gains, as they stand in a pattern or sidecar:\n ";
   for (const auto& [name, value] : gain_list(p)) out += " " + name + "=" + text::brief(value);
   out += "\n(18)(19)  K = " + text::brief(long_term_k(p)) +
          ", D = " + text::fixed(1e3 * long_term_d(p) / w, 1) +
-         " ms: the ZMP goes K times as far out as the COG\n";
+         " ms: an error of the COG moves the reference ZMP K times as far\n";
   out += "short term  " + text::fixed(100 * p.ka / (1 + p.ka), 0) +
-         " % of a ZMP error is taken up at once, measured over " +
+         " % of a ZMP error is answered immediately, filtered over " +
          text::fixed(1e3 * p.tau_z / w, 1) + " ms\n";
-  out += "return  the reference comes back to the command in " + text::fixed(1e3 / (w * p.ks), 0) +
+  out += "return  the reference returns to the command within " + text::fixed(1e3 / (w * p.ks), 0) +
          " ms";
-  out += p.washout > 0
-             ? ", lasting offsets are forgotten in " + text::fixed(1e3 * p.washout / w, 0) + " ms\n"
-             : ", lasting offsets stay\n";
-  out += "loop on one foot: ankle " + text::brief(d.loop.stiffness) + " N m/rad, sensors " +
-         text::brief(1e3 * d.loop.delay) + " ms late; stable, ka up to " +
+  out += p.washout > 0 ? ", a constant ZMP offset is accepted as normal after " +
+                             text::fixed(1e3 * p.washout / w, 0) + " ms\n"
+                       : ", a constant ZMP offset is never accepted as normal\n";
+  out += "loop on one foot: ankle stiffness " + text::brief(d.loop.stiffness) +
+         " N m/rad, sensor latency " + text::brief(1e3 * d.loop.delay) +
+         " ms; the loop is stable, and would be up to ka = " +
          (d.most_ka >= kMostKa ? "more than " + text::brief(kMostKa) : text::fixed(d.most_ka, 2)) +
-         " would be; slowest modes\n";
+         "; slowest modes:\n";
   int shown = 0;
   for (const Complex& pole : d.analysis.poles)
     if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);
-  out += "recoverable while the supports stay: xi = x + dx/omega off the plan, and the push\n";
+  out += "recoverable without a step (error of the DCM, and the impulse that causes it):\n";
   for (const Reach& r : d.reaches)
     out += "  " + r.support + ", " + r.direction + ": " + text::fixed(1e3 * r.xi, 1) + " mm, " +
            text::fixed(r.impulse, 2) + " N s\n";
@@ -206,40 +207,57 @@ void print_gains(Context& context, const GainsCommand& options) {
 }  // namespace
 
 void add_gains(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
-      "gains", "gains from poles or time constants; is the whole loop stable, what it recovers");
+  CLI::App* command =
+      app.add_subcommand("gains", "compute gains of DTAD and say whether the whole loop is stable");
   command->footer(
       "Examples:\n  ayumi gains hoap1\n"
       "  ayumi gains hoap1 --time-constants 0.16,0.64 --absorb 0.6 --return-time 0.1\n"
       "  ayumi gains hoap1 --frequency 1 --damping 1 --latency 0.005\n"
-      "An unstable choice is refused with the mode that grows.");
+      "Unstable gains are refused, and the mode that grows is named. What is not given is the "
+      "robot's.");
   auto options = std::make_shared<GainsCommand>();
-  command->add_option("ROBOT", options->robot, "robot")->required();
-  command->add_option("--poles", options->poles, "two real poles of the COG, e.g. -6.3,-1.6 [1/s]")
+  command->add_option("ROBOT", options->robot, "Bundled name, folder, sidecar or URDF.")
+      ->required();
+  command
+      ->add_option("--poles", options->poles,
+                   "Two real poles of the COG [1/s], for example -6.3,-1.6.")
       ->delimiter(',')
       ->expected(2)
       ->type_name("P1,P2");
-  command->add_option("--time-constants", options->time_constants, "the same in seconds, positive")
+  command
+      ->add_option("--time-constants", options->time_constants,
+                   "The same as two time constants [s].")
       ->delimiter(',')
       ->expected(2)
       ->type_name("T1,T2");
-  command->add_option("--frequency", options->frequency, "of a pair of poles [Hz], with --damping")
+  command
+      ->add_option("--frequency", options->frequency,
+                   "Frequency of a pair of poles [Hz], together with --damping.")
       ->type_name("F");
-  command->add_option("--damping", options->damping, "ratio of that pair")->type_name("Z");
-  command->add_option("--absorb", options->wishes.absorb, "share of a ZMP error taken up at once")
+  command->add_option("--damping", options->damping, "Damping ratio of that pair.")->type_name("Z");
+  command
+      ->add_option(
+          "--absorb", options->wishes.absorb,
+          "Short-term absorption: fraction (0..1) of a ZMP error that is answered immediately.")
       ->type_name("X");
   command
       ->add_option("--return-time", options->wishes.return_time,
-                   "of the reference back to the command [s]")
+                   "Time constant with which the reference returns to the command [s].")
       ->type_name("T");
-  command->add_option("--zmp-filter", options->wishes.zmp_filter, "time constant [s]")
+  command
+      ->add_option("--zmp-filter", options->wishes.zmp_filter,
+                   "Time constant of the filter of the measured ZMP [s].")
       ->type_name("T");
-  command->add_option("--forget", options->wishes.forget, "a lasting offset within [s]; 0: never")
+  command
+      ->add_option("--forget", options->wishes.forget,
+                   "Time after which a constant ZMP offset is accepted as normal [s]; 0 = never.")
       ->type_name("T");
-  command->add_option("--gain", options->gains, "a gain by name, as NAME=VALUE")
+  command->add_option("--gain", options->gains, "Set a gain by its name.")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--latency", options->latency, "of the sensors [s], instead of the robot's")
+  command
+      ->add_option("--latency", options->latency,
+                   "Latency of the sensors [s] (default: the robot's).")
       ->check(number_within(0.0, 0.2).description(""))
       ->type_name("T");
   command->callback([options, &context] { print_gains(context, *options); });

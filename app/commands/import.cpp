@@ -72,8 +72,8 @@ void import_motion(const Context& context, const ImportCommand& options) {
 }  // namespace
 
 void add_import(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
-      "import", "a HOAP sequence or a table of angles as a pattern, contacts detected");
+  CLI::App* command =
+      app.add_subcommand("import", "read a HOAP sequence or a table of angles as a pattern");
   command->footer(
       "Examples:\n  ayumi import walk.csv --robot hoap1 -o walk.json\n"
       "  ayumi import m03.csv --robot examples/hoap3/robot.json --robot-path hoap3_description "
@@ -81,29 +81,34 @@ void add_import(CLI::App& app, Context& context) {
       "  ayumi import angles.csv --robot hoap1 --unit deg --rate 200 -o angles.json");
   static ImportCommand options;
   static std::string unit = "rad";
-  command->add_option("FILE", options.file, "sequence or table; - reads standard input")
-      ->required();
-  command->add_option("--robot", options.robot, "a bundled robot, a sidecar or a URDF")
+  command->add_option("FILE", options.file, "Sequence or table; - is standard input.")->required();
+  command->add_option("--robot", options.robot, "Bundled name, folder, sidecar or URDF.")
       ->required()
       ->type_name("ROBOT");
-  command->add_option("-o,--out", options.out, "pattern file to write; its table goes beside it")
+  command
+      ->add_option("-o,--out", options.out,
+                   "Pattern file to write; its table is written beside it.")
       ->required()
       ->type_name("F");
-  command->add_option("--format", options.import.format, "left out: by the content")
+  command
+      ->add_option("--format", options.import.format,
+                   "Format of the file (default: recognized by its content).")
       ->check(CLI::IsMember({"hoap", "csv", "json"}));
-  command->add_option("--unit", unit, "of columns named by bare joint names")
+  command->add_option("--unit", unit, "Unit of columns that are named by bare joint names.")
       ->check(CLI::IsMember({"rad", "deg"}))
       ->capture_default_str();
-  command->add_option("--rate", options.import.rate, "of rows without a time column [1/s]")
+  command->add_option("--rate", options.import.rate, "Rate of a table without a time column [1/s].")
       ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
-  command->add_flag("--commands", options.import.commands,
-                    "angles are what servos receive, as ayumi export writes them: take the lead "
-                    "kd/kp out again; of reference tables it always is");
+  command->add_flag(
+      "--commands", options.import.commands,
+      "The angles are servo targets (as written by export): subtract the velocity lead. "
+      "Reference tables are always treated so.");
   command
-      ->add_option("--smooth", options.import.smooth,
-                   "angles may change by that to become smooth; left out: 0.1 of a sequence's "
-                   "counts, 0 of angles")
+      ->add_option(
+          "--smooth", options.import.smooth,
+          "Largest change allowed for smoothing [deg] (default: 0.1 for HOAP counts, 0 for angle "
+          "tables).")
       ->check(number_within(0.0, 5.0))
       ->type_name("DEG");
   command->callback([&context] {

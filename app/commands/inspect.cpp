@@ -303,18 +303,19 @@ void inspect(const Context& context, const InspectOptions& options) {
 
 void add_inspect(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
-      "inspect", "everything known of a robot, and what is suspicious in its files");
+      "inspect",
+      "show everything that is known about a robot, and what is suspicious in its files");
   command->footer(
       "Examples:\n  ayumi inspect hoap1\n  ayumi inspect my_robot/robot.json --json\n"
-      "  ayumi inspect somebody.urdf        soles, servos and limits are inferred, and said so\n"
-      "  ayumi inspect somebody.urdf --picture somebody.png");
+      "  ayumi inspect somebody.urdf --picture somebody.png\n"
+      "For a bare URDF, soles, servos and limits are inferred and listed as assumptions.");
   auto options = std::make_shared<InspectOptions>();
-  command->add_option("robot", options->robot, "bundled name, folder, robot.json or .urdf")
+  command->add_option("robot", options->robot, "Bundled name, folder, sidecar or URDF.")
       ->required()
       ->type_name("ROBOT");
-  command->add_option("--picture", options->picture, "the home posture on the ground, .png")
+  command->add_option("--picture", options->picture, "Draw the home posture on the ground, .png.")
       ->type_name("FILE");
-  command->add_option("--view", options->view, text::join(view_names(), ", "))
+  command->add_option("--view", options->view, "View: " + text::join(view_names(), ", ") + ".")
       ->capture_default_str();
   command->callback([&context, options] { inspect(context, *options); });
 }

@@ -39,8 +39,6 @@ struct NewOptions {
   double rise = 0;
 };
 
-constexpr const char* kScaled = "; left out: HOAP-1's scaled to the robot";
-
 bool write_new(const Context& context, const RobotModel& model, Pattern pattern,
                const NewOptions& options, const std::vector<std::string>& comments) {
   return write_new_pattern(context, model, std::move(pattern), options.robot, options.out,
@@ -48,10 +46,10 @@ bool write_new(const Context& context, const RobotModel& model, Pattern pattern,
 }
 
 void add_common(CLI::App& command, NewOptions& options) {
-  command.add_option("--robot", options.robot, "a bundled robot, a sidecar or a URDF")
+  command.add_option("--robot", options.robot, "Bundled name, folder, sidecar or URDF.")
       ->type_name("ROBOT")
       ->capture_default_str();
-  command.add_option("-o,--out", options.out, "pattern file to write")->type_name("F")->required();
+  command.add_option("-o,--out", options.out, "Pattern file to write.")->type_name("F")->required();
 }
 
 void new_walk(const Context& context, NewOptions options) {
@@ -222,20 +220,28 @@ void new_stand(const Context& context, const NewOptions& options) {
 
 // Options that several generators share.
 void add_scaled(CLI::App& command, const char* name, std::optional<double>& value,
-                const std::string& text, const char* unit) {
-  command.add_option(name, value, text + kScaled)->type_name(unit);
+                const std::string& text, double hoap1, const char* type) {
+  command
+      .add_option(
+          name, value,
+          text + " (default: scaled from HOAP-1, hoap1: " + ayumi::text::brief(hoap1) + ").")
+      ->type_name(type);
 }
 
 void add_gait(CLI::App& command, NewOptions& options) {
-  command.add_option("--steps", options.walk.steps, "steps before the closing one")
+  command.add_option("--steps", options.walk.steps, "Steps before the closing one.")
       ->capture_default_str()
       ->type_name("N");
-  add_scaled(command, "--period", options.period, "of one step", "S");
-  add_scaled(command, "--lift", options.lift, "of the swing sole", "M");
-  command.add_option("--double-support", options.walk.double_support, "share of the period")
+  add_scaled(command, "--period", options.period, "Time of one step [s]", WalkParameters().period,
+             "S");
+  add_scaled(command, "--lift", options.lift, "Height of the swinging sole [m]",
+             WalkParameters().lift, "M");
+  command
+      .add_option("--double-support", options.walk.double_support,
+                  "Share of the period in double support.")
       ->capture_default_str()
       ->type_name("SHARE");
-  command.add_option("--first", options.first, "foot that swings first")
+  command.add_option("--first", options.first, "Foot that swings first.")
       ->check(CLI::IsMember({"left", "right"}))
       ->capture_default_str();
 }
@@ -246,20 +252,24 @@ void add_walk(CLI::App& command, NewOptions& options) {
       "  ayumi new walk --rise 0.01 --steps 3 -o stairs.json");
   add_common(command, options);
   add_gait(command, options);
-  add_scaled(command, "--stride", options.stride, "between successive footholds, back is negative",
-             "M");
-  command.add_option("--cog-height", options.walk.cog_height, "0: of the home posture")
+  add_scaled(command, "--stride", options.stride,
+             "Distance between successive footholds [m], backwards if negative",
+             WalkParameters().stride, "M");
+  command
+      .add_option("--cog-height", options.walk.cog_height,
+                  "COG height [m]; 0 = that of the home posture.")
       ->capture_default_str()
       ->type_name("M");
-  command.add_option("--turn", options.turn_deg, "per step, to the left")
+  command.add_option("--turn", options.turn_deg, "Turn per step to the left [deg].")
       ->capture_default_str()
       ->type_name("DEG");
   command
-      .add_option("--rise", options.rise,
-                  "of stairs that the world gets: each stride leads onto one, the other foot "
-                  "joins")
+      .add_option(
+          "--rise", options.rise,
+          "Height of a stair [m]: each stride leads onto one, and the other foot follows. The "
+          "pattern's world gets the stairs.")
       ->type_name("M");
-  command.add_option("--side", options.walk.side, "sideways per pair of steps, to the left")
+  command.add_option("--side", options.walk.side, "Distance to the left per pair of steps [m].")
       ->capture_default_str()
       ->type_name("M");
 }
@@ -270,19 +280,25 @@ void add_step(CLI::App& command, NewOptions& options) {
       "  ayumi new step --steps 1 --length 0.03 -o one_step.json");
   add_common(command, options);
   add_gait(command, options);
-  command.add_option("--length", options.stride, "of a step forward; left out: in place")
+  command
+      .add_option("--length", options.stride,
+                  "Length of a step forward [m] (default: steps in place).")
       ->type_name("M");
 }
 
 void add_sway(CLI::App& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new sway --side 0 --forward 0.015 --cycles 3 -o sway.json");
   add_common(command, options);
-  add_scaled(command, "--side", options.side, "to either side of the middle", "M");
-  command.add_option("--forward", options.sway.forward, "ahead of the middle and behind it")
+  add_scaled(command, "--side", options.side, "Largest displacement to either side [m]",
+             SwayParameters().side, "M");
+  command
+      .add_option("--forward", options.sway.forward,
+                  "Largest displacement forwards and backwards [m].")
       ->capture_default_str()
       ->type_name("M");
-  add_scaled(command, "--period", options.period, "of one to and fro", "S");
-  command.add_option("--cycles", options.sway.cycles, "to and fro")
+  add_scaled(command, "--period", options.period, "Time of one cycle [s]", SwayParameters().period,
+             "S");
+  command.add_option("--cycles", options.sway.cycles, "Number of cycles.")
       ->capture_default_str()
       ->type_name("N");
 }
@@ -294,27 +310,37 @@ void add_viip(CLI::App& command, NewOptions& options) {
       "  ayumi new viip --steps 14 --velocity 0.1 -o walk.json\n"
       "  ayumi new viip --steps 14 --velocity 0.05,0.01 --turn 15 -o turn.json");
   add_common(command, options);
-  command.add_option("--cog", options.cog, "displacement over both feet: forward, left, up")
+  command
+      .add_option("--cog", options.cog,
+                  "Displacement of the COG over both feet [m]: forward, left, up.")
       ->delimiter(',')
       ->expected(3)
       ->type_name("DX,DY,DZ");
-  command.add_option("--steps", options.viip_steps, "swings, the last one closes; in place alone")
+  command
+      .add_option(
+          "--steps", options.viip_steps,
+          "Number of steps; the last one brings the feet together. Without --velocity in place.")
       ->check(CLI::Range(1, 10000).description(""))
       ->type_name("N");
-  command.add_option("--velocity", options.velocity, "of the COG: forward [m/s], and left")
+  command
+      .add_option("--velocity", options.velocity, "Velocity of the COG [m/s]: forward, and left.")
       ->delimiter(',')
       ->expected(1, 2)
       ->type_name("VX,VY");
-  command.add_option("--turn", options.turn_deg, "to the left [deg/s]")->type_name("W");
+  command.add_option("--turn", options.turn_deg, "Turning rate to the left [deg/s].")
+      ->type_name("W");
 }
 
 void add_squat(CLI::App& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new squat --depth 0.04 --hold 1 --cycles 1 -o squat.json");
   add_common(command, options);
-  add_scaled(command, "--depth", options.depth, "of the COG below home", "M");
-  add_scaled(command, "--period", options.period, "of one down and up", "S");
-  add_scaled(command, "--hold", options.hold, "stay below", "S");
-  command.add_option("--cycles", options.squat.cycles, "down and up")
+  add_scaled(command, "--depth", options.depth, "How far the COG goes down [m]",
+             SquatParameters().depth, "M");
+  add_scaled(command, "--period", options.period, "Time of one cycle [s]", SquatParameters().period,
+             "S");
+  add_scaled(command, "--hold", options.hold, "Time at the lowest point [s]",
+             SquatParameters().hold, "S");
+  command.add_option("--cycles", options.squat.cycles, "Number of cycles.")
       ->capture_default_str()
       ->type_name("N");
 }
@@ -323,7 +349,7 @@ void add_squat(CLI::App& command, NewOptions& options) {
 
 void add_new(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
-      "new", "write a keyframed pattern to edit: walk, step, stand, sway, squat, jump, viip");
+      "new", "write a pattern to edit: walk, step, stand, sway, squat, jump, viip");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  ayumi new walk -o walk.json\n"
@@ -337,16 +363,16 @@ void add_new(CLI::App& app, Context& context) {
   auto shared = std::make_shared<NewOptions>();
   NewOptions& options = *shared;
 
-  CLI::App* walk = command->add_subcommand("walk", "steps that start and end at rest");
+  CLI::App* walk = command->add_subcommand("walk", "walk from rest to rest");
   add_walk(*walk, options);
   walk->callback([shared, &context] { new_walk(context, *shared); });
-  CLI::App* step = command->add_subcommand("step", "steps in place, or one step forward");
+  CLI::App* step = command->add_subcommand("step", "step in place, or one step forward");
   add_step(*step, options);
   step->callback([shared, &context] { new_step(context, *shared); });
-  CLI::App* sway = command->add_subcommand("sway", "the COG to and fro over both feet");
+  CLI::App* sway = command->add_subcommand("sway", "move the COG to and fro over both feet");
   add_sway(*sway, options);
   sway->callback([shared, &context] { new_sway(context, *shared); });
-  CLI::App* squat = command->add_subcommand("squat", "the COG down and up over both feet");
+  CLI::App* squat = command->add_subcommand("squat", "move the COG down and up over both feet");
   add_squat(*squat, options);
   squat->callback([shared, &context] { new_squat(context, *shared); });
 
@@ -355,10 +381,10 @@ void add_new(CLI::App& app, Context& context) {
   add_viip(*viip, options);
   viip->callback([shared, &context] { new_viip(context, *shared); });
   add_new_jump(*command, context);
-  CLI::App* stand = command->add_subcommand("stand", "both feet on the ground");
+  CLI::App* stand = command->add_subcommand("stand", "stand on both feet");
   stand->footer("Examples:\n  ayumi new stand --duration 4 -o stand.json");
   add_common(*stand, options);
-  stand->add_option("--duration", options.duration, "of the pattern")
+  stand->add_option("--duration", options.duration, "Duration of the pattern [s].")
       ->capture_default_str()
       ->type_name("S");
   stand->callback([shared, &context] { new_stand(context, *shared); });

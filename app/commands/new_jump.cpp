@@ -143,36 +143,48 @@ void new_jump(Context& context, JumpOptions options) {
 void add_new_jump(CLI::App& parent, Context& context) {
   auto shared = std::make_shared<JumpOptions>();
   JumpOptions& options = *shared;
-  CLI::App* command = parent.add_subcommand("jump", "stoop, lift-off, flight, touchdown, settle");
+  CLI::App* command =
+      parent.add_subcommand("jump", "jump: stoop, lift-off, flight, touchdown, settle");
   command->footer(
       "Examples:\n  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new jump --times 3 -o hop.json\n"
       "  ayumi new jump --forward 0.02 -o forward.json\n"
       "  ayumi new jump --highest --profile hoap1 -o highest.json");
-  command->add_option("--robot", options.robot, "a bundled robot, a sidecar or a URDF")
+  command->add_option("--robot", options.robot, "Bundled name, folder, sidecar or URDF.")
       ->type_name("ROBOT")
       ->capture_default_str();
-  command->add_option("-o,--out", options.out, "pattern file to write")->type_name("F")->required();
-  const std::string scaled = "; left out: HOAP-1's scaled to the robot";
-  command->add_option("--height", options.height, "of the COG above ref z_G" + scaled)
-      ->type_name("M");
-  command->add_option("--stoop", options.stoop, "below ref z_G" + scaled)->type_name("M");
+  command->add_option("-o,--out", options.out, "Pattern file to write.")
+      ->type_name("F")
+      ->required();
+  const auto scaled = [](double hoap1) {
+    return " (default: scaled from HOAP-1, hoap1: " + text::brief(hoap1) + ").";
+  };
   command
-      ->add_option("--cog-height", options.cog_height,
-                   "ref z_G, of lift-off and touchdown" + scaled)
+      ->add_option("--height", options.height,
+                   "Height of the jump: COG above ref z_G [m]" + scaled(JumpParameters().height))
       ->type_name("M");
-  command->add_option("--forward", options.forward, "way of each jump")
+  command
+      ->add_option("--stoop", options.stoop,
+                   "Depth of the stoop below ref z_G [m]" + scaled(JumpParameters().stoop))
+      ->type_name("M");
+  command
+      ->add_option(
+          "--cog-height", options.cog_height,
+          "ref z_G: COG height at lift-off and touchdown [m]" + scaled(JumpParameters().cog_height))
+      ->type_name("M");
+  command->add_option("--forward", options.forward, "Distance of each jump forward [m].")
       ->capture_default_str()
       ->type_name("M");
-  command->add_option("--times", options.times, "jumps in a row")
+  command->add_option("--times", options.times, "Number of jumps in a row.")
       ->capture_default_str()
       ->type_name("N");
   command
       ->add_option("--profile", options.profile,
-                   "actuator profile to write; left out: the first one that is enough")
+                   "Actuator profile to write (default: the first one that is strong enough).")
       ->type_name("NAME");
-  command->add_flag("--highest", options.highest,
-                    "search height, ref z_G and stoop: the highest jump the profile allows");
+  command->add_flag(
+      "--highest", options.highest,
+      "Search height, ref z_G and stoop for the highest jump that the profile allows.");
   command->callback([shared, &context] { new_jump(context, *shared); });
 }
 

@@ -108,19 +108,24 @@ void plot(const PlotOptions& options, Context& context) {
 
 void add_plot(CLI::App& app, Context& context) {
   auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = app.add_subcommand("plot", "loci of COG, ZMP and ground force of runs");
-  command->add_option("run", options->inputs, "RUN folders or log files")
+  CLI::App* command =
+      app.add_subcommand("plot", "draw curves of COG, ZMP and ground force of runs");
+  command->add_option("run", options->inputs, "Run folders or log files.")
       ->required()
       ->type_name("RUN");
-  command->add_option("-o,--out", options->output, ".svg or .png")->required()->type_name("FILE");
-  command->add_option("--log", options->logs, "only these logs of a RUN, e.g. closed_loop")
+  command->add_option("-o,--out", options->output, "File to write, .svg or .png.")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--log", options->logs,
+                   "Draw only these logs of a run, for example closed_loop.")
       ->allow_extra_args(false);
-  command->add_flag("--top", options->top, "the ground from above, with the footholds");
-  command->add_option("--from", options->loci.begin, "first time [s]")->capture_default_str();
-  command->add_option("--to", options->loci.end, "last time [s]");
-  command->add_option("--title", options->loci.title, "heading");
-  command->add_option("--width", options->loci.width, "pixels")->capture_default_str();
-  command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
+  command->add_flag("--top", options->top, "Draw the ground from above with the footholds.");
+  command->add_option("--from", options->loci.begin, "First time [s].")->capture_default_str();
+  command->add_option("--to", options->loci.end, "Last time [s] (default: the end).");
+  command->add_option("--title", options->loci.title, "Heading of the picture.");
+  command->add_option("--width", options->loci.width, "Width in pixels.")->capture_default_str();
+  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
   command->footer(
       "Examples:\n"
       "  ayumi plot out/ -o loci.svg            open loop, closed loop and command together\n"

@@ -227,39 +227,44 @@ void preview(PreviewOptions options, Context& context) {
 
 void add_picture_options(CLI::App& command, PreviewOptions& options) {
   ClipOptions& clip = options.clip;
-  command.add_option("--size", options.size, "pixels")->capture_default_str()->type_name("WxH");
-  command.add_option("--fps", clip.fps, "frames per second")->capture_default_str();
-  command.add_option("--speed", clip.speed, "0.25 plays four times slower")->capture_default_str();
-  command.add_option("--from", clip.begin, "first instant [s]")->capture_default_str();
-  command.add_option("--to", clip.end, "last instant [s]");
-  command.add_option("--at", clip.at, "instant of a single picture [s]")->capture_default_str();
-  command.add_option("--strip", options.strip, "so many snapshots side by side in a .png")
+  command.add_option("--size", options.size, "Size in pixels.")
+      ->capture_default_str()
+      ->type_name("WxH");
+  command.add_option("--fps", clip.fps, "Frames per second.")->capture_default_str();
+  command.add_option("--speed", clip.speed, "Playing speed; 0.25 is four times slower.")
+      ->capture_default_str();
+  command.add_option("--from", clip.begin, "First time [s].")->capture_default_str();
+  command.add_option("--to", clip.end, "Last time [s] (default: the end).");
+  command.add_option("--at", clip.at, "Time of a single picture [s].")->capture_default_str();
+  command.add_option("--strip", options.strip, "Number of snapshots side by side in a .png.")
       ->check(CLI::Range(1, 400));
   command
-      .add_option("--exposures", options.exposures, "so many instants over each other in a .png")
+      .add_option("--exposures", options.exposures,
+                  "Number of times drawn over each other in a .png.")
       ->check(CLI::Range(1, 100));
-  command.add_option("--columns", options.columns, "of --strip and --sheet")
+  command.add_option("--columns", options.columns, "Columns of --strip and --sheet.")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  command.add_option("--view", clip.camera.view, text::join(view_names(), ", "))
+  command.add_option("--view", clip.camera.view, "View: " + text::join(view_names(), ", ") + ".")
       ->capture_default_str();
-  command.add_option("--camera", options.camera, "follow, fixed or orbit")
+  command.add_option("--camera", options.camera, "Camera: follow, fixed or orbit.")
       ->check(CLI::IsMember({"follow", "fixed", "orbit"}).description(""))
       ->capture_default_str();
-  command.add_option("--zoom", clip.camera.zoom, "2: twice as large")->capture_default_str();
+  command.add_option("--zoom", clip.camera.zoom, "Magnification; 2 is twice as large.")
+      ->capture_default_str();
   command
       .add_option("--ghost", options.ghost,
-                  "'command', a log of the RUN, e.g. open_loop, or another RUN or pattern of the "
-                  "same robot")
+                  "Also draw a translucent robot: 'command', a log of the run such as open_loop, "
+                  "another run, or a pattern of the same robot.")
       ->type_name("RUN");
   for (const auto& [name, list, what] :
        {std::tuple{"--hide", &options.hide,
-                   "cog, zmp, ref-zmp, support, forces, push, trails, "
-                   "heat, caption or all"},
-        {"--show", &options.show, "the same; heat: joints near their limits in red"}})
+                   "Leave marks out: cog, zmp, ref-zmp, support, "
+                   "forces, push, trails, heat, caption or all."},
+        {"--show", &options.show, "Draw marks; heat shows joints near their limits in red."}})
     command.add_option(name, *list, what)->delimiter(',')->allow_extra_args(false);
-  command.add_option("--title", clip.title, "first words of the caption");
-  command.add_flag("--draft", options.draft, "faster, without antialiasing");
+  command.add_option("--title", clip.title, "First words of the caption.");
+  command.add_flag("--draft", options.draft, "Draw faster, without antialiasing.");
 }
 
 }  // namespace
@@ -267,22 +272,26 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
 void add_preview(CLI::App& app, Context& context) {
   auto options = std::make_shared<PreviewOptions>();
   CLI::App* command =
-      app.add_subcommand("preview", "clip, picture or glTF of runs and patterns, off-screen");
-  command->add_option("run", options->inputs, "RUN folders, log files, or patterns (as planned)")
+      app.add_subcommand("preview", "draw a clip, picture or glTF file of a run or pattern");
+  command
+      ->add_option("run", options->inputs,
+                   "Run folders, log files, or patterns (drawn as planned).")
       ->required()
       ->type_name("RUN");
   command
       ->add_option("-o,--out", options->output,
-                   ".mp4, .webm, .gif, .apng, .png, .glb, or a folder for PNG frames; a folder of "
-                   "clips for several runs")
+                   "File to write: .mp4, .webm, .gif, .apng, .png or .glb; without an extension, a "
+                   "folder of "
+                   "PNG frames. For several runs, a folder of clips.")
       ->required()
       ->type_name("FILE");
-  command->add_option("--log", options->log, "which log of the RUN, e.g. open_loop");
-  command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
-  command->add_option("--format", options->format, "of several runs")
+  command->add_option("--log", options->log, "Log of the run, for example open_loop.");
+  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
+  command->add_option("--format", options->format, "Format of the clips of several runs.")
       ->check(CLI::IsMember({"mp4", "webm", "gif", "apng", "png", "glb"}).description(""))
       ->capture_default_str();
-  command->add_option("--sheet", options->sheet, "one picture of all runs as well, .png")
+  command
+      ->add_option("--sheet", options->sheet, "Also draw one picture of each run into this .png.")
       ->type_name("FILE");
   add_picture_options(*command, *options);
   command->footer(

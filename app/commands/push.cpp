@@ -105,6 +105,10 @@ std::string push_cell(const std::string& text, size_t width) {
   return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
 }
 
+std::string impulse_text(const PushLimit& limit) {
+  return text::fixed(limit.impulse, 2) + (limit.capped ? "+" : "");
+}
+
 std::string ratio_text(const PushLimit& limit, double bound) {
   return text::fixed(bound > 0 ? limit.impulse / bound : 0, 2) + (limit.capped ? "+" : "");
 }
@@ -142,7 +146,8 @@ std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const
   return lines;
 }
 
-/// One block per phase: B in N s, then every law in shares of B, one column per direction.
+/// One block per phase: the limits of every law in N s, B, and the limits as multiples of B; one
+/// column per direction.
 std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
                   const CommandSeries& series) {
   const std::string open = baseline(series);
@@ -159,15 +164,18 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
     };
     line("direction, deg",
          [](const PushCase& c) { return text::fixed(c.direction * 180 / M_PI, 0); });
+    line(open + ", N s", [](const PushCase& c) { return impulse_text(c.open_loop); });
+    for (size_t k = 0; k < push.controllers.size(); ++k)
+      line(push.controllers[k].type + ", N s",
+           [k](const PushCase& c) { return impulse_text(c.limits[k]); });
     line("B, N s", [](const PushCase& c) { return text::fixed(c.bound, 2); });
-    line("m w d_edge, N s", [](const PushCase& c) { return text::fixed(c.edge_bound, 2); });
     line(open + " / B", [](const PushCase& c) { return ratio_text(c.open_loop, c.bound); });
     for (size_t k = 0; k < push.controllers.size(); ++k)
       line(push.controllers[k].type + " / B",
            [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
   }
   for (const std::string& line : summary_lines(cases, push, series)) out += line + "\n";
-  return out;
+  return out + "B = largest push that a point mass could absorb; + = largest push tried\n";
 }
 
 PushMap push_map(const PatternInput& input, const std::vector<PushCase>& cases,
@@ -258,54 +266,69 @@ void find_limits(Context& context, const PushCommand& options) {
 
 void add_push(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
-      "push", "largest survivable push by gait phase and direction, against the capture bound");
+      "push", "find the largest push that the robot survives, by gait phase and direction");
   command->footer(
       "Examples:\n  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n"
       "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
       "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
-      "A study that was stopped goes on from its results file. The pattern's own pushes are left "
-      "out.");
+      "Run again with the same -o to resume a study. Pushes in the pattern's scenario are "
+      "ignored.");
   auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
-  command->add_option("PATTERN", options->pattern, "pattern file")->required();
+  command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
   command
       ->add_option("-o,--out", options->out,
-                   "results as JSON; goes on with those of the same study")
+                   "Results as JSON; run again with the same file to resume.")
       ->type_name("F");
-  command->add_option("--map", options->map, "polar map of the limits, .svg or .png")
+  command->add_option("--map", options->map, "Draw the limits from above, .svg or .png.")
       ->type_name("F");
   add_pattern_options(*command, options->input);
-  command->add_option("--controller", options->controllers, "beside open loop; may be repeated")
+  command
+      ->add_option(
+          "--controller", options->controllers,
+          "Controller to study beside open loop; may be repeated (default: the pattern's).")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command->add_option("--gain", options->gains, "a controller gain, as NAME=VALUE")
+  command->add_option("--gain", options->gains, "Set a gain of the controller.")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--directions", push.directions, "evenly spread, the first forward")
+  command
+      ->add_option("--directions", push.directions,
+                   "Number of directions, evenly spread; the first is forward.")
       ->check(CLI::Range(1, 360).description(""))
-      ->type_name("N");
+      ->type_name("N")
+      ->capture_default_str();
   command
       ->add_option("--times", options->times,
-                   "of the pushes [s], instead of standing and four gait phases")
+                   "Times of the pushes [s] (default: standing, and four gait phases).")
       ->type_name("T")
       ->delimiter(',');
-  command->add_option("--step", push.step, "of the search, as a share of the bound")
+  command
+      ->add_option("--step", push.step,
+                   "Resolution of the search as a multiple of the capture bound.")
       ->check(number_within(0.005, 1.0).description(""))
-      ->type_name("X");
-  command->add_option("--cap", push.cap, "largest push tried, as a share of the bound")
+      ->type_name("X")
+      ->capture_default_str();
+  command->add_option("--cap", push.cap, "Largest push tried, as a multiple of the capture bound.")
       ->check(number_within(0.1, 20.0).description(""))
-      ->type_name("X");
-  command->add_option("--replicas", push.replicas, "small variations of every push, all to survive")
+      ->type_name("X")
+      ->capture_default_str();
+  command
+      ->add_option("--replicas", push.replicas,
+                   "Small variations of every push, all of which must be survived.")
       ->check(CLI::Range(0, 100).description(""))
-      ->type_name("N");
-  command->add_option("--duration", push.duration, "of a push [s]")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--duration", push.duration, "Duration of a push [s].")
       ->check(number_within(0.001, 1.0).description(""))
-      ->type_name("T");
+      ->type_name("T")
+      ->capture_default_str();
   command->add_flag("--noise", push.simulate.sensor_noise,
-                    "sensor noise, bias and latency of the sidecar");
-  command->add_option("--substeps", push.simulate.substeps, "integrator steps per servo period")
+                    "Simulate noise, bias and latency of the sensors.");
+  command->add_option("--substeps", push.simulate.substeps, "Integrator steps per servo period.")
       ->check(CLI::Range(1, 100).description(""))
-      ->type_name("N");
+      ->type_name("N")
+      ->capture_default_str();
   add_unstable_flag(*command, options->unstable);
   add_plant_option(*command, options->plant);
   command->callback([options, &context] { find_limits(context, *options); });

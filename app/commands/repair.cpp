@@ -97,11 +97,11 @@ std::string in_words(const RepairCommand& options, const PatternInput& input,
   std::string out = options.pattern + ": " +
                     (result.partial ? "stopped, partial" : name_of(result.status)) + "\n";
   if (result.status == RepairStatus::already_consistent)
-    return out + "  nothing changed; " + options.out + " is the pattern as it was\n";
+    return out + "  nothing had to change; " + options.out + " is a copy of the pattern\n";
   out += steering_words(options, input.pattern);
   const bool moves = result.moved.joint.size > 1e-4;
   if (result.status != RepairStatus::repaired && !options.repair.keep_partial && moves)
-    out += "  the least violating motion found (not written) would have\n";
+    out += "  the motion with the smallest violation (not written) would have\n";
   out += motion_words(model, result.moved, result.before, result.check);
   out += cost_words(result.change) + "; " + std::to_string(result.variables) + " variables, " +
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
@@ -133,8 +133,8 @@ std::string in_words(const PassingPace& pace) {
            " times as long the pattern passes as it is\n";
   }
   if (pace.tried > 0 && pace.factor == 0 && pace.whole == 0)
-    out += "  its keys played more slowly, up to " + text::brief(pace.tried) +
-           " times, do not pass either: time alone does not mend it\n";
+    out += "  the pattern with its keys played more slowly, up to " + text::brief(pace.tried) +
+           " times, does not pass either: more time alone is not enough\n";
   if (pace.whole > 0)
     out += "  played " + text::exact(pace.whole) +
            " times as slowly from end to end it passes as it is (edit retime --scale " +
@@ -216,7 +216,8 @@ int exit_code_of(const RepairResult& result) {
 void repair_pattern(Context& context, RepairCommand options) {
   if (options.pattern == "-")
     fail(ErrorCode::usage,
-         "repair writes the author's text with a correction over it: give the pattern as a file");
+         "repair adds a correction to the author's text and needs a file: name the pattern's file "
+         "in place of -");
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
   const PatternInput input = load(context, options);
@@ -258,61 +259,75 @@ void repair_pattern(Context& context, RepairCommand options) {
 }  // namespace
 
 void add_repair(CLI::App& app, Context& context) {
-  CLI::App* command =
-      app.add_subcommand("repair", "the nearest consistent pattern, by least change");
+  CLI::App* command = app.add_subcommand("repair", "find the nearest consistent pattern");
   command->footer(
       "Examples:\n  ayumi repair walk.json -o repaired.json\n"
       "  ayumi repair walk.json -o repaired.json --lock l_elbow --lock foot:left --lock 1.2..1.8\n"
       "  ayumi repair walk.json -o repaired.json --weight r_hip_roll=10 --plot moved.svg\n"
       "  ayumi repair dense.json -o repaired.json --trust cog --baked\n"
-      "What moved, afterwards:\n"
+      "To see what moved:\n"
       "  ayumi diff walk.json repaired.json --plot moved.svg\n"
       "  ayumi preview repaired.json --ghost walk.json -o moved.mp4");
   static RepairCommand options;
-  command->add_option("PATTERN", options.pattern, "pattern file")->required();
-  command->add_option("-o,--out", options.out, "pattern file to write")->required()->type_name("F");
+  command->add_option("PATTERN", options.pattern, "Pattern file.")->required();
+  command->add_option("-o,--out", options.out, "Pattern file to write.")
+      ->required()
+      ->type_name("F");
   command
-      ->add_option("--lock", options.locked,
-                   "what must not change: a joint, foot:left, foot:right, keyframe:N (from 0), or "
-                   "a time window BEGIN..END [s]")
+      ->add_option(
+          "--lock", options.locked,
+          "What must not change: a joint, foot:left, foot:right, keyframe:N (from 0), or a "
+          "time window BEGIN..END [s]. May be repeated.")
       ->type_name("WHAT")
       ->allow_extra_args(false);
-  command->add_option("--weight", options.weights, "how much dearer than others a joint is to move")
+  command
+      ->add_option("--weight", options.weights,
+                   "Cost of moving this joint relative to the others (10 = avoid it).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
-      ->add_option("--trust", options.trust,
-                   "what the others follow where they disagree: posture, cog or zmp; left out: the "
-                   "pattern's, posture")
+      ->add_option(
+          "--trust", options.trust,
+          "Quantity that the others follow where they disagree: posture, cog or zmp (default: the "
+          "pattern's, posture).")
       ->check(CLI::IsMember({"posture", "cog", "zmp"}))
       ->type_name("QUANTITY");
-  command->add_flag("--baked", options.baked, "write a dense table, not a correction");
+  command->add_flag("--baked", options.baked, "Write a dense table in place of a correction.");
   command->add_flag("--keep-partial", options.repair.keep_partial,
-                    "after Ctrl-C or without success, write the motion that violates least");
-  command->add_option("--plot", options.plot, "before and after: joints, COG, ZMP, .svg or .png")
+                    "After Ctrl-C or a failure, write the motion with the smallest violation.");
+  command
+      ->add_option("--plot", options.plot,
+                   "Draw joints, COG and ZMP before and after, .svg or .png.")
       ->type_name("F");
   command
-      ->add_option("--margin", options.margin,
-                   "of the ZMP inside the support where the motion's own is too "
-                   "small [m]; left out: 0.9 of the sole's inner radius")
+      ->add_option(
+          "--margin", options.margin,
+          "Wanted ZMP distance from the support edge where the motion has less [m] (default: 0.9 x "
+          "inner radius of the sole).")
       ->check(number_within(0.0, 0.1))
       ->type_name("M");
   command
-      ->add_option("--safety", options.safety,
-                   "what safety is worth beside change; left out: 1, 0: the least change that "
-                   "passes check")
+      ->add_option(
+          "--safety", options.safety,
+          "Weight of safety against staying close to the original (default 1; 0 = smallest change "
+          "that passes check).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
-  command->add_option("--knots", options.repair.knot_spacing, "spacing of the correction [s]")
+  command
+      ->add_option("--knots", options.repair.knot_spacing,
+                   "Time between the knots of the correction [s].")
       ->check(number_within(0.005, 1.0))
       ->type_name("S")
       ->capture_default_str();
-  command->add_option("--max-iterations", options.repair.max_iterations, "of Ipopt in each round")
+  command
+      ->add_option("--max-iterations", options.repair.max_iterations,
+                   "Most iterations of Ipopt in each round.")
       ->check(CLI::Range(1, 10000))
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option("--tolerance", options.tolerances, "of one kind of finding, over the pattern's")
+      ->add_option("--tolerance", options.tolerances,
+                   "Tolerance of one kind of finding; see ayumi check --tolerances.")
       ->type_name("KIND=VALUE")
       ->allow_extra_args(false);
   add_pattern_options(*command, options.input);

@@ -53,20 +53,25 @@ void report_run(ReportCommand options, Context& context) {
 
 void add_report(CLI::App& app, Context& context) {
   auto options = std::make_shared<ReportCommand>();
-  CLI::App* command = app.add_subcommand("report", "one HTML page of a run: verdict, replay, loci");
-  command->add_option("run", options->input, "a RUN folder")->required()->type_name("RUN");
-  command->add_option("-o,--out", options->output, ".html")->required()->type_name("FILE");
+  CLI::App* command =
+      app.add_subcommand("report", "write one HTML page of a run with verdict, replay and curves");
+  command->add_option("run", options->input, "Folder that run or simulate wrote.")
+      ->required()
+      ->type_name("RUN");
+  command->add_option("-o,--out", options->output, "Page to write, .html.")
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option("--push", options->push,
-                   "results of `ayumi push`; push.json in the RUN where it is there")
+                   "Results of ayumi push (default: push.json in the RUN, if there is one).")
       ->type_name("FILE");
-  command->add_option("--robot", options->robot, "robot, where it is not the recorded one");
-  command->add_option("--max-size", options->max_megabytes, "of the page [MB]")
+  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
+  command->add_option("--max-size", options->max_megabytes, "Largest size of the page [MB].")
       ->capture_default_str();
-  command->add_option("--rate", options->report.rate, "postures per second of the replay")
+  command->add_option("--rate", options->report.rate, "Postures per second of the replay.")
       ->check(number_within(1.0, 1000.0))
       ->capture_default_str();
-  command->add_flag("--no-replay", options->no_replay, "pictures only");
+  command->add_flag("--no-replay", options->no_replay, "Leave the replay out.");
   command->footer(
       "Examples:\n"
       "  ayumi report out/ -o out/report.html\n"

@@ -28,7 +28,8 @@ void list_robots(const Context& context) {
 }  // namespace
 
 void add_robots(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("robots", "the bundled robots, and those of --robot-path");
+  CLI::App* command =
+      app.add_subcommand("robots", "list the bundled robots and those of --robot-path");
   command->footer("Examples:\n  ayumi robots\n  ayumi robots --robot-path ~/my_robots --json");
   command->callback([&context] { list_robots(context); });
 }

@@ -322,19 +322,20 @@ void run_patterns(Context& context, const RunCommand& options) {
 }  // namespace
 
 void add_run(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("run", "the main job: check, simulate, export, see");
+  CLI::App* command =
+      app.add_subcommand("run", "do the whole job: check, simulate, export, draw and report");
   command->footer(
       "Examples:\n  ayumi run patterns/hoap1_walk.json -o out/\n"
       "  ayumi run walk.json --repair -o out/walk\n"
       "  ayumi run a.json b.json -o out/ --no-pictures --json");
   auto options = std::make_shared<RunCommand>();
-  command->add_option("PATTERN", options->patterns, "pattern files")->required();
-  command->add_option("-o,--out", options->out, "folder for the results")
+  command->add_option("PATTERN", options->patterns, "Pattern files.")->required();
+  command->add_option("-o,--out", options->out, "Folder for the results.")
       ->type_name("DIR")
       ->required();
-  command->add_flag("--repair", options->repair, "mend an inconsistent pattern first");
+  command->add_flag("--repair", options->repair, "Repair an inconsistent pattern first.");
   command->add_flag_callback(
-      "--no-pictures", [options] { options->pictures = false; }, "tables and verdicts only");
+      "--no-pictures", [options] { options->pictures = false; }, "Write tables and verdicts only.");
   add_pattern_options(*command, options->input);
   add_simulation_options(*command, options->choice);
   command->callback([options, &context] { run_patterns(context, *options); });

@@ -68,15 +68,15 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
 }  // namespace
 
 void add_simulate(CLI::App& app, Context& context) {
-  CLI::App* command =
-      app.add_subcommand("simulate", "closed loop in the internal integrator, with disturbances");
+  CLI::App* command = app.add_subcommand(
+      "simulate", "simulate the robot with its controller and with disturbances");
   command->footer(
       "Examples:\n  ayumi simulate patterns/hoap1_walk.json -o out/walk\n"
       "  ayumi simulate walk.json --controller none --scenario none\n"
       "  ayumi simulate walk.json --profile hoap1-strong --gain ka=1 --json");
   auto options = std::make_shared<SimulateCommand>();
-  command->add_option("PATTERN", options->pattern, "pattern file")->required();
-  command->add_option("-o,--out", options->out, "folder for the run")->type_name("DIR");
+  command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
+  command->add_option("-o,--out", options->out, "Folder for the run.")->type_name("DIR");
   add_pattern_options(*command, options->input);
   add_simulation_options(*command, options->choice);
   command->callback([options, &context] { simulate_pattern(context, *options); });

@@ -65,9 +65,10 @@ void tune(Context& context, TuneCommand& options) {
     out += std::string(first ? " \"" : ", \"") + name + "\": " + text::brief(value);
     first = false;
   }
-  out += " }\n  " + std::to_string(result.choices) + " choices tried, " +
-         std::to_string(result.refused) +
-         " left out as unstable; judge them on pushes that were not tuned on: ayumi push\n";
+  out +=
+      " }\n  " + std::to_string(result.choices) + " choices tried, " +
+      std::to_string(result.refused) +
+      " not tried because their loop is unstable; test the result with other pushes: ayumi push\n";
   context.print(out);
   context.print_json(Json{
       {"gains", gains_json(result.gains)},
@@ -84,42 +85,51 @@ void tune(Context& context, TuneCommand& options) {
 
 void add_tune(CLI::App& app, Context& context) {
   CLI::App* command =
-      app.add_subcommand("tune", "better DTAD gains by search on a declared objective");
+      app.add_subcommand("tune", "improve the gains of DTAD for a pattern by search");
   command->footer(
       "Examples:\n  ayumi tune patterns/hoap1_walk.json --profile hoap1-strong\n"
       "  ayumi tune walk.json --tune ka,tau_z --level 1.0 --directions 8 --json\n"
-      "The objective, smaller is better: mean over the pushes of omega times the integral of\n"
-      "|xi - cmd xi| / z over 1.2 s, 10 for a push that fells the robot, plus the mean of\n"
-      "|ZMP - ref ZMP| / z of the unpushed pattern. Gains with an unstable loop are left out.");
+      "The objective (smaller is better) is the mean over the pushes of omega times the integral "
+      "of\n"
+      "|DCM - commanded DCM| / z over 1.2 s, with 10 for each push after which the robot falls, "
+      "plus\n"
+      "the mean of |ZMP - reference ZMP| / z of the pattern without a push. Gains whose loop is\n"
+      "unstable are not tried.");
   auto options = std::make_shared<TuneCommand>();
   TuneOptions& t = options->tune;
-  command->add_option("PATTERN", options->pattern, "pattern file")->required();
+  command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
   add_pattern_options(*command, options->input);
-  command->add_option("--gain", options->start, "start from this, as NAME=VALUE")
+  command
+      ->add_option("--gain", options->start,
+                   "Start the search from this gain (default: the pattern's).")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--tune", t.gains, "gains to change; left out: ka,q,ks,kd,tau_z,ankle")
+  command->add_option("--tune", t.gains, "Gains to change (default: ka,q,ks,kd,tau_z,ankle).")
       ->delimiter(',')
       ->type_name("NAMES");
-  command->add_option("--level", t.level, "of the pushes, times the capture bound")
+  command
+      ->add_option("--level", t.level,
+                   "Size of the test pushes as a multiple of the capture bound.")
       ->check(number_within(0.01, 5.0).description(""))
       ->capture_default_str()
       ->type_name("X");
-  command->add_option("--directions", t.directions, "evenly spread, the first forward")
+  command
+      ->add_option("--directions", t.directions,
+                   "Number of push directions, evenly spread; the first is forward.")
       ->check(CLI::Range(1, 360).description(""))
       ->capture_default_str()
       ->type_name("N");
   command
       ->add_option("--times", options->times,
-                   "of the pushes [s], instead of standing and four gait phases")
+                   "Times of the pushes [s] (default: standing, and four gait phases).")
       ->delimiter(',')
       ->type_name("T");
-  command->add_option("--rounds", t.rounds, "through all gains")
+  command->add_option("--rounds", t.rounds, "How often the search goes through all gains.")
       ->check(CLI::Range(1, 50).description(""))
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--noise", t.simulate.sensor_noise,
-                    "sensor noise, bias and latency of the sidecar");
+                    "Simulate noise, bias and latency of the sensors.");
   command->callback([options, &context] { tune(context, *options); });
 }
 

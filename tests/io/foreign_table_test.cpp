@@ -75,7 +75,7 @@ TEST(ForeignTable, MistakesAreOneLine) {
   const std::string good = table("t,l_elbow,r_knee", ',', '.', 1, 1);
   EXPECT_EQ(refusal(good),
             "a.csv: column 'l_elbow' reaches 19 rad, which no joint does: give "
-            "--unit deg where angles are in degrees");
+            "--unit deg if the angles are in degrees");
   EXPECT_EQ(refusal("\xFF\xFEt\0,\0"), "a.csv: is UTF-16 text; save it as UTF-8");
   EXPECT_EQ(refusal("t l_elbow r_knee\n0 0 0\n1 0 0\n"),
             "a.csv: only blanks stand between the columns; put commas, semicolons or tabs there");

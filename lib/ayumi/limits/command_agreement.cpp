@@ -163,7 +163,7 @@ const Limit& command_agreement_limit() {
                     .unit = "m",
                     .tolerance = kPointMassTolerance,
                     .meaning = "ZMP of the mass-concentrated model (14)(15) from the commanded "
-                               "ZMP; tells how good that model is here, never an error",
+                               "ZMP: how good that model is here; never an error",
                     .figure = {.key = "max_point_mass_gap_m",
                                .label = "largest gap of the point mass",
                                .unit = "mm",

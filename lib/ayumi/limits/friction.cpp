@@ -37,7 +37,7 @@ Advice friction_advice(const JudgedMotion& motion, const FindingWindow& window) 
 }
 
 std::string friction_obstacle(const Finding& f, double excess) {
-  return "the motion needs " + ratio_text(excess) + " of the friction there is (" + f.where + ")";
+  return "the motion needs " + ratio_text(excess) + " of the available friction (" + f.where + ")";
 }
 
 }  // namespace

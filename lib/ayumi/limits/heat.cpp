@@ -5,6 +5,7 @@
 // that is shorter than T may be followed by rest: then it is a warning.
 #include <algorithm>
 
+#include "ayumi/base/text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 
 namespace ayumi {
@@ -66,13 +67,16 @@ const char* heat_unit(const JudgedMotion& motion, const Violation& v) {
 }
 
 Advice heat_advice(const JudgedMotion& motion, const FindingWindow& window) {
-  return motion.model.dofs()[window.worst.item].name +
-         " gets too hot when this goes on: rest it, or straighten the leg";
+  const Violation& v = window.worst;
+  const std::string unit = std::string(" ") + heat_unit(motion, v);
+  return motion.model.dofs()[v.item].name + " averages " + text::brief(v.value, 3) + unit +
+         "; its motor bears " + text::brief(v.limit, 3) + unit +
+         " without a time limit: add a rest, or straighten the leg";
 }
 
 std::string heat_obstacle(const Finding& f, double excess) {
   return f.where + " torque, over the motor's thermal window, reaches " + ratio_text(excess) +
-         " of its lasting limit";
+         " of its continuous limit";
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ const Limit& joint_acceleration_limit() {
                     .limit_class = LimitClass::rate,
                     .unit = "rad/s^2",
                     .tolerance = kRoughAcceleration,
-                    .meaning = "joint acceleration; a warning, it tells a rough motion",
+                    .meaning =
+                        "joint acceleration; a warning, since it is a sign of a rough motion",
                     .figure = {.key = "max_joint_acceleration_rad_s2",
                                .label = "largest joint acceleration",
                                .unit = "rad/s^2",

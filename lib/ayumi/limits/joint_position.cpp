@@ -37,8 +37,11 @@ const char* position_unit(const JudgedMotion& motion, const Violation& v) {
 
 Advice position_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return {"move " + motion.model.dofs()[v.item].name + " back by " +
-              text::fixed(std::abs(v.value - v.limit), 3) + " rad in this window",
+  const Dof& dof = motion.model.dofs()[v.item];
+  const double excess = std::abs(v.value - v.limit);
+  return {"move " + dof.name + " back by " +
+              (dof.prismatic ? in_mm(excess) : text::fixed(excess * 180 / EIGEN_PI, 2) + " deg") +
+              " in this window",
           kOrRepair};
 }
 

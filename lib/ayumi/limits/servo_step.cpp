@@ -84,23 +84,26 @@ const char* step_unit(const JudgedMotion& motion, const Violation& v) {
 
 Advice target_advice(const JudgedMotion& motion, const Violation& v) {
   const Dof& dof = motion.model.dofs()[v.item];
-  return "the target of " + dof.name + "'s servo, which leads the posture by kd/kp = " +
-         text::brief(1e3 * dof.servo.kd / dof.servo.kp, 3) + " ms, steps by " +
-         text::brief(std::abs(v.value / v.limit), 3) +
-         " of what the speed limit allows, so that `export` refuses the table: accelerate " +
-         dof.name + " less here";
+  return dof.name + "'s servo target, which leads the posture by kd/kp = " +
+         text::brief(1e3 * dof.servo.kd / dof.servo.kp, 3) + " ms, moves " +
+         text::brief(100 * (std::abs(v.value / v.limit) - 1), 2) +
+         " % faster than the speed limit, so that `export` will refuse the table: accelerate " +
+         dof.name + " more gently here";
 }
 
 Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   if (v.detail == kServoTarget) return target_advice(motion, v);
-  return motion.model.dofs()[v.item].name + " jumps by " + text::brief(v.value, 3) +
-         " rad in one servo period: spread the step over " +
+  const Dof& dof = motion.model.dofs()[v.item];
+  return dof.name + " jumps by " +
+         (dof.prismatic ? in_mm(v.value) : text::brief(v.value * 180 / EIGEN_PI, 3) + " deg") +
+         " in one servo period: spread the step over " +
          text::fixed(std::ceil(std::abs(v.value / v.limit)), 0) + " periods";
 }
 
 std::string step_obstacle(const Finding& f, double excess) {
-  return f.where + " steps " + ratio_text(excess) + " times what one servo period allows";
+  return f.where + " steps by " + ratio_text(excess) +
+         " of what the speed limit allows in one servo period";
 }
 
 }  // namespace
@@ -112,8 +115,8 @@ const Limit& servo_step_limit() {
                     .unit = "1",
                     .tolerance = kWholeStep,
                     .meaning = "change of the joint angle per servo period over what the speed "
-                               "limit allows, where the joint speed itself does not tell it; a "
-                               "warning where only the servo's target, which leads the angle, "
+                               "limit allows, where the joint speed does not show it; a "
+                               "warning where only the servo target, which leads the angle, "
                                "steps by more",
                     .figure = {.key = "max_servo_step_ratio",
                                .label = "largest step in a servo period",

@@ -161,7 +161,7 @@ const Limit& stance_limit() {
       .findings = {{.kind = FindingKind::foot_slip,
                     .unit = "m",
                     .tolerance = kSlipTolerance,
-                    .meaning = "horizontal way of a supporting sole from its place",
+                    .meaning = "horizontal distance of a supporting sole from its place",
                     .figure = {.key = "max_foot_slip_m",
                                .label = "largest slip of a supporting sole",
                                .unit = "mm",

@@ -41,8 +41,8 @@ Advice torsion_advice(const JudgedMotion&, const FindingWindow& window) {
 }
 
 std::string torsion_obstacle(const Finding& f, double excess) {
-  return "the foot would turn: " + ratio_text(excess) + " of the yaw moment friction resists (" +
-         f.where + ")";
+  return "the foot would turn: " + ratio_text(excess) +
+         " of the yaw moment that friction can resist (" + f.where + ")";
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ ClipEncoder::ClipEncoder(const std::filesystem::path& path, int width, int heigh
   // A socket instead of a pipe: a write to a dead process then reports instead of raising a signal.
   int ends[2] = {-1, -1};
   require(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0,
-          "no pipe to the video encoder to be had");
+          "a pipe to the video encoder could not be opened");
   log_ = memfd_create("encoder", MFD_CLOEXEC);
   pipe_ = ends[0];
   posix_spawn_file_actions_t actions;
@@ -159,7 +159,7 @@ void ClipEncoder::fail_with_log() {
   const size_t line = words.size() > 400 ? words.find('\n', words.size() - 400) : std::string::npos;
   if (line != std::string::npos) words.erase(0, line + 1);
   fail(ErrorCode::bad_file, path_.string() + ": " + program_ + " could not write the clip: " +
-                                (words.empty() ? "it ended without a word" : words));
+                                (words.empty() ? "it ended without a message" : words));
 }
 
 void ClipEncoder::add(const Image& frame) {

@@ -114,7 +114,7 @@ GlTarget Gl::make_target(int width, int height, int samples, GLenum format, bool
   if (depth) attach(target.depth, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
   if (CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     fail(ErrorCode::internal, "off-screen rendering: no picture of " + std::to_string(width) +
-                                  " x " + std::to_string(height) + " pixels to be had");
+                                  " x " + std::to_string(height) + " pixels could be made");
   return target;
 }
 

@@ -220,7 +220,7 @@ Triangles tessellate(const Shape& primitive, const Vector4f& color) {
     return cylinder(shape->radius, shape->length, color);
   if (const auto* shape = std::get_if<Capsule>(&primitive))
     return capsule(shape->radius, shape->length, color);
-  fail(ErrorCode::internal, "tessellate: a mesh is no primitive");
+  fail(ErrorCode::internal, "tessellate: a mesh is not a primitive");
 }
 
 Triangles tessellate(const MeshPart& part, const Vector4f& color) {

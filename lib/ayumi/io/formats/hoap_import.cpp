@@ -144,7 +144,7 @@ class Reader {
   size_t columns_ = 0, line_ = 0;
 };
 
-// Counts of one device at every tick, straight between rows.
+// Counts of one device at every tick, interpolated linearly between rows.
 Eigen::VectorXd on_ticks(const std::vector<Row>& rows, size_t device, int tick) {
   const int begin = rows.front().at;
   const Eigen::Index count = (rows.back().at - begin) / tick + 1;
@@ -175,7 +175,7 @@ void refuse_lost_motion(const std::vector<Row>& rows, size_t device, const Robot
     fail(ErrorCode::bad_file, file + ": " + name + " moves from " + text::brief(low) + " to " +
                                   text::brief(high) + " counts, but no joint of '" + model.name() +
                                   "' has it (encoders in its sidecar)");
-  filled.push_back(name + " is not on this robot: left out, it rests at " + text::brief(low) +
+  filled.push_back(name + " is not on this robot and is ignored; it rests at " + text::brief(low) +
                    " counts");
 }
 
@@ -215,11 +215,11 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
   result.motion.dt = 0.001 * tick;
   if (reader.bare()) set_bare_rate(reader, rate, result);
   if (!even)
-    result.filled.push_back("intervals change: straight between rows, every " +
+    result.filled.push_back("the intervals change: rows are interpolated linearly, every " +
                             std::to_string(tick) + " ms");
   if (reader.general_commands() > 0)
     result.filled.push_back(std::to_string(reader.general_commands()) +
-                            " commands to single devices left out; their time passes");
+                            " commands to single devices are ignored; their time passes");
   const Eigen::VectorXd home = model.posture();
   const size_t motors = rows.front().counts.size();
   std::vector<int> dof_of_device(motors, -1);
@@ -242,7 +242,8 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
   }
   for (int dof = 0; dof < model.dof_count(); ++dof)
     if (!told[static_cast<size_t>(dof)])
-      result.filled.push_back(model.dofs()[dof].name + ": not in the file, rests at home");
+      result.filled.push_back(model.dofs()[dof].name +
+                              ": not in the file; it keeps the home posture");
   return result;
 }
 

@@ -69,8 +69,9 @@ void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
   const double most = table.values.col(i).cwiseAbs().maxCoeff();
   if (degrees && !made.prismatic) table.values.col(i) *= kRadiansPerDegree;
   if (!degrees && !made.prismatic && made.limited && most > kNoAngle)
-    refuse_table(file, "column '" + column + "' reaches " + text::brief(most) +
-                   " rad, which no joint does: give --unit deg where angles are in degrees");
+    refuse_table(file,
+                 "column '" + column + "' reaches " + text::brief(most) +
+                     " rad, which no joint does: give --unit deg if the angles are in degrees");
   column = theta_column(joint);
 }
 
@@ -87,7 +88,8 @@ void rename_columns(NumberTable& table, const RobotModel& model, const ImportOpt
 void add_time(NumberTable& table, const ImportOptions& options, const std::string& file) {
   if (table.find("t[s]") >= 0) return;
   if (!(options.rate > 0))
-    refuse_table(file, "no time column (t[s], t, time); give --rate HZ when the rows are evenly spaced");
+    refuse_table(file,
+                 "no time column (t[s], t, time); give --rate HZ when the rows are evenly spaced");
   table.columns.insert(table.columns.begin(), "t[s]");
   const auto old = table.values;
   table.values.resize(old.rows(), old.cols() + 1);
@@ -108,8 +110,8 @@ void even_out(NumberTable& table, std::vector<std::string>& filled, const std::s
     steps.push_back(t[k] - t[k - 1]);
     if (!(steps.back() > 0))
       refuse_table(file, "data row " + std::to_string(k + 1) + ": time " + text::brief(t[k]) +
-                     " s does not come after " + text::brief(t[k - 1]) +
-                     " s of the row before; times must increase");
+                             " s does not come after " + text::brief(t[k - 1]) +
+                             " s of the row before; times must increase");
   }
   if (steps.empty()) refuse_table(file, "one row is no motion");
   std::nth_element(steps.begin(), steps.begin() + static_cast<long>(steps.size() / 2), steps.end());
@@ -122,8 +124,8 @@ void even_out(NumberTable& table, std::vector<std::string>& filled, const std::s
     even = std::abs(t[k] - static_cast<double>(k) * dt) < 1e-3 * dt;
   auto values = table.values;
   if (!even) {
-    filled.push_back("rows are not evenly spaced: straight between them, every " + text::brief(dt) +
-                     " s");
+    filled.push_back("rows are not evenly spaced: they are interpolated linearly, every " +
+                     text::brief(dt) + " s");
     values.resize(count, table.values.cols());
     Eigen::Index r = 0;
     for (Eigen::Index k = 0; k < count; ++k) {
@@ -155,7 +157,7 @@ std::vector<BasePose> bases_of(const NumberTable& table, const TableLayout& layo
     for (int i = 0; i < 4; ++i) q[i] = table.values(k, layout.base[3 + i]);
     if (std::abs(q.norm() - 1) > 0.01)
       refuse_table(file, "data row " + std::to_string(k + 1) + ": base.qw...qz has length " +
-                     text::brief(q.norm()) + ", a unit quaternion (w, x, y, z) is needed");
+                             text::brief(q.norm()) + ", a unit quaternion (w, x, y, z) is needed");
     BasePose base;
     base.position = {table.values(k, layout.base[0]), table.values(k, layout.base[1]),
                      table.values(k, layout.base[2])};
@@ -188,13 +190,14 @@ void fill_theta(const NumberTable& table, const TableLayout& layout, const Robot
     const int dof = model.find_dof(layout.joints[j]);
     if (dof < 0)
       refuse_table(file, "'" + model.name() + "' has no joint '" + layout.joints[j] + "'" +
-                     text::suggestion(layout.joints[j], model.dof_names()));
+                             text::suggestion(layout.joints[j], model.dof_names()));
     result.motion.theta.col(dof) = table.values.col(layout.theta[j]);
     told[static_cast<size_t>(dof)] = 1;
   }
   for (int dof = 0; dof < model.dof_count(); ++dof)
     if (!told[static_cast<size_t>(dof)])
-      result.filled.push_back(model.dofs()[dof].name + ": not in the file, rests at home");
+      result.filled.push_back(model.dofs()[dof].name +
+                              ": not in the file; it keeps the home posture");
 }
 
 void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
@@ -205,8 +208,7 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
   table.commands = true;
   imported.motion.theta = postures_of(model, table).theta;
   imported.commands = false;
-  imported.filled.push_back(
-      "angles: what servos receive; postures are without their lead of kd/kp");
+  imported.filled.push_back("angles are servo targets: the velocity lead kd/kp was subtracted");
 }
 
 // A motion begins and ends at rest: as if it came back the way it went.
@@ -308,7 +310,7 @@ ImportedMotion read_motion(const std::string& given, const std::string& file,
   smooth_angles(model, options, result);
   if (result.motion.support.empty()) result.filled.push_back("contacts: detected from the motion");
   if (result.motion.base.empty())
-    result.filled.push_back("base: from the feet that carry, level on the ground");
+    result.filled.push_back("base: computed from the feet that carry, level on the ground");
   return result;
 }
 
