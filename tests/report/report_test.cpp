@@ -59,8 +59,14 @@ TEST(Report, SaysTheVerdictFirst) {
 TEST(Report, ShowsFindingsRepairAndThresholds) {
   Made made;
   ConsistencyReport check;
-  check.findings.push_back({"zmp_margin", Severity::error, 0.2, 0.4, 0.3, -0.012, 0, "m",
-                            "left foot", "move the ZMP inwards"});
+  check.findings.push_back({.kind = FindingKind::support_margin,
+                            .begin = 0.2,
+                            .end = 0.4,
+                            .at = 0.3,
+                            .worst = -0.012,
+                            .unit = "m",
+                            .where = "left foot",
+                            .hint = "move the ZMP inwards"});
   made.input.results.check = check;
   made.input.results.repair = RepairNote{"infeasible", 0.1, 0.02, 17, {"l_knee has no room"}};
   made.input.results.safety = ExportNote{false, 1.2, "l_knee", {"step of l_knee at 0.100 s"}};

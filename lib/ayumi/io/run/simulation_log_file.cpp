@@ -247,8 +247,9 @@ std::string header_of(const SimulationLog& log, const std::string& command_line)
 
 void read_header(const JsonNode& header, SimulationLog& log) {
   log.dt = header.at("dt").number();
-  const std::string controller = header.at("controller").string();
-  if (!controller.empty()) log.controller = controller_type(controller);
+  const JsonNode controller = header.at("controller");
+  if (!controller.string().empty())
+    log.controller = controller_type(controller.one_of(controller_names()));
   if (const auto plant = header.find("plant")) log.plant = plant->string();
   const JsonNode provenance = header.at("provenance");
   for_each_provenance(log.provenance, [&](const char* key, std::string& value) {
