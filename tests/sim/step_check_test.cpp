@@ -64,10 +64,10 @@ TEST(StepCheck, RefusesWhatIsNoNumberWithPlaceAndTime) {
       in.wrenches = {push};
       in.wrenches[0].body = 1000;
     });
-    expect("condition of joint " + model.dofs()[2].name,
+    expect("fault of joint " + model.dofs()[2].name,
            [&](StepInput& in) { in.joints[2].encoder = bad; });
-    expect("condition of joint", [&](StepInput& in) { in.joints[0].gain = bad; });
-    expect("condition of joint", [&](StepInput& in) { in.joints[1].coulomb = -1; });
+    expect("fault of joint", [&](StepInput& in) { in.joints[0].gain = bad; });
+    expect("fault of joint", [&](StepInput& in) { in.joints[1].coulomb = -1; });
     expect("payload", [&](StepInput& in) { in.payloads = {{0, Vector3d(0, 0, bad), 1.0}}; });
     expect("payload", [&](StepInput& in) { in.payloads = {{0, Vector3d::Zero(), bad}}; });
     expect("floor's motion", [&](StepInput& in) { in.floor->velocity.x() = bad; });
