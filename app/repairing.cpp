@@ -77,7 +77,7 @@ void read_locks(const std::vector<std::string>& words, const Task& input, Repair
 }
 
 RepairOptions wished_options(const Pattern& pattern) {
-  const RepairWishes wishes = without_keyframes(pattern);
+  const RepairPreferences wishes = without_keyframes(pattern);
   RepairOptions options;
   options.locked_joints = wishes.joints;
   options.locked_feet = wishes.feet;

@@ -70,7 +70,7 @@ void write_repaired(const Context& context, const RepairCommand& options, const 
 }
 
 // The pattern's own locks as --lock would name them.
-std::vector<std::string> file_locks(const RepairWishes& wishes) {
+std::vector<std::string> file_locks(const RepairPreferences& wishes) {
   std::vector<std::string> words = wishes.joints;
   for (const Side side : {Side::left, Side::right})
     if (wishes.feet[static_cast<size_t>(side)])

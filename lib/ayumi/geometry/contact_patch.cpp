@@ -1,8 +1,9 @@
-// The distance gives the line of contact. A face of one shape that is square to it carries the
-// patch (the reference), the other shape lies on it with its own nearest face, edge or corner. Both
-// are seen from above the reference face; what they share is a convex polygon whose corners are
-// corners of either or crossings of edges. Their names (ids) come from those, so that a solver
-// knows a point again in the next step; of two places nearer than kSame the first named stays.
+// The distance gives the line of contact. The face of one shape that is square to this line is the
+// reference face, and the other shape touches it with its nearest face, edge or corner. Projected
+// along the reference face's normal, both overlap in a convex polygon, whose corners are corners of
+// either shape or crossings of edges. The ids of the points come from these corners and edges, so
+// that a solver recognises a point in the next step. Of two points closer than kSame the first one
+// is kept.
 #include "ayumi/geometry/contact_patch.hpp"
 
 #include <algorithm>
@@ -16,12 +17,16 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kSquare = 1e-5;  // 1 - cosine up to which a face is square to the line of contact
-constexpr double kSame = 1e-6;    // two corners that are one [m]
+/// 1 - cosine of the angle up to which a face is square to the line of contact. Chosen: 0.26 deg,
+/// so that a body that rests on a face with rounding and compliance keeps its patch.
+constexpr double kSquare = 1e-5;
+/// Distance of two corners below which they are one [m]. Chosen: 1 um, far below any edge and far
+/// above rounding.
+constexpr double kSame = 1e-6;
 constexpr int kOther = 100, kCrossing = 200, kNearest = 1000, kSwapped = 2000;  // in ids
 
-/// What a core shows to someone in one direction: a face (anticlockwise seen from outside), an edge
-/// or a point.
+/// The part of a core that is farthest out in one direction: a face (anticlockwise seen from
+/// outside), an edge or a point.
 struct Feature {
   int count = 0;
   std::array<Vector3d, 16> corner;
@@ -82,7 +87,7 @@ Feature of_box(const Vector3d& half, const Vector3d& direction) {
   return f;
 }
 
-/// The face that looks most along the direction; where none does, the corner that is farthest out.
+/// The face whose normal is nearest to the direction, within 45 deg; else the corner farthest out.
 Feature of_hull(const Collider& hull, const Vector3d& direction) {
   Feature f;
   const HullFace* best = nullptr;
@@ -113,9 +118,9 @@ Feature feature(const Collider& collider, const Isometry3d& core_pose, const Vec
   return f;
 }
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross_seen(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Corners seen from above the reference face, anticlockwise.
+/// Corners in the plane of the reference face, anticlockwise seen from outside.
 struct Outline {
   int count = 0;
   std::array<Vector2d, 16> corner;
@@ -125,13 +130,13 @@ struct Outline {
   bool holds(const Vector2d& p) const {
     for (int i = 0; i < count; ++i) {
       const Vector2d edge = at(i + 1) - at(i);
-      if (cross(edge, p - at(i)) < -kSame * edge.norm()) return false;
+      if (cross_seen(edge, p - at(i)) < -kSame * edge.norm()) return false;
     }
     return true;
   }
 };
 
-/// Collects the patch over a reference face.
+/// Collects the points of the patch on a reference face.
 class Over {
  public:
   Over(const Feature& reference, const Feature& other)
@@ -142,7 +147,7 @@ class Over {
     above_ = seen(other, other.face());
   }
 
-  /// Fills the patch; `apart` is the sum of both roundings, `normal` of the patch is set already.
+  /// Fills the patch, whose normal is set; `apart` is the sum of both roundings.
   void fill(double apart, double reach, bool swapped, ContactPatch& patch) {
     reach_ = reach, apart_ = apart, swapped_ = swapped, patch_ = &patch;
     for (int i = 0; i < above_.count; ++i)
@@ -197,9 +202,9 @@ class Over {
   void cross_edges(int i, int j) {
     const Vector2d a = above_.at(i), along = above_.at(i + 1) - a;
     const Vector2d b = below_.at(j), edge = below_.at(j + 1) - b;
-    const double area = cross(along, edge);
+    const double area = cross_seen(along, edge);
     if (std::abs(area) < 1e-9 * along.norm() * edge.norm()) return;
-    const double s = cross(b - a, edge) / area, t = cross(b - a, along) / area;
+    const double s = cross_seen(b - a, edge) / area, t = cross_seen(b - a, along) / area;
     if (s <= 0 || s >= 1 || t <= 0 || t >= 1) return;
     add(kCrossing + 16 * above_.name[static_cast<size_t>(i)] + j, a + s * along, false);
   }

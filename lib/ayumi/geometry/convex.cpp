@@ -1,8 +1,9 @@
-// Both look at D = {p - q : p in a, q in b}, whose farthest point along d is a's along d minus b's
-// along -d. Apart: the point of D nearest to the origin, from simplices that come nearer each time;
-// which part of a simplex is nearest is found by trying all of its 15 at most. Meeting: the origin
-// is inside D, and the nearest face of a polytope inside D is pushed outwards until it is D's own.
-// A face the origin is outside of (distance below 0) counts as nearest, so any start will do.
+// Both algorithms work on D = {p - q : p in a, q in b}, whose farthest point along d is that of a
+// along d minus that of b along -d. Separate sets: a sequence of simplices in D approaches the
+// point of D nearest to the origin; the nearest part of a simplex is found among its at most 15
+// parts. Overlapping sets: the origin is inside D, and the nearest face of a polytope inside D
+// moves outwards until it is a face of D. A face with the origin outside (negative distance) counts
+// as nearest, so that the first polytope need not contain the origin.
 #include "ayumi/geometry/convex.hpp"
 
 #include <algorithm>
@@ -19,8 +20,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kTouch = 1e-10;      // nearer than this they meet [m]
-constexpr double kTolerance = 1e-12;  // relative, of squared distance
+// Chosen: limits near the rounding of double precision at lengths of 1 m; the number of steps is
+// only reached where rounding stops the progress.
+constexpr double kTouch = 1e-10;         // distance below which the sets overlap [m]
+constexpr double kGjkTolerance = 1e-12;  // relative error of the squared distance
 constexpr int kGjkSteps = 200;
 
 double sign(double x) { return x < 0 ? -1 : 1; }
@@ -57,7 +60,7 @@ struct Sets {
   }
 };
 
-/// At most four, without a heap.
+/// A list of at most four items without memory allocation.
 template <typename T>
 class Few {
  public:
@@ -91,8 +94,8 @@ struct Simplex {
   }
 };
 
-// The point of the plane, line or point through `n` vertices nearest to the origin; false where it
-// is not between them.
+// The point of the plane, line or point through n vertices that is nearest to the origin; false
+// when it is not between the vertices.
 template <int n>
 bool nearest_inside(const Few<Vertex>& v, const std::array<int, 4>& pick, Few<double>& weights) {
   weights.assign(n, 1);
@@ -112,7 +115,7 @@ bool nearest_inside(const Few<Vertex>& v, const std::array<int, 4>& pick, Few<do
   return true;
 }
 
-// Keeps of `simplex` the part nearest to the origin.
+// Reduces `simplex` to the part that is nearest to the origin.
 void reduce(Simplex& simplex) {
   const auto count = static_cast<int>(simplex.vertices.size());
   Simplex best;
@@ -184,7 +187,7 @@ class Polytope {
  private:
   void add(const Vector3d& direction) { vertices_.push_back(sets_.vertex(direction)); }
 
-  // A vertex off the line or plane of those there are: the farther of both ways along either.
+  // Adds a vertex off the line or plane of the present ones: the farthest along +-one and +-other.
   void add_farther(const Vector3d& one, const Vector3d& other) {
     double most = kTouch;
     Vertex best;
@@ -202,7 +205,7 @@ class Polytope {
     Face face;
     face.v = {a, b, c};
     const Vector3d n = (vertices_[b].d - vertices_[a].d).cross(vertices_[c].d - vertices_[a].d);
-    if (n.norm() < 1e-18) return face;  // a sliver: never nearest
+    if (n.norm() < 1e-18) return face;  // degenerate: infinite distance, never nearest
     face.normal = n.normalized();
     face.distance = face.normal.dot(vertices_[a].d);
     return face;
@@ -239,10 +242,11 @@ class Polytope {
     return !horizon.empty();
   }
 
-  // A facet of D may be several triangles of one plane: the points are those of the one that holds
-  // the foot of the perpendicular, else they would not lie across from each other.
+  // A facet of D may consist of several coplanar triangles. The points are those of the triangle
+  // that contains the foot of the perpendicular; otherwise they would not be opposite to each
+  // other.
   ConvexPair pair_of(const Face& nearest) const {
-    constexpr double kSamePlane = 1e-9;  // [m]
+    constexpr double kSamePlane = 1e-9;  // [m], above rounding
     ConvexPair pair;
     pair.distance = -nearest.distance;
     pair.normal = nearest.normal;
@@ -277,12 +281,12 @@ ConvexPair convex_pair(const ConvexCore& a, const Isometry3d& pose_a, const Conv
   for (int step = 0; step < kGjkSteps && nearest.norm() > kTouch; ++step) {
     const Vertex w = sets.vertex(-nearest);
     const double square = nearest.squaredNorm();
-    if (square - nearest.dot(w.d) <= kTolerance * square) break;
+    if (square - nearest.dot(w.d) <= kGjkTolerance * square) break;
     Simplex grown = simplex;
     grown.vertices.push_back(w);
     reduce(grown);
     const Vector3d next = grown.sum(&Vertex::d);
-    if (!(next.squaredNorm() < square)) break;  // no nearer for rounding
+    if (!(next.squaredNorm() < square)) break;  // no progress because of rounding
     simplex = std::move(grown);
     nearest = next;
     if (simplex.vertices.size() == 4) nearest.setZero();  // the origin is inside

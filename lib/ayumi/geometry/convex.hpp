@@ -1,7 +1,7 @@
 #pragma once
-// Distance and depth of two convex sets: Gilbert-Johnson-Keerthi for how far apart, an expanding
-// polytope for how deep. A set is a box, a segment, a point, an upright cylinder or the convex hull
-// of points.
+// Distance and penetration depth of two convex sets: the Gilbert-Johnson-Keerthi algorithm for the
+// distance, an expanding polytope for the depth. A set is a box, a segment, a point, an upright
+// cylinder or the convex hull of points.
 
 #include <Eigen/Geometry>
 #include <vector>
@@ -16,11 +16,11 @@ struct ConvexCore {
   std::vector<Eigen::Vector3d> points{};
 };
 
-/// Nearest points, or those that have the depth when the sets meet.
+/// The nearest points; the points with the penetration depth when the sets overlap.
 struct ConvexPair {
-  double distance = 0;         ///< minus the depth when they meet [m]
+  double distance = 0;         ///< minus the depth when they overlap [m]
   Eigen::Vector3d on_a, on_b;  ///< world [m]
-  Eigen::Vector3d normal;      ///< unit, along which b leaves a
+  Eigen::Vector3d normal;      ///< unit, from a to b
 };
 ConvexPair convex_pair(const ConvexCore& a, const Eigen::Isometry3d& pose_a, const ConvexCore& b,
                        const Eigen::Isometry3d& pose_b);

@@ -32,7 +32,7 @@ struct SegmentPoints {
   Vector3d on_a, on_b;
 };
 
-// The minimum of a convex quadratic over the unit square: the free optimum, then clamped in turn.
+// Minimum of a convex quadratic over the unit square: the free optimum, then each variable clamped.
 SegmentPoints nearest_on_segments(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,
                                   const Vector3d& b1) {
   const Vector3d u = a1 - a0, v = b1 - b0, w = a0 - b0;
@@ -56,8 +56,8 @@ ConvexPair swept_pair(const Vector3d& ca, const Vector3d& za, const Vector3d& cb
   return pair;
 }
 
-/// How far a core reaches from its centre.
-double reach(const ConvexCore& core, const Isometry3d& pose, const Vector3d& direction) {
+/// Extent of a core from its centre along a direction [m].
+double core_extent(const ConvexCore& core, const Isometry3d& pose, const Vector3d& direction) {
   const Vector3d d = pose.linear().transpose() * direction;
   double far = -std::numeric_limits<double>::infinity();
   for (const Vector3d& p : core.points) far = std::max(far, p.dot(d));
@@ -93,7 +93,7 @@ Collider::Collider(const Shape& shape, MeshAs mesh_as) {
   }
 }
 
-// A mesh that is flat has no faces and stays the box.
+// A flat mesh has no faces and keeps its bounding box.
 void Collider::take_hull(const MeshShape& mesh) {
   std::vector<Vector3d> points = outer_vertices(mesh.mesh);
   for (Vector3d& p : points) p -= center_;
@@ -128,8 +128,8 @@ double clearance_bound(const Collider& a, const Isometry3d& pose_a, const Collid
 double clearance_along(const Vector3d& direction, const Collider& a, const Isometry3d& pose_a,
                        const Collider& b, const Isometry3d& pose_b) {
   return direction.dot(pose_b * b.center() - pose_a * a.center()) -
-         reach(a.core(), pose_a, direction) - reach(b.core(), pose_b, -direction) - a.rounding() -
-         b.rounding();
+         core_extent(a.core(), pose_a, direction) - core_extent(b.core(), pose_b, -direction) -
+         a.rounding() - b.rounding();
 }
 
 double segment_distance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,

@@ -1,9 +1,9 @@
 #pragma once
-// Distance between two shapes. Spheres and capsules against each other in closed form; every other
-// pair by the Gilbert-Johnson-Keerthi distance, expanding-polytope depth when they overlap
-// (convex.hpp). A mesh counts as the box that bounds it in its own axes: larger than the mesh,
-// so a clearance is never promised that is not there; or, where what touches is asked for, as the
-// convex hull of its outer vertices (mesh_hull.hpp).
+// Distance between two shapes: in closed form for spheres and capsules, for other pairs by the
+// Gilbert-Johnson-Keerthi algorithm and the expanding polytope (convex.hpp). A mesh is replaced by
+// its bounding box in its own axes, so that no clearance is overestimated; for contacts it is
+// replaced by the convex hull of its outer vertices (mesh_hull.hpp). Directions: a normal of a pair
+// points from a to b.
 
 #include <Eigen/Geometry>
 
@@ -13,27 +13,27 @@
 
 namespace ayumi {
 
-/// Where two shapes are nearest, or overlap deepest.
+/// The nearest points of two shapes, or those of the deepest overlap.
 struct Closest {
   double clearance = 0;                               ///< as clearance() [m]
   Eigen::Vector3d on_a = Eigen::Vector3d::Zero();     ///< world [m]
   Eigen::Vector3d on_b = Eigen::Vector3d::Zero();     ///< world [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< along which b leaves a
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< from a to b
 };
 
 enum class MeshAs { box, hull };
 
-/// A shape made ready for distance queries: everything within `rounding` of a convex core.
+/// A shape prepared for distance queries: all points within `rounding` of a convex core.
 class Collider {
  public:
   explicit Collider(const Shape& shape, MeshAs mesh_as = MeshAs::box);
 
-  /// Bounding sphere, shape frame [m]; its centre is the core's, whose axes are the shape's.
+  /// Bounding sphere, shape frame [m]. Its centre is the origin of the core's frame.
   const Eigen::Vector3d& center() const { return center_; }
   double radius() const { return radius_; }
 
   const ConvexCore& core() const { return core_; }
-  const std::vector<HullFace>& faces() const { return faces_; }  ///< of a hull, core's frame
+  const std::vector<HullFace>& faces() const { return faces_; }  ///< faces of a hull, core frame
   double rounding() const { return rounding_; }                  ///< [m]
   bool swept() const { return swept_; }  ///< sphere or capsule: a point or segment along z
   /// The core's frame for a shape at `pose`.
@@ -55,16 +55,16 @@ class Collider {
 double clearance(const Collider& a, const Eigen::Isometry3d& pose_a, const Collider& b,
                  const Eigen::Isometry3d& pose_b);
 
-/// clearance() and the points that have it: its rate is normal . (velocity of on_b - of on_a).
+/// clearance() with its points. Its rate is normal . (velocity of on_b - velocity of on_a).
 Closest closest(const Collider& a, const Eigen::Isometry3d& pose_a, const Collider& b,
                 const Eigen::Isometry3d& pose_b);
 
-/// A lower bound of clearance() from the bounding spheres, without looking at the shapes [m].
+/// A lower bound of clearance() from the bounding spheres alone [m].
 double clearance_bound(const Collider& a, const Eigen::Isometry3d& pose_a, const Collider& b,
                        const Eigen::Isometry3d& pose_b);
 
-/// How far apart they are along a unit vector (world) that leads from a to b: a lower bound of
-/// clearance(), and clearance() itself along the normal of closest() [m].
+/// Gap of the two shapes along a unit vector (world) from a to b: a lower bound of clearance(), and
+/// clearance() itself along the normal of closest() [m].
 double clearance_along(const Eigen::Vector3d& direction, const Collider& a,
                        const Eigen::Isometry3d& pose_a, const Collider& b,
                        const Eigen::Isometry3d& pose_b);

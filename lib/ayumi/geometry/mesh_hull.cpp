@@ -9,11 +9,18 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr size_t kMeshPoints = 32;      // a mesh of no more vertices touches with all of them
-constexpr size_t kManyVertices = 4096;  // beyond them equal ones are not looked for
+/// A mesh with at most this many vertices uses all of them. Chosen: hull_faces() takes the cube of
+/// the number of points.
+constexpr size_t kMeshPoints = 32;
+/// Number of vertices beyond which duplicates are not removed first: sorting them costs more.
+constexpr size_t kManyVertices = 4096;
+/// Directions in which the vertices of a larger mesh are chosen. Chosen: about 21 deg apart, so
+/// that the hull is at most 4 % of its radius inside a sphere (docs/theory_plant.md).
 constexpr int kDirections = 90;
-
-constexpr double kCoplanar = 1e-6;  // of the points' extent
+/// Distance of points from a plane below which they are in it, relative to the points' extent.
+/// Chosen: above the rounding of single precision, in which mesh files store vertices.
+constexpr double kCoplanar = 1e-6;
+/// Largest number of corners of a face that contact_patch() handles.
 constexpr size_t kFaceCorners = 16;
 
 /// Corners of the convex polygon of points in a plane, anticlockwise about the normal.
@@ -77,7 +84,7 @@ std::vector<HullFace> hull_faces(const std::vector<Vector3d>& points) {
   double extent = 0;
   for (const Vector3d& p : points) extent = std::max(extent, (p - points[0]).norm());
   const double flat = kCoplanar * extent;
-  // The plane of three points is a face's when no point is on its outer side.
+  // The plane of three points contains a face when no point is on its outer side.
   const auto take = [&](const Vector3d& origin, const Vector3d& normal) {
     for (const HullFace& face : faces)
       if ((face.normal - normal).squaredNorm() < 1e-8 &&

@@ -1,5 +1,5 @@
 #pragma once
-// What of a mesh can touch: the vertices farthest out, and the faces of their convex hull.
+// The outer vertices of a mesh, which can touch other bodies, and the faces of their convex hull.
 
 #include <Eigen/Dense>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace ayumi {
 
-/// All vertices of a mesh of at most 32; of a larger one those that are farthest out in 90
-/// directions spread over the sphere. Sorted, none twice.
+/// All vertices of a mesh with at most 32; of a larger mesh those farthest out in 90 directions on
+/// the sphere. Sorted, without duplicates.
 std::vector<Eigen::Vector3d> outer_vertices(const TriangleMesh& mesh);
 
 struct HullFace {
@@ -17,8 +17,8 @@ struct HullFace {
   std::vector<Eigen::Vector3d> corners;  ///< anticlockwise seen from outside, at most 16
 };
 
-/// Faces of the convex hull of up to some hundred points, coplanar ones in one; none where the
-/// points lie in a plane. Time goes with the cube of the number of points.
+/// Faces of the convex hull of up to a few hundred points, with coplanar triangles merged; none
+/// when the points lie in a plane. The time is proportional to the cube of the number of points.
 std::vector<HullFace> hull_faces(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
 #pragma once
-// Shapes of links: primitives as URDF names them, and triangle meshes. All lengths in metres, each
-// shape in its own frame (primitives centred on it, cylinders and capsules along z).
+// Shapes of links: the primitives of URDF, and triangle meshes. Lengths are in metres. Each shape
+// has its own frame: primitives are centred in it, cylinders and capsules lie along z.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -33,7 +33,7 @@ struct MeshPart {
   std::vector<Eigen::Vector2f> uvs;       ///< empty or one per vertex
   std::vector<std::array<std::uint32_t, 3>> triangles;
   Eigen::Vector4f color = {0.8f, 0.8f, 0.8f, 1.0f};  ///< sRGB, alpha last
-  bool has_color = false;                            ///< the mesh file itself names a colour
+  bool has_color = false;                            ///< the mesh file has a colour
   std::string texture_file;                          ///< empty when untextured
 };
 
@@ -55,8 +55,8 @@ struct PlacedShape {
   std::string name;
   Shape shape;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< shape frame in the link frame
-  Eigen::Vector4f color = {0.8f, 0.8f, 0.8f, 1.0f};        ///< sRGB; overrides the mesh's own when
-  bool has_color = false;                                  ///< set
+  Eigen::Vector4f color = {0.8f, 0.8f, 0.8f, 1.0f};        ///< sRGB
+  bool has_color = false;                                  ///< `color` replaces the mesh's own
 };
 
 }  // namespace ayumi

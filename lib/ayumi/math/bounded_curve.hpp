@@ -1,6 +1,6 @@
 #pragma once
-// The bounded solution of (14)(15) for a given ZMP: of all motions that obey x'' = w2 (x - z) the
-// one that does not run away, found as a boundary value problem on a uniform grid.
+// The bounded solution of (14)(15) for a given ZMP: the only solution of x'' = w2 (x - z) that does
+// not diverge, computed as a boundary value problem on a uniform grid.
 
 #include <Eigen/Core>
 
@@ -10,7 +10,7 @@ namespace ayumi {
 /// z, w2 > 0: one entry per grid point, at least 3.
 Eigen::VectorXd bounded_cog(const Eigen::VectorXd& z, const Eigen::VectorXd& w2, double h);
 
-/// A small bump of the ZMP near t = 0 that buys a start from rest: (w t)^2 exp(-w t) (1 - t/T)^2.
+/// Bump of the ZMP near t = 0 that allows a start from rest: (w t)^2 exp(-w t) (1 - t/T)^2.
 double rest_bump(double omega, double t, double duration);
 
 struct RestToRest {
@@ -18,10 +18,10 @@ struct RestToRest {
   double begin = 0, end = 0;  ///< factors of the bumps added to z at either end
 };
 
-/// The bounded solution with x' = 0 at both ends as well. A bounded motion anticipates, so it is
-/// not at rest at t = 0 while the ZMP still moves soon after; the ZMP gives way by begin * bump(t)
-/// + end * bump(T - t), near the least possible, and nothing when it rests long enough at both
-/// ends.
+/// The bounded solution that also has x' = 0 at both ends. A bounded motion anticipates: it moves
+/// at t = 0 when the ZMP moves soon afterwards. The ZMP is therefore changed by begin * bump(t) +
+/// end * bump(T - t), which is close to the smallest possible change, and zero where the ZMP rests
+/// long enough at both ends.
 RestToRest rest_to_rest_cog(const Eigen::VectorXd& z, const Eigen::VectorXd& w2, double h);
 
 }  // namespace ayumi

@@ -13,7 +13,7 @@ class ConvexPolygon {
   /// Convex hull of the points (any order, duplicates allowed).
   explicit ConvexPolygon(std::vector<Eigen::Vector2d> points);
 
-  /// Becomes the hull of `points`, which are left in another order; keeps its room.
+  /// Becomes the hull of `points`, whose order changes; keeps its memory.
   void assign(std::vector<Eigen::Vector2d>& points);
 
   const std::vector<Eigen::Vector2d>& vertices() const { return vertices_; }
@@ -25,11 +25,11 @@ class ConvexPolygon {
   /// The nearest point of the polygon; p itself when inside.
   Eigen::Vector2d project(const Eigen::Vector2d& p) const;
 
-  /// The polygon of points at least `distance` inside every edge; when nothing is left, the
-  /// centroid alone.
+  /// The polygon of the points at least `distance` inside every edge; the centroid alone when there
+  /// are none.
   ConvexPolygon shrunk(double distance) const;
 
-  /// The same into `result`, with two lists to work in; all keep their room.
+  /// The same into `result`, with two lists as workspace; all keep their memory.
   void shrink_into(double distance, std::vector<Eigen::Vector2d>& kept,
                    std::vector<Eigen::Vector2d>& next, ConvexPolygon& result) const;
 

@@ -7,7 +7,9 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kSpacing = 0.004;  // of the keys [s]
+/// Spacing of the keys [s]. Chosen: four ticks of 1 ms, over which a cubic follows a quintic of 0.1
+/// s with an error below 1e-5 of its size.
+constexpr double kSpacing = 0.004;
 
 }  // namespace
 

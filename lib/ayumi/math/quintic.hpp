@@ -1,6 +1,6 @@
 #pragma once
-// Quintics that meet value, rate and acceleration at both ends: what a track of keys at rest cannot
-// say around a flight. They enter a track as dense spline keys.
+// Quintics with given value, rate and acceleration at both ends, which connect a track to a flight.
+// They enter a track as dense spline keys.
 
 #include <vector>
 
@@ -8,17 +8,17 @@
 
 namespace ayumi {
 
-/// A point that a motion passes.
+/// A point of a motion.
 struct QuinticEnd {
   double t = 0;  ///< [s]
   double value = 0, rate = 0, acceleration = 0;
 };
 
-/// Of the quintic from one end to the other, at t between.
+/// Value, rate and acceleration at t of the quintic between two points.
 TrackPoint quintic_at(const QuinticEnd& from, const QuinticEnd& to, double t);
 
 /// Spline keys of the quintics through all points, at most 4 ms apart, the first point included.
-/// The track is to be at rest before and after them, or to go on with such keys.
+/// The track has to rest before and after them, or to continue with such keys.
 std::vector<TrackKey> quintic_keys(const std::vector<QuinticEnd>& points);
 
 }  // namespace ayumi

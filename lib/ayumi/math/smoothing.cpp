@@ -1,7 +1,7 @@
 // min 1/2 u'u + 1/2 l |D(x + u)|^2 with |u| <= 1, in units of the band, by a primal-dual interior
 // point method: with slacks s = 1 -+ u and multipliers z, s z = mu,
 //   (I + l D'D + z1/s1 + z2/s2) du = -(u + l D'D(x + u)) + mu (1/s2 - 1/s1),
-// whose matrix has three bands on either side: every step costs as much as reading the samples.
+// whose matrix has three bands on either side: the time of a step is linear in the samples.
 #include "ayumi/math/smoothing.hpp"
 
 #include <algorithm>
@@ -15,10 +15,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kBand = 3;
+constexpr int kBand = 3;  // of the third differences
+/// Largest number of steps of the interior point method, which usually takes 20.
 constexpr int kSteps = 60;
-constexpr double kEnd = 1e-8;     // of mu, when the curve has as good as come to rest
-constexpr double kToEdge = 0.99;  // of the way to the edge in one step
+/// Complementarity at which the method ends, relative to its initial value.
+constexpr double kEnd = 1e-8;
+/// Fraction of the distance to the boundary that a step goes; below 1, as usual for such methods.
+constexpr double kToBoundary = 0.99;
 
 using Bands =
     std::array<VectorXd, kBand + 1>;  // diagonals of a symmetric matrix, from the main one
@@ -63,15 +66,15 @@ VectorXd solved(Bands P, VectorXd b) {
   return b;
 }
 
-// Largest share of a step that leaves all of v above zero.
-double reach(const VectorXd& v, const VectorXd& step) {
+// Largest fraction of a step after which all of v is positive.
+double step_share(const VectorXd& v, const VectorXd& step) {
   double share = 1;
   for (Index i = 0; i < v.size(); ++i)
-    if (step[i] < 0) share = std::min(share, -kToEdge * v[i] / step[i]);
+    if (step[i] < 0) share = std::min(share, -kToBoundary * v[i] / step[i]);
   return share;
 }
 
-// u for x in units of the band.
+// The change u of x, both in units of the band.
 VectorXd within_one(const VectorXd& x, double weight) {
   const Index n = x.size();
   Bands P = third_differences(n);
@@ -94,7 +97,8 @@ VectorXd within_one(const VectorXd& x, double weight) {
         solved(A, -(times(P, u) + Px) + mu * (s2.cwiseInverse() - s1.cwiseInverse()));
     const VectorXd dz1 = (mu + z1.array() * du.array()) / s1.array() - z1.array();
     const VectorXd dz2 = (mu - z2.array() * du.array()) / s2.array() - z2.array();
-    const double share = std::min({reach(s1, -du), reach(s2, du), reach(z1, dz1), reach(z2, dz2)});
+    const double share = std::min(
+        {step_share(s1, -du), step_share(s2, du), step_share(z1, dz1), step_share(z2, dz2)});
     u += share * du;
     z1 += share * dz1;
     z2 += share * dz2;
@@ -105,7 +109,7 @@ VectorXd within_one(const VectorXd& x, double weight) {
 }  // namespace
 
 VectorXd smoothed_within(const VectorXd& x, double band, double cutoff) {
-  constexpr Index kLeast = 8;
+  constexpr Index kLeast = 8;  // samples; fewer have hardly a third difference. Chosen: 2 kBand + 2
   if (x.size() < kLeast || !(band > 0) || x.maxCoeff() == x.minCoeff()) return x;
   const VectorXd scaled = (x.array() - x[0]) / band;
   const double weight = std::pow(2 * EIGEN_PI * cutoff, -6);

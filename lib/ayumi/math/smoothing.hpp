@@ -5,11 +5,11 @@
 
 namespace ayumi {
 
-/// The samples y that stay within `band` of x and are smoothest: least sum of (y - x)^2 + third
-/// differences of y squared, weighed so that what is quicker than `cutoff` [cycles per sample]
-/// gives way. Rounding goes, slow movement and its curvature stay; corners become as round as the
-/// band lets them, and a jump of more than two bands stays a jump. Fewer than eight samples, a band
-/// of zero or constant samples come back as they are.
+/// The smoothest samples y within `band` of x: they minimise the sum of (y - x)^2 and of the
+/// squared third differences of y, weighted so that components above `cutoff` [cycles per sample]
+/// are removed. Rounding disappears, and slow motion keeps its curvature; corners become as round
+/// as the band allows, and a jump of more than two bands remains a jump. Fewer than eight samples,
+/// constant samples and samples with a band of zero are returned unchanged.
 Eigen::VectorXd smoothed_within(const Eigen::VectorXd& x, double band, double cutoff);
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
 // Hermite form on u in [0, 1], rates m scaled by the segment's length T:
 //   p = v0 + m0 u + (3 d - 2 m0 - m1) u^2 + (m0 + m1 - 2 d) u^3,  d = v1 - v0.
-// A spline run asks for equal accelerations on both sides of each inner key:
+// A spline run has equal accelerations on both sides of each inner key:
 //   m_{i-1}/T_i + 2 m_i (1/T_i + 1/T_{i+1}) + m_{i+1}/T_{i+1} = 3 (d_i/T_i^2 + d_{i+1}/T_{i+1}^2).
 #include "ayumi/math/track.hpp"
 
@@ -18,22 +18,23 @@ std::array<double, 6> hermite(double v0, double v1, double m0, double m1) {
   return {v0, m0, 3 * d - 2 * m0 - m1, m0 + m1 - 2 * d, 0, 0};
 }
 
-bool is_curve(Interpolation way) {
-  return way == Interpolation::cubic || way == Interpolation::spline;
+bool is_curve(Interpolation kind) {
+  return kind == Interpolation::cubic || kind == Interpolation::spline;
 }
 
 double slope(const std::vector<TrackKey>& keys, size_t segment) {
   return (keys[segment + 1].value - keys[segment].value) / (keys[segment + 1].t - keys[segment].t);
 }
 
-// Rate at key i of a cubic or spline segment whose neighbour does not continue it.
+// Rate at key i at the end of a run of cubic or spline segments.
 double end_rate(const std::vector<TrackKey>& keys, size_t i, bool neighbour_before) {
   if (neighbour_before ? i == 0 : i + 1 >= keys.size()) return 0;
   const size_t neighbour = neighbour_before ? i - 1 : i;
   return keys[neighbour + 1].interpolation == Interpolation::linear ? slope(keys, neighbour) : 0;
 }
 
-// Rates of the keys first..last of a run of spline segments, ends given: Thomas' algorithm.
+// Rates of the keys first..last of a run of spline segments with given end rates: Thomas'
+// algorithm.
 void solve_spline(const std::vector<TrackKey>& keys, size_t first, size_t last,
                   std::vector<double>& rate) {
   const size_t n = last - first;
@@ -55,14 +56,14 @@ std::vector<std::array<double, 2>> curve_rates(const std::vector<TrackKey>& keys
   const size_t segments = keys.size() - 1;
   std::vector<std::array<double, 2>> rates(segments, {0.0, 0.0});
   for (size_t first = 0; first < segments;) {
-    const Interpolation way = keys[first + 1].interpolation;
+    const Interpolation kind = keys[first + 1].interpolation;
     size_t last = first + 1;
-    while (last < segments && keys[last + 1].interpolation == way) ++last;
-    if (is_curve(way)) {
+    while (last < segments && keys[last + 1].interpolation == kind) ++last;
+    if (is_curve(kind)) {
       std::vector<double> rate(keys.size(), 0.0);
       rate[first] = end_rate(keys, first, true);
       rate[last] = end_rate(keys, last, false);
-      if (way == Interpolation::spline) {
+      if (kind == Interpolation::spline) {
         solve_spline(keys, first, last, rate);
       } else {
         for (size_t i = first + 1; i < last; ++i)

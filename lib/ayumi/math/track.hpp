@@ -1,19 +1,19 @@
 #pragma once
-// A scalar track of keys over time: what an author writes about one quantity. Every segment is a
-// polynomial of degree five or less; before the first and after the last key the track holds.
+// A scalar track: keys of one quantity over time. Every segment is a polynomial of degree five or
+// less; before the first and after the last key the track is constant.
 
 #include <array>
 #include <vector>
 
 namespace ayumi {
 
-/// How a track goes from one key to the next.
+/// Interpolation from one key to the next.
 ///   linear        straight, C0
 ///   cubic         Hermite with Catmull-Rom rates, C1
 ///   minimum_jerk  rest to rest quintic, C2
-///   hold          the old value until the key, then a jump
+///   hold          the previous value until the key, then a jump
 ///   spline        cubic spline through consecutive spline keys, C2 inside the run
-/// Where a cubic or spline run ends it is at rest, or takes the slope of a linear neighbour.
+/// The end of a cubic or spline run is at rest or has the slope of a linear neighbour.
 enum class Interpolation { linear, cubic, minimum_jerk, hold, spline };
 
 struct TrackKey {
@@ -31,8 +31,8 @@ class Track {
   Track() : Track(0.0) {}
   /// A constant.
   explicit Track(double value) : keys_{{0, value, Interpolation::hold}} {}
-  /// At least one key, times strictly increasing, finite; throws Error(internal) otherwise (the
-  /// caller knows the file and place to name).
+  /// At least one key, with strictly increasing times and finite values; throws Error(internal)
+  /// otherwise (the caller checks this with file and place).
   explicit Track(std::vector<TrackKey> keys);
 
   TrackPoint at(double t) const;

@@ -6,7 +6,7 @@ Eigen::VectorXd weighted_least_norm(const Eigen::MatrixXd& J, const Eigen::Vecto
                                     const Eigen::VectorXd& w, const Eigen::VectorXd& x0,
                                     double damping) {
   const Eigen::MatrixXd JW = J * w.cwiseInverse().asDiagonal();
-  // Task and joints are few: the plain product is ahead of the blocked one.
+  // With few tasks and joints the plain product is faster than the blocked one.
   Eigen::MatrixXd A = JW.lazyProduct(J.transpose());
   if (damping > 0) A.diagonal().array() += damping * A.trace() / static_cast<double>(A.rows());
   return x0 + JW.transpose() * A.ldlt().solve(u - J * x0);

@@ -5,7 +5,7 @@
 
 namespace ayumi {
 
-/// The x nearest to x0 in the norm W = diag(w) that meets J x = u:
+/// The x nearest to x0 in the norm W = diag(w) with J x = u:
 ///   x = x0 + W^-1 J' (J W^-1 J' + lambda I)^-1 (u - J x0),  lambda = damping * trace / rows,
 /// (23) with v = u - J x0 (the printed sign is wrong, docs/notation.md). J: m x n, w > 0: n, u: m.
 Eigen::VectorXd weighted_least_norm(const Eigen::MatrixXd& J, const Eigen::VectorXd& u,

@@ -1,5 +1,5 @@
 #pragma once
-// Windows of time that belong together.
+// Windows of time.
 
 #include <utility>
 #include <vector>
@@ -8,10 +8,10 @@ namespace ayumi {
 
 using TimeWindow = std::pair<double, double>;  ///< begin and end [s]
 
-/// In order of time; those that overlap or touch are one.
+/// Sorted, with overlapping or touching windows merged.
 std::vector<TimeWindow> merged(std::vector<TimeWindow> windows);
 
-/// Whether t [s] is in one of them, their ends included.
+/// True when t [s] is in one of the windows, ends included.
 bool within(const std::vector<TimeWindow>& windows, double t);
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
 #pragma once
-// Where the bodies are for given joint angles, the root at the origin. What the model's own checks
-// need; everything else uses dynamics/kinematics.hpp.
+// Poses of the bodies for given joint angles with the root at the origin, for the checks of the
+// model itself. Other code uses dynamics/kinematics.hpp.
 
 #include <Eigen/Geometry>
 #include <vector>

@@ -1,7 +1,7 @@
 // Mirror images: the reflection S = diag(1, -1, 1) takes a point p to S p and an axis of rotation a
 // to -S a. Where the axis of the right joint is sigma (-S a_left), the mirrored angle is sigma
-// times the left one, and motors mounted as mirror images turn the other way: their counts have the
-// signs c_right = -sigma c_left.
+// times the left one, and motors that are mounted as mirror images turn in opposite directions:
+// their counts have the signs c_right = -sigma c_left.
 
 #include "ayumi/model/diagnose.hpp"
 
@@ -22,10 +22,18 @@ namespace ayumi {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kDensest = 20000;    // heavier than lead [kg/m^3]
-constexpr double kFastest = 60;       // [rad/s]
-constexpr double kLargeShare = 0.05;  // of the mass: such a body needs a collision shape
-constexpr double kAsymmetry = 0.02;   // of a mass, or of the robot's size
+// Thresholds of warnings; none changes a result.
+
+/// Density above which a mass is suspicious [kg/m^3]. Chosen: twice that of lead.
+constexpr double kDensest = 20000;
+/// Joint speed above which a limit is suspicious [rad/s]. Chosen: ten times that of a usual servo.
+constexpr double kFastest = 60;
+/// Fraction of the robot's mass above which a body needs a collision shape. Chosen: a body of this
+/// size is a limb, a head or a trunk.
+constexpr double kLargeShare = 0.05;
+/// Difference of left and right that is suspicious, as a fraction of a mass or of the robot's size.
+/// Chosen: above the differences that wiring and screws make.
+constexpr double kAsymmetry = 0.02;
 
 std::string millimetres(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 
@@ -94,7 +102,7 @@ class Doctor {
 
   void examine_size(const Link& link, const std::string& where) {
     Eigen::AlignedBox3d box;
-    double reach = 0;  // of the shapes from the centre of mass
+    double reach = 0;  // largest distance of the shapes from the centre of mass
     for (const auto* shapes : {&link.visuals, &link.collisions})
       for (const PlacedShape& placed : *shapes)
         for (const Eigen::Vector3d& point : outline(placed.shape)) {
@@ -142,7 +150,7 @@ class Doctor {
       }
       if (same.size() > 2 && other_mass)
         warn("links " + text::join(same, ", "),
-             "have one and the same inertia tensor but different masses; placeholders?");
+             "have the same inertia tensor but different masses; placeholders?");
     }
   }
 
@@ -160,7 +168,7 @@ class Doctor {
     }
     if (!missing.empty())
       warn("links " + text::join(missing, ", "),
-           "have no collision shape; contacts and self-collisions of them go unseen");
+           "have no collision shape; their contacts and self-collisions are not detected");
   }
 
   void examine_dof(const Dof& dof) {
@@ -170,7 +178,7 @@ class Doctor {
     if (!dof.limited)
       warn(where, "has no position limits; state them");
     else if (dof.upper - dof.lower < 1e-6)
-      warn(where, "its limits leave it no range; make it a fixed joint");
+      warn(where, "its limits leave no range; make it a fixed joint");
     else if (!dof.prismatic && dof.upper - dof.lower > 4 * std::numbers::pi)
       warn(where, "its range is more than two turns; a placeholder?");
     if (std::isinf(limits.speed[index]))
@@ -200,7 +208,7 @@ class Doctor {
            "every joint has the torque limit " + text::brief(torque[0]) + " N m; a placeholder?");
   }
 
-  // The right-hand name of a left-hand one, empty when it is neither.
+  // The right-hand name that belongs to a left-hand name; empty when the name has no side.
   static std::string mirrored_name(const std::string& name) {
     static const std::pair<const char*, const char*> kSides[] = {
         {"left", "right"}, {"Left", "Right"}, {"LEFT", "RIGHT"}, {"l_", "r_"}, {"L_", "R_"}};
@@ -227,7 +235,7 @@ class Doctor {
     against = static_cast<int>(same.size());
     if (conform == 0 || against == 0) return;
     warn("joints " + text::join(conform >= against ? same : opposite, ", "),
-         "the signs of the left and right encoders relate otherwise than on the " +
+         "the signs of the left and right encoders have another relation than on the " +
              std::to_string(std::max(conform, against)) +
              " other pairs; try the joint alone before replaying a table");
   }
@@ -242,7 +250,7 @@ class Doctor {
     mirrored.y() = -mirrored.y();
     const double apart = (mirrored - zero_[right.body] * right.pose * right.inertia.com).norm();
     if (a > 0 && b > 0 && apart > kAsymmetry * size_)
-      warn(where, "their centres of mass are no mirror images of each other, by " +
+      warn(where, "their centres of mass differ from mirror images of each other by " +
                       millimetres(apart) + " with every joint at 0");
   }
 
@@ -256,10 +264,10 @@ class Doctor {
                           : Eigen::Vector3d(-axis.x(), axis.y(), -axis.z());
     const double apart = (origin - zero_[right.body].translation()).norm();
     if (apart > kAsymmetry * size_)
-      warn(where, "their places are no mirror images of each other, by " + millimetres(apart));
+      warn(where, "their places differ from mirror images of each other by " + millimetres(apart));
     const double along = axis.dot(zero_[right.body].linear() * model_.bodies()[right.body].axis);
     if (std::abs(along) < 0.99) {
-      warn(where, "their axes are no mirror images of each other");
+      warn(where, "their axes are not mirror images of each other");
       return;
     }
     const double lower = along > 0 ? left.lower : -left.upper;
@@ -296,7 +304,7 @@ class Doctor {
     examine_support(soles, cog);
   }
 
-  // Is the COG above the hull of both soles, seen along the left sole's normal?
+  // Tests whether the COG is above the hull of both soles, along the left sole's normal.
   void examine_support(const std::vector<Eigen::Isometry3d>& soles, const Eigen::Vector3d& cog) {
     const Eigen::Isometry3d to_left = soles[0].inverse();
     std::vector<Eigen::Vector2d> corners;

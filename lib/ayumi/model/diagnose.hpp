@@ -1,5 +1,5 @@
 #pragma once
-// The model doctor: what is suspicious in a robot description that can still be used.
+// Warnings about a robot description that is valid but suspicious.
 
 #include <string>
 #include <vector>
@@ -10,14 +10,15 @@ namespace ayumi {
 
 struct ModelWarning {
   std::string where;    ///< link, joint or field, e.g. "link head"
-  std::string message;  ///< what is suspicious and what to do
+  std::string message;  ///< the suspicion and the remedy
 };
 
-/// Looks for: implausible inertia against mass and size (triangle inequality, placeholders, equal
-/// tensors on many links), mass on the root link that URDF readers drop, missing limits, effort or
-/// speed that are placeholders, left-right asymmetry of masses, lengths and limits, soles not level
-/// at the home posture, a COG outside the soles, sign conflicts of encoders between left and right,
-/// joints without servo or encoder, missing collision shapes, meshes far larger than the robot.
+/// Tests for: inertia that is implausible for mass and size (triangle inequality, placeholders,
+/// equal tensors on many links), mass on the root link that URDF readers drop, missing limits,
+/// effort or speed that are placeholders, left-right asymmetry of masses, lengths and limits, soles
+/// not level at the home posture, a COG outside the soles, sign conflicts of encoders between left
+/// and right, joints without servo or encoder, missing collision shapes, meshes far larger than the
+/// robot.
 std::vector<ModelWarning> diagnose(const RobotModel& model);
 
 }  // namespace ayumi

@@ -1,7 +1,7 @@
 #pragma once
-// A robot as its files say it: the URDF's links and joints by name, and the sidecar's soles,
-// servos, actuators, encoders, sensors and controller defaults. Plain data; RobotModel validates
-// it.
+// A robot as its files describe it: links and joints of the URDF by name, and soles, servos,
+// actuators, encoders, sensors and controller defaults of the sidecar. This is plain data, which
+// RobotModel validates.
 
 #include <Eigen/Geometry>
 #include <map>
@@ -21,7 +21,7 @@ struct Inertia {
 
 struct LinkDescription {
   std::string name;
-  bool has_inertial = false;  ///< the file names an inertia
+  bool has_inertial = false;  ///< the file has an inertia
   Inertia inertia;
   std::vector<PlacedShape> visuals;
   std::vector<PlacedShape> collisions;
@@ -37,15 +37,15 @@ struct JointDescription {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();           ///< in the joint frame
   bool has_limits = false;
   double lower = 0, upper = 0;  ///< [rad] or [m]
-  double velocity = 0;          ///< [rad/s] or [m/s]; 0: unstated
-  double effort = 0;            ///< [N m] or [N]; 0: unstated
+  double velocity = 0;          ///< [rad/s] or [m/s]; 0: not given
+  double effort = 0;            ///< [N m] or [N]; 0: not given
   double damping = 0;           ///< [N m s/rad]
   double friction = 0;          ///< Coulomb [N m]
   std::string mimic;            ///< joint that drives this one
   double mimic_multiplier = 1, mimic_offset = 0;
 };
 
-/// Limits of the motors under one name ("hoap1", "hoap1-strong"). Per joint name.
+/// Limits of the motors by joint name, under a profile name ("hoap1", "hoap1-strong").
 struct ActuatorProfile {
   std::string name;
   std::map<std::string, double> speed;              ///< [rad/s]
@@ -54,8 +54,8 @@ struct ActuatorProfile {
   double thermal_window = 10.0;                     ///< [s]
 };
 
-/// The joint's own position loop: torque = kp (target - theta) - kd dtheta. Positions only go to
-/// the robot; a velocity feed-forward is a lead of kd/kp seconds on the target.
+/// The joint's position loop: torque = kp (target - theta) - kd dtheta. The robot receives
+/// positions only; a velocity feed-forward is a lead of kd/kp seconds of the target.
 struct ServoDescription {
   double kp = 0;             ///< [N m/rad]
   double kd = 0;             ///< [N m s/rad]
@@ -64,7 +64,7 @@ struct ServoDescription {
   double coulomb = 0;        ///< dry friction [N m]
 };
 
-/// How one joint appears on the robot's bus and in its sequence files.
+/// A joint on the robot's bus and in its sequence files.
 struct EncoderDescription {
   int device = 0;                ///< device id on the bus, 1-based
   double counts_per_degree = 0;  ///< signed: the sign of the joint's positive direction
@@ -77,7 +77,7 @@ struct SoleDescription {
   /// z up. Footholds of a pattern are poses of this frame.
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector2d> polygon;  ///< convex, counter-clockwise, in the sole frame [m]
-  double stiffness = 0;     ///< of the whole sole against the ground [N/m]; 0: chosen from the mass
+  double stiffness = 0;     ///< of the whole sole on the ground [N/m]; 0: derived from the mass
   double damping_time = 0;  ///< contact damping / stiffness [s]; 0: default
 };
 
@@ -93,12 +93,12 @@ struct SensorDescription {
   bool encoder_quantisation = false;                       ///< round joint angles to counts
 };
 
-/// Controller defaults of this robot; what a pattern does not set. Dimensionless as in
+/// Controller defaults of this robot for values that a pattern does not set. Dimensionless as in
 /// docs/theory.md.
 struct ControlDefaults {
   std::map<std::string, double> joint_weight;  ///< diagonal of W by joint name, default 1
   std::map<std::string, double> dtad;          ///< gains by name (q, ka, ks, kd, ...)
-  std::map<std::string, double> viip;          ///< likewise of VIIP
+  std::map<std::string, double> viip;          ///< gains of VIIP by name
 };
 
 struct RobotDescription {
@@ -119,7 +119,7 @@ struct RobotDescription {
   double servo_period = 0.001;   ///< [s]
   std::string trunk_link;        ///< empty: the root link
   std::vector<std::pair<std::string, std::string>> collision_ignore;  ///< link pairs never checked
-  std::vector<std::string> assumptions;  ///< what was inferred, in words
+  std::vector<std::string> assumptions;  ///< values that were inferred, in words
 };
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
 #pragma once
 // The robot as an immutable, validated tree of moving bodies. Links joined by fixed joints are one
-// body; body 0 is the floating root; every other body hangs on its parent by one one-axis joint.
+// body; body 0 is the floating root; a joint with one axis connects every other body to its parent.
 // Bodies are sorted parents first. A mimic joint moves its body with the dof of another joint.
 
 #include <Eigen/Geometry>
@@ -40,7 +40,7 @@ struct Dof {
   EncoderDescription encoder;  ///< device 0 when the robot has none
 };
 
-/// Limits of one profile as vectors over the dofs; infinite where nothing is stated.
+/// Limits of one profile as vectors over the dofs; infinite where the files give none.
 struct ActuatorLimits {
   std::string name;
   Eigen::VectorXd speed;              ///< [rad/s]
@@ -68,7 +68,7 @@ struct Sole {
 
 class RobotModel {
  public:
-  /// Throws Error(bad_model) naming the link or joint and the remedy: no or several roots, a loop,
+  /// Throws Error(bad_model) that names link or joint and remedy: no or several roots, a loop,
   /// an unknown link, two links of one name, a moving body without mass, negative mass or an
   /// inertia that no body can have, non-finite numbers, axis of length zero, limits reversed, an
   /// unknown mimic, sole or posture joint, a posture outside the limits.
@@ -95,8 +95,8 @@ class RobotModel {
   const std::vector<int>& leg(Side side) const;
   int trunk_body() const { return trunk_body_; }
 
-  /// Actuator limits by profile name; the default profile for "". Throws Error(bad_model) naming
-  /// the known ones.
+  /// Actuator limits by profile name; the default profile for "". Throws Error(bad_model) that
+  /// names the known profiles.
   const ActuatorLimits& limits(const std::string& profile = "") const;
   std::vector<std::string> profile_names() const;
 
@@ -104,7 +104,7 @@ class RobotModel {
   Eigen::VectorXd posture(const std::string& posture_name = "home") const;
   bool has_posture(const std::string& posture_name) const;
 
-  Eigen::VectorXd joint_weight() const;  ///< diagonal of W, sidecar or 1
+  Eigen::VectorXd joint_weight() const;  ///< diagonal of W: the sidecar's, else 1
 
   /// State at rest, base at the origin, joints in `posture_name`.
   RobotState rest_state(const std::string& posture_name = "home") const;

@@ -1,5 +1,5 @@
 #pragma once
-// Where a robot is. Generalised velocity is [v_WB; w_WB; dtheta], both base parts in world axes.
+// State of a robot. Generalised velocity: [v_WB; w_WB; dtheta], base parts in world axes.
 
 #include <Eigen/Geometry>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a robot description must satisfy before a RobotModel can be built from it. Each function
+// Conditions that a robot description has to meet before a RobotModel is built. Each function
 // throws Error(bad_model) "file: link or joint: what is wrong, what to do".
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace ayumi {
 
-/// Largest figures taken for those of a robot; anything beyond is a wrong unit.
-inline constexpr double kLargestMass = 1e6;    // [kg]
-inline constexpr double kLargestLength = 1e4;  // [m]
+/// Largest mass [kg] and length [m] of a robot. Chosen: a larger value is in a wrong unit.
+inline constexpr double kLargestMass = 1e6;
+inline constexpr double kLargestLength = 1e4;
 
 /// Throws "urdf file: message".
 [[noreturn]] void complain_urdf(const RobotDescription& robot, const std::string& message);
@@ -31,7 +31,7 @@ int find_root_link(const RobotDescription& robot);
 /// floating nor mimicking), in `joint_order` when it is given, else in the file's order.
 std::vector<int> ordered_dof_joints(const RobotDescription& robot);
 
-/// Everything of the sidecar that names a joint or link of the URDF, and its numbers.
+/// Names of joints and links in the sidecar, and its numbers.
 void validate_sidecar(const RobotDescription& robot, const std::vector<std::string>& dof_names);
 
 }  // namespace ayumi

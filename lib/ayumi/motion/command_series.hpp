@@ -25,7 +25,7 @@ struct CommandSample {
                                            Eigen::Isometry3d::Identity()};  ///< planned sole frames
 };
 
-/// A phase that VIIP carries; the samples hold the posture meanwhile.
+/// A phase in which VIIP controls the robot; the samples hold the posture in it.
 struct ViipSpan {
   long begin = 0, end = 0;  ///< ticks, the end not included
   ViipGoal goal;
@@ -35,9 +35,9 @@ struct CommandSeries {
   double dt = 0.001;  ///< [s]
   std::vector<CommandSample> samples;
   std::vector<ViipSpan> viip;                 ///< in time order
-  std::map<std::string, std::string> origin;  ///< track -> where it came from, in words
+  std::map<std::string, std::string> origin;  ///< source of each track, in words
   Eigen::VectorXd joint_weight;               ///< diagonal of W [dof]
-  /// The joints come from a table of what servos received, its lead taken out: played again as is.
+  /// The joints come from a table of servo targets without their lead; it is replayed unchanged.
   bool servo_commands = false;
 
   double duration() const { return dt * static_cast<double>(samples.size() - 1); }

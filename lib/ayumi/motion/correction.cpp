@@ -20,16 +20,16 @@ using Eigen::VectorXd;
 
 namespace {
 
-// What control points that cancel each other leave; to the bit where nothing is to change [m],
-// [rad].
+// Changes below this are the rounding of control points that cancel each other; they become zero,
+// so that samples without a change stay bit-identical [m, rad].
 constexpr double kRounded = 1e-13;
 
 struct JacobianFactors {
-  double a, b, da, db;  // and their derivatives by f^2
+  double a, b, da, db;  // with their derivatives by f^2
 };
 
 JacobianFactors jacobian_factors(double f2) {
-  if (f2 < 0.01) {  // series to f^6: below 1e-14
+  if (f2 < 0.01) {  // series to f^6, with an error below 1e-14
     return {0.5 - f2 * (1.0 / 24 - f2 * (1.0 / 720 - f2 / 40320)),
             1.0 / 6 - f2 * (1.0 / 120 - f2 * (1.0 / 5040 - f2 / 362880)),
             -1.0 / 24 + f2 * (1.0 / 360 - f2 / 13440),
@@ -42,7 +42,7 @@ JacobianFactors jacobian_factors(double f2) {
 
 void rotate_base(const Vector3d& r, const Vector3d& dr, const Vector3d& ddr,
                  CommandSample& sample) {
-  if (r.isZero(0) && dr.isZero(0) && ddr.isZero(0)) return;  // to the bit
+  if (r.isZero(0) && dr.isZero(0) && ddr.isZero(0)) return;  // keeps every bit
   const JacobianFactors k = jacobian_factors(r.squaredNorm());
   const double df2 = 2 * r.dot(dr);
   const Vector3d rdr = r.cross(dr), rddr = r.cross(ddr);
@@ -75,7 +75,7 @@ SplineWeights correction_weights(const CorrectionTrack& track, double t) {
   SplineWeights weights;
   const auto last = static_cast<int>(track.coefficients.rows()) - 4;
   const double knots = (t - track.begin) / track.spacing;
-  constexpr double kRounding = 1e-6;  // the track's own end is inside it
+  constexpr double kRounding = 1e-6;  // in knots: the end of the track belongs to it
   if (last < 0 || !(knots >= -kRounding) || knots > last + 1 + kRounding) return weights;
   weights.first = std::clamp(static_cast<int>(knots), 0, last);
   const double u = knots - weights.first, v = 1 - u, h = track.spacing;

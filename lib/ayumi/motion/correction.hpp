@@ -1,13 +1,13 @@
 #pragma once
-// Correction tracks: smooth changes laid over a sampled motion (what repair writes).
+// Correction tracks: smooth changes that are added to a sampled motion. A repair writes them.
 
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
 
-/// Values of the four cubic B-spline basis functions that act at time t, the index of the first,
-/// and their first and second time derivatives. Zero outside the track.
+/// Values of the four cubic B-spline basis functions that are not zero at time t, the index of the
+/// first one, and their first and second time derivatives. Zero outside the track.
 struct SplineWeights {
   int first = 0;
   Eigen::Vector4d value = Eigen::Vector4d::Zero();
@@ -16,9 +16,9 @@ struct SplineWeights {
 };
 SplineWeights correction_weights(const CorrectionTrack& track, double t);
 
-/// The series with the track added to base and joints (base rotation exp(r) R); velocities and
-/// accelerations follow, COG, ZMP and f_z are those of the full model. Contacts stay as planned.
-/// Throws Error(bad_pattern) for an unknown joint or a wrong number of columns.
+/// The series with the track added to base and joints (base rotation exp(r) R), with the velocities
+/// and accelerations that follow, and with COG, ZMP and f_z of the full model. Contacts do not
+/// change. Throws Error(bad_pattern) for an unknown joint or a wrong number of columns.
 CommandSeries apply_correction(const RobotModel& model, const CommandSeries& series,
                                const CorrectionTrack& track);
 

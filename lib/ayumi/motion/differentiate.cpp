@@ -15,6 +15,10 @@ using Eigen::VectorXd;
 
 namespace {
 
+/// Fraction of the weight below which the ZMP has no meaning, as in flight: it is a quotient by the
+/// ground force. Chosen: 5 %, above the force of a foot that only touches.
+constexpr double kZmpMinLoad = 0.05;
+
 // [position; rotation vector; theta; COG] of sample i from sample k.
 VectorXd between(const std::vector<CommandSample>& samples, int k, int i) {
   const RobotState& from = samples[k].state;
@@ -60,7 +64,7 @@ GroundReaction full_model_reaction(const RobotModel& model, const CommandSample&
                                    RobotData& data) {
   const VectorXd force = inverse_dynamics(model, sample.state, sample.acceleration, data);
   return ground_reaction(sample.state.base.position, force.head<6>(), sample.zmp.z(),
-                         0.05 * model.mass() * kGravity);
+                         kZmpMinLoad * model.mass() * kGravity);
 }
 
 }  // namespace ayumi

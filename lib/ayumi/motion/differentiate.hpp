@@ -1,5 +1,5 @@
 #pragma once
-// Rates of a sampled motion, and the ground wrench the full model needs for it.
+// Rates of a sampled motion, and the ground reaction of the full model for it.
 
 #include <vector>
 
@@ -9,12 +9,12 @@
 namespace ayumi {
 
 /// Fills velocities and accelerations of base, joints and COG by central differences of fourth
-/// order. `rest_ends`: the motion is at rest before its first and after its last sample; otherwise
-/// it goes on as a cubic.
+/// order. With `rest_ends` the motion is at rest before its first and after its last sample;
+/// otherwise it continues as a cubic.
 void fill_rates(std::vector<CommandSample>& samples, double dt, bool rest_ends);
 
-/// ZMP at the height of `sample.zmp` and force that the full model needs. Below 5 % of the weight
-/// the ZMP stays under the base (flight).
+/// ZMP at the height of `sample.zmp` and ground force that the full model needs. Below 5 % of the
+/// weight, as in flight, the ZMP is the point under the base.
 GroundReaction full_model_reaction(const RobotModel& model, const CommandSample& sample,
                                    RobotData& data);
 

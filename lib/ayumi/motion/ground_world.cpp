@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Share of a motion's full value at time t.
+/// Fraction of a motion's full value at time t.
 double share_of(const FloorMotion& motion, double t) {
   const double since = t - motion.at;
   if (since < 0) return 0;

@@ -1,6 +1,6 @@
 #pragma once
-// The ground a robot meets, as data. Everything lies in the ground's frame: its origin is the
-// world's, its z axis the normal of the slope, and it moves with the floor.
+// The ground as data. All shapes are in the ground's frame: its origin is that of the world, its z
+// axis is the normal of the slope, and it moves with the floor.
 
 #include <Eigen/Dense>
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace ayumi {
 
-/// Part of the ground raised to a level top, a convex polygon; friction is the ground's.
+/// A part of the ground with its own height, a convex polygon; its friction is the ground's.
 struct GroundBlock {
   enum class Kind { rectangle, disc };
   Kind kind = Kind::rectangle;
@@ -16,29 +16,29 @@ struct GroundBlock {
   Eigen::Vector2d high = Eigen::Vector2d::Zero();    ///< largest [m]
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< of a disc [m]
   double radius = 0;                                 ///< of a disc (an octagon) [m]
-  double height = 0;  ///< of the top over the ground's origin, not over the plane [m]
+  double height = 0;  ///< of the top over the ground's origin (not over the plane) [m]
 };
 
-/// A rectangle with a friction of its own; of several, the last holds.
+/// A rectangle with its own friction; where several overlap, the last one counts.
 struct FrictionPatch {
   Eigen::Vector2d low = Eigen::Vector2d::Zero();   ///< least x, y [m]
   Eigen::Vector2d high = Eigen::Vector2d::Zero();  ///< largest [m]
   double friction = 0;                             ///< Coulomb coefficient
 };
 
-/// Heights on a square grid, bilinear between its nodes; outside of it the plane.
+/// Heights on a square grid, bilinear between the nodes; the plane outside of the grid.
 struct HeightField {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< of node (0, 0) [m]
   double spacing = 0.01;                             ///< [m]
-  Eigen::MatrixXd heights{};                         ///< (along x, along y), as of a block [m]
+  Eigen::MatrixXd heights{};                         ///< (along x, along y), as in a block [m]
 };
 
 enum class MotionShape { ramp, half_sine, sine };
 
-/// A declared motion of the whole floor; several add up.
-///   ramp: smoothly (minimum jerk) to the full value within `duration`, and stays there;
-///   half_sine: there and back within `duration`;
-///   sine: sin(2 pi frequency (t - at)) for `duration`, then back where it began.
+/// A declared motion of the whole floor; several motions add up.
+///   ramp: smoothly (minimum jerk) to the full value within `duration`, where it stays;
+///   half_sine: to the full value and back within `duration`;
+///   sine: sin(2 pi frequency (t - at)) for `duration`, then zero.
 struct FloorMotion {
   MotionShape shape = MotionShape::ramp;
   double at = 0, duration = 0;                      ///< [s]
@@ -59,10 +59,10 @@ struct World {
   std::vector<FloorMotion> motions = {};
 };
 
-/// Corners of a block's top in the ground's frame, anticlockwise: 4, or 8 of a disc.
+/// Corners of a block's top, ground's frame, anticlockwise; returns their number, 4 or 8 (disc).
 int block_corners(const GroundBlock& block, std::array<Eigen::Vector2d, 8>& corners);
 
-/// The ground's frame in the world at time t [s]: slope and all motions; before 0 as at 0.
+/// The ground's frame in the world at time t [s]: slope and all motions. Before 0 it is as at 0.
 Eigen::Isometry3d floor_pose(const World& world, const std::vector<FloorMotion>& further, double t);
 
 }  // namespace ayumi

@@ -1,5 +1,5 @@
 #pragma once
-// A goal of VIIP as a motion with keys, which the check can judge. Plain data.
+// A goal of VIIP as a keyed motion, which the check can judge. Plain data.
 
 #include <string>
 
@@ -7,12 +7,12 @@
 
 namespace ayumi {
 
-/// What a goal asks for, as keys of its own, from rest to rest: the COG's way, a walk whose steps
-/// are as long and as quick, the jump. Footholds of VIIP move with the robot; these are its nominal
-/// ones.
+/// The motion that a goal commands, as keys from rest to rest: a displacement of the COG, a walk
+/// with steps of the same length and time, or a jump. VIIP moves its footholds with the robot;
+/// these are the nominal ones.
 struct KeyedGoal {
   std::string place;     ///< "VIIP steps at 0.50 s"
-  std::string obstacle;  ///< why no such motion exists; "" where it does
+  std::string obstacle;  ///< reason why no such motion exists; "" when it exists
   CommandSeries motion;  ///< its time begins at 0
 };
 

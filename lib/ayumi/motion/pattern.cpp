@@ -39,7 +39,7 @@ const char* name_of(Trust trust) {
   return kNames[static_cast<int>(trust)];
 }
 
-bool RepairWishes::empty() const {
+bool RepairPreferences::empty() const {
   return joints.empty() && !feet[0] && !feet[1] && keyframes.empty() && windows.empty() &&
          weights.empty() && !trust && !margin && !safety;
 }

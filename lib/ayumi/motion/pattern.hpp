@@ -1,7 +1,7 @@
 #pragma once
-// What an author writes: keyframes on tracks, contact phases, controller and scenario. Plain data
-// in SI and radians (the file names its own angle unit). docs/formats.md is the file's
-// specification.
+// A pattern as its author writes it: keyframes on tracks, contact phases, controller and scenario.
+// Plain data in SI units and radians (the file states its own angle unit). docs/formats.md
+// specifies the file.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -41,22 +41,22 @@ struct Swing {
   double lift = 0.02;  ///< height of the sole at mid-swing above the line between footholds [m]
 };
 
-/// Who carries the robot until `until`; phases follow each other from t = 0.
+/// The feet that carry the robot until `until`; phases follow each other from t = 0.
 struct Phase {
   double until = 0;  ///< [s]
   Support support = Support::both;
   std::optional<Swing> swing;
-  std::optional<ViipGoal> viip = {};  ///< VIIP carries the robot: a goal in place of keys
+  std::optional<ViipGoal> viip = {};  ///< VIIP controls the robot: a goal in place of keys
 };
 
-/// A ZMP key: a place of the supporting feet, or a point on the ground.
+/// A ZMP key: a place under the supporting feet, or a point on the ground.
 struct ZmpKey {
   enum class Place { left, right, center, point };
   Place place = Place::point;  ///< left/right: centre of that sole at that time
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< world [m], for Place::point
 };
 
-/// Sets what it names at time t and leaves every other track alone.
+/// Sets the tracks that it names at time t; it does not affect other tracks.
 struct Keyframe {
   double t = 0;                                ///< [s]
   std::optional<Interpolation> interpolation;  ///< of the segment that ends here
@@ -68,24 +68,24 @@ struct Keyframe {
   std::optional<Eigen::Vector3d> torso;            ///< roll, pitch, yaw in the world [rad]
   std::array<std::optional<Foothold>, 2> feet;     ///< by Side, world
   std::map<std::string, double> weights;           ///< diagonal of W by joint name
-  std::string place;                               ///< where in the file, for messages
+  std::string place;                               ///< its place in the file, for messages
 };
 
-/// A sampled motion beside the pattern: every column the file has, at a fixed rate.
+/// A sampled motion in a file beside the pattern: all columns of the file, at a fixed rate.
 struct DenseTable {
   std::string file;                       ///< as the pattern names it
   double dt = 0.001;                      ///< [s]
   std::vector<std::string> joints;        ///< columns of theta
   Eigen::MatrixXd theta;                  ///< rows x joints [rad]
-  bool commands = false;                  ///< theta is what servos receive, not the posture
+  bool commands = false;                  ///< theta are servo targets, not the posture
   std::vector<BasePose> base;             ///< empty or one per row
   std::vector<Eigen::Vector3d> cog, zmp;  ///< empty or one per row, world [m]
   std::vector<double> fz;                 ///< empty or one per row [N]
 };
 
-/// A smooth change added to the sampled motion, what repair writes: uniform cubic B-splines in
-/// time. Column order: base x y z [m], base rotation vector (world axes, left-multiplied) [rad],
-/// joints.
+/// A smooth change that is added to the sampled motion, as a repair writes it: uniform cubic
+/// B-splines in time. Column order: base x y z [m], base rotation vector (world axes,
+/// left-multiplied) [rad], joints.
 struct CorrectionTrack {
   double begin = 0;                 ///< [s]
   double spacing = 0;               ///< of the knots [s]
@@ -93,29 +93,29 @@ struct CorrectionTrack {
   Eigen::MatrixXd coefficients;     ///< control points x (6 + joints)
 };
 
-/// Which commanded quantity the others have to follow in a repair. What is trusted stays; COG, ZMP
-/// and f_z that are not trusted are those of the full model in the end.
+/// The commanded quantity that a repair keeps and that the others have to follow. COG, ZMP and f_z
+/// that are not trusted become those of the full model.
 enum class Trust { posture, cog, zmp };
 const char* name_of(Trust trust);
 
-/// How the author wants the pattern repaired; what is left out is up to who repairs it.
-struct RepairWishes {
-  std::vector<std::string> joints;                 ///< locked: they do not change, to the bit
-  std::array<bool, 2> feet = {};                   ///< locked, by Side: they keep their way
+/// The author's preferences for a repair; the caller of the repair decides what is left out.
+struct RepairPreferences {
+  std::vector<std::string> joints;                 ///< locked: bit-identical
+  std::array<bool, 2> feet = {};                   ///< locked, by Side: the feet keep their path
   std::vector<int> keyframes;                      ///< locked: nothing changes at their times
-  std::vector<std::pair<double, double>> windows;  ///< locked: nothing changes there [s]
+  std::vector<std::pair<double, double>> windows;  ///< locked: nothing changes in them [s]
   std::map<std::string, double> weights;           ///< factors on the cost of a joint
   std::optional<Trust> trust;
-  std::optional<double> margin;  ///< of the ZMP inside the support where its own is too small [m]
-  std::optional<double> safety;  ///< factor on the price of safety; 0: the least change alone
+  std::optional<double> margin;  ///< wanted ZMP distance from the support's edge [m]
+  std::optional<double> safety;  ///< factor on the robustness cost; 0: smallest change alone
 
   bool empty() const;
 };
 
 struct Pattern {
   std::string name;
-  std::string file;     ///< where it came from, for messages
-  std::string sha256;   ///< of its bytes, then those of includes and table
+  std::string file;     ///< source, for messages
+  std::string sha256;   ///< of its bytes, then of its includes and its table
   std::string schema;   ///< "$schema" as written, for editors; may be empty
   std::string robot;    ///< name or path as written
   std::string profile;  ///< actuator profile; "" = the robot's default
@@ -123,20 +123,20 @@ struct Pattern {
   Interpolation interpolation = Interpolation::minimum_jerk;
   std::string default_posture = "home";
   bool full_model = true;  ///< COG from ZMP keys for the full model, else (14)(15)
-  double cog_height = 0;   ///< level COG height when no key says one; 0: home's [m]
+  double cog_height = 0;   ///< constant COG height without keys; 0: that of home [m]
   std::array<std::optional<Foothold>, 2>
-      start_feet;  ///< by Side; else those of the default posture
+      start_feet;  ///< by Side; else the feet of the default posture
   std::vector<Phase> phases;
   std::vector<Keyframe> keyframes;
   std::map<std::string, std::map<std::string, double>>
-      postures;  ///< the pattern's own, or those
-                 ///< it includes; they come before the robot's [rad]
+      postures;  ///< of the pattern and its includes;
+                 ///< they take precedence over the robot's [rad]
   std::optional<DenseTable> table;
   std::optional<CorrectionTrack> correction;
   std::map<std::string, double> parameters;  ///< declared ${names} with their values
   std::map<std::string, double> tolerances;  ///< of the check, by finding kind
-  RepairWishes repair;
-  World world;  ///< that the robot meets
+  RepairPreferences repair;
+  World world;  ///< the ground under the robot
   ControllerSpec controller;
   std::vector<Disturbance> scenario;
 

@@ -1,6 +1,6 @@
 #pragma once
-// The stabilised reference to be replayed: what the servos are to receive, row by row, and the
-// quantities it was made from. Self-describing; io writes it as CSV, JSON or HOAP pulses.
+// The stabilised reference that a robot replays: servo targets row by row, and the quantities from
+// which they were computed. io writes it as CSV, JSON or HOAP pulses.
 
 #include <Eigen/Geometry>
 #include <array>

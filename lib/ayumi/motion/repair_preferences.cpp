@@ -6,29 +6,29 @@
 
 namespace ayumi {
 
-void require_repair_wishes(const RobotModel& model, const Pattern& pattern) {
-  const RepairWishes& wishes = pattern.repair;
-  for (size_t i = 0; i < wishes.joints.size(); ++i)
-    find_joint(model, wishes.joints[i],
+void require_repair_preferences(const RobotModel& model, const Pattern& pattern) {
+  const RepairPreferences& preferences = pattern.repair;
+  for (size_t i = 0; i < preferences.joints.size(); ++i)
+    find_joint(model, preferences.joints[i],
                in_file(pattern, "repair/lock/joints/" + std::to_string(i)));
-  for (const auto& entry : wishes.weights)
+  for (const auto& entry : preferences.weights)
     find_joint(model, entry.first, in_file(pattern, "repair/weights/" + entry.first));
   const double end = pattern.duration();
-  for (size_t i = 0; i < wishes.windows.size(); ++i)
-    if (wishes.windows[i].first > end)
+  for (size_t i = 0; i < preferences.windows.size(); ++i)
+    if (preferences.windows[i].first > end)
       fail(ErrorCode::bad_pattern, in_file(pattern, "repair/lock/windows/" + std::to_string(i)) +
-                                       ": begins at " + text::exact(wishes.windows[i].first) +
+                                       ": begins at " + text::exact(preferences.windows[i].first) +
                                        " s, after the motion's end at " + text::exact(end) + " s");
 }
 
-RepairWishes without_keyframes(const Pattern& pattern) {
-  RepairWishes wishes = pattern.repair;
-  for (const int key : wishes.keyframes) {
+RepairPreferences without_keyframes(const Pattern& pattern) {
+  RepairPreferences preferences = pattern.repair;
+  for (const int key : preferences.keyframes) {
     const double t = pattern.keyframes.at(static_cast<size_t>(key)).t;
-    wishes.windows.emplace_back(t, t);
+    preferences.windows.emplace_back(t, t);
   }
-  wishes.keyframes.clear();
-  return wishes;
+  preferences.keyframes.clear();
+  return preferences;
 }
 
 }  // namespace ayumi

@@ -1,33 +1,33 @@
 #pragma once
-// What a VIIP phase asks for in place of keys: the controller places the COG, the footholds and the
-// jump itself. Plain data; docs/formats.md tells how it is written.
+// Goals of a VIIP phase in place of keys: the controller determines the motion of the COG, the
+// footholds and the jump. Plain data; docs/formats.md describes the format.
 
 #include <Eigen/Core>
 #include <variant>
 
 namespace ayumi {
 
-/// Both feet stay; the COG goes to this displacement from where the command holds it [m], in the
-/// axes of the feet (x forward).
+/// Both feet stay, and the COG moves by this displacement from its commanded place [m], in the axes
+/// of the feet (x forward).
 struct CogGoal {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
 };
 
-/// Steps at a commanded COG velocity, footholds placed by the controller; in place when it is zero.
-/// The robot stands before and after them.
+/// Steps with a commanded COG velocity, in place when it is zero; the controller places the
+/// footholds. The robot stands before and after them.
 struct StepGoal {
-  int steps = 0;  ///< swings; 0: as many as the phase has time for, the last one closing
+  int steps = 0;  ///< swings; 0: as many as fit into the phase, the last one closes the feet
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< forward, left [m/s]
   double turn = 0;                                     ///< to the left [rad/s]
 };
 
-/// Stoop, lift-off, flight, touchdown, settle, as often as asked.
+/// Stoop, lift-off, flight, touchdown and settling, `times` times.
 struct JumpGoal {
-  /// Where the spring of (26) lets go: passing ref z_G, or held until f_z is zero.
+  /// End of the spring of (26): at the passage of ref z_G, or when f_z is zero.
   enum class Release { ref_z, spring };
   double height = 0.03;  ///< z_H, planned apex above ref z_G [m]
   double stoop = 0.03;   ///< z_d, below ref z_G [m]
-  double forward = 0;    ///< way of each jump [m]
+  double forward = 0;    ///< length of each jump [m]
   int times = 1;
   Release release = Release::ref_z;
 };

@@ -71,7 +71,7 @@ void solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
 
 namespace {
 
-// The parabola has keys on the way, and so has the author's own motion.
+// True when a track has keys inside the interval, as the parabola of a flight has.
 bool is_ballistic(const Track& track, double begin, double end) {
   return std::any_of(track.keys().begin(), track.keys().end(), [&](const TrackKey& key) {
     return key.t > begin + 1e-9 && key.t < end - 1e-9;
@@ -98,7 +98,7 @@ void require_body_tracks(const SampleJob& job) {
                                                     : "y") +
                                        " at lift-off and at touchdown" +
                                        (track ? "" : " and one on the ground before and after") +
-                                       "; the way between is the parabola");
+                                       "; the motion between them is the parabola");
     }
   }
 }
@@ -118,7 +118,7 @@ void solve_samples(const SampleJob& job, const CogPlan& plan, CommandSeries& ser
   fill_rates(series.samples, job.dt, job.tracks.rest_ends);
 }
 
-// Commanded ZMP and f_z; returns the worst full-model ZMP error in the solved axes.
+// Fills commanded ZMP and f_z; returns the largest ZMP error of the full model in the solved axes.
 double fill_ground(const SampleJob& job, const CogPlan& plan, CommandSeries& series) {
   RobotData data(job.model);
   double worst = 0;

@@ -1,7 +1,8 @@
-// Unknown is the generalised velocity V = [v_WB; w_WB; dtheta] of a posture. Rows: twists of both
-// soles as planned (12), COG velocity as planned (3), angular momentum about the COG = 0 (3); the
-// joints outside the legs keep their keyed rates. The trunk's rate of that V is integrated over the
-// flight by Heun's rule. With the momentum about the base origin L_B = M_wb V and p = m v_G,
+// The unknown is the generalised velocity V = [v_WB; w_WB; dtheta] of a posture. The rows are the
+// planned twists of both soles (12), the planned COG velocity (3) and zero angular momentum about
+// the COG (3); the joints outside the legs have their keyed rates. The rate of the trunk in V is
+// integrated over the flight by Heun's rule. With the momentum about the base origin L_B = M_wb V
+// and p = m v_G,
 //   L_G = L_B - (p_G - p_B) x p.
 #include "ayumi/plan/flight.hpp"
 
@@ -23,9 +24,14 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kStep = 0.002;         // of the integration [s]
-constexpr double kDifference = 2.5e-4;  // of central differences in time [s]
-constexpr double kBlend = 0.25;         // of trunk swings where no height key bounds them [s]
+/// Step of the integration [s]. Chosen: a flight of 0.16 s has 80 steps of Heun's rule.
+constexpr double kStep = 0.002;
+/// Half width of central differences in time [s]. Chosen: a quarter of a tick, so that rounding and
+/// the curvature of the planned motion are both small.
+constexpr double kDifference = 2.5e-4;
+/// Duration of a trunk swing that no height key bounds [s]. Chosen: about that of the push and of
+/// the landing of a jump.
+constexpr double kBlend = 0.25;
 
 Vector3d rotation_rate(const Matrix3d& before, const Matrix3d& after, double time) {
   return log_rotation(Eigen::Quaterniond(Matrix3d(after * before.transpose()))) / time;
@@ -43,7 +49,7 @@ class FlightTurn {
     Vector3d turn = Vector3d::Zero(), rate = Vector3d::Zero(), acceleration = Vector3d::Zero();
   };
 
-  /// Rate of the turn that leaves no angular momentum at t, the trunk being turned by `turn`.
+  /// Rate of the turn with zero angular momentum at t, for a trunk that is turned by `turn`.
   Vector3d rate(double t, const Vector3d& turn) {
     const Matrix3d trunk = exp_rotation(turn).toRotationMatrix() * trunk_attitude(job_, t);
     const auto cog = cog_(t);
@@ -76,8 +82,9 @@ class FlightTurn {
   }
 
  private:
-  // Accelerations by differences of the rates, then the turn once more as the integral of the cubic
-  // through both: so that the quintics between nodes have these rates and accelerations alone.
+  // Accelerations by differences of the rates, then the turn again as the integral of the cubic
+  // through both, so that the quintics between the nodes have exactly these rates and
+  // accelerations.
   static void accelerate(std::vector<Node>& nodes, double h) {
     const size_t last = nodes.size() - 1;
     for (size_t k = 1; k < last; ++k)
@@ -134,14 +141,14 @@ class FlightTurn {
 double segment_at(const Pattern& pattern, double t, bool before) {
   double length = kBlend;
   for (const Keyframe& key : pattern.keyframes) {
-    const double way = before ? t - key.t : key.t - t;
-    if (key.cog_height && way > 1e-6) length = std::min(length, way);
+    const double distance = before ? t - key.t : key.t - t;
+    if (key.cog_height && distance > 1e-6) length = std::min(length, distance);
   }
   return length;
 }
 
-// The turn of one flight: it begins level with the rate it needs, and swings before and after from
-// and to rest. Another flight before or after begins or ends the swing instead of rest.
+// The turn of one flight: it begins level with the necessary rate; the swings before and after it
+// begin and end at rest or at another flight.
 struct Flight {
   double begin = 0, end = 0, swing_up = 0, swing_down = 0;
   std::vector<FlightTurn::Node> nodes;
@@ -182,7 +189,7 @@ TrunkTurn plan_trunk_turn(const SampleJob& job, const CogAt& cog) {
   for (size_t i = 0; i < flights.size(); ++i) {
     double from = flights[i].begin - flights[i].swing_up;
     double until = flights[i].end + flights[i].swing_down;
-    // Swings that touch are one.
+    // Swings that touch become one.
     if (i > 0 && from < flights[i - 1].end + flights[i - 1].swing_down + 1e-6)
       from = flights[i].begin;
     if (i + 1 < flights.size() && until > flights[i + 1].begin - flights[i + 1].swing_up - 1e-6)

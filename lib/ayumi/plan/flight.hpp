@@ -1,7 +1,7 @@
 #pragma once
-// Flight: nothing can turn the robot, so the trunk turns as the legs make it. Zero angular momentum
-// about the COG fixes the trunk's rate at every instant, lift-off and touchdown included; before
-// and after the trunk swings smoothly from and to the attitude the pattern asks for.
+// Flight: nothing outside turns the robot, so that the trunk turns against the legs. Zero angular
+// momentum about the COG determines the trunk's rate at each time of the flight, ends included.
+// Before and after the flight the trunk swings smoothly from and to the commanded attitude.
 
 #include <array>
 #include <functional>
@@ -13,8 +13,8 @@ namespace ayumi {
 /// The planned COG at a time: position [m], rate, acceleration by axis.
 using CogAt = std::function<std::array<TrackPoint, 3>(double)>;
 
-/// Zero for patterns without flight or with torso keys.
-/// Throws Error(bad_pattern) where the legs cannot follow.
+/// The turn of the trunk; zero for patterns without flight or with torso keys. Throws
+/// Error(bad_pattern) where the legs cannot follow.
 TrunkTurn plan_trunk_turn(const SampleJob& job, const CogAt& cog);
 
 }  // namespace ayumi

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
-constexpr double kInstant = 1e-9;  // times nearer than this are the same [s]
+constexpr double kInstant = 1e-9;  // times closer than this are equal [s]: above rounding
 
 [[noreturn]] void complain(const Pattern& pattern, const std::string& place,
                            const std::string& message) {
@@ -32,10 +32,11 @@ Isometry3d on_ground(const Vector3d& position, double yaw) {
   return pose;
 }
 
-// Of a flight: over which the feet take up, and give back, the speed of the COG [s].
+// Time over which the feet take up the COG's speed in a flight [s]. Chosen: shorter than half of a
+// flight, longer than a servo's delay.
 constexpr double kFlightRamp = 0.04;
 
-// From 0 to 1 with three derivatives that vanish at both ends.
+// From 0 to 1 with three derivatives that are zero at both ends.
 double smooth_step(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * u * u * (35 + u * (-84 + u * (70 - 20 * u)));
@@ -100,7 +101,7 @@ FootPlan::FootPlan(const RobotModel& model, const Pattern& pattern)
 
 void FootPlan::read_phases(const Pattern& pattern) {
   if (phases_.empty())
-    complain(pattern, "phases", "there are none; at least one says who carries the robot");
+    complain(pattern, "phases", "there are none; at least one has to state the support");
   std::array<Isometry3d, 2> now = start_;
   double begin = 0;
   for (size_t i = 0; i < phases_.size(); ++i) {
@@ -160,7 +161,7 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
     track.rpy[i] = Track(keys[3 + i]);
   }
   keyed_[index(side)] = track;
-  // A table with a base says itself where the feet are: the check compares it with the phases.
+  // A table with a base determines the feet itself; the check compares it with the phases.
   if (pattern.table && !pattern.table->base.empty()) return;
   for (size_t i = 0; i < phases_.size(); ++i) {
     if (!supports(phases_[i].support, side)) continue;

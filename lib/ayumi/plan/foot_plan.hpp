@@ -1,6 +1,6 @@
 #pragma once
-// Where the feet are planned to be: constant while they carry, from foothold to foothold while they
-// swing. Built from the start feet, the phases' swings and foot keys.
+// The planned places of the feet: constant while they support, from foothold to foothold while they
+// swing. Computed from the feet at the start, the swings of the phases, and foot keys.
 
 #include <array>
 #include <optional>
@@ -11,43 +11,43 @@
 
 namespace ayumi {
 
-/// Of what is kept by Side, left first.
+/// Index of arrays by Side, left first.
 inline int index(Side side) { return static_cast<int>(side); }
-/// That foot alone.
+/// Single support by this foot.
 inline Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
 
-/// A swing moves over the ground between these shares of its phase: it lifts straight off and
-/// comes down straight.
+/// Fraction at both ends of a swing in which the foot moves only up or down. Chosen: the lift at 8
+/// % is 2.5 % of its maximum, 0.5 mm of 20 mm, so that the foot is off the ground when it moves.
 inline constexpr double kSwingMargin = 0.08;
 
-/// Pose of the sole frame named by a foothold.
+/// Pose of the sole frame at a foothold.
 Eigen::Isometry3d pose_of(const Foothold& foothold);
 
-/// Footholds at t = 0: those of the pattern, else of its default posture set level on z = 0 with
-/// the middle of both sole frames at the origin (beside the given foot when one is given).
+/// Footholds at t = 0: those of the pattern, else those of its default posture on z = 0 with the
+/// middle of both sole frames at the origin (relative to the given foot when one is given).
 std::array<Eigen::Isometry3d, 2> start_feet(const RobotModel& model, const Pattern& pattern);
 
 class FootPlan {
  public:
-  /// Throws Error(bad_pattern) naming the phase or key: no phases, times not increasing, a swing of
+  /// Throws Error(bad_pattern) that names phase or key: no phases, times not increasing, a swing of
   /// a supporting foot, a foot key that moves a supporting foot.
   FootPlan(const RobotModel& model, const Pattern& pattern);
 
-  /// Pose of the sole frame in the world. A swing is minimum jerk along the ground with a lift
-  /// 64 h (s (1 - s))^3 on top: speed and acceleration are zero at both ends. In flight a foot that
-  /// neither swings nor has keys on the way takes up the COG's parabola within 40 ms and gives it
-  /// back before it lands: it rises as high as the COG does.
+  /// Pose of the sole frame in the world. A swing is minimum jerk along the ground with an added
+  /// lift of 64 h (s (1 - s))^3, so that speed and acceleration are zero at both ends. A foot that
+  /// neither swings nor has keys in a flight follows the COG's parabola, faded in and out over 40
+  /// ms, and rises as high as the COG.
   Eigen::Isometry3d pose(Side side, double t) const;
 
-  /// Mean height of both soles, lifts left out: the ground under the robot [m].
+  /// Mean height of both soles without lifts, which is the ground under the robot [m].
   double ground(double t) const;
 
   /// Centre of the sole polygon, world [m].
   Eigen::Vector3d sole_center(Side side, double t) const;
-  /// Middle of the centres of the supporting soles; of both in flight.
+  /// Mean of the centres of the supporting soles; of both soles in flight.
   Eigen::Vector3d support_center(double t) const;
 
-  /// Phase in force at t; at its end the next one already is.
+  /// Index of the phase at t; the end of a phase belongs to the next one.
   int phase(double t) const;
   Support support(double t) const;
   double begin(int phase) const { return phase > 0 ? phases_[phase - 1].until : 0.0; }

@@ -1,5 +1,5 @@
-// The base follows from the anchor foot, the one that carries: in double support the last one
-// stays. When the anchor changes it continues from where that foot is, so the base never jumps.
+// The base follows from the anchor, the foot that supports the robot; in double support the last
+// anchor remains. A new anchor stays at its present place, so that the base never jumps.
 #include <algorithm>
 
 #include "ayumi/base/error.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array<Side, 2> kBothSides = {Side::left, Side::right};
 
-// In the first double support: the foot that carries alone first.
+// The anchor of the first double support is the foot of the first single support.
 Side first_anchor(const FootPlan& feet) {
   for (const Phase& phase : feet.phases()) {
     if (phase.support == Support::left) return Side::left;
@@ -33,8 +33,8 @@ void refuse_flight(const SampleJob& job) {
     if (job.feet.phases()[i].support == Support::none)
       fail(ErrorCode::bad_pattern,
            in_file(job.pattern, "phases/" + std::to_string(i)) +
-               ": in a flight phase (support none) no foot holds the base; joint keys alone do "
-               "not say where it is: give a table with base columns");
+               ": in a flight phase (support none) no foot holds the base, and joint keys alone do "
+               "not determine its place; give a table with base columns");
 }
 
 void anchor_samples(const SampleJob& job, CommandSeries& series) {
@@ -47,7 +47,7 @@ void anchor_samples(const SampleJob& job, CommandSeries& series) {
     const double t = k * job.dt;
     if (!supports(job.feet.support(t), anchor)) {
       anchor = other(anchor);
-      // Where the new anchor was one sample ago: it stands still from there on.
+      // The new anchor stays at its place of the last sample.
       if (k > 0) {
         update_positions(job.model, series.samples[k - 1].state, data);
         held = sole_pose(job.model, data, anchor);
@@ -79,8 +79,8 @@ void table_base(const SampleJob& job, CommandSeries& series) {
   }
 }
 
-// Where a foot stands from sample `first` to `last`: the median of where the joints put it, so that
-// neither a late landing nor a slip during less than half of the time moves the place.
+// Place of a foot from sample `first` to `last`: the median of its places by the joints, so that a
+// late landing or a slip during less than half of the time does not change it.
 Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last) {
   const int n = last - first + 1;
   std::array<std::vector<double>, 6> values;
@@ -104,10 +104,9 @@ Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last
   return pose;
 }
 
-// A sole that ends its contact where it began stands there, however long it was elsewhere
-// meanwhile.
+// A sole whose contact ends at the place where it began stands there; otherwise the median counts.
 Isometry3d place_of(const std::vector<Isometry3d>& soles, int first, int last) {
-  constexpr double kSame = 1e-5;  // [m], and of the entries of the rotation
+  constexpr double kSame = 1e-5;  // [m], and for entries of the rotation: the rounding of tables
   const Eigen::Matrix4d change = soles[last].matrix() - soles[first].matrix();
   if (change.cwiseAbs().maxCoeff() < kSame) return soles[first];
   return median_sole(soles, first, last);
@@ -134,8 +133,7 @@ void fill_feet_from_joints(CommandSeries& series, const RobotModel& model) {
   }
 }
 
-// Planned soles: those of the phases when swings or keys say where the feet go; else where the
-// joints put them.
+// Planned soles: those of the phases when there are swings or foot keys; else those by the joints.
 void fill_feet(const SampleJob& job, CommandSeries& series) {
   const Pattern& pattern = job.pattern;
   const bool planned = std::any_of(pattern.phases.begin(), pattern.phases.end(),

@@ -1,6 +1,7 @@
-// The pendulum law (14)(15) gives a first COG; legs and arms then move the ZMP of the full model
-// away from it. The error e = cmd z - full z is itself put through the bounded solution and added
-// to the COG, again and again: each pass leaves what the limbs' angular momentum changed.
+// The pendulum law (14)(15) gives a first COG. The ZMP of the full model differs from its command,
+// because legs and arms have angular momentum. The bounded solution of the error e = cmd z - full z
+// is added to the COG in each pass; the error that remains comes from the change of the limbs'
+// motion.
 #include <algorithm>
 #include <cmath>
 
@@ -22,8 +23,14 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kGridStep = 0.005;   // of the correction [s]
-constexpr double kGoodEnough = 1e-4;  // largest full-model ZMP error to stop at [m]
+/// Step of the grid on which the COG is corrected [s]. Chosen: five ticks; 1/omega is 150 ms for a
+/// COG at 0.22 m.
+constexpr double kGridStep = 0.005;
+/// ZMP error of the full model at which the correction ends [m]. Chosen: far below the margins of a
+/// sole, and 1/10 of what the check reports in its figures.
+constexpr double kZmpGoal = 1e-4;
+/// Largest number of passes. Chosen: each pass reduces the error to a fraction, and passes end
+/// earlier when two in a row do not.
 constexpr int kMostIterations = 12;
 
 // The plan on a uniform grid over the whole pattern.
@@ -70,7 +77,7 @@ TrunkTurn turn_around_flights(const SampleJob& job, const CogPlan& plan) {
   });
 }
 
-// COG and bumps while they are being corrected, on the grid.
+// COG and bumps during the correction, on the grid.
 struct CogSolver {
   const SampleJob& job;
   CogPlan& plan;
@@ -102,13 +109,13 @@ void CogSolver::add_solution(int axis, const VectorXd& z) {
   plan.bump[1][axis] += motion.end;
 }
 
-// The solution so far as tracks of the plan.
+// Writes the present solution into the tracks of the plan.
 void CogSolver::put_tracks() {
   for (int axis = 0; axis < 2; ++axis)
     if (plan.solved[axis]) plan.cog[axis] = spline_through(grid, cog[axis]);
 }
 
-// The trunk's turn around flights for the COG so far.
+// Computes the trunk's turn around flights for the present COG.
 void CogSolver::turn_trunk() {
   if (!flies(job)) return;
   put_tracks();
@@ -131,8 +138,8 @@ void CogSolver::solve_postures(bool first, std::vector<CommandSample>& samples) 
   fill_rates(samples, grid.h, true);
 }
 
-// cmd ZMP - full-model ZMP in the solved axes; returns the largest, where the ground gives less
-// than the weight as the moment it makes over the weight.
+// cmd ZMP - full-model ZMP in the solved axes. Returns the largest error; where the ground force is
+// below the weight, errors count as their moment divided by the weight.
 double CogSolver::measure(std::vector<CommandSample>& samples,
                           std::array<VectorXd, 2>& error) const {
   RobotData data(job.model);
@@ -154,7 +161,7 @@ double CogSolver::measure(std::vector<CommandSample>& samples,
   return worst;
 }
 
-// Keeps the best pass: where the keys jump the error cannot vanish and passes may stop improving.
+// Keeps the best pass: where keys jump the error cannot vanish, and passes may stop improving.
 void CogSolver::correct() {
   std::vector<CommandSample> samples(grid.n + 1);
   std::array<VectorXd, 2> error;
@@ -173,7 +180,7 @@ void CogSolver::correct() {
       best_cog = cog;
       best_bump = plan.bump;
     }
-    if (worst <= kGoodEnough) break;
+    if (worst <= kZmpGoal) break;
     for (int axis = 0; axis < 2; ++axis)
       if (plan.solved[axis]) add_solution(axis, error[axis]);
     turn_trunk();

@@ -14,7 +14,8 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kMostSamples = 4e6;  // more than an hour at 1 kHz
+/// Largest number of samples. Chosen: more than an hour at 1 kHz; more would exhaust the memory.
+constexpr double kMostSamples = 4e6;
 
 int sample_count(const Pattern& pattern, double duration, double dt) {
   if (!(dt > 0) || !std::isfinite(dt))
@@ -53,7 +54,7 @@ CommandSeries sample(const RobotModel& model, const Pattern& pattern, const Samp
                      const Progress& progress) {
   if (!model.has_soles())
     fail(ErrorCode::bad_model, model.name() + ": the robot has no soles; name both in its sidecar");
-  require_repair_wishes(model, pattern);
+  require_repair_preferences(model, pattern);
   CommandSeries series;
   if (has_viip_phases(pattern)) {
     series = sample_keys(model, without_viip_phases(pattern), options, progress);

@@ -1,5 +1,6 @@
 #pragma once
-// What the parts of sample() share: the pattern as tracks, and postures solved from them.
+// Data and functions that the parts of sample() share: the pattern as tracks, and postures from
+// them.
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
@@ -22,41 +23,42 @@ struct SampleJob {
 /// theta of every joint track at t [rad].
 Eigen::VectorXd keyed_joints(const SampleJob& job, double t);
 
-/// Trunk attitude asked for: torso keys, else level with the mean heading of the planned feet.
+/// Commanded trunk attitude: torso keys, else level with the mean heading of the planned feet.
 Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t);
 
-/// How far the trunk is turned from that around flights (flight.hpp): a rotation vector over time,
+/// Turn of the trunk from this attitude around flights (flight.hpp): a rotation vector over time,
 /// world axes, left-multiplied [rad].
 using TrunkTurn = std::array<Track, 3>;
 
-/// Solves base and legs at time t for sample.cog, warm from sample.state; fills feet and support.
-/// Throws Error(bad_pattern) naming phase, time, foot and the missing millimetres.
+/// Solves base and legs at time t for sample.cog with the initial guess sample.state; fills feet
+/// and support. Throws Error(bad_pattern) that names phase, time, foot and missing millimetres.
 void solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
                    CommandSample& sample, RobotData& data);
 
-/// Some phase has no support.
+/// True when a phase has no support.
 bool flies(const SampleJob& job);
 
-/// Of the weight: where the ground gives less there is no ZMP to correct, (17).
+/// Fraction of the weight below which the ground force is too small for a ZMP to correct, (17).
+/// Chosen: 5 %, as in motion/differentiate.
 inline constexpr double kZmpShare = 0.05;
 
 /// COG and ZMP of a motion driven by the body's tracks.
 struct CogPlan {
   std::array<Track, 3> cog;                     ///< world [m]
   std::array<Track, 3> zmp;                     ///< as keyed [m]
-  std::array<bool, 2> solved = {false, false};  ///< axis solved from the ZMP
+  std::array<bool, 2> solved = {false, false};  ///< axes solved from the ZMP
   std::array<Eigen::Vector2d, 2> bump = {Eigen::Vector2d::Zero(),
                                          Eigen::Vector2d::Zero()};  ///< [begin, end](axis) [m]
   std::array<double, 2> omega = {1, 1};                             ///< at begin and end [1/s]
   TrunkTurn turn;
   double duration = 0;  ///< [s]
 
-  /// Commanded ZMP: the keys, moved where a start from rest asks for it.
+  /// Commanded ZMP: the keys with the bumps that a start from rest needs.
   Eigen::Vector3d zmp_at(double t) const;
   Eigen::Matrix3d trunk_at(const SampleJob& job, double t) const;
 };
 
-/// COG keys where given, the rest from the ZMP by (14)(15), corrected for the full model.
+/// COG keys where given, other axes from the ZMP by (14)(15), corrected for the full model.
 CogPlan plan_cog(const SampleJob& job);
 
 /// The motion when base and legs follow COG and feet.

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kSameTime = 1e-9;  // times nearer than this are the same [s]
+constexpr double kSameTime = 1e-9;  // times closer than this are equal [s]: above rounding
 
 using Keys = std::vector<TrackKey>;
 
@@ -108,8 +108,9 @@ void KeyReader::read(const Keyframe& key) {
 
 bool same(double a, double b) { return std::abs(a - b) < kSameTime; }
 
-// A flight between keys of a coordinate at its lift-off and its touchdown is a parabola, and so the
-// motion before and after meets its rate and acceleration. Keys on the way are the author's own.
+// A flight with keys of a coordinate at lift-off and touchdown is a parabola in it, and the motion
+// before and after has the parabola's rate and acceleration. Keys inside the flight are kept as
+// they are.
 Keys with_flights(const FootPlan& feet, const Keys& keys, double acceleration) {
   std::vector<QuinticEnd> ends;
   std::vector<bool> moving(keys.size(), false);
@@ -165,7 +166,7 @@ void check_keyframe_order(const Pattern& pattern) {
                    text::exact(pattern.keyframes[i - 1].t) + " s; key times must increase");
 }
 
-// Rows of a table as one smooth track: a cubic spline through all of them.
+// The rows of a table as one smooth track: a cubic spline through all rows.
 Track table_track(double dt, size_t rows, const std::function<double(size_t)>& value) {
   Keys keys;
   for (size_t k = 0; k < rows; ++k)
@@ -225,7 +226,7 @@ void read_table(const RobotModel& model, const Pattern& pattern, KeyReader& read
     for (int i = 0; i < 3; ++i)
       (*tracks.base)[i] =
           table_track(table.dt, rows, [&](size_t k) { return table.base[k].position[i]; });
-    std::vector<Eigen::Vector4d> q;  // w, x, y, z, sign continuous
+    std::vector<Eigen::Vector4d> q;  // w, x, y, z with continuous sign
     for (const BasePose& pose : table.base) {
       const Eigen::Quaterniond& a = pose.attitude;
       Eigen::Vector4d v(a.w(), a.x(), a.y(), a.z());
@@ -302,7 +303,8 @@ std::array<Track, 3> default_zmp(const FootPlan& feet) {
     if (!keys[0].empty() && t <= keys[0].back().t + kSameTime) t = keys[0].back().t + 1e-3;
     for (int i = 0; i < 3; ++i) keys[i].push_back({t, point[i], Interpolation::minimum_jerk});
   };
-  constexpr double kShift = 0.45;  // of the weight at both ends of the motion [s]
+  // Time of the weight shift at both ends of the motion [s]. Chosen: 3/omega for a COG at 0.22 m.
+  constexpr double kShift = 0.45;
   add(0, feet.support_center(0));
   const auto& phases = feet.phases();
   for (size_t i = 0; i < phases.size(); ++i) {

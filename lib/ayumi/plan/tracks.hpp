@@ -1,6 +1,6 @@
 #pragma once
-// The keyframes and the table of a pattern sorted into tracks over time. Every track starts from
-// the default posture at rest: without a key at t = 0 it has an implied one there (joints: the
+// The keyframes and the table of a pattern as tracks over time. Every track starts from the default
+// posture at rest: without a key at t = 0 it has an implied key (joints: the
 // default posture; ZMP: "center"; COG: over the middle of the feet; torso: level; f_z: the weight).
 
 #include <array>
@@ -15,11 +15,11 @@
 
 namespace ayumi {
 
-/// What the author gave. COG, ZMP, f_z, torso are empty where nothing was said.
+/// The author's tracks. COG, ZMP, f_z and torso are empty without keys.
 struct PatternTracks {
   std::vector<Track> joints;                     ///< one per dof [rad]
   bool joint_driven = false;                     ///< the legs follow keys, not the COG
-  std::string driver;                            ///< why, in words
+  std::string driver;                            ///< the reason, in words
   std::array<std::optional<Track>, 3> cog;       ///< world x, y, z [m]
   std::optional<std::array<Track, 3>> zmp;       ///< world [m]
   std::optional<Track> fz;                       ///< [N]
@@ -28,17 +28,17 @@ struct PatternTracks {
   std::optional<std::array<Track, 4>> attitude;  ///< w, x, y, z from a table, unnormalised
   bool rest_ends = true;                         ///< false: a table may start or end moving
   Eigen::VectorXd weight;                        ///< diagonal of W
-  std::map<std::string, std::string> origin;     ///< of what is given, in words
+  std::map<std::string, std::string> origin;     ///< of the given tracks, in words
 };
 
-/// Throws Error(bad_pattern) "file: place: ..." : an unknown joint, posture or weight; a joint that
-/// mimics another; keys out of order, beyond the last phase, or not finite; a joint both keyed and
-/// in the table. `solved` marks the leg joints that inverse kinematics could solve.
+/// `solved` marks the leg joints that inverse kinematics can solve. Throws Error(bad_pattern)
+/// "file: place: ..." for an unknown joint, posture or weight, a mimic joint, keys that are out of
+/// order, after the last phase or not finite, and a joint that has both keys and a table column.
 PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const FootPlan& feet,
                           const std::vector<bool>& solved);
 
-/// ZMP for a pattern that gives neither ZMP nor COG: the centre of the supporting sole in single
-/// support, from centre to centre in double support, the middle of the feet at both ends.
+/// ZMP for a pattern with neither ZMP nor COG: the centre of the supporting sole in single support,
+/// from centre to centre in double support, and the middle of the feet at both ends.
 std::array<Track, 3> default_zmp(const FootPlan& feet);
 
 }  // namespace ayumi

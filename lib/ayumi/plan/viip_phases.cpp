@@ -12,10 +12,13 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kAtRest = 0.015;  // COG speed that counts as rest, times omega z
-constexpr double kShortest = 0.1;  // what is sampled when a pattern has VIIP phases only [s]
+/// COG speed below which the robot is at rest, in units of omega z. Chosen: the DCM is then within
+/// 1.5 % of z of the COG, 3 mm for z = 0.22 m.
+constexpr double kAtRest = 0.015;
+/// Time that is sampled for a pattern with VIIP phases only [s].
+constexpr double kShortestSample = 0.1;
 
-/// A VIIP phase: number, begin and end, and how long the VIIP phases before it take together.
+/// A VIIP phase: number, begin and end, and the total duration of the VIIP phases before it.
 struct Cut {
   size_t phase;
   double begin, end, before;
@@ -45,7 +48,7 @@ double time_without(const std::vector<Cut>& cuts, double t) {
   return t - cut;
 }
 
-/// At rest in the posture of `from`.
+/// A sample at rest in the posture of `from`.
 CommandSample held(const RobotModel& model, const CommandSample& from) {
   CommandSample s = from;
   s.state.dtheta.setZero();
@@ -59,7 +62,7 @@ CommandSample held(const RobotModel& model, const CommandSample& from) {
   return s;
 }
 
-// The later of two keys at one time sets what both name.
+// Where two keys at one time name the same track, the later key counts.
 void merge(Keyframe& key, const Keyframe& later) {
   const auto take = [](auto& to, const auto& from) {
     if (from) to = from;
@@ -108,7 +111,7 @@ Pattern without_viip_phases(const Pattern& pattern) {
       result.phases.push_back(phase);
       result.phases.back().until = time_without(cuts, phase.until);
     }
-  if (result.phases.empty()) result.phases.push_back({kShortest, Support::both, {}, {}});
+  if (result.phases.empty()) result.phases.push_back({kShortestSample, Support::both, {}, {}});
   for (const Keyframe& key : pattern.keyframes) {
     for (const Cut& cut : cuts)
       if (key.t > cut.begin && key.t < cut.end)
@@ -134,13 +137,13 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
   series.samples.clear();
   const auto tick = [&](double t) { return std::lround(t / dt); };
   const long last = static_cast<long>(cut.samples.size()) - 1;
-  long done = 0;  // samples of `cut` used
+  long done = 0;  // number of samples of `cut` that are used
   for (const Cut& each : cuts) {
     const long at = std::min(last, tick(each.begin - each.before));
     for (; done < at; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
     const CommandSample& from = cut.samples[static_cast<size_t>(at)];
     const std::string place = in_file(pattern, "phases/" + std::to_string(each.phase)) + ": ";
-    // At the very end of a step the support is still that of the step.
+    // At the last sample of a step the support is still that of the step.
     const CommandSample& rests = cut.samples[static_cast<size_t>(std::max(0l, at - 1))];
     if (from.support != Support::both && rests.support != Support::both)
       fail(ErrorCode::bad_pattern,

@@ -1,6 +1,6 @@
 #pragma once
-// Patterns with VIIP phases are sampled as if those phases took no time; then the posture is held
-// for as long as each of them lasts.
+// Patterns with VIIP phases are first sampled as if these phases had no duration; then the posture
+// is held for the duration of each phase.
 
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"
@@ -9,16 +9,16 @@ namespace ayumi {
 
 bool has_viip_phases(const Pattern& pattern);
 
-/// Throws Error(bad_pattern) naming the first VIIP phase: it moves as its controller decides, so
-/// the pattern cannot be `done` ("baked").
+/// Throws Error(bad_pattern) that names the first VIIP phase: its controller decides the motion, so
+/// that the pattern cannot be `done` ("baked").
 void refuse_viip_phases(const Pattern& pattern, const std::string& done);
 
-/// The pattern with its VIIP phases cut out of time and without its correction. Throws
-/// Error(bad_pattern) for keys inside a VIIP phase and for a table beside one.
+/// The pattern without its VIIP phases and without its correction. Throws Error(bad_pattern) for
+/// keys inside a VIIP phase and for a table together with one.
 Pattern without_viip_phases(const Pattern& pattern);
 
 /// `cut`, the samples of without_viip_phases(), with the posture held during the VIIP phases and
-/// their goals noted. Throws Error(bad_pattern) where a VIIP phase begins on one foot or in motion.
+/// with their goals. Throws Error(bad_pattern) where a VIIP phase begins on one foot or in motion.
 CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
                                const CommandSeries& cut);
 

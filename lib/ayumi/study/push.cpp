@@ -1,8 +1,9 @@
-// One trunk per (phase, controller) runs up to just before the push and is copied for every push.
-// Level i is an impulse of i step B. A level survives when the nominal push and all its variations
-// do. Search: probe, narrow [survived, failed] to one step, then try levels below it that were left
-// out; a failure there moves the limit down (prefix rule). A run counts as survived as soon as xi
-// has stayed near the plan for a while; at the limit itself the nominal run goes to the end.
+// For each phase and controller one baseline runs up to just before the push and is copied for
+// every push. Level i is an impulse of i step B, with B the capture bound. A level is survived when
+// the nominal push and all its variations are survived. The search probes, narrows [survived,
+// failed] to one step, then tries levels below it that were skipped; a failure there moves the
+// limit down. A run counts as survived as soon as the DCM has stayed near the plan for kNearTime;
+// at the limit itself the nominal run continues to its end.
 #include "ayumi/study/push.hpp"
 
 #include <algorithm>
@@ -25,20 +26,30 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kNear = 0.045;       // of xi to the plan, times z: 10 mm at z = 0.22 m
-constexpr double kSurelyAfter = 0.8;  // from the push; earlier nearness says nothing [s]
-constexpr double kNearTime = 0.3;     // xi must stay near this long [s]
+/// Distance of the DCM from the plan, in units of z, below which a run is near the plan. Chosen: 10
+/// mm for z = 0.22 m, a third of the half-width of HOAP-1's sole.
+constexpr double kNearPlan = 0.045;
+/// Time from the push before which a DCM near the plan does not show that the robot survives [s].
+/// Chosen: 5 / omega for z = 0.22 m, after which an error that grows has grown by a factor of 150.
+constexpr double kSettlingTime = 0.8;
+/// Time for which the DCM has to stay near the plan [s]. Chosen: 2 / omega for z = 0.22 m, in which
+/// an error that grows leaves the neighbourhood of the plan.
+constexpr double kNearTime = 0.3;
+/// Tilt beyond which a stance foot is tilted [rad]. Chosen: above the tilt that the compliance of a
+/// loaded sole allows.
 constexpr double kTiltedFoot = 2 * M_PI / 180;
+/// Directions in which the nearest edge of the support is searched: one every 5 degrees.
 constexpr int kEdgeDirections = 72;
-constexpr long kChunk = 10;  // ticks between looks at a run
+/// Ticks between two tests of a run. Chosen: 10 ms, short against 1/omega.
+constexpr long kTicksPerTest = 10;
 
 double near_distance(const Simulator& run) {
   const CommandSample& cmd = run.plan();
-  return kNear * (cmd.cog.z() - cmd.zmp.z());
+  return kNearPlan * (cmd.cog.z() - cmd.zmp.z());
 }
 
-/// A simulator up to just before the pushes of a phase, and whether it stands unpushed.
-struct Trunk {
+/// A simulator just before the pushes of a phase, and whether the robot stands without a push.
+struct PushBaseline {
   std::optional<Simulator> simulator;
   bool stands = false;
 };
@@ -46,9 +57,9 @@ struct Trunk {
 /// The search of one limit.
 class Search {
  public:
-  Search(const Trunk& trunk, const PushOptions& options, const PushCase& push, double dt,
+  Search(const PushBaseline& baseline, const PushOptions& options, const PushCase& push, double dt,
          bool plan_moves, std::uint64_t seed, const std::atomic<bool>& stop)
-      : trunk_(trunk),
+      : baseline_(baseline),
         options_(options),
         case_(push),
         dt_(dt),
@@ -75,11 +86,11 @@ class Search {
   PushFigures figures();
   double impulse(int level) const { return level * options_.step * case_.bound; }
 
-  const Trunk& trunk_;
+  const PushBaseline& baseline_;
   const PushOptions& options_;
   const PushCase& case_;
   double dt_;
-  bool plan_moves_;  // the plan follows the robot: nearness to it says nothing
+  bool plan_moves_;  // the plan follows the robot, so that nearness to it shows nothing
   const std::atomic<bool>& stop_;
   std::vector<Variation> variations_;
   std::map<int, bool> tried_;
@@ -87,7 +98,7 @@ class Search {
 };
 
 Simulator Search::pushed(double impulse, const Variation& variation) const {
-  Simulator run = *trunk_.simulator;
+  Simulator run = *baseline_.simulator;
   Disturbance d;
   d.at = case_.phase.at + variation.time;
   d.duration = options_.duration;
@@ -102,9 +113,9 @@ bool Search::survives(double impulse, const Variation& variation, bool to_the_en
   Simulator run = pushed(impulse, variation);
   ++runs_;
   double near_since = -1;
-  while (run.advance(kChunk) && !run.fell()) {
+  while (run.advance(kTicksPerTest) && !run.fell()) {
     if (stop_) throw Interrupted();
-    if (to_the_end || plan_moves_ || run.time() < case_.phase.at + kSurelyAfter) continue;
+    if (to_the_end || plan_moves_ || run.time() < case_.phase.at + kSettlingTime) continue;
     if (divergence(run) > near_distance(run))
       near_since = -1;
     else if (near_since < 0)
@@ -143,7 +154,7 @@ PushFigures Search::figures() {
 
 PushLimit Search::find(int guess) {
   PushLimit limit;
-  if (!trunk_.stands || case_.bound <= 0) return limit;
+  if (!baseline_.stands || case_.bound <= 0) return limit;
   const int cap = std::max(1, static_cast<int>(std::lround(options_.cap / options_.step)));
   tried_[0] = true;
   int probe = guess, stride = 3, verified = 0;
@@ -198,7 +209,7 @@ void check_options(const PushOptions& options, const CommandSeries& series) {
              text::brief(series.duration()) + " s)");
 }
 
-/// The whole study: what its jobs share.
+/// Data that the jobs of a study share.
 struct Study {
   const RobotModel& model;
   const CommandSeries& series;
@@ -206,20 +217,20 @@ struct Study {
   CommandSeries stand;
   std::vector<PushPhase> phases;
   std::vector<ControllerSpec> controllers;  // open loop first
-  std::vector<Trunk> trunks;                // phase by phase, controller by controller
+  std::vector<PushBaseline> baselines;      // phase by phase, controller by controller
   std::atomic<bool> stop = false;
 
   const CommandSeries& series_of(const PushPhase& phase) const {
     return phase.standing ? stand : series;
   }
-  void grow(size_t i);
+  void run_baseline(size_t i);
   PushCase plan(size_t i) const;
   double standing_edge_bound() const;
   bool plan_moves(const ControllerSpec& controller) const;
   void search(size_t i, PushCase& found);
 };
 
-void Study::grow(size_t i) {
+void Study::run_baseline(size_t i) {
   const PushPhase& phase = phases[i / controllers.size()];
   SimulateOptions simulate = options.simulate;
   simulate.controller = controllers[i % controllers.size()];
@@ -228,14 +239,14 @@ void Study::grow(size_t i) {
   run.keep_samples(false);
   const long before = static_cast<long>((phase.at - options.time_spread) / series.dt) - 1;
   run.advance(before);
-  trunks[i].simulator = run;
-  while (run.advance(kChunk) && !run.fell())
+  baselines[i].simulator = run;
+  while (run.advance(kTicksPerTest) && !run.fell())
     if (stop) throw Interrupted();
-  trunks[i].stands = !run.fell() && run.result().outcome == Outcome::stands;
+  baselines[i].stands = !run.fell() && run.result().outcome == Outcome::stands;
 }
 
-// Footholds that VIIP chooses are not planned ones: the yardstick is the nearest edge of the stand
-// that the pattern starts from, the same for every direction.
+// VIIP chooses its footholds, so that there are no planned ones. The bound is then the distance to
+// the nearest edge of the support at the start of the pattern, the same for every direction.
 double Study::standing_edge_bound() const {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kEdgeDirections; ++i) {
@@ -267,8 +278,8 @@ bool Study::plan_moves(const ControllerSpec& controller) const {
 void Study::search(size_t i, PushCase& found) {
   const size_t phase = i / static_cast<size_t>(options.directions);
   for (size_t c = 0; c < controllers.size(); ++c) {
-    const Trunk& trunk = trunks[phase * controllers.size() + c];
-    Search search(trunk, options, found, series.dt, plan_moves(controllers[c]),
+    const PushBaseline& baseline = baselines[phase * controllers.size() + c];
+    Search search(baseline, options, found, series.dt, plan_moves(controllers[c]),
                   options.simulate.seed + 1000 * i, stop);
     const PushLimit limit =
         search.find(static_cast<int>(std::lround((c == 0 ? 0.8 : 1.2) / options.step)));
@@ -285,7 +296,7 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
                                   const PushOptions& options, const KnownCases& known,
                                   const PushCaseDone& done, const Progress& progress) {
   check_options(options, series);
-  // Phases and baseline are those of the gait that is studied: its gains set the step times.
+  // Phases and open loop use the gains of the gait that is studied, since these set the step times.
   const auto gait =
       std::find_if(options.controllers.begin(), options.controllers.end(),
                    [](const ControllerSpec& c) { return c.type == ControllerKind::viip; });
@@ -305,15 +316,15 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
       std::all_of(known.begin(), known.end(), [](const auto& c) { return c.has_value(); });
   std::mutex mutex;
   size_t finished = 0;
-  const auto tell = [&](const std::string& what) {
+  const auto report_progress = [&](const std::string& what) {
     report(progress, {"push", static_cast<double>(finished) / static_cast<double>(count), what});
   };
   if (!all_known) {
-    study.trunks.resize(study.phases.size() * study.controllers.size());
-    in_parallel(study.trunks.size(), options.threads, study.stop, [&](size_t i) {
-      study.grow(i);
+    study.baselines.resize(study.phases.size() * study.controllers.size());
+    in_parallel(study.baselines.size(), options.threads, study.stop, [&](size_t i) {
+      study.run_baseline(i);
       const std::lock_guard lock(mutex);
-      tell("up to the pushes");
+      report_progress("baselines");
     });
   }
   std::vector<PushCase> cases(count);
@@ -324,7 +335,7 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
     const std::lock_guard lock(mutex);
     ++finished;
     if (!have && done) done(i, cases[i]);
-    tell(std::to_string(finished) + " of " + std::to_string(count) + " cases");
+    report_progress(std::to_string(finished) + " of " + std::to_string(count) + " cases");
   });
   return cases;
 }

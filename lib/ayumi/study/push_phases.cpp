@@ -1,4 +1,5 @@
-// When pushes come: the phases of the middle step of a pattern, or of the steps that VIIP makes.
+// The default phases of a push study: those of the middle step of a pattern or of the steps that
+// VIIP makes.
 #include <cmath>
 
 #include "ayumi/sim/simulator.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 /// A single support on the left foot.
 struct Interval {
-  size_t before, begin, end;  // start of the double support before it, its own start and end
+  size_t before, begin, end;  // start of the double support before it, then its start and end
 };
 
 std::vector<Interval> left_steps(const CommandSeries& series) {
@@ -27,9 +28,9 @@ std::vector<Interval> left_steps(const CommandSeries& series) {
   return steps;
 }
 
-/// The series with the supports that VIIP makes of it.
-CommandSeries carried(const RobotModel& model, const CommandSeries& series,
-                      const SimulateOptions& options) {
+/// The series with the supports of the steps that VIIP makes.
+CommandSeries with_viip_supports(const RobotModel& model, const CommandSeries& series,
+                                 const SimulateOptions& options) {
   SimulateOptions simulate = options;
   if (simulate.controller.type != ControllerKind::viip)
     simulate.controller = {ControllerKind::viip, {}};
@@ -49,7 +50,7 @@ CommandSeries carried(const RobotModel& model, const CommandSeries& series,
 std::vector<PushPhase> default_push_phases(const RobotModel& model, const CommandSeries& given,
                                            const SimulateOptions& options) {
   const bool goals = !given.viip.empty();
-  const CommandSeries series = goals ? carried(model, given, options) : given;
+  const CommandSeries series = goals ? with_viip_supports(model, given, options) : given;
   const std::vector<CommandSample>& s = series.samples;
   const std::vector<Interval> steps = left_steps(series);
   std::vector<PushPhase> phases = {{"standing", kStandingPush, true}};

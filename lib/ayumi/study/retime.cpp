@@ -13,17 +13,25 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kStep = 1.25;    // while it gets faster
-constexpr double kSlower = 1.05;  // what passes may end soon: motors warm up where a pose lasts
-constexpr double kMuchSlower = 3;
-constexpr double kOfSpeed = 0.8;  // of the way to where a speed that is too high would do
-constexpr double kLook = 1.005;   // from scale to scale beyond an edge
-constexpr int kLooks = 40;
+/// Factor between scales that get faster. Chosen: a bracket of 25 % takes 7 bisections to 0.2 %.
+constexpr double kFasterStep = 1.25;
+/// Factor between scales that get slower, up to kLargeScale. Chosen: small, because the range of
+/// scales that pass can be short: held poses heat the motors when they last longer.
+constexpr double kSlowerStep = 1.05;
+/// Scale beyond which the search goes slower by kFasterStep.
+constexpr double kLargeScale = 3;
+/// Fraction of the excess of a joint's speed by which the scale grows at once. Chosen: below 1, so
+/// that the first scale that passes is not skipped.
+constexpr double kSpeedStep = 0.8;
+/// Factor between scales beyond an edge, and their number: 0.5 % each, 18 % in all. Chosen: a
+/// compromise, since each scale costs one sampling and one check.
+constexpr double kBeyondStep = 1.005;
+constexpr int kBeyondSteps = 40;
 
 struct Trial {
   bool passes = false;
   std::string reason;    // why not
-  double too_quick = 1;  // largest joint speed over its limit
+  double too_quick = 1;  // largest ratio of a joint's speed to its limit
   bool of_posture = false;
 };
 
@@ -40,7 +48,7 @@ class PaceSearch {
     if (now.passes) {
       do {
         passing = failing;
-        failing = std::max(options_.fastest, passing / kStep);
+        failing = std::max(options_.fastest, passing / kFasterStep);
         if (passing <= options_.fastest) break;
       } while (trial(failing).passes);
       result.bounded = passing > options_.fastest;
@@ -50,8 +58,8 @@ class PaceSearch {
       if (result.by_posture) return finish(result);
       do {
         failing = passing;
-        passing *=
-            std::max(passing < kMuchSlower ? kSlower : kStep, 1 + kOfSpeed * (now.too_quick - 1));
+        passing *= std::max(passing < kLargeScale ? kSlowerStep : kFasterStep,
+                            1 + kSpeedStep * (now.too_quick - 1));
         if (passing > options_.slowest) return finish(result);
         now = trial(passing);
       } while (!now.passes);
@@ -63,8 +71,8 @@ class PaceSearch {
       const double quicker = beyond(passing);
       if (quicker == 0) break;
       passing = quicker;
-      for (failing = passing / kLook; failing > options_.fastest && trial(failing).passes;
-           failing /= kLook)
+      for (failing = passing / kBeyondStep; failing > options_.fastest && trial(failing).passes;
+           failing /= kBeyondStep)
         passing = failing;
       result.bounded = failing > options_.fastest;
     }
@@ -79,7 +87,7 @@ class PaceSearch {
     return result;
   }
 
-  // The least passing scale between one that passes and one that does not.
+  // The smallest scale that passes between one that passes and one that does not.
   double edge(double passing, double failing) {
     while (passing / failing > 1 + options_.resolution) {
       const double middle = std::sqrt(passing * failing);
@@ -88,21 +96,21 @@ class PaceSearch {
     return passing;
   }
 
-  // What breaks may hold again a little faster (samples fall otherwise on the edges of flights):
-  // the fastest scale of the next ones that passes, 0 when none does. The reason stays that of the
-  // edge.
+  // The fastest of the next scales that passes, 0 when none does. A pattern with flights may pass
+  // again at a faster scale, because other samples lie on the edges of the flights. The reason of
+  // the edge is kept.
   double beyond(double passing) {
     const std::string reason = reason_;
     double found = 0, scale = passing;
-    for (int i = 0; i < kLooks && scale / kLook > options_.fastest; ++i) {
-      scale /= kLook;
+    for (int i = 0; i < kBeyondSteps && scale / kBeyondStep > options_.fastest; ++i) {
+      scale /= kBeyondStep;
       if (trial(scale).passes) found = scale;
     }
     reason_ = reason;
     return found;
   }
 
-  // Three decimals for people, four of short times, where they pass too.
+  // Rounded up to three decimals (four below 0.5) where this scale passes too.
   double rounded(double scale) {
     const double digits = scale < 0.5 ? 1e4 : 1e3;
     const double up = std::ceil(digits * scale) / digits;
@@ -127,18 +135,18 @@ class PaceSearch {
 
   Trial failed(const ConsistencyReport& check, double duration) {
     Trial trial;
-    const Finding* told = nullptr;
+    const Finding* shown = nullptr;
     for (const Finding& f : check.findings) {
       if (f.severity != Severity::error) continue;
       if (f.kind == FindingKind::joint_speed)
         trial.too_quick = std::max(trial.too_quick, std::abs(f.worst) / f.limit);
-      if (!told || (is_of_posture(f) && !trial.of_posture)) told = &f;
-      trial.of_posture = is_of_posture(*told);
+      if (!shown || (is_of_posture(f) && !trial.of_posture)) shown = &f;
+      trial.of_posture = is_of_posture(*shown);
     }
-    reason_ = std::string(name_of(told->kind)) + " " + told->where + " at " +
-              text::fixed(told->at, 3) + " s of " + text::fixed(duration, 3) +
-              " s: " + text::brief(told->worst) + " " + told->unit + ", limit " +
-              text::brief(told->limit);
+    reason_ = std::string(name_of(shown->kind)) + " " + shown->where + " at " +
+              text::fixed(shown->at, 3) + " s of " + text::fixed(duration, 3) +
+              " s: " + text::brief(shown->worst) + " " + shown->unit + ", limit " +
+              text::brief(shown->limit);
     trial.reason = reason_;
     return trial;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// What studies of many runs share.
+// Functions that the studies of many runs share.
 
 #include <algorithm>
 #include <atomic>
@@ -12,16 +12,19 @@
 
 namespace ayumi {
 
-inline constexpr double kStandingPush = 0.5;   ///< [s] into the standing series
-inline constexpr double kStandingAfter = 2.5;  ///< of standing after the push [s]
+/// Time of the push on the standing robot [s]. Chosen: the robot rests by then.
+inline constexpr double kStandingPush = 0.5;
+/// Time for which the series stands after this push [s]. Chosen: longer than kSettlingTime and the
+/// time near the plan of the push study together.
+inline constexpr double kStandingAfter = 2.5;
 
-/// The first posture of the pattern, held; by VIIP if the pattern has goals.
+/// The robot holds the first posture of the pattern; under VIIP if the pattern has goals.
 CommandSeries standing_series(const CommandSeries& series);
 
-/// How far the estimated xi = x + dx/omega of the last tick is from the commanded one [m].
+/// Distance of the estimated DCM x + dx/omega of the last tick from the planned one [m].
 double divergence(const Simulator& run);
 
-/// Runs job(0..count-1) on threads; the first exception stops all and is thrown on.
+/// Runs job(0..count-1) on threads. The first exception stops all jobs and is thrown again.
 template <typename Job>
 void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
   std::atomic<size_t> next = 0;

@@ -16,14 +16,22 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kFall = 10;        // of the objective, for a push that fells the robot
-constexpr double kGain = 1e-3;      // share by which a step must better the objective
-constexpr double kLead = 0.02;      // a branch starts this long before its push [s]
-constexpr double kSmallest = 1.03;  // steps smaller than this end the search
+/// Part of the objective for a push that fells the robot. Chosen: far above the part of a push that
+/// is survived (about 1), so that the search avoids falls first.
+constexpr double kFall = 10;
+/// Relative improvement of the objective that a step needs. Chosen: a smaller improvement is not
+/// worth a change of the gains.
+constexpr double kImprovement = 1e-3;
+/// Time before its push at which a branch begins [s]. The value does not change results, because
+/// the runs are equal up to the push.
+constexpr double kBranchLead = 0.02;
+/// Factor below which the search ends. Chosen: the third root in sequence of the default factor 1.3
+/// is 1.033, so that three rounds without an improvement are searched on.
+constexpr double kSmallestFactor = 1.03;
 
 using Gains = std::map<std::string, double>;
 
-/// The gains that may be tuned, of the numbers in force.
+/// The gains that may be tuned, with their present values.
 Gains tunable(const DtadParams& p) {
   return {{"q", p.pole_ratio},        {"ka", p.zmp_gain},       {"ks", p.pull_rate},
           {"kd", p.pull_damping},     {"tau_z", p.zmp_filter},  {"washout", p.offset_time},
@@ -50,9 +58,9 @@ struct Tuner {
     return phase.standing ? stand : series;
   }
   Simulator begin(const PushPhase& phase, const Gains& gains) const;
-  double push(const Simulator& trunk, const PushPhase& phase, int direction) const;
+  double push(const Simulator& baseline, const PushPhase& phase, int direction) const;
   double unpushed(const Gains& gains) const;
-  TuneFigures judge(const Gains& gains);
+  TuneFigures evaluate(const Gains& gains);
 };
 
 ControllerSpec Tuner::controller(const Gains& gains) const {
@@ -70,19 +78,19 @@ Simulator Tuner::begin(const PushPhase& phase, const Gains& gains) const {
   simulate.scenario.clear();
   Simulator run(model, series_of(phase), simulate);
   run.keep_samples(false);
-  run.advance(std::max(0l, std::lround((phase.at - kLead) / series.dt)));
+  run.advance(std::max(0l, std::lround((phase.at - kBranchLead) / series.dt)));
   return run;
 }
 
-/// omega times the integral of |xi - cmd xi| / z; kFall when it fell.
-double Tuner::push(const Simulator& trunk, const PushPhase& phase, int direction) const {
+/// omega times the integral of |DCM - planned DCM| / z; kFall when the robot fell.
+double Tuner::push(const Simulator& baseline, const PushPhase& phase, int direction) const {
   const double angle = 2 * M_PI * direction / options.directions;
   const CommandSeries& plan = series_of(phase);
   const Vector2d u(std::cos(angle), std::sin(angle));
   const long k = std::lround(phase.at / plan.dt);
   const double bound = capture_bound(capture_region(model, plan, k), u);
   if (!(bound > 0)) return 0;
-  Simulator run = trunk;
+  Simulator run = baseline;
   Disturbance d;
   d.at = phase.at;
   d.duration = options.duration;
@@ -115,20 +123,20 @@ double Tuner::unpushed(const Gains& gains) const {
   return run.fell() ? kFall : sum / static_cast<double>(std::max(1l, ticks));
 }
 
-TuneFigures Tuner::judge(const Gains& gains) {
-  std::vector<std::optional<Simulator>> trunks(phases.size());
-  double still = 0;
+TuneFigures Tuner::evaluate(const Gains& gains) {
+  std::vector<std::optional<Simulator>> baselines(phases.size());
+  double unpushed_cost = 0;
   in_parallel(phases.size() + 1, options.threads, stop, [&](size_t i) {
     if (i == phases.size())
-      still = unpushed(gains);
+      unpushed_cost = unpushed(gains);
     else
-      trunks[i] = begin(phases[i], gains);
+      baselines[i] = begin(phases[i], gains);
   });
   const size_t directions = static_cast<size_t>(options.directions);
   std::vector<double> costs(phases.size() * directions);
   in_parallel(costs.size(), options.threads, stop, [&](size_t i) {
     costs[i] =
-        push(*trunks[i / directions], phases[i / directions], static_cast<int>(i % directions));
+        push(*baselines[i / directions], phases[i / directions], static_cast<int>(i % directions));
   });
   TuneFigures f;
   f.pushes = static_cast<int>(costs.size());
@@ -139,7 +147,7 @@ TuneFigures Tuner::judge(const Gains& gains) {
       f.recovery += cost;
   }
   f.recovery /= f.pushes;
-  f.unpushed = still;
+  f.unpushed = unpushed_cost;
   f.objective = f.recovery + kFall * f.falls / f.pushes + f.unpushed;
   return f;
 }
@@ -154,7 +162,7 @@ void check(const TuneOptions& options, const CommandSeries& series, const Gains&
   if (!(options.level > 0)) refuse("level must be positive");
   if (!(options.factor > 1)) refuse("factor must exceed 1");
   if (options.rounds < 1) refuse("rounds must be at least 1");
-  if (options.gains.empty()) refuse("name a gain");
+  if (options.gains.empty()) refuse("give at least one gain");
   std::vector<std::string> names;
   for (const auto& [name, value] : known) names.push_back(name);
   for (const std::string& name : options.gains)
@@ -162,12 +170,13 @@ void check(const TuneOptions& options, const CommandSeries& series, const Gains&
       refuse("gain '" + name + "' cannot be tuned" + text::suggestion(name, names) +
              " (those that can: " + text::join(names, ", ") + ")");
   for (const PushPhase& phase : options.phases)
-    if (!phase.standing && !(phase.at >= kLead && phase.at + options.duration <= series.duration()))
+    if (!phase.standing &&
+        !(phase.at >= kBranchLead && phase.at + options.duration <= series.duration()))
       refuse("time " + text::brief(phase.at) + " s is outside the pattern (" +
              text::brief(series.duration()) + " s)");
 }
 
-/// Four digits: what a person would write into a file.
+/// The value with four digits, as a person writes it into a file.
 double rounded(double value) {
   const std::string digits = text::brief(value);
   std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -191,12 +200,12 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
   for (const std::string& name : options.gains) result.start[name] = known.at(name);
   refuse_unstable(tuner.loop, dtad_params(model, tuner.controller(result.start)));
   result.gains = result.start;
-  result.before = result.after = tuner.judge(result.start);
+  result.before = result.after = tuner.evaluate(result.start);
   if (result.before.unpushed >= kFall)
-    fail(ErrorCode::usage, "tune: the pattern falls unpushed with the gains to start from");
+    fail(ErrorCode::usage, "tune: the robot falls without a push with the initial gains");
 
   double factor = options.factor;
-  for (int round = 0; round < options.rounds && factor > kSmallest; ++round) {
+  for (int round = 0; round < options.rounds && factor > kSmallestFactor; ++round) {
     bool better = false;
     for (const std::string& name : options.gains) {
       const double before = result.gains[name];
@@ -208,12 +217,12 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
           ++result.refused;
           continue;
         }
-        const TuneFigures figures = tuner.judge(gains);
+        const TuneFigures figures = tuner.evaluate(gains);
         ++result.choices;
         report(progress,
                {"tune", static_cast<double>(round) / options.rounds,
                 name + " = " + text::brief(value) + ": " + text::fixed(figures.objective, 4)});
-        if (figures.objective > (1 - kGain) * result.after.objective) continue;
+        if (figures.objective > (1 - kImprovement) * result.after.objective) continue;
         result.gains = gains;
         result.after = figures;
         better = true;

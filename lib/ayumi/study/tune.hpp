@@ -1,7 +1,6 @@
 #pragma once
-// Better gains by search: coordinate by coordinate on an objective that is declared, over a set of
-// pushes that is declared, in an order that is fixed. The same input gives the same gains for any
-// number of threads.
+// Search of better gains: a coordinate search with a declared objective, a declared set of pushes
+// and a fixed order. The same input gives the same gains for any number of threads.
 
 #include <map>
 #include <string>
@@ -10,40 +9,40 @@
 
 namespace ayumi {
 
-/// What is tried on every choice of gains: each phase pushed in each direction, and the unpushed
-/// pattern.
+/// The runs for each choice of gains: pushes in each phase and direction, and the pattern without a
+/// push.
 struct TuneOptions {
   std::vector<PushPhase> phases;  ///< empty: default_push_phases()
   int directions = 4;             ///< evenly spread, the first along +x
-  double level = 0.9;             ///< of a push, times the capture bound
+  double level = 0.9;             ///< of a push, in capture bounds
   double duration = 0.02;         ///< of a push [s]
-  double watched = 1.2;           ///< time after a push that counts [s]
+  double watched = 1.2;           ///< time after a push that the objective includes [s]
   std::vector<std::string> gains = {"ka", "q", "ks", "kd", "tau_z", "ankle"};
-  double factor = 1.3;       ///< first step up and down
-  int rounds = 3;            ///< through all gains; a dry round halves the step
+  double factor = 1.3;       ///< first step: a gain is multiplied and divided by it
+  int rounds = 3;            ///< through all gains; a round without gain takes the factor's root
   int threads = 0;           ///< 0: all cores
-  SimulateOptions simulate;  ///< its controller is the start
+  SimulateOptions simulate;  ///< its controller has the initial gains
 };
 
-/// The objective: the mean over all pushes of omega times the integral of |xi - cmd xi| / z over
-/// the watched time, and 10 for each that fell; plus the same mean of the unpushed run's
-/// |ZMP - ref ZMP| / z. Smaller is better, without dimension.
+/// The objective, dimensionless, smaller is better: the mean over all pushes of omega times the
+/// integral of |DCM - planned DCM| / z over the watched time, or of 10 for a push that fells the
+/// robot; plus the mean of |ZMP - reference ZMP| / z of the run without a push.
 struct TuneFigures {
   double objective = 0;
-  double recovery = 0;  ///< the part of the pushes that did not fall
-  double unpushed = 0;  ///< the part of the unpushed run
+  double recovery = 0;  ///< part of the pushes that the robot survives
+  double unpushed = 0;  ///< part of the run without a push
   int falls = 0, pushes = 0;
 };
 
 struct TuneResult {
   std::map<std::string, double> start, gains;  ///< by name
   TuneFigures before, after;
-  int choices = 0;  ///< of gains tried
-  int refused = 0;  ///< left out: the linear loop would be unstable
+  int choices = 0;  ///< number of choices of gains tried
+  int refused = 0;  ///< choices that were skipped because the linear loop would be unstable
 };
 
-/// Throws as push_limits() does, and Error(usage) for a gain that cannot be tuned, a start that is
-/// unstable or falls unpushed.
+/// Throws as push_limits() does, and Error(usage) for a gain that cannot be tuned and for initial
+/// gains that are unstable or with which the robot falls without a push.
 TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
                       const TuneOptions& options, const Progress& progress = {});
 

@@ -10,7 +10,7 @@ namespace ayumi {
 
 namespace {
 
-// What a table cannot say: weights of joints, and where a foot is planned while it swings.
+// Keys that a table cannot replace: weights of joints, and planned poses of a swing foot.
 std::vector<Keyframe> kept_keys(const Pattern& pattern) {
   std::vector<Keyframe> kept;
   for (const Keyframe& key : pattern.keyframes) {
@@ -36,7 +36,7 @@ Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeri
   result.keyframes = kept_keys(pattern);
   result.correction.reset();
   result.parameters.clear();
-  // The last tick may lie a little after the end.
+  // The last tick may be slightly after the end.
   if (!result.phases.empty())
     result.phases.back().until = std::max(result.phases.back().until, series.duration());
   result.table.emplace();

@@ -1,5 +1,5 @@
 #pragma once
-// Pattern surgery: each takes a pattern and gives another one; nothing is read or written.
+// Edits of patterns: each function returns a new pattern and reads or writes no file.
 
 #include <string>
 #include <vector>
@@ -10,33 +10,34 @@
 
 namespace ayumi {
 
-/// The motion as a table: theta, base, commanded COG, ZMP and f_z of every sample, under the file
-/// name `table`. Phases with their footholds, world, controller, scenario and tolerances stay; keys
-/// go, but for weights and foot poses. `series` is the pattern sampled. Throws Error(bad_pattern)
-/// for a phase with a goal, which has no motion of its own.
+/// The motion as a table with the file name `table`: theta, base, commanded COG, ZMP and f_z of
+/// every sample. Phases with footholds, world, controller, scenario and tolerances stay; keys are
+/// removed except weights and foot poses. `series` is the sampled pattern. Throws
+/// Error(bad_pattern) for a phase with a goal, which has no sampled motion.
 Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
               const std::string& table);
 
-/// How a robot maps onto its mirror image in its x z plane.
+/// Map of a robot onto its mirror image in its x z plane.
 struct MirrorMap {
-  std::vector<int> dof;   ///< the dof on the other side; itself in the middle
+  std::vector<int> dof;   ///< the dof on the other side; the same dof for one in the middle
   std::vector<int> sign;  ///< +1 or -1: theta of the image
   std::vector<int> link;  ///< the link on the other side
 };
-/// Throws Error(bad_model) naming the joint without a counterpart within 5 mm.
+/// Throws Error(bad_model) that names the joint without a counterpart within 5 mm.
 MirrorMap mirror_map(const RobotModel& model);
 
-/// Left for right: feet, joints, y coordinates, pushes, table and correction. Mirrored twice a
-/// pattern is what it was. Throws as mirror_map, and Error(bad_pattern) for an unknown joint.
+/// Exchanges left and right in feet, joints, y coordinates, pushes, table and correction. Mirrored
+/// twice, a pattern is unchanged. Throws as mirror_map, and Error(bad_pattern) for an unknown
+/// joint.
 Pattern mirrored(const RobotModel& model, const Pattern& pattern);
 
-/// The pattern in `scale` of its time. f_z keys keep the vertical acceleration that the new time
-/// gives; ZMP and f_z columns of a table no longer hold and are left to the full model. A push
-/// keeps its duration. Throws Error(usage) unless 0.01 <= scale <= 100, and as baked().
+/// The pattern with all times multiplied by `scale`. f_z keys get the vertical acceleration of the
+/// new times; ZMP and f_z columns of a table are no longer valid and come from the full model. A
+/// push keeps its duration. Throws Error(usage) unless 0.01 <= scale <= 100, and as baked().
 Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 
-/// The time from `begin` to `end` [s] takes `factor` times as long, what follows is that much
-/// later; keys, phases and f_z keys as in retimed(). Throws Error(usage) for a factor or window out
+/// The pattern with the time from `begin` to `end` [s] multiplied by `factor` and the rest shifted;
+/// keys, phases and f_z keys as in retimed(). Throws Error(usage) for a factor or window out
 /// of range, Error(bad_pattern) for a table or a correction, and as retimed().
 Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
                   double factor);
@@ -47,12 +48,13 @@ struct MotionPart {
   const CommandSeries& series;
 };
 
-/// One motion after the other as a table (posture and base; COG, ZMP and f_z are then those of the
-/// full model). The second is moved over the ground, and turned, to begin where the feet of the
-/// first stand; its footholds, keys and scenario come along. `over` [s]: a transition from rest to
-/// rest with both feet still; 0: none, the postures must agree within 2e-4 rad. World and
-/// controller are the first one's. Throws Error(bad_pattern) where one foot is in the air at the
-/// join, the feet stand otherwise (1 mm, 0.01 rad) or the legs do not reach; and as baked().
+/// Two motions in sequence as a table of posture and base (COG, ZMP and f_z are those of the full
+/// model). The second motion is moved over the ground and turned so that it begins where the feet
+/// of the first one stand, with its footholds, keys and scenario. `over` [s] is the time of a
+/// transition from rest to rest with both feet still; with 0 there is none, and the postures have
+/// to agree within 2e-4 rad. World and controller are those of the first motion. Throws
+/// Error(bad_pattern) when a foot is in the air at the join, the feet stand differently (1 mm, 0.01
+/// rad) or the legs do not reach, and as baked().
 Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                double over, const std::string& table);
 
@@ -60,9 +62,9 @@ struct Ramps {
   double in = 1, out = 1;  ///< [s]; 0: none
   std::string posture = "home";
 };
-/// The motion with a way to its first posture from a named one, and back to that at the end, as a
-/// table. The feet stay where the motion has them, the COG is above their middle. Throws as
-/// joined().
+/// The motion with transitions from a named posture to its first posture and back at the end, as a
+/// table. The feet stay in their places, and the named posture has its COG above their middle.
+/// Throws as joined().
 Pattern ramped(const RobotModel& model, const MotionPart& motion, const Ramps& ramps,
                const std::string& table);
 

@@ -1,7 +1,7 @@
-// Motions one after the other. The second is moved over the ground, T = (yaw, x, y), so that its
-// first footholds are the last of the first. A transition between two postures at rest keeps both
-// soles where they are: COG, trunk and the joints beside the legs go by s = 10 u^3 - 15 u^4 + 6
-// u^5, the legs follow by inverse kinematics.
+// Motions in sequence. The second motion is moved over the ground by T = (yaw, x, y), so that its
+// first footholds are the last ones of the first motion. A transition between two postures at rest
+// keeps both soles in place: COG, trunk and the joints outside the legs follow s = 10 u^3 - 15 u^4
+// + 6 u^5, and the legs follow by inverse kinematics.
 #include <cmath>
 
 #include "ayumi/author/edit/edit.hpp"
@@ -23,10 +23,14 @@ namespace {
 
 using Feet = std::array<Isometry3d, 2>;
 
-constexpr double kSamePlace = 1e-3;  // [m]
-constexpr double kSameAngle = 0.01;  // of a sole [rad]
-constexpr double kSameBase = 2e-5;   // what the base may jump in one sample [m]
-constexpr double kSameJoint = 2e-4;  // what a joint may jump in one sample [rad]
+/// Largest difference of place [m] and angle [rad] of soles that stand alike. Chosen: below what
+/// the check's tolerances for slip and sink allow at the join.
+constexpr double kSamePlace = 1e-3;
+constexpr double kSameAngle = 0.01;
+/// Largest jump of base [m] and joints [rad] at a join without a transition. Chosen: a jump of 2e-4
+/// rad in 1 ms is 0.2 rad/s, far below the speed limits of servos.
+constexpr double kSameBase = 2e-5;
+constexpr double kSameJoint = 2e-4;
 
 Feet soles_of(const RobotModel& model, const RobotState& state) {
   RobotData data(model);
@@ -34,7 +38,7 @@ Feet soles_of(const RobotModel& model, const RobotState& state) {
   return {sole_pose(model, data, Side::left), sole_pose(model, data, Side::right)};
 }
 
-// Onto the line between the feet: its middle and its heading.
+// Pose on the line between the feet: its middle and its heading.
 Isometry3d stand(const Feet& feet) {
   const Vector3d across = feet[0].translation() - feet[1].translation();
   Isometry3d frame = Isometry3d::Identity();
@@ -52,33 +56,33 @@ void require_stand(const Pattern& pattern, const CommandSample& sample, const ch
                                      "motion can follow");
 }
 
-RobotState moved(const Isometry3d& way, const RobotState& state) {
+RobotState moved(const Isometry3d& shift, const RobotState& state) {
   RobotState result = state;
-  result.base.position = way * state.base.position;
-  result.base.attitude = (Eigen::Quaterniond(way.linear()) * state.base.attitude).normalized();
+  result.base.position = shift * state.base.position;
+  result.base.attitude = (Eigen::Quaterniond(shift.linear()) * state.base.attitude).normalized();
   return result;
 }
 
-void move_foothold(const Isometry3d& way, Foothold& foothold) {
-  foothold.position = way * foothold.position;
-  foothold.rpy = matrix_to_rpy(way.linear() * rpy_to_matrix(foothold.rpy));
+void move_foothold(const Isometry3d& shift, Foothold& foothold) {
+  foothold.position = shift * foothold.position;
+  foothold.rpy = matrix_to_rpy(shift.linear() * rpy_to_matrix(foothold.rpy));
 }
 
-// Footholds, keys that a table keeps, and what happens to the robot: elsewhere and later.
-void move_plan(const Isometry3d& way, double later, Pattern& pattern) {
+// Moves footholds, keys that a table keeps, and the scenario in place and time.
+void move_plan(const Isometry3d& shift, double later, Pattern& pattern) {
   for (Phase& phase : pattern.phases) {
     phase.until += later;
-    if (phase.swing) move_foothold(way, phase.swing->to);
+    if (phase.swing) move_foothold(shift, phase.swing->to);
   }
   for (Keyframe& key : pattern.keyframes) {
     key.t += later;
     for (auto& foot : key.feet)
-      if (foot) move_foothold(way, *foot);
+      if (foot) move_foothold(shift, *foot);
   }
   for (Disturbance& push : pattern.scenario) {
     push.at += later;
-    if (push.frame == DisturbanceFrame::world) push.direction = way.linear() * push.direction;
-    push.place = (way * Vector3d(push.place.x(), push.place.y(), 0)).head<2>();
+    if (push.frame == DisturbanceFrame::world) push.direction = shift.linear() * push.direction;
+    push.place = (shift * Vector3d(push.place.x(), push.place.y(), 0)).head<2>();
   }
 }
 
@@ -97,7 +101,7 @@ double rest_to_rest(double u) { return u * u * u * (10 - 15 * u + 6 * u * u); }
 
 int ticks_of(double time, double dt) { return static_cast<int>(std::lround(time / dt)); }
 
-// What lies between two postures that stand on the same soles; neither of them is in it.
+// The samples between two postures on the same soles, without these postures.
 std::vector<RobotState> transition(const RobotModel& model, const RobotState& from,
                                    const RobotState& to, int ticks) {
   RobotData data(model);
@@ -135,11 +139,11 @@ std::vector<RobotState> transition(const RobotModel& model, const RobotState& fr
   return states;
 }
 
-// The pattern as a table of posture and base alone: COG, ZMP and f_z are those of the full model.
+// The pattern as a table of posture and base; COG, ZMP and f_z come from the full model.
 Pattern plain(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
               const std::string& table, size_t rows) {
   Pattern result = baked(model, pattern, series, table);
-  result.repair = {};  // of joints and times that were another motion's
+  result.repair = {};  // preferences for joints and times of another motion are invalid
   DenseTable& dense = *result.table;
   dense.cog.clear();
   dense.zmp.clear();
@@ -156,13 +160,13 @@ double angle_between(const Matrix3d& a, const Matrix3d& b) {
 
 void require_same_stand(const Pattern& second, const Feet& last, const Feet& first) {
   for (size_t i = 0; i < 2; ++i) {
-    const double way = (last[i].translation() - first[i].translation()).norm();
-    if (way < kSamePlace && angle_between(last[i].linear(), first[i].linear()) < kSameAngle)
+    const double distance = (last[i].translation() - first[i].translation()).norm();
+    if (distance < kSamePlace && angle_between(last[i].linear(), first[i].linear()) < kSameAngle)
       continue;
     fail(ErrorCode::bad_pattern,
-         in_file(second, "start") + ": its feet stand otherwise than those of the motion before, " +
-             text::fixed(1000 * way, 1) + " mm off; limit " + text::fixed(1000 * kSamePlace, 1) +
-             " mm: let one motion end where the other begins");
+         in_file(second, "start") + ": its feet stand " + text::fixed(1000 * distance, 1) +
+             " mm from the feet at the end of the first motion; limit " +
+             text::fixed(1000 * kSamePlace, 1) + " mm; let one motion end where the other begins");
   }
 }
 
@@ -170,19 +174,19 @@ void require_same_posture(const RobotModel& model, const Pattern& second, const 
                           const RobotState& first) {
   int worst = 0;
   const double most = (last.theta - first.theta).cwiseAbs().maxCoeff(&worst);
-  const double way = (last.base.position - first.base.position).norm();
+  const double distance = (last.base.position - first.base.position).norm();
   const double turn = last.base.attitude.angularDistance(first.base.attitude);
-  if (way > kSameBase || turn > kSameJoint)
+  if (distance > kSameBase || turn > kSameJoint)
     fail(ErrorCode::bad_pattern, in_file(second, "start") + ": its base is " +
-                                     text::fixed(1000 * way, 2) + " mm and " +
+                                     text::fixed(1000 * distance, 2) + " mm and " +
                                      text::fixed(turn * 180 / M_PI, 2) +
-                                     " deg from where the motion before ends: blend the two over "
+                                     " deg from the end of the first motion; blend the two over "
                                      "some time");
   if (most < kSameJoint) return;
   fail(ErrorCode::bad_pattern,
        in_file(second, "start") + ": " + model.dofs()[worst].name + " is " +
-           text::fixed(most * 180 / M_PI, 2) + " deg from where the motion before ends; limit " +
-           text::fixed(kSameJoint * 180 / M_PI, 2) + " deg: blend the two over some time");
+           text::fixed(most * 180 / M_PI, 2) + " deg from the end of the first motion; limit " +
+           text::fixed(kSameJoint * 180 / M_PI, 2) + " deg; blend the two over some time");
 }
 
 }  // namespace
@@ -196,8 +200,8 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
   require_stand(first.pattern, a.samples.back(), "end");
   require_stand(second.pattern, b.samples.front(), "start");
   const Feet last = soles_of(model, a.samples.back().state);
-  const Isometry3d way = stand(last) * stand(soles_of(model, b.samples.front().state)).inverse();
-  const RobotState from = a.samples.back().state, to = moved(way, b.samples.front().state);
+  const Isometry3d shift = stand(last) * stand(soles_of(model, b.samples.front().state)).inverse();
+  const RobotState from = a.samples.back().state, to = moved(shift, b.samples.front().state);
   require_same_stand(second.pattern, last, soles_of(model, to));
   if (over <= 0) require_same_posture(model, second.pattern, from, to);
 
@@ -209,12 +213,12 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
   Pattern result = plain(model, first.pattern, a, table, rows);
   for (const RobotState& state : between) add_row(*result.table, state);
   for (size_t k = skip; k < b.samples.size(); ++k)
-    add_row(*result.table, moved(way, b.samples[k].state));
+    add_row(*result.table, moved(shift, b.samples[k].state));
 
   const double later = a.duration() + ticks * a.dt;
   if (ticks > 0) result.phases.push_back(both_feet_until(later));
   Pattern rest = plain(model, second.pattern, b, table, b.samples.size());
-  move_plan(way, later, rest);
+  move_plan(shift, later, rest);
   result.phases.insert(result.phases.end(), rest.phases.begin(), rest.phases.end());
   result.keyframes.insert(result.keyframes.end(), rest.keyframes.begin(), rest.keyframes.end());
   result.scenario.insert(result.scenario.end(), rest.scenario.begin(), rest.scenario.end());
@@ -223,7 +227,7 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
 
 namespace {
 
-// The posture, standing with its COG between the feet where they are.
+// The posture, standing with its COG between the present places of the feet.
 RobotState standing_at(const RobotModel& model, const Pattern& pattern, const std::string& posture,
                        const RobotState& near) {
   RobotState state = near;
@@ -246,7 +250,7 @@ RobotState standing_at(const RobotModel& model, const Pattern& pattern, const st
   const InverseKinematics legs(model, near.theta);
   for (int i = 0; i < model.dof_count(); ++i)
     if (!legs.solves(i)) state.theta[i] = home.theta[i];
-  // Above the middle of the soles, not of their origins.
+  // The COG is above the middle of the sole polygons, not of the sole frames.
   Vector3d middle = Vector3d::Zero();
   for (size_t i = 0; i < 2; ++i) {
     const ConvexPolygon sole(model.sole(static_cast<Side>(i)).polygon);
@@ -270,8 +274,8 @@ Pattern ramped(const RobotModel& model, const MotionPart& motion, const Ramps& r
     require_stand(motion.pattern, series.samples.front(), "start");
     const RobotState& first = series.samples.front().state;
     before.push_back(standing_at(model, motion.pattern, ramps.posture, first));
-    const auto way = transition(model, before.front(), first, in);
-    before.insert(before.end(), way.begin(), way.end());
+    const auto path = transition(model, before.front(), first, in);
+    before.insert(before.end(), path.begin(), path.end());
   }
   if (out > 0) {
     require_stand(motion.pattern, series.samples.back(), "end");

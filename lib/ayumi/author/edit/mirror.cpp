@@ -16,8 +16,11 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kAlike = 0.005;    // distance of a point from the other's image [m]
-constexpr double kParallel = 0.99;  // cosine between an axis and the other's image
+/// Largest distance of a joint from the image of its counterpart [m]. Chosen: above the asymmetry
+/// of real robots, below the distance of two joints of one limb.
+constexpr double kAlike = 0.005;
+/// Smallest cosine of the angle between an axis and the image of its counterpart: 8 deg.
+constexpr double kParallel = 0.99;
 
 Vector3d image(const Vector3d& p) { return {p.x(), -p.y(), p.z()}; }
 Vector3d axial_image(const Vector3d& v) { return {-v.x(), v.y(), -v.z()}; }
@@ -37,12 +40,12 @@ Counterpart counterpart(const RobotModel& model, const RobotData& data, int i) {
   Counterpart best;
   for (int j = 1; j < static_cast<int>(model.bodies().size()); ++j) {
     const double along = axis.dot(data.axis[j]);
-    const Vector3d way = data.position[j] - p;
-    const double aside = body.prismatic ? 0 : way.cross(axis).norm();
+    const Vector3d offset = data.position[j] - p;
+    const double aside = body.prismatic ? 0 : offset.cross(axis).norm();
     if (model.bodies()[j].prismatic != body.prismatic || std::abs(along) < kParallel ||
-        aside > kAlike || (best.body >= 0 && way.norm() >= best.distance))
+        aside > kAlike || (best.body >= 0 && offset.norm() >= best.distance))
       continue;
-    best = {j, along > 0 ? 1 : -1, way.norm()};
+    best = {j, along > 0 ? 1 : -1, offset.norm()};
   }
   return best;
 }
@@ -82,7 +85,7 @@ MirrorMap mirror_map(const RobotModel& model) {
                                      "' has no counterpart on the other side, so the robot has "
                                      "no mirror image");
     body[i] = found.body;
-    if (model.dofs()[here.dof].body != i) continue;  // a mimic follows its driver
+    if (model.dofs()[here.dof].body != i) continue;  // a mimic joint follows its driver
     map.dof[here.dof] = model.bodies()[found.body].dof;
     map.sign[here.dof] = found.sign;
   }
@@ -133,17 +136,17 @@ class Mirror {
     return result;
   }
 
-  RepairWishes of(const RepairWishes& wishes) const {
-    RepairWishes result = wishes;
+  RepairPreferences of(const RepairPreferences& preferences) const {
+    RepairPreferences result = preferences;
     std::swap(result.feet[0], result.feet[1]);
     for (std::string& joint : result.joints)
       joint = model_.dofs()[map_.dof[dof_of(joint, "repair/lock/joints")]].name;
-    result.weights = of(wishes.weights, "repair/weights", false);
+    result.weights = of(preferences.weights, "repair/weights", false);
     return result;
   }
 
-  // A posture of the robot that is not its own image gets a twin of the same name in the pattern;
-  // a twin that is the robot's again goes.
+  // A posture of the robot that is not symmetric gets its image in the pattern under the same name.
+  // An image that equals the robot's posture again is removed.
   void mirror_robot_posture(Pattern& result, const std::string& name) const {
     if (!model_.has_posture(name)) return;
     const VectorXd theta = model_.posture(name);
@@ -201,7 +204,7 @@ class Mirror {
     key.feet = of(key.feet);
   }
 
-  // Columns keep their order where the table has both sides; else they are renamed.
+  // Columns keep their order where the table has both sides; else they get the other side's name.
   void mirror(DenseTable& table) const {
     const std::string place = "table " + table.file;
     const Eigen::MatrixXd theta = table.theta;

@@ -30,7 +30,7 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
     end *= scale;
   }
   if (result.table) {
-    *result.table = postures_of(model, *result.table);  // the lead is a time of the robot's
+    *result.table = postures_of(model, *result.table);  // the lead is a property of the robot
     result.table->dt *= scale;
     result.table->zmp.clear();
     result.table->fz.clear();
@@ -52,7 +52,7 @@ Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin,
   if (pattern.table || pattern.correction)
     fail(ErrorCode::bad_pattern,
          pattern.file + ": a part of a table or of a correction cannot be stretched alone");
-  constexpr double kSame = 1e-9;  // [s]
+  constexpr double kSame = 1e-9;  // times closer than this are equal [s]: above rounding
   const double weight = model.mass() * kGravity;
   const auto later = [&](double t) {
     return t <= begin ? t

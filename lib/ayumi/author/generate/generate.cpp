@@ -1,7 +1,7 @@
-// Footholds hang on a centre that moves along the walk: step i moves it by the stride (and sideways
-// with the leading foot) along the mean heading of the step and turns it; the swing foot lands
-// beside it at its home distance. The ZMP rests long enough at both ends for the COG to start from
-// rest: a bounded motion anticipates by exp(-w t).
+// Footholds are relative to a centre that moves along the walk: step i moves it by the stride (and
+// sideways with the leading foot) along the mean heading of the step and turns it, and the swing
+// foot lands beside it at its home distance. The ZMP rests long enough at both ends for the COG to
+// start from rest: a bounded motion anticipates by exp(-w t).
 #include "ayumi/author/generate/generate.hpp"
 
 #include <algorithm>
@@ -23,17 +23,25 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kStairClearance = 0.002;  // least of a sole from the next stair [m]
-constexpr double kStairSpare = 0.006;      // the default one
-constexpr double kStairHalfWidth = 1;      // of the leg's length
-constexpr double kStairLeg = 0.905;        // of the straight leg, between hip and sole of both feet
+// These constants shape generated patterns, which the check judges afterwards.
 
-// Of both ends, in units of 1/omega: the ZMP rests, then shifts onto the first foot.
-constexpr double kRest = 4.5, kShift = 2.6;
+/// Smallest accepted and default distance of a sole from the next stair [m]. Chosen: above the sink
+/// and the slip that the check tolerates.
+constexpr double kStairClearance = 0.002;
+constexpr double kStairDefaultClearance = 0.006;
+/// Half width of a stair, in leg lengths. Chosen: wider than the feet stand apart.
+constexpr double kStairHalfWidth = 1;
+/// Distance from hip to the lower sole, in straight leg lengths. Chosen: leaves the knee bent while
+/// the other foot is on the next stair.
+constexpr double kStairLeg = 0.905;
+
+/// Time in which the ZMP rests at both ends, and then moves onto the first foot, in units of
+/// 1/omega. Chosen: the anticipation of the COG has fallen to exp(-4.5) = 1 % at the ends.
+constexpr double kZmpRest = 4.5, kZmpShift = 2.6;
 
 double to_tenth_milliradian(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
 
-/// How far a sole reaches ahead of its frame and behind it [m].
+/// Distance by which a sole reaches ahead of its frame and behind it [m].
 struct SoleLength {
   double front = 0, back = 0;
 };
@@ -60,7 +68,8 @@ void check_stairs(const RobotModel& model, const WalkParameters& p) {
                                text::brief(sole.front + sole.back + 2 * kStairClearance) + " m");
 }
 
-/// Stairs under the footholds, each from midway between the soles on it and before it.
+/// Stairs under the footholds; each begins in the middle between the soles on it and those before
+/// it.
 World stairs(const RobotModel& model, const WalkParameters& p) {
   const SoleLength sole = sole_length(model);
   const double spare = 0.5 * (p.stride - sole.front - sole.back);
@@ -106,7 +115,7 @@ Foothold foothold(const Vector3d& center, double yaw, double beside) {
   return result;
 }
 
-void write_step(PatternWriter& writer, const WalkParameters& p, Side swing_foot,
+void write_step(PatternBuilder& writer, const WalkParameters& p, Side swing_foot,
                 const Foothold& to) {
   const double single = p.period * (1 - p.double_support);
   const Side stance = other(swing_foot);
@@ -143,7 +152,7 @@ WalkParameters stair_defaults(const RobotModel& model, double rise) {
   const SoleLength sole = sole_length(model);
   p.rise = rise;
   p.steps = 3;
-  p.stride = 1e-3 * std::ceil(1e3 * (sole.front + sole.back + 2 * kStairSpare));
+  p.stride = 1e-3 * std::ceil(1e3 * (sole.front + sole.back + 2 * kStairDefaultClearance));
   p.period = 0.05 * std::round(22 * p.period);
   p.lift = to_tenth_millimetre(rise + 0.006 * size_beside_hoap1(model));
   RobotData data(model);
@@ -169,11 +178,11 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   const auto start = start_feet(model, pattern);
   const double beside = 0.5 * (start[0].translation() - start[1].translation()).norm();
   const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
-  const double rest = to_millisecond(0.01 * std::round(100 * kRest / omega));
-  const double shift = to_millisecond(0.01 * std::round(100 * kShift / omega));
+  const double rest = to_millisecond(0.01 * std::round(100 * kZmpRest / omega));
+  const double shift = to_millisecond(0.01 * std::round(100 * kZmpShift / omega));
   const double both = p.period * p.double_support;
 
-  PatternWriter writer{pattern};
+  PatternBuilder writer{pattern};
   writer.key(0, ZmpKey::Place::center);
   writer.key(rest, ZmpKey::Place::center);
   writer.phase(rest + shift, Support::both);
@@ -184,7 +193,7 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   const int swings = p.rise != 0 ? 2 * p.steps : p.steps + 1;
   if (p.rise != 0) {
     pattern.world = stairs(model, p);
-    // Between soles of two heights the height of the ZMP is a matter of convention.
+    // Between soles of different height the height of the ZMP is a convention.
     pattern.tolerances["zmp_residual"] = to_tenth_millimetre(std::max(0.005, 0.6 * p.rise));
   }
   for (int i = 0; i < swings; ++i) {
@@ -214,7 +223,7 @@ Pattern stand_pattern(const RobotModel& model, double duration) {
   pattern.name = "stand for " + text::brief(duration) + " s";
   pattern.robot = model.name();
   pattern.cog_height = bent_height(model);
-  PatternWriter writer{pattern};
+  PatternBuilder writer{pattern};
   writer.key(0, ZmpKey::Place::center);
   writer.phase(duration, Support::both);
   return pattern;

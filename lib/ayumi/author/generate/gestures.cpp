@@ -1,5 +1,5 @@
-// Sway and squat: both feet stay, the COG is keyed. Stretches are minimum jerk, at rest at both
-// ends; the feet's middle is where the COG starts and ends.
+// Sway and squat: both feet stay, and the COG is keyed. Each part is minimum jerk with rest at both
+// ends; the COG starts and ends over the middle of the feet.
 #include <cmath>
 
 #include "ayumi/author/generate/generate.hpp"
@@ -14,7 +14,8 @@ using Eigen::Vector2d;
 
 namespace {
 
-constexpr double kRestTime = 0.5;  // at both ends, of HOAP-1 [s]
+/// Time of rest at both ends for HOAP-1 [s]; scaled with the root of the size. Chosen: 3/omega.
+constexpr double kRestTime = 0.5;
 
 double to_hundredth_second(double t) { return 0.01 * std::round(100 * t); }
 
@@ -51,11 +52,11 @@ Pattern sway_pattern(const RobotModel& model, const SwayParameters& p) {
   Pattern pattern = both_feet(model, "sway, " + std::to_string(p.cycles) + " times");
   const Vector2d middle = middle_of_feet(model), aside(p.forward, p.side);
   const double rest = to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kRestTime);
-  PatternWriter writer{pattern};
+  PatternBuilder writer{pattern};
   const auto at = [&](double t, double share) {
     const Vector2d place = middle + share * aside;
     Keyframe key;
-    // An axis that is not swayed is left out: it is solved from the ZMP.
+    // An axis without sway gets no keys and is solved from the ZMP.
     if (p.forward != 0) key.cog_x = to_tenth_millimetre(place.x());
     if (p.side != 0) key.cog_y = to_tenth_millimetre(place.y());
     if (p.forward == 0 && p.side == 0) key.zmp = ZmpKey{ZmpKey::Place::center, Vector2d::Zero()};
@@ -88,7 +89,7 @@ Pattern squat_pattern(const RobotModel& model, const SquatParameters& p) {
   Pattern pattern = both_feet(model, "squat, " + std::to_string(p.cycles) + " times");
   const double home = default_cog_height(model, pattern);
   const double rest = to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kRestTime);
-  PatternWriter writer{pattern};
+  PatternBuilder writer{pattern};
   writer.key(0, ZmpKey::Place::center);
   const auto at = [&](double t, double height) {
     Keyframe key;

@@ -1,6 +1,6 @@
-// A push goes from rest below ref z_G to the speed of lift-off and to free fall, as one quintic
-// (the landing is its mirror image in time). Its length is that of the least peak of the
-// acceleration among those that neither pull on the ground nor stoop deeper than asked.
+// A push moves from rest below ref z_G to the speed and the free fall of lift-off, as one quintic
+// (the landing is its mirror image in time). Its duration is the one with the smallest peak
+// acceleration among those that neither pull on the ground nor stoop deeper than given.
 #include <algorithm>
 #include <cmath>
 
@@ -17,18 +17,22 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kSunk = 0.02;     // of the stoop: how far a push may sink first
-constexpr double kStanding = 4.5;  // at either end, in units of 1/omega
-constexpr double kStooping = 4.0;  // down and, after the landing, up
+/// Fraction of the stoop by which a push may sink before it rises. Chosen: small against the stoop.
+constexpr double kSink = 0.02;
+/// Time of standing at both ends, in units of 1/omega, as kZmpRest of the walk.
+constexpr double kStanding = 4.5;
+/// Time of stooping, and of rising after the landing, in units of 1/omega. Chosen: slow enough for
+/// a COG that rests over the feet.
+constexpr double kStooping = 4.0;
 
-// The lowest value and the least and largest acceleration of a segment.
+// The lowest value and the smallest and largest acceleration of a segment.
 struct Extremes {
   double low = 1e9, least = 1e9, most = -1e9;
 };
 
 Extremes extremes(const QuinticEnd& from, const QuinticEnd& to) {
   Extremes e;
-  constexpr int kSteps = 400;
+  constexpr int kSteps = 400;  // Chosen: extremes between samples differ by less than 1e-4
   for (int i = 1; i < kSteps; ++i) {
     const TrackPoint p = quintic_at(from, to, from.t + (to.t - from.t) * i / kSteps);
     e.low = std::min(e.low, p.value);
@@ -46,14 +50,14 @@ double push_time(double stoop, double speed) {
   for (int i = 0; i <= 300; ++i) {
     const double time = (0.8 + 0.01 * i) * stoop / speed;
     const Extremes e = extremes({0, -stoop, 0, 0}, moving(time, 0, speed));
-    if (e.low < -(1 + kSunk) * stoop || e.least < -1.0001 * kGravity || e.most > least) continue;
+    if (e.low < -(1 + kSink) * stoop || e.least < -1.0001 * kGravity || e.most > least) continue;
     least = e.most;
     best = time;
   }
   return best;
 }
 
-// Time on the ground between two flights that sinks by `stoop` [s].
+// Time on the ground between two flights in which the COG sinks by `stoop` [s].
 double bounce_time(double stoop, double speed) {
   double low = stoop / speed, high = 8 * stoop / speed;
   for (int i = 0; i < 60; ++i) {
@@ -104,7 +108,7 @@ Pattern jump_pattern(const RobotModel& model, const JumpParameters& p) {
   const double bounce = to_millisecond(bounce_time(p.stoop, speed));
   const double low = to_tenth_millimetre(ref - p.stoop);
 
-  PatternWriter writer{pattern};
+  PatternBuilder writer{pattern};
   auto feet = start_feet(model, pattern);
   const auto key = [&](double at, double height, bool with_feet) {
     Keyframe k;

@@ -1,5 +1,5 @@
 #pragma once
-// What the generators share: rounding, ranges, keys and phases laid one after the other.
+// Functions that the generators share: rounding, ranges, and keys and phases in sequence.
 
 #include "ayumi/motion/pattern.hpp"
 
@@ -8,22 +8,22 @@ namespace ayumi {
 double to_millisecond(double t);
 double to_tenth_millimetre(double x);
 
-/// Throws Error(usage) naming the parameter of the generator `pattern` out of its range.
+/// Throws Error(usage) that names a parameter of the generator `pattern` out of its range.
 void require_range(const char* pattern, const char* name, double value, double low, double high,
                    const char* unit);
 
 /// Sum of the link lengths from hip to sole [m].
 double leg_length(const RobotModel& model);
 
-/// Home's COG height, lowered where home's legs are too straight to move a foot or the COG [m]; 0
-/// keeps home's.
+/// COG height of the home posture, lowered where its legs are too straight to move a foot or the
+/// COG [m]; 0 keeps the height of home.
 double bent_height(const RobotModel& model);
 
-/// Home COG height over that of HOAP-1: scales lengths, its root times.
+/// Ratio of the home COG height to that of HOAP-1: it scales lengths, and its root scales times.
 double size_beside_hoap1(const RobotModel& model);
 
-/// Times are rounded to the millisecond.
-struct PatternWriter {
+/// Adds keys and phases to a pattern. Times are rounded to the millisecond.
+struct PatternBuilder {
   Pattern& pattern;
   double t = 0;  ///< end of the last phase [s]
 

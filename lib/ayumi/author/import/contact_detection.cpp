@@ -1,4 +1,4 @@
-// Who carries, from how the feet move against each other, or over the ground.
+// Supports from the motion of the feet relative to each other, or over the ground.
 #include "ayumi/author/import/contact_detection.hpp"
 
 #include <algorithm>
@@ -15,21 +15,31 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRest = 0.020;           // relative speed of feet that stand [m/s]
-constexpr double kLever = 0.05;           // a turn counts as the speed of a point this far [m]
-constexpr double kLevel = 0.003;          // difference of heights of feet that stand [m]
-constexpr double kHandoverSpeed = 0.04;   // of feet along the ground as one takes over [m/s]
-constexpr double kHandoverTime = 0.3;     // within which one takes over [s]
-constexpr double kHandoverHeight = 0.01;  // between them [m]
-constexpr double kLook = 0.010;           // speeds are differences over twice this [s]
-constexpr double kShortest = 0.02;        // stretch of one support [s]
+// Thresholds of the detection. Chosen: between the speeds and heights of standing feet and those of
+// swings.
+
+/// Largest relative speed of standing feet [m/s].
+constexpr double kRestSpeed = 0.020;
+/// A rotation counts as the speed of a point at this distance [m]: half a sole.
+constexpr double kLever = 0.05;
+/// Largest difference in height of standing feet [m].
+constexpr double kLevel = 0.003;
+/// At an immediate change of the supporting foot: largest speed of the feet along the ground [m/s],
+/// its duration [s], and largest difference in height [m].
+constexpr double kHandoverSpeed = 0.04;
+constexpr double kHandoverTime = 0.3;
+constexpr double kHandoverHeight = 0.01;
+/// Speeds are differences over twice this time [s].
+constexpr double kLook = 0.010;
+/// Shortest time with one support [s].
+constexpr double kShortestSupport = 0.02;
 
 double speed_between(const Isometry3d& from, const Isometry3d& to, double time) {
   const Vector3d turn = log_rotation(Quaterniond(from.linear().transpose() * to.linear()));
   return ((to.translation() - from.translation()).norm() + kLever * turn.norm()) / time;
 }
 
-// +1: only the left carries, -1: only the right, 0: both, 2: moving too low to tell.
+// +1: only the left foot supports, -1: only the right, 0: both, 2: undecided, a foot moves too low.
 std::vector<int> relative_labels(const RobotModel& model, const Soles& soles, double dt) {
   const int n = static_cast<int>(soles[0].size());
   const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
@@ -45,15 +55,15 @@ std::vector<int> relative_labels(const RobotModel& model, const Soles& soles, do
     const double right_up = (relative(k) * center(Side::right)).z();
     const double left_up = (relative(k).inverse() * center(Side::left)).z();
     const double height = 0.5 * (right_up - left_up);
-    labels[k] = speed < kRest && std::abs(height) < kLevel ? 0
-                : std::abs(height) < kLevel / 2            ? 2
-                : height > 0                               ? 1
-                                                           : -1;
+    labels[k] = speed < kRestSpeed && std::abs(height) < kLevel ? 0
+                : std::abs(height) < kLevel / 2                 ? 2
+                : height > 0                                    ? 1
+                                                                : -1;
   }
   return labels;
 }
 
-// Rows that cannot be told join the nearer told row beside them that is not double support.
+// Undecided rows join the nearest decided row that is not double support.
 void tell_low_swings(std::vector<int>& labels) {
   const int n = static_cast<int>(labels.size());
   for (int k = 0; k < n;) {
@@ -71,16 +81,17 @@ void tell_low_swings(std::vector<int>& labels) {
   }
 }
 
-// Real robots are told angles that make up for what gives way under load, so that their soles never
-// rest against each other at one height. Where one foot takes over from the other at once, both
-// carry as long as they do not part along the ground, and are not far from one height.
+// Recorded commands of real robots compensate the compliance under load, so that the soles in them
+// never rest relative to each other at one height. At an immediate change of the supporting foot
+// both feet support as long as they do not move apart along the ground and have nearly the same
+// height.
 void add_handovers(const Soles& soles, double dt, std::vector<int>& labels) {
   const int n = static_cast<int>(labels.size());
   const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
   const auto ground_normal = [&](int k) {
     return Vector3d((soles[0][k].linear().col(2) + soles[1][k].linear().col(2)).normalized());
   };
-  // In the axes of the left foot, which is as good as still at those times.
+  // In the axes of the left foot, which hardly moves at these times.
   const auto between = [&](int k) -> Vector3d {
     return soles[0][k].linear().transpose() *
            (soles[1][k].translation() - soles[0][k].translation());
@@ -118,7 +129,7 @@ std::vector<Support> supports_with_base(const RobotModel& model, const Soles& so
     for (int s : {0, 1}) {
       const int a = std::max(0, k - look), b = std::min(n - 1, k + look);
       down[s] = lowest(s, k) - ground < kLevel &&
-                speed_between(soles[s][a], soles[s][b], (b - a) * dt) < kRest;
+                speed_between(soles[s][a], soles[s][b], (b - a) * dt) < kRestSpeed;
     }
     result[k] = down[0] && down[1] ? Support::both
                 : down[0]          ? Support::left
@@ -128,9 +139,9 @@ std::vector<Support> supports_with_base(const RobotModel& model, const Soles& so
   return result;
 }
 
-// The shortest stretch below the limit goes to its longer neighbour, until there is none.
+// The shortest interval below the limit joins its longer neighbour, until there is none.
 std::vector<Support> without_blinks(std::vector<Support> supports, double dt) {
-  const int least = static_cast<int>(std::lround(kShortest / dt));
+  const int least = static_cast<int>(std::lround(kShortestSupport / dt));
   while (true) {
     const std::vector<Stretch> all = stretches(supports);
     const auto length = [&](size_t i) { return all[i].last - all[i].first + 1; };
@@ -155,11 +166,11 @@ double height_of(const RobotModel& model, const RawMotion& motion, const Soles& 
   return motion.base.empty() ? (soles[1 - foot][k].inverse() * center).z() : center.z();
 }
 
-// Detection says `both` while the last or first of a swing goes on. Where the sole comes to rest
-// before the middle of that stretch, the contact begins (or ends) there.
+// The detection returns `both` during the slow end or start of a swing. Where the sole comes to
+// rest before the middle of this interval, the contact begins (or ends) at the rest.
 void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& soles,
                 std::vector<Support>& supports) {
-  constexpr double kAtRest = 1e-5;  // over its place [m]
+  constexpr double kAtRest = 1e-5;  // height over its place at rest [m]: above rounding of tables
   for (const Stretch& run : stretches(supports)) {
     if (run.support != Support::both) continue;
     for (const int step : {1, -1}) {
@@ -171,7 +182,7 @@ void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& s
       const int middle = (run.first + run.last) / 2;
       int least = edge;
       while (least != middle && height(least + step) < height(least)) least += step;
-      if (least == middle) continue;  // it sinks all the time: no swing, a load
+      if (least == middle) continue;  // it sinks all the time, which is a load and no swing
       const double place = height(least);
       for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
         supports[k] = supports[outside];

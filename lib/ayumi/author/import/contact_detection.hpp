@@ -1,5 +1,5 @@
 #pragma once
-// Which feet carry in a motion that does not say so.
+// Detection of the supporting feet in a motion without contact information.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -11,16 +11,16 @@ namespace ayumi {
 
 using Soles = std::array<std::vector<Eigen::Isometry3d>, 2>;  ///< frames by Side, then row
 
-/// In the world where the motion has a base, else in the base.
+/// Sole frames in the world where the motion has a base, else in the base.
 Soles soles_of(const RobotModel& model, const RawMotion& motion);
 
-/// By row. Feet that stand do not move against each other; where one takes over from the other at
-/// once, both carry as long as they do not part. A contact lasts from where a swing has come to
-/// rest to where the next one begins.
+/// Support by row. Standing feet do not move relative to each other; at an immediate change of the
+/// supporting foot both support as long as they do not move apart. A contact lasts from the rest
+/// after a swing to the beginning of the next swing.
 std::vector<Support> supports_from(const RobotModel& model, const RawMotion& motion,
                                    const Soles& soles);
 
-/// Rows first..last (inclusive) of one support.
+/// Rows first..last (inclusive) with one support.
 struct Stretch {
   int first = 0, last = 0;
   Support support = Support::both;

@@ -1,6 +1,6 @@
-// Sole frames F (world) and S_k (in the base, row k): a foot that stands at F puts the base at
-// F S_k^-1. The next foothold of a foot B that lands beside A is F_A times the relative pose
-// S_A^-1 S_B while both carry, made level.
+// With sole frames F (world) and S_k (in the base, row k), a foot that stands at F gives the base
+// the pose F S_k^-1. The next foothold of a foot B that lands beside A is F_A times the relative
+// pose S_A^-1 S_B while both support, made level.
 #include "ayumi/author/import/contact_reconstruction.hpp"
 
 #include <algorithm>
@@ -58,7 +58,7 @@ class Grounding {
     return supports(runs_[run].support, static_cast<Side>(foot));
   }
 
-  // Both feet at first, as they are to each other; then each new contact beside the other foot.
+  // First both feet with their relative pose; then each new contact relative to the other foot.
   void place_feet() {
     const int k = middle(0);
     const Isometry3d right = soles_[0][k].inverse() * soles_[1][k];
@@ -136,7 +136,7 @@ class Grounding {
     }
   }
 
-  // Share of the right foot in carrying the base.
+  // Weight of the right foot in the base's pose.
   double share(size_t run, int k) const {
     const auto single = [&](size_t r) { return runs_[r].support == Support::right ? 1.0 : 0.0; };
     const bool before = run > 0, after = run + 1 < runs_.size();

@@ -1,6 +1,6 @@
 #pragma once
-// A motion that only tells joints over time, put on the ground: which foot carries when, where it
-// stands, and so where the robot is.
+// Contacts of a motion that has joint angles only: the supporting feet over time, their places, and
+// from these the place of the robot.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// What a file of recorded or commanded angles holds.
+/// The content of a file of recorded or commanded angles.
 struct RawMotion {
   double dt = 0.001;                      ///< [s]
   Eigen::MatrixXd theta;                  ///< rows x dof, the robot's order [rad]
@@ -20,13 +20,13 @@ struct RawMotion {
   std::vector<Support> support;           ///< one per row; empty: to be detected
 };
 
-/// Who carries the robot in each row. Feet on the ground do not move against each other: both carry
-/// while their relative pose rests (2 cm/s) at one height (3 mm); else the one that is lower in the
-/// other's frame; where one takes over from the other at once, both carry as long as they do not
-/// part along the ground (4 cm/s) or by more than 1 cm in height. With a base, a sole carries that
-/// is within 3 mm of the lowest height of all and rests; flight is when none does. Stretches
-/// shorter than 20 ms belong to their neighbours. A contact lasts from where a swing has come to
-/// rest, if it does, to where the next one begins.
+/// Support in each row. Feet on the ground do not move relative to each other: both support while
+/// their relative pose rests (2 cm/s) at one height (3 mm); else the foot that is lower in the
+/// other's frame. At an immediate change of the supporting foot both support as long as they do not
+/// move apart along the ground (4 cm/s) or by more than 1 cm in height. In a motion with a base, a
+/// sole supports that is at rest within 3 mm of the lowest height of all; a row without such a sole
+/// is flight. Intervals shorter than 20 ms belong to their neighbours. A contact lasts from the
+/// rest after a swing, if there is one, to the beginning of the next swing.
 std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion);
 
 /// One foot on the ground.
@@ -37,8 +37,8 @@ struct FootContact {
 };
 
 /// The motion as a pattern with a table named `table`: phases, level footholds, swings, and the
-/// base that goes with them (in double support from one foot's to the other's, minimum jerk),
-/// unless the motion has its own. Starts with the feet at the origin, heading along x.
+/// base that follows from them (in double support by minimum jerk from one foot to the other),
+/// unless the motion has a base. It starts with the feet at the origin and the heading along x.
 struct GroundedMotion {
   Pattern pattern;
   std::vector<FootContact> contacts;  ///< in order of begin

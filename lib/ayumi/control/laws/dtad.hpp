@@ -21,10 +21,10 @@ struct DtadParams {
   std::optional<double> d;    ///< [d] D omega given directly, with k; must be positive
   double long_term = 1;       ///< [long] share of (18)(19); 0: ref ZMP is the commanded one
   double as_printed = 0;      ///< [as_printed] 1: D with the printed sign, a demonstration
-  double zmp_gain = 2.5;      ///< [ka] short-term loop on the measured ZMP; grows towards (14)
-  double pull_rate = 2;       ///< [ks] pull of the reference COG to the command
-  double pull_damping = 2;    ///< [kd] damping of that pull
-  double zmp_filter = 0.066;  ///< [tau_z] low pass of the measured ZMP
+  double zmp_gain = 1;        ///< [ka] short-term loop on the measured ZMP; grows towards (14)
+  double pull_rate = 1.8;     ///< [ks] pull of the reference COG to the command
+  double pull_damping = 1.8;  ///< [kd] damping of that pull
+  double zmp_filter = 0.04;   ///< [tau_z] low pass of the measured ZMP
   double margin = 0.01;       ///< [margin] kept inside the support region
   double offset_time = 6.6;   ///< [washout] after which a constant ZMP offset is accepted; 0: never
   double height_stiffness = 1.0;  ///< [kz] K_z of (20), times omega^2

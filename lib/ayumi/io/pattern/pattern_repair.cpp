@@ -27,18 +27,19 @@ int read_keyframe_number(const JsonNode& node, int keyframes) {
   return number;
 }
 
-void read_lock(const JsonNode& node, int keyframes, PatternScope& scope, RepairWishes& wishes) {
+void read_lock(const JsonNode& node, int keyframes, PatternScope& scope,
+               RepairPreferences& preferences) {
   only_pattern_keys(node, "lock");
-  if (const auto joints = node.find("joints")) wishes.joints = joints->strings();
+  if (const auto joints = node.find("joints")) preferences.joints = joints->strings();
   if (const auto feet = node.find("feet"))
     for (const JsonNode& foot : feet->items())
-      wishes.feet[foot.one_of({"left", "right"}) == "left" ? 0 : 1] = true;
+      preferences.feet[foot.one_of({"left", "right"}) == "left" ? 0 : 1] = true;
   if (const auto keys = node.find("keyframes"))
     for (const JsonNode& key : keys->items())
-      wishes.keyframes.push_back(read_keyframe_number(key, keyframes));
+      preferences.keyframes.push_back(read_keyframe_number(key, keyframes));
   if (const auto windows = node.find("windows"))
     for (const JsonNode& window : windows->items())
-      wishes.windows.push_back(read_window(window, scope));
+      preferences.windows.push_back(read_window(window, scope));
 }
 
 Trust read_trust(const JsonNode& node) {
@@ -50,22 +51,22 @@ Trust read_trust(const JsonNode& node) {
 
 }  // namespace
 
-RepairWishes read_repair(const JsonNode& node, int keyframes, PatternScope& scope) {
+RepairPreferences read_repair(const JsonNode& node, int keyframes, PatternScope& scope) {
   only_pattern_keys(node, "repair");
-  RepairWishes wishes;
-  if (const auto lock = node.find("lock")) read_lock(*lock, keyframes, scope, wishes);
+  RepairPreferences preferences;
+  if (const auto lock = node.find("lock")) read_lock(*lock, keyframes, scope, preferences);
   if (const auto weights = node.find("weights"))
     for (const auto& [joint, weight] : weights->members()) {
-      wishes.weights[joint] = read_number(weight, scope);
-      if (wishes.weights[joint] <= 0)
+      preferences.weights[joint] = read_number(weight, scope);
+      if (preferences.weights[joint] <= 0)
         weight.complain("a weight must be above 0 (lock the joint to keep it still)");
     }
-  if (const auto trust = node.find("trust")) wishes.trust = read_trust(*trust);
+  if (const auto trust = node.find("trust")) preferences.trust = read_trust(*trust);
   if (const auto margin = node.find("margin"))
-    wishes.margin = read_number(*margin, scope, 0, kWidestMargin);
+    preferences.margin = read_number(*margin, scope, 0, kWidestMargin);
   if (const auto safety = node.find("safety"))
-    wishes.safety = read_number(*safety, scope, 0, kLargestNumber);
-  return wishes;
+    preferences.safety = read_number(*safety, scope, 0, kLargestNumber);
+  return preferences;
 }
 
 }  // namespace ayumi

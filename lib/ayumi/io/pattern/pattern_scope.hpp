@@ -54,6 +54,6 @@ ControllerSpec read_controller(const JsonNode& node, PatternScope& scope);
 Disturbance read_disturbance(const JsonNode& node, PatternScope& scope);
 CorrectionTrack read_correction(const JsonNode& node);
 /// `keyframes`: how many the pattern has.
-RepairWishes read_repair(const JsonNode& node, int keyframes, PatternScope& scope);
+RepairPreferences read_repair(const JsonNode& node, int keyframes, PatternScope& scope);
 
 }  // namespace ayumi

@@ -200,7 +200,7 @@ class Writer {
   }
 
   void add_repair(Members& top) const {
-    const RepairWishes& wishes = pattern_.repair;
+    const RepairPreferences& wishes = pattern_.repair;
     if (wishes.empty()) return;
     Members lock, joints, feet, keys, windows, weights, members;
     for (const std::string& joint : wishes.joints) joints.item(quoted(joint));
