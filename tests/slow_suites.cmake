@@ -1,4 +1,12 @@
 # Suites that are left out of `ctest -L quick`: each takes more than two seconds alone.
 set(ayumi_slow_suites
-  cli.Run docs.CommandsOfPage
-)
+  check.Consequence check.Consistency check.FaultsOnPatterns check.PlantedFault check.SecondRoute
+  check.SecondRouteOfClearance cli.BrokenInput cli.CheckRepair cli.Edit cli.ExplainCommand
+  cli.Export cli.GainsCommand cli.Infeasible cli.NewJump cli.NewViip cli.NewWalk cli.PushCommand
+  cli.Repeat cli.RobotPath cli.Run cli.TuneCommand control.FootholdShift docs.CommandsOfPage
+  model.Diagnose plan.Sample plant_mujoco.MujocoDisturbance plant_mujoco.MujocoJump
+  plant_mujoco.MujocoPlant plant_mujoco.MujocoWalk plant_mujoco.PushAgreement
+  plant_mujoco.RepairedWalk render.Batch render.Clip render.Commands render.Renderer
+  repair.ConstraintRows repair.CorrectionProblem repair.Faults repair.JumpRepair repair.Landing
+  repair.LeastChange repair.Repair repair.ThrownKnee report.Report scenarios.Hoap1Walk
+  scenarios.SensorLatency scenarios.ViipHoap1 sim.Walking study.Push study.Retime)

@@ -68,8 +68,8 @@ TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {
 TEST_F(CheckRepair, TolerancesAreListedAndSet) {
   const Output people = ayumi({"check", "--tolerances"});
   EXPECT_EQ(people.exit_code, 0);
-  EXPECT_EQ(line_count(people.out), 21);
-  EXPECT_EQ(Json::parse(ayumi({"check", "--tolerances", "--json"}).out)["tolerances"].size(), 21u);
+  EXPECT_EQ(line_count(people.out), 23);
+  EXPECT_EQ(Json::parse(ayumi({"check", "--tolerances", "--json"}).out)["tolerances"].size(), 23u);
   const Output strict = ayumi({"check", kWalk, "--tolerance", "joint_speed=0.5", "--json"});
   EXPECT_EQ(strict.exit_code, 1);
   EXPECT_EQ(Json::parse(strict.out)["findings"][0]["kind"], "joint_speed");

@@ -19,7 +19,7 @@ TEST_F(Commands, PreviewWritesAClipAndSaysSo) {
   EXPECT_EQ(json.at("size"), nlohmann::json({160, 90}));
   EXPECT_TRUE(json.at("wall_s").is_number());
   const std::string first = contents(folder / "a.mp4");
-  EXPECT_EQ(ayumi({"preview", "run", "-o", "a.mp4", "--size", "160x90"}).exit_code, 2);
+  EXPECT_EQ(ayumi({"preview", "run", "-o", "a.mp4", "--size", "160x90"}).exit_code, 3);
   EXPECT_EQ(
       ayumi({"preview", "run", "-o", "a.mp4", "--size", "160x90", "--force", "--threads", "1"})
           .exit_code,

@@ -45,8 +45,11 @@ void refuse_unknown_gains(const Pattern& pattern, const RobotModel& robot) {
   with_place(robot.description().sidecar_file + ": /control",
              [&] { check_controller(robot, {.type = pattern.controller.type, .gains = {}}); });
   with_place(pattern.file + ": /controller", [&] { check_controller(robot, pattern.controller); });
-  with_place(pattern.file + ": /tolerances",
-             [&] { tolerances({.tolerances = pattern.tolerances}); });
+  with_place(pattern.file + ": /tolerances", [&] {
+    CheckOptions options;
+    options.tolerances = pattern.tolerances;
+    tolerances(options);
+  });
 }
 
 }  // namespace
