@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Verdict thresholds. docs/cli.md, "Outcome", defines them for users.
+// Verdict thresholds. docs/cli.md, "Simulating", defines them for users.
 
 /// Tilt of the trunk against the ground's normal beyond which the robot has fallen [rad]. Chosen:
 /// 46 deg is beyond the postures of the bundled patterns and long before the trunk touches the

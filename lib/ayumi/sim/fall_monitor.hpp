@@ -1,6 +1,6 @@
 #pragma once
 // The verdict of a run: whether the robot fell, stands or has not settled, and the figures of the
-// run. This is the only definition of the verdict (docs/cli.md, "Outcome").
+// run. This is the only definition of the verdict (docs/cli.md, "Simulating").
 
 #include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/model/robot_model.hpp"
