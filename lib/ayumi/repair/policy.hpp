@@ -20,13 +20,13 @@ namespace ayumi::repair_policy {
 namespace knots {
 /// Distance of the spline's knots [s]. Chosen: corrections of a step (0.7 s) have 14 of them. Half
 /// of it is what a program without a solution gets; a slip within 0.12 s needs it (Measured).
-/// Test: LeastChange.FootSlips needs the finer ones.
+/// Test: none.
 inline constexpr double kSpacing = 0.05;
-/// Knots in the shortest flight, at least. Chosen: the flight's parabola has to be followed.
-/// Test: JumpRepair.ArmBeyondItsLimitAfterLanding.
+/// Knots in the shortest flight, at least. Chosen: the flight's parabola has to be followed. Test:
+/// JumpRepair.* (that the repair succeeds).
 inline constexpr double kInFlight = 8;
 /// Knots in the shortest flight when a flight is at fault, at least. Reason: the violation lasts
-/// only as long as the flight. Chosen. Test: JumpRepair.BodyThatRisesInFlight.
+/// only as long as the flight. Chosen. Test: JumpRepair.* (that the repair succeeds).
 inline constexpr double kInFaultyFlight = 20;
 /// Knots in a window in which a foot slips. Reason: a sole in its place asks for a correction equal
 /// to the whole slip. Measured: with coarser knots, legs that give way cost 80 times the change on
@@ -53,7 +53,8 @@ inline constexpr double kBaseRotation = 4.0;
 /// The program's objective is this times half the weighted change. Chosen: a usual repair then
 /// costs about 1. Test: CorrectionProblem.ObjectiveIsTheIntegral.
 inline constexpr double kObjectiveScale = 100.0;
-/// A part of the change below this is rounding [s]. Derived: of sums of 1e4 doubles. Test: none.
+/// A part of the change below this is rounding [s]. Chosen: above the rounding of a sum over the
+/// samples. Test: none.
 inline constexpr double kRounding = 1e-15;
 }  // namespace change_weight
 
@@ -64,8 +65,8 @@ namespace collocation {
 /// kinks at the knots, so that its extremes lie there or halfway. Test: none.
 inline constexpr int kPerKnot = 2;
 /// A limit has rows where the motion, or an earlier result, uses more than this share of it; the
-/// check of the result looks at the rest. Chosen: at 0 all rows are there, and the program has
-/// several times as many. Test: none (PlacedRows.* set it to 0).
+/// check of the result looks at the rest. Chosen: at 0 every limit has its rows. Test: none
+/// (PlacedRows.* set it to 0).
 inline constexpr double kWatchedShare = 0.7;
 /// The normal force has rows where the motion presses with less than this share of the weight.
 /// Chosen. Test: none.
@@ -82,11 +83,6 @@ inline constexpr double kActiveFriction = 0.05;
 inline constexpr int kBesideActive = 4;
 }  // namespace collocation
 
-/// The ZMP, and how the feet share the load, have a meaning where the normal force is above this
-/// share of the weight. Chosen: the same as in the check. Test:
-/// PlacedRows.NumbersAreThoseOfTheCheck.
-inline constexpr double kContactThreshold = 0.02;
-
 // ---- how far inside the check's limits the rounds keep, so that what happens between two
 // collocation points passes the check as well
 
@@ -98,8 +94,7 @@ struct Backoff {
   double zmp;             ///< inside the edges of the support, beyond the check's margin [m]
 };
 /// The first round. Chosen: a spline between two points 25 ms apart leaves a limit by less than
-/// this for most faults; what it leaves is mended by the next round. At half, one more round for
-/// some; at twice, more change that the last program takes back. Test:
+/// this for most faults; the next round mends the rest. Test:
 /// Repair.NothingNearbyIsCheaper (zmp: it keeps 2.5 mm); PlacedRows.NumbersAreThoseOfTheCheck
 /// (shares).
 inline constexpr Backoff kFirstBackoff = {1e-4, 0.998, 0.98, 5e-4};
@@ -131,7 +126,7 @@ inline constexpr double kLeastMargin = 0.002;
 inline constexpr double kLeastNormalForce = 0.1;
 
 /// Size, over the weight, at which the tangential force in the friction row is rounded, for its
-/// slope has no value at 0. Chosen: 5e-4 of the usual cone. Test:
+/// slope has no value at 0. Chosen: small against mu. Test:
 /// PlacedRows.NumbersAreThoseOfTheCheck.
 inline constexpr double kFrictionRounding = 1e-4;
 
@@ -216,10 +211,10 @@ inline constexpr double kWrongPlanAround = 0.3;
 
 namespace flight {
 /// Samples to either side over which the moment in flight is averaged. Derived: as the check does.
-/// Test: PlacedRows.NumbersAreThoseOfTheCheck.
+/// Test: ConstraintRows.NumbersAreThoseOfTheCheck.
 inline constexpr int kMean = 2;
 /// What the motion does by itself in flight stays, up to this share of the check's limit; beyond it
-/// nothing of it does. Chosen. Test: JumpRepair.BodyThatRisesInFlight.
+/// nothing of it does. Chosen. Test: JumpRepair.* (that the repair succeeds).
 inline constexpr double kOwnShare = 0.85;
 /// Half the band, of the check's limit, shared among three axes. Chosen. Test: none.
 inline constexpr double kBand = 0.5;
@@ -229,10 +224,10 @@ inline constexpr double kBand = 0.5;
 namespace clearance {
 /// Nearer than this, a clearance of the given motion is one that is to be mended [m]. Test: none.
 inline constexpr double kTouch = 0.0005;
-/// Distance that bodies keep, unless the motion itself comes nearer [m]. Chosen: twice the check's
-/// rounding of nearest points and 2 mm for servos that lag. Test: none.
+/// Distance that bodies keep, unless the motion itself comes nearer [m]. Chosen. Test: none.
 inline constexpr double kKept = 2.4e-3;
-/// Pairs of bodies nearer than this are watched [m]. Chosen: twice what they keep. Test: none.
+/// Pairs of bodies nearer than this are watched [m]. Chosen: about twice what they keep. Test:
+/// none.
 inline constexpr double kWatchedBodies = 0.005;
 /// Shapes of such a pair nearer than this are watched [m]. Reason: when the nearest ones part, the
 /// next ones are not far. Chosen: twice as far. Test: none.
@@ -240,8 +235,8 @@ inline constexpr double kWatchedShapes = 0.010;
 /// What a row of edges may be less than the rows of corners beside it [m]: where both say the same,
 /// the corners alone hold. Chosen. Test: none.
 inline constexpr double kEdgeAllowance = 1e-4;
-/// An edge is nearer than all corners when it is so by more than this [m]. Derived: nearest points
-/// are found to 1e-7 m. Test: ClearanceRows.EdgesAreARowWhereNoCornerIsNearer.
+/// An edge is nearer than all corners when it is so by more than this [m]. Chosen: above the
+/// accuracy of nearest points. Test: ClearanceRows.EdgesAreARowWhereNoCornerIsNearer.
 inline constexpr double kSameDistance = 1e-6;
 }  // namespace clearance
 
@@ -258,8 +253,7 @@ namespace prices {
 /// a foot off its place weighs more than the ZMP, the DCM lies between.
 inline constexpr double kZmpMargin = 0.1, kLanding = 1, kDcm = 0.3;
 /// Of a limit in the relaxed program. Reason: above any multiplier seen, so that a limit is
-/// violated only where it must be; a repair costs about 1. Test:
-/// Faults.ReasonsNameJointTimeRatioAndTimeNeeded.
+/// violated only where it must be; a repair costs about 1. Test: none.
 inline constexpr double kLimit = 100;
 /// Of feet in contact and of flight in the relaxed program: the last to be violated. Chosen: a
 /// hundred times a limit. Test: none.
@@ -413,7 +407,8 @@ inline constexpr double kLength = 0.01, kForce = 10, kOther = 0.1;
 // ---- what is reported and written
 
 namespace report {
-/// A joint that moves less has not moved [rad]. Derived: a thousandth of a servo count. Test: none.
+/// A joint that moves less has not moved [rad]. Chosen: far below a servo count (8e-5 rad of
+/// HOAP-1). Test: none.
 inline constexpr double kMoved = 1e-6;
 /// The time of a change is where it is above this share of its largest value. Chosen. Test:
 /// MotionChange.NamesJointsTimesAndQuantities.
