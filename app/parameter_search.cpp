@@ -57,7 +57,7 @@ class Search {
     silent.quiet = true;
     try {
       const Task input = load_pattern(silent, pattern_, options);
-      return total_excess(
+      return total_violation(
           check_consistency(input.robot, input.series, check_options(input, tolerances_)));
     } catch (const Interrupted&) {
       throw;

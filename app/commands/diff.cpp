@@ -55,7 +55,7 @@ WeightedChange weighted(const DiffCommand& options, const Task& a, const Task& b
   if (options.safety) repair.safety = *options.safety;
   WeightedChange change =
       weighted_change(a.robot, a.series, b.series, weight_factors(a.robot, repair.joint_weights));
-  change.safety = safety_price(a.robot, a.series, b.series, repair, check_a);
+  change.safety = robustness_cost(a.robot, a.series, b.series, repair, check_a);
   return change;
 }
 

@@ -104,6 +104,7 @@ inline const std::vector<ThirdParty>& third_parties() {
   static const std::vector<ThirdParty> table = {
       {"Eigen", std::regex("(unsupported/)?Eigen/.*"), {}},
       {"Ipopt", std::regex("Ip[A-Z].*|coin(-or)?/.*"), {"repair"}},
+      {"dynamic loader", std::regex("dlfcn\\.h"), {"repair"}},
       {"urdfdom", std::regex("(urdf|console_bridge|tinyxml).*"), {"io"}},
       {"assimp", std::regex("assimp/.*"), {"io"}},
       {"OpenSSL", std::regex("openssl/.*"), {"io"}},

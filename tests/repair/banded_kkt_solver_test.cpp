@@ -1,7 +1,11 @@
-// The linear systems of Ipopt by condensing against those by MUMPS: the same solution by the same
-// way, for programs along time, programs without order, and one that is not convex.
+// Ipopt with the banded solver against Ipopt with MUMPS: the same solution after the same number of
+// iterations, for programs along time, programs without order, and one that is not convex. And
+// which programs of a process the banded solver serves: those of Ayumi and no others.
 
+#include <coin/HSLLoader.h>
 #include <gtest/gtest.h>
+
+#include <thread>
 
 #include "ayumi/repair/nlp/nlp.hpp"
 #include "tests/support/random_robot.hpp"
@@ -130,4 +134,87 @@ TEST(BandedKktSolver, NotConvex) {
   const NlpSolution s = solve(nlp);
   ASSERT_EQ(s.status, NlpStatus::solved);
   EXPECT_LT((s.x - Eigen::Vector2d(1, 0)).norm(), 1e-5);
+}
+
+// ---- programs of the host
+
+namespace {
+
+int host_calls = 0;
+
+void host_analyse(int*, int*, const int*, const int*, int*, int*, int*, int*, int*, int*, int*,
+                  double*, int*, double*) {
+  ++host_calls;
+}
+void host_factor(int*, int*, const int*, const int*, double*, int*, int*, int*, int*, int*, int*,
+                 int*, int*, double*, int*) {
+  ++host_calls;
+}
+void host_solve(int*, double*, int*, int*, int*, double*, int*, double*, int*, int*, int*,
+                double*) {
+  ++host_calls;
+}
+void host_defaults(int*, double*) { ++host_calls; }
+
+extern "C" void ma27ad_(int*, int*, const int*, const int*, int*, int*, int*, int*, int*, int*,
+                        int*, double*, int*, double*);
+
+// INFO(1) of an analysis of the unit matrix by the MA27 of the process: 0 where somebody serves it.
+int outcome_of_ma27() {
+  int n = 2, nz = 2, liw = 100, steps = 0, flag = 0, iw[100], ikeep[6], iw1[4], icntl[30] = {},
+      info[20] = {};
+  const int rows[] = {1, 2}, columns[] = {1, 2};
+  double cntl[5] = {}, operations = 0;
+  ma27ad_(&n, &nz, rows, columns, iw, &liw, ikeep, iw1, &steps, &flag, icntl, cntl, info,
+          &operations);
+  return info[0];
+}
+
+Nlp small_program() {
+  Random random(24);
+  return program(random_quadratic(random, 12, 24, 4));
+}
+
+}  // namespace
+
+TEST(BandedKktSolver, LeavesNothingBehindInIpopt) {
+  ASSERT_FALSE(LSL_isMA27available());
+  EXPECT_EQ(solve(small_program()).status, NlpStatus::solved);
+  EXPECT_FALSE(LSL_isMA27available());
+  Nlp broken = small_program();
+  broken.objective = [](const VectorXd&) -> double { fail(ErrorCode::internal, "broken"); };
+  EXPECT_THROW(solve(broken), Error);
+  EXPECT_FALSE(LSL_isMA27available());
+}
+
+// Other programs run on another thread of the host, and on the same one from within the progress
+// callback. Where no HSL library is installed, their analysis fails as it would without Ayumi.
+TEST(BandedKktSolver, ServesAyumisProgramsAlone) {
+  if (LSL_isHSLLoaded()) GTEST_SKIP() << "an HSL library is loaded";
+  int asked = 0, in_callback = 0, on_thread = 0;
+  const Progress progress = [&](const ProgressEvent&) {
+    ++asked;
+    in_callback += outcome_of_ma27() == 0;
+    std::thread other([&] { on_thread += outcome_of_ma27() == 0; });
+    other.join();
+    EXPECT_EQ(solve(small_program()).status, NlpStatus::solved);  // one of Ayumi within another
+    return true;
+  };
+  EXPECT_EQ(solve(small_program(), {}, progress).status, NlpStatus::solved);
+  EXPECT_GT(asked, 3);
+  EXPECT_EQ(in_callback, 0);
+  EXPECT_EQ(on_thread, 0);
+}
+
+TEST(BandedKktSolver, LeavesTheHostsOwnMa27Alone) {
+  LSL_setMA27(host_analyse, host_factor, host_solve, host_defaults);
+  host_calls = 0;
+  const NlpSolution with_host = solve(small_program());
+  EXPECT_EQ(host_calls, 0);
+  EXPECT_TRUE(LSL_isMA27available());
+  outcome_of_ma27();
+  EXPECT_EQ(host_calls, 1);
+  LSL_setMA27(nullptr, nullptr, nullptr, nullptr);
+  EXPECT_EQ(with_host.status, NlpStatus::solved);
+  EXPECT_LT((with_host.x - solve(small_program()).x).norm(), 1e-8);
 }

@@ -1,5 +1,3 @@
-#include "ayumi/repair/clearance_rows.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/repair/clearance_points.hpp"
 #include "tests/support/biped.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/random_robot.hpp"
@@ -100,7 +99,7 @@ TEST(ClearanceRows, PointFromBoxIsThatOfASmallBall) {
 TEST(ClearanceRows, FeetHaveTheirCornersTooAndNoneIsNearerThanTheFeet) {
   const CollisionModel collisions(hoap1());
   const ShapePair feet = pair_of(collisions, "l_foot", "r_foot");
-  ASSERT_EQ(clearance_rows(collisions, feet), 17);
+  ASSERT_EQ(clearance_point_count(collisions, feet), 17);
   Random random(5);
   RobotData data(hoap1());
   int touching = 0, by_corner = 0;
@@ -168,7 +167,7 @@ TEST(ClearanceRows, GradientOfEveryShapeAgainstDifferences) {
     for (const ShapePair& each : shapes) {
       update_positions(model, state, data);
       const auto points = clearance_points(collisions, each, data);
-      ASSERT_EQ(static_cast<int>(points.size()), clearance_rows(collisions, each));
+      ASSERT_EQ(static_cast<int>(points.size()), clearance_point_count(collisions, each));
       const double least = shape_clearance(collisions, each, data, 1);
       const Eigen::MatrixXd by = clearance_gradient(model, collisions, each, data);
       for (size_t row = 0; row < points.size(); ++row) {
@@ -206,7 +205,7 @@ TEST(ClearanceRows, EdgesAreARowWhereNoCornerIsNearer) {
     for (double& angle : state.theta) angle = random.uniform(-0.8, 0.8);
     update_positions(model, state, data);
     ShapePair boxes;  // the first shape of either
-    EXPECT_EQ(clearance_rows(collisions, boxes), 16);
+    EXPECT_EQ(clearance_point_count(collisions, boxes), 16);
     const bool meet = edges_meet(collisions, boxes, data);
     double least = 1;
     for (const Closest& c : clearance_points(collisions, boxes, data))
@@ -228,8 +227,8 @@ TEST(ClearanceRows, RowsByWhatShapesEndIn) {
   const int ends_a[] = {8, 2, 0}, ends_b[] = {8, 2, 2, 0};
   for (ShapePair each : shape_pairs(collisions, 0)) {
     const int count = ends_a[each.a] + ends_b[each.b];
-    EXPECT_EQ(clearance_rows(collisions, each), std::max(1, count));
+    EXPECT_EQ(clearance_point_count(collisions, each), std::max(1, count));
     each.edges = true;
-    EXPECT_EQ(clearance_rows(collisions, each), 1 + count);
+    EXPECT_EQ(clearance_point_count(collisions, each), 1 + count);
   }
 }

@@ -83,7 +83,7 @@ class ConstraintRows : public testing::TestWithParam<RobotMotion> {
     s.trust = trust;
     s.locked_feet = {true, false};
     s.collisions = &collisions;
-    s.kept_instants = {0.4 * series.duration(), 0.5 * series.duration()};
+    s.kept_times = {0.4 * series.duration(), 0.5 * series.duration()};
     for (int i = 0; i < static_cast<int>(collisions.pairs().size()); ++i) s.near_pairs.push_back(i);
     return s;
   }
@@ -141,11 +141,11 @@ TEST_P(ConstraintRows, DerivativesAgainstCentralDifferences) {
                 random.vector(problem.variable_count(), 1), tallies);
   }
   std::set<ConstraintGroup> all;
-  for (int i = 0; i <= static_cast<int>(ConstraintGroup::capture); ++i)
+  for (int i = 0; i <= static_cast<int>(ConstraintGroup::dcm); ++i)
     all.insert(static_cast<ConstraintGroup>(i));
   if (!jumps) {
     all.erase(ConstraintGroup::flight);
-    all.erase(ConstraintGroup::unilateral);  // the ground is never light in a walk
+    all.erase(ConstraintGroup::normal_force);  // the ground is never light in a walk
   }
   for (const ConstraintGroup group : all) {
     ASSERT_TRUE(tallies.contains(group)) << name_of(group) << " has no rows";
@@ -177,20 +177,20 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
         near.insert(i);
   }
   std::vector<Trust> trusts = {Trust::cog, Trust::zmp};
-  if (!jumps) trusts.push_back(Trust::posture);  // for its capture rows
+  if (!jumps) trusts.push_back(Trust::posture);  // for its DCM rows
   for (const Trust trust : trusts) {
     CorrectionSpec all = spec(trust);
     all.near_pairs.assign(near.begin(), near.end());
     all.free_ends = {true, true};
     all.spacing = 50 * series.dt;
-    all.instants_per_knot = 50;
+    all.points_per_knot = 50;
     const CorrectionProblem problem(model, series, all);
     const VectorXd g = problem.constraints(VectorXd::Zero(problem.variable_count()));
     MotionDynamics motion(model, series, plan);
     std::vector<Vector3d> turning(series.samples.size(), Vector3d::Constant(std::nan("")));
     for (const ConstraintBlock& b : problem.blocks()) {
-      const CollocationPoint& instant = problem.instants()[static_cast<size_t>(b.instant)];
-      const int k = instant.sample;
+      const CollocationPoint& point = problem.points()[static_cast<size_t>(b.point)];
+      const int k = point.sample;
       const VectorXd rows = g.segment(b.row, b.rows);
       const GroundDemand use = motion.at(k).use;
       const double light = use.normal_force / weight;
@@ -198,21 +198,21 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
         case ConstraintGroup::support:
           // f_n (distance of the ZMP inside the edges - margin) / (m g); the program's margin.
           if (!use.has_zmp) break;
-          EXPECT_NEAR(rows.minCoeff() / light + problem.safety(b.instant) + all.zmp_margin,
+          EXPECT_NEAR(rows.minCoeff() / light + problem.soft_margin(b.point) + all.zmp_margin,
                       use.margin, 1e-10)
               << k;
           break;
-        case ConstraintGroup::unilateral:
+        case ConstraintGroup::normal_force:
           EXPECT_NEAR(rows[0], light, 1e-12);
           break;
         case ConstraintGroup::friction: {
-          const double size = all.share * 0.3 * 0.98 * light - rows[0];  // rounded by 1e-4
+          const double size = all.limit_share * 0.3 * 0.98 * light - rows[0];  // rounded by 1e-4
           if (use.has_zmp) raise("friction", std::sqrt(size * size - 1e-8) / (0.3 * light));
           break;
         }
-        case ConstraintGroup::yaw: {
+        case ConstraintGroup::torsional_friction: {
           const double yaw = std::abs(rows[1] - rows[0]) / 2;
-          const double resists = (rows[0] + rows[1]) / 2 / all.share;
+          const double resists = (rows[0] + rows[1]) / 2 / all.limit_share;
           if (use.margin > 0.002) raise("yaw", yaw / resists);
           break;
         }
@@ -228,7 +228,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
           const Vector3d e = rows.tail<3>();
           const Eigen::Matrix3d R =
               exp_rotation(Vector3d(e.normalized() * std::asin(e.norm()))).toRotationMatrix();
-          const Eigen::Isometry3d& at = instant.ground[static_cast<size_t>(b.item)];
+          const Eigen::Isometry3d& at = point.ground[static_cast<size_t>(b.item)];
           const Vector3d normal = at.linear().col(2);
           double gap = -1, low = 1, way = 0;
           for (const Vector2d& v : model.sole(static_cast<Side>(b.item)).polygon) {
@@ -276,7 +276,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
         case ConstraintGroup::cog:
           raise("cog", rows.norm());
           break;
-        case ConstraintGroup::capture: {
+        case ConstraintGroup::dcm: {
           // By the momentum of the links; the command is a plain shift aside.
           const CommandSample& s = series.samples[static_cast<size_t>(k)];
           const double omega = std::sqrt(kGravity / (s.cog.z() - s.zmp.z()));

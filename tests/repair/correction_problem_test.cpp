@@ -132,7 +132,7 @@ TEST(CorrectionProblem, JacobianAgainstDifferences) {
   spec.friction = 0.1;
   const CorrectionProblem problem(limited_biped(), series, spec);
   for (const auto group :
-       {ConstraintGroup::support, ConstraintGroup::friction, ConstraintGroup::yaw,
+       {ConstraintGroup::support, ConstraintGroup::friction, ConstraintGroup::torsional_friction,
         ConstraintGroup::stance, ConstraintGroup::swing, ConstraintGroup::landing,
         ConstraintGroup::position, ConstraintGroup::speed})
     EXPECT_TRUE(std::any_of(problem.blocks().begin(), problem.blocks().end(),
@@ -215,7 +215,7 @@ TEST(CorrectionProblem, RowsAreTheFiguresOfTheCheck) {
   spec.windows = {{0, 10}};
   spec.free_ends = {true, true};
   spec.watched_share = 0;
-  spec.instants_per_knot = 50;  // every sample
+  spec.points_per_knot = 50;  // every sample
   spec.trust = Trust::cog;
   spec.collisions = &collisions;
   const CorrectionProblem problem(model, series, spec);
@@ -258,10 +258,10 @@ TEST(CorrectionProblem, SupportRowsAreTheMarginOfTheCheck) {
   const VectorXd g = problem.constraints(VectorXd::Zero(problem.variable_count()));
   for (const ConstraintBlock& b : problem.blocks()) {
     if (b.group != ConstraintGroup::support) continue;
-    const CollocationPoint& instant = problem.instants()[b.instant];
-    const CommandSample& s = series.samples[instant.sample];
-    const Vector3d zmp = instant.plane.frame.inverse() * s.zmp;
-    const double margin = instant.plane.polygon.margin(zmp.head<2>());
+    const CollocationPoint& point = problem.points()[b.point];
+    const CommandSample& s = series.samples[point.sample];
+    const Vector3d zmp = point.plane.frame.inverse() * s.zmp;
+    const double margin = point.plane.polygon.margin(zmp.head<2>());
     const double share = s.fz / (limited_biped().mass() * kGravity);
     EXPECT_NEAR(g.segment(b.row, b.rows).minCoeff(), share * margin, 1e-12);
   }

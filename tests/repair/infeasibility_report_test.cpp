@@ -19,7 +19,7 @@ TEST(InfeasibilityReport, NamesTheTimeForWhichAFootStandsOn) {
   RepairOptions options;
   options.locked_windows = {{0, 10}};
   const ConsistencyReport report = check_consistency(hoap1(), series, options.check);
-  const std::vector<Obstacle> found = obstacles(hoap1(), series, report, options);
+  const std::vector<Obstacle> found = infeasibility_report(hoap1(), series, report, options);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].finding.kind, FindingKind::contact_ends_early);
   EXPECT_EQ(found[0].finding.unit, "s");

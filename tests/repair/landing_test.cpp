@@ -10,6 +10,7 @@
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/repair/correction_problem.hpp"
+#include "ayumi/repair/foot_rows.hpp"
 #include "ayumi/repair/repair.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
@@ -35,7 +36,7 @@ TEST(Landing, WayIsAlongThePlacesAxes) {
   Isometry3d off = Isometry3d::Identity();
   off.translation() = Vector3d(0.003, 0.004, 0.020);
   off.linear() = exp_rotation({0.01, 0, 0.02}).toRotationMatrix();
-  const auto way = landing_way(hoap1(), Side::left, place * off, place);
+  const auto way = landing_offset(hoap1(), Side::left, place * off, place);
   const double reach = std::hypot(0.056, 0.0315);
   EXPECT_NEAR(way[0], 0.003, 1e-12);
   EXPECT_NEAR(way[1], 0.004, 1e-12);
@@ -57,7 +58,7 @@ TEST(Landing, ASoundWalkMeetsItsRows) {
   for (const ConstraintBlock& b : problem.blocks()) {
     if (b.group != ConstraintGroup::landing && b.group != ConstraintGroup::foot_clearance) continue;
     for (int i = b.row; i < b.row + b.rows; ++i) {
-      EXPECT_GE(g[i], problem.lower()[i] - 1e-5) << "at " << problem.instants()[b.instant].sample;
+      EXPECT_GE(g[i], problem.lower()[i] - 1e-5) << "at " << problem.points()[b.point].sample;
       ++rows[b.group];
     }
   }

@@ -90,7 +90,7 @@ class LeastChange : public testing::Test {
     constexpr double kRounding = 2e-5;  // of limits, and what the solver leaves
     WeightedChange cost = weighted_change(hoap1(), series, other);
     if (cost.change < least.total())
-      cost.safety = safety_price(hoap1(), series, other, options, before);
+      cost.safety = robustness_cost(hoap1(), series, other, options, before);
     EXPECT_GE(cost.total(), (1 - kRounding) * least.total()) << how << ", change " << cost.change;
   }
 

@@ -37,7 +37,7 @@ int motor_rows(const CommandSeries& series, double bound) {
   RepairOptions options;
   CorrectionSpec spec = repair_spec(hoap1(), series, options);
   spec.windows = {{0, 0.5}};
-  spec.extra = {kBegin + 0.001};
+  spec.extra_times = {kBegin + 0.001};
   const CorrectionProblem problem(hoap1(), series, spec);
   return static_cast<int>(std::count_if(problem.blocks().begin(), problem.blocks().end(),
                                         [&](const ConstraintBlock& block) {

@@ -3,112 +3,72 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <tuple>
 
 namespace ayumi {
+
+namespace policy = repair_policy;
 
 using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kWindow = 0.1;      // rows of one limit that share a slack [s]
-constexpr double kPrice = 100;       // of one unit of violation; a repair costs about 1
-constexpr double kHardFactor = 100;  // feet and flight against the rest
-
-// With a tenth of it walks at 0.65 of their time fall when played open loop, with three times of it
-// their repair takes twice the iterations and stands no better.
-constexpr double kSafetyPrice = 0.1;    // of a millimetre of the ZMP's safety in one window
-constexpr double kLandingPrice = 1;     // of a millimetre a low sole is off its place, or too low
-constexpr double kCapturePrice = 0.3;   // of a millimetre of xi or ZMP from where they were planned
-constexpr double kSafetyWindow = 0.05;  // [s]
-constexpr double kMillimetre = 1e-3;
-
-// What is as bad as a millimetre.
-double unit_of(ConstraintGroup group) {
-  switch (group) {
-    case ConstraintGroup::position:
-      return 0.01;  // [rad]
-    case ConstraintGroup::speed:
-    case ConstraintGroup::torque:
-    case ConstraintGroup::acceleration:
-    case ConstraintGroup::friction:
-    case ConstraintGroup::unilateral:
-      return 0.01;  // shares
-    default:
-      return 1e-3;  // [m]
-  }
+// A goal beyond the check whose violation has no bound.
+bool is_unbounded_goal(ConstraintGroup group) {
+  return policy::prices::of(group).soft_goal > 0 && group != ConstraintGroup::support;
 }
 
-// Wanted of swings beyond what the check asks for.
-bool of_swing(ConstraintGroup group) {
-  return group == ConstraintGroup::landing || group == ConstraintGroup::foot_clearance;
-}
-
-// Wanted beyond the check, and may be missing without end.
-bool is_wish(ConstraintGroup group) { return of_swing(group) || group == ConstraintGroup::capture; }
-
-// Of the objective, for a unit.
-double wish_price(ConstraintGroup group) {
-  return of_swing(group)                     ? kLandingPrice
-         : group == ConstraintGroup::capture ? kCapturePrice
-                                             : kSafetyPrice;
-}
-
-bool is_hard(ConstraintGroup group) {
-  return group == ConstraintGroup::stance || group == ConstraintGroup::path ||
-         group == ConstraintGroup::flight || group == ConstraintGroup::swing;
-}
-
-// Rows of the soft program: the old ones, then the upper bounds of soft rows that have two.
-struct Layout {
+// Rows of the relaxed program: the old ones, then the upper bounds of relaxed rows that have two.
+struct RelaxedLayout {
   std::vector<int> twice;  ///< old rows that appear again
 };
 
-Layout layout_of(const Nlp& nlp, const std::vector<int>& group) {
-  Layout layout;
+RelaxedLayout layout_of(const Nlp& nlp, const std::vector<int>& group) {
+  RelaxedLayout layout;
   for (int i = 0; i < static_cast<int>(group.size()); ++i)
     if (group[i] >= 0 && nlp.constraint_lower[i] > -kNoBound && nlp.constraint_upper[i] < kNoBound)
       layout.twice.push_back(i);
   return layout;
 }
 
-// What the start is short of each group, in its unit.
-VectorXd lacks(const Nlp& nlp, const Slacks& soft_rows) {
-  VectorXd g(nlp.constraint_lower.size()), lack = VectorXd::Zero(soft_rows.price.size());
+// The violation of the start by slack, in its unit.
+VectorXd start_violations(const Nlp& nlp, const Slacks& slacks) {
+  VectorXd g(nlp.constraint_lower.size()), violation = VectorXd::Zero(slacks.price.size());
   nlp.constraints(nlp.start, g);
   for (Eigen::Index i = 0; i < g.size(); ++i) {
-    const int k = soft_rows.group[static_cast<size_t>(i)];
+    const int k = slacks.group[static_cast<size_t>(i)];
     if (k < 0) continue;
     const double off = std::max(nlp.constraint_lower[i] - g[i], g[i] - nlp.constraint_upper[i]);
-    lack[k] = std::max(lack[k], off / soft_rows.unit[k]);
+    violation[k] = std::max(violation[k], off / slacks.unit[k]);
   }
-  return lack;
+  return violation;
 }
 
 }  // namespace
 
-Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
-  const std::vector<int>& group = soft_rows.group;
-  const VectorXd price = soft_rows.price;
-  const auto layout = std::make_shared<Layout>(layout_of(nlp, group));
+Nlp relaxed(const Nlp& nlp, const Slacks& relaxation) {
+  const std::vector<int>& group = relaxation.group;
+  const VectorXd price = relaxation.price;
+  const auto layout = std::make_shared<RelaxedLayout>(layout_of(nlp, group));
   const auto n = nlp.start.size(), slacks = price.size();
   const auto m = nlp.constraint_lower.size();
   const auto extra = static_cast<Eigen::Index>(layout->twice.size());
   Nlp soft;
   soft.start.resize(n + slacks);
-  soft.start << nlp.start, lacks(nlp, soft_rows).array() + soft_rows.start;
+  soft.start << nlp.start, start_violations(nlp, relaxation).array() + relaxation.start;
   soft.lower.resize(n + slacks);
   soft.lower << nlp.lower, VectorXd::Zero(slacks);
   soft.upper.resize(n + slacks);
   soft.upper << nlp.upper,
-      soft_rows.most.size() > 0 ? soft_rows.most : VectorXd::Constant(slacks, kNoBound);
-  soft.start = soft.start.cwiseMin(0.5 * soft.upper);
+      relaxation.most.size() > 0 ? relaxation.most : VectorXd::Constant(slacks, kNoBound);
+  soft.start = soft.start.cwiseMin(policy::solver::kSlackShare * soft.upper);
   soft.constraint_lower.resize(m + extra);
   soft.constraint_upper.resize(m + extra);
   soft.constraint_lower << nlp.constraint_lower, VectorXd::Constant(extra, -kNoBound);
   soft.constraint_upper << nlp.constraint_upper, VectorXd::Zero(extra);
 
-  // Old nonzeros, those of the second rows by the old ones' places, then the slacks'.
+  // Old nonzeros, then those of the second rows (at the old ones' columns), then the slacks'.
   soft.jacobian = nlp.jacobian;
   std::vector<int> second(static_cast<size_t>(m), -1);
   for (Eigen::Index i = 0; i < extra; ++i) {
@@ -128,7 +88,7 @@ Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
   auto add_slack = [&](int row, int slack, double s) {
     soft.jacobian.add(row, static_cast<int>(n) + slack);
     sign->emplace_back(row, slack);
-    value->push_back(s * soft_rows.unit[slack]);
+    value->push_back(s * relaxation.unit[slack]);
   };
   for (int i = 0; i < static_cast<int>(m); ++i) {
     if (group[i] < 0) continue;
@@ -173,63 +133,86 @@ Nlp elastic(const Nlp& nlp, const Slacks& soft_rows) {
   return soft;
 }
 
-Price price_of(ConstraintGroup group) {
-  constexpr double kChange = 2 / kObjectiveScale;  // of one of the objective
-  if (group == ConstraintGroup::support || is_wish(group))
-    return {kMillimetre, kChange * wish_price(group), kSafetyWindow};
-  return {unit_of(group), kChange * kPrice, kWindow};
+ViolationPrice price_of(ConstraintGroup group) {
+  constexpr double kChange = 2 / policy::change_weight::kObjectiveScale;  // of 1 of the objective
+  const policy::prices::GroupPrice& price = policy::prices::of(group);
+  if (price.soft_goal > 0)
+    return {price.unit, kChange * price.soft_goal, policy::prices::kSoftGoalWindow};
+  return {price.unit, kChange * policy::prices::kLimit, policy::prices::kLimitWindow};
 }
 
-Nlp with_soft_safety(const CorrectionProblem& problem, const Nlp& nlp, double dt, double factor,
-                     double barrier) {
-  Slacks slacks;
-  slacks.start = barrier / kSafetyPrice;
-  slacks.group.assign(static_cast<size_t>(problem.constraint_count()), -1);
-  std::map<std::tuple<int, int, long>, int> index;
-  std::vector<double> most, price;
-  for (const ConstraintBlock& block : problem.blocks()) {
-    const bool wish = is_wish(block.group);
-    const double spare = wish ? kNoBound : problem.safety(block.instant) / kMillimetre;
-    if ((!wish && block.group != ConstraintGroup::support) || spare <= 0) continue;
-    const double t = problem.instants()[block.instant].sample * dt;
-    const std::tuple key(static_cast<int>(block.group), block.item, std::lround(t / kSafetyWindow));
-    const auto found = index.try_emplace(key, static_cast<int>(most.size()));
-    if (found.second) {
-      most.push_back(spare);
-      price.push_back(factor * wish_price(block.group));
-    }
-    double& all = most[static_cast<size_t>(found.first->second)];
-    all = std::min(all, spare);
-    for (int i = 0; i < block.rows; ++i) slacks.group[block.row + i] = found.first->second;
+namespace {
+
+// Slacks while they are collected: one for each limit (group and item) and window of time.
+class SlackCollector {
+ public:
+  SlackCollector(const CorrectionProblem& problem, double dt, double window)
+      : problem_(problem), dt_(dt), window_(window) {
+    slacks_.group.assign(static_cast<size_t>(problem.constraint_count()), -1);
   }
-  if (most.empty()) return nlp;
-  slacks.most = Eigen::Map<VectorXd>(most.data(), static_cast<Eigen::Index>(most.size()));
-  slacks.unit = VectorXd::Constant(slacks.most.size(), kMillimetre);
-  slacks.price = Eigen::Map<VectorXd>(price.data(), static_cast<Eigen::Index>(price.size()));
-  return elastic(nlp, slacks);
+
+  // The least `most` of the blocks that share a slack holds for it.
+  void add(const ConstraintBlock& block, double unit, double price, double most) {
+    const double t = problem_.points()[block.point].sample * dt_;
+    const std::tuple key(static_cast<int>(block.group), block.item, std::lround(t / window_));
+    const auto [found, is_new] = index_.try_emplace(key, static_cast<int>(unit_.size()));
+    if (is_new) {
+      unit_.push_back(unit);
+      price_.push_back(price);
+      most_.push_back(most);
+    }
+    double& bound = most_[static_cast<size_t>(found->second)];
+    bound = std::min(bound, most);
+    for (int i = 0; i < block.rows; ++i) slacks_.group[block.row + i] = found->second;
+  }
+
+  bool empty() const { return unit_.empty(); }
+
+  Slacks collected() {
+    slacks_.unit = vector_of(unit_);
+    slacks_.price = vector_of(price_);
+    slacks_.most = vector_of(most_);
+    return slacks_;
+  }
+
+ private:
+  static VectorXd vector_of(const std::vector<double>& values) {
+    return Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  }
+
+  const CorrectionProblem& problem_;
+  double dt_, window_;
+  Slacks slacks_;
+  std::map<std::tuple<int, int, long>, int> index_;
+  std::vector<double> unit_, price_, most_;
+};
+
+}  // namespace
+
+Nlp with_soft_goals(const CorrectionProblem& problem, const Nlp& nlp, double dt, double robustness,
+                    double barrier) {
+  SlackCollector collector(problem, dt, policy::prices::kSoftGoalWindow);
+  for (const ConstraintBlock& block : problem.blocks()) {
+    const policy::prices::GroupPrice& price = policy::prices::of(block.group);
+    if (price.soft_goal <= 0) continue;
+    const double most = is_unbounded_goal(block.group)
+                            ? kNoBound
+                            : problem.soft_margin(block.point) / policy::prices::kLength;
+    if (most > 0) collector.add(block, price.unit, robustness * price.soft_goal, most);
+  }
+  if (collector.empty()) return nlp;
+  Slacks slacks = collector.collected();
+  slacks.start = barrier / policy::prices::kZmpMargin;
+  return relaxed(nlp, slacks);
 }
 
-Nlp elastic(const CorrectionProblem& problem, const Nlp& nlp, double dt) {
-  Slacks slacks;
-  slacks.group.assign(static_cast<size_t>(problem.constraint_count()), -1);
-  std::map<std::tuple<int, int, long>, int> index;
-  std::vector<double> unit, price;
+Nlp with_all_limits_relaxed(const CorrectionProblem& problem, const Nlp& nlp, double dt) {
+  SlackCollector collector(problem, dt, policy::prices::kLimitWindow);
   for (const ConstraintBlock& block : problem.blocks()) {
-    if (block.group == ConstraintGroup::pose) continue;  // a lock is a lock
-    const double t = problem.instants()[block.instant].sample * dt;
-    const std::tuple key(static_cast<int>(block.group), block.item, std::lround(t / kWindow));
-    const auto found = index.try_emplace(key, static_cast<int>(unit.size()));
-    if (found.second) {
-      unit.push_back(unit_of(block.group));
-      price.push_back(is_wish(block.group)   ? wish_price(block.group)
-                      : is_hard(block.group) ? kPrice * kHardFactor
-                                             : kPrice);
-    }
-    for (int i = 0; i < block.rows; ++i) slacks.group[block.row + i] = found.first->second;
+    const policy::prices::GroupPrice& price = policy::prices::of(block.group);
+    if (price.relaxed > 0) collector.add(block, price.unit, price.relaxed, kNoBound);
   }
-  slacks.unit = Eigen::Map<VectorXd>(unit.data(), static_cast<Eigen::Index>(unit.size()));
-  slacks.price = Eigen::Map<VectorXd>(price.data(), static_cast<Eigen::Index>(price.size()));
-  return elastic(nlp, slacks);
+  return relaxed(nlp, collector.collected());
 }
 
 }  // namespace ayumi

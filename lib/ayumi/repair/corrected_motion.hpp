@@ -1,9 +1,10 @@
 #pragma once
-// One sample of a motion with a correction laid over it, as apply_correction() does it, and how its
-// state changes with the correction. With correction values d, rates d', accelerations d'':
+// One sample of a motion with a correction added, as apply_correction() adds it, and the
+// derivatives of its state by the correction. With correction values d, rates d', accelerations
+// d'':
 //   p = p0 + d_p,  R = exp(r) R0,  theta = theta0 + d_theta,
 //   w = J(r) r' + exp(r) w0,  dw = d/dt(J(r) r') + (J(r) r') x exp(r) w0 + exp(r) dw0,
-// J the left Jacobian of the rotation group.
+// where J is the left Jacobian of the rotation group.
 
 #include <Eigen/Core>
 
@@ -15,9 +16,9 @@ struct CorrectedMotion {
   RobotState state;
   Eigen::VectorXd acceleration;
 
-  Eigen::Matrix3d tangent;                             ///< J(r): rotation of the base per r
-  Eigen::Matrix3d w_value, w_rate;                     ///< of w by r and r'
-  Eigen::Matrix3d dw_value, dw_rate, dw_acceleration;  ///< of dw by r, r', r''
+  Eigen::Matrix3d tangent;                             ///< J(r): turn of the base by r
+  Eigen::Matrix3d w_value, w_rate;                     ///< derivatives of w by r and r'
+  Eigen::Matrix3d dw_value, dw_rate, dw_acceleration;  ///< derivatives of dw by r, r', r''
 };
 
 /// `value`, `rate`, `acceleration`: base position, base rotation vector, theta (6 + dof).

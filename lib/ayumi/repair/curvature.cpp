@@ -2,6 +2,8 @@
 
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
+#include "ayumi/repair/foot_rows.hpp"
+#include "ayumi/repair/ground_rows.hpp"
 
 namespace ayumi {
 
@@ -13,16 +15,16 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Of a sole pose: c . p + <K, what turning does>: two turns about a, then b above it, add
-//   a' K b - tr(K) a . b.
+// Weights on the pose of a sole: c on its position, K on its rotation. Two turns, one about a and
+// one about b nearer to the root, add  a' K b - tr(K) a . b  to the sum.
 struct PoseWeights {
   Vector3d c = Vector3d::Zero();
   Matrix3d K = Matrix3d::Zero();
-  Vector3d height = Vector3d::Zero();  // direction whose square counts,
-  double square = 0;                   // so much
+  Vector3d height = Vector3d::Zero();  // direction in which the squared height counts
+  double square = 0;                   // weight of that square
 };
 
-// Of  d . vee(E - E')/2,  E = R R_planned'.
+// Weight K of a rotation error  d . vee(E - E')/2,  E = R R_planned'.
 Matrix3d turning(const Vector3d& d, const Isometry3d& sole, const Isometry3d& planned) {
   return 0.5 * skew(d) * planned.linear() * sole.linear().transpose();
 }
@@ -31,23 +33,23 @@ void add_landing(const RobotModel& model, const ConstraintBlock& block, const Ve
                  const Isometry3d& sole, const Isometry3d& place, PoseWeights& sum) {
   const Vector3d normal = place.linear().col(2);
   const double height = normal.dot(sole.translation() - place.translation());
-  const Vector6d way = landing_rows(model, static_cast<Side>(block.item), place).transpose() *
-                       (l.tail<5>() - l.head<5>());
-  sum.c += way.head<3>() + 2 * block.factor * l.sum() * height * normal;
-  sum.K += turning(way.tail<3>(), sole, place);
+  const Vector6d offset = landing_rows(model, static_cast<Side>(block.item), place).transpose() *
+                          (l.tail<5>() - l.head<5>());
+  sum.c += offset.head<3>() + 2 * block.factor * l.sum() * height * normal;
+  sum.K += turning(offset.tail<3>(), sole, place);
   sum.height = normal;
   sum.square += 2 * block.factor * l.sum();
 }
 
 void add_foot(const RobotModel& model, const ConstraintBlock& block, const VectorXd& l,
-              const CollocationPoint& instant, const PointState& state, PoseWeights& sum) {
-  const Isometry3d &sole = state.soles[block.item], &ground = instant.ground[block.item];
+              const CollocationPoint& point, const PointState& state, PoseWeights& sum) {
+  const Isometry3d &sole = state.soles[block.item], &ground = point.ground[block.item];
   if (block.group == ConstraintGroup::landing) {
-    add_landing(model, block, l, sole, instant.place[block.item], sum);
+    add_landing(model, block, l, sole, point.place[block.item], sum);
   } else if (block.group == ConstraintGroup::stance || block.group == ConstraintGroup::path) {
     const bool path = block.group == ConstraintGroup::path;
     sum.c += l.head<3>();
-    sum.K += turning(l.tail<3>(), sole, path ? instant.path[block.item] : ground);
+    sum.K += turning(l.tail<3>(), sole, path ? point.path[block.item] : ground);
   } else {
     const Vector3d normal = ground.linear().col(2);
     const auto& corners = model.sole(static_cast<Side>(block.item)).polygon;
@@ -84,7 +86,7 @@ void add_pose(const RobotModel& model, Side side, const PoseWeights& w, const Ma
     }
 }
 
-// Of  c . COG.
+// Adds the curvature of  c . COG.
 void add_cog(const RobotModel& model, const Vector3d& c, const PointState& state, MatrixXd& sum) {
   const MatrixXd& J = state.cog_by;
   const Matrix3d& T = state.motion.tangent;
@@ -110,8 +112,8 @@ void add_cog(const RobotModel& model, const Vector3d& c, const PointState& state
   }
 }
 
-// Of the ground wrench's power on the rigid motion of angular velocity `turn` that moves the base
-// origin with `slide`.
+// Adds the curvature of the ground wrench's power on the rigid motion that turns with `turn` and
+// moves the base origin with `slide`.
 void add_power(const RobotModel& model, const Vector3d& slide, const Vector3d& turn,
                const PointState& state, TreeDynamics& dynamics, Curvature& sum) {
   const Vector3d up(0, 0, kGravity);
@@ -135,17 +137,13 @@ void add_power(const RobotModel& model, const Vector3d& slide, const Vector3d& t
 }
 
 void add_cone(const ConstraintBlock& block, double multiplier, const Vector6d& wrench,
-              const CollocationPoint& instant, const PointState& state, Curvature& sum) {
+              const CollocationPoint& point, const PointState& state, Curvature& sum) {
   const Eigen::Vector2d pull = wrench.head<2>();
-  const double size = cone_size(block, wrench);
+  const double size = rounded_tangential_force(block, wrench);
   sum.cone -= multiplier * block.scale / size *
               (Eigen::Matrix2d::Identity() - pull * pull.transpose() / (size * size));
-  const Eigen::Matrix<double, 2, 3> R = instant.plane.frame.linear().transpose().topRows<2>();
+  const Eigen::Matrix<double, 2, 3> R = point.plane.frame.linear().transpose().topRows<2>();
   for (int k = 0; k < 3; ++k) sum.force_by[k] = R * state.wrench_by[k].topRows<3>();
-}
-
-bool of_foot(ConstraintGroup group) {
-  return group >= ConstraintGroup::stance && group <= ConstraintGroup::foot_clearance;
 }
 
 }  // namespace
@@ -153,22 +151,21 @@ bool of_foot(ConstraintGroup group) {
 bool is_flat(const Curvature& curvature) { return curvature.value.size() == 0; }
 
 Curvature curvature_of(const RobotModel& model, std::span<const ConstraintBlock> blocks,
-                       const VectorXd& multipliers, const CollocationPoint& instant,
+                       const VectorXd& multipliers, const CollocationPoint& point,
                        const PointState& state, TreeDynamics& dynamics) {
   std::array<PoseWeights, 2> poses;
   std::array<bool, 2> foot = {};
   Vector6d ground = Vector6d::Zero();
   Curvature sum;
   const Vector3d base = state.motion.state.base.position;
-  const Vector6d wrench = plane_wrench(instant.plane, base, state.wrench);
+  const Vector6d wrench = plane_wrench(point.plane, base, state.wrench);
   for (const ConstraintBlock& block : blocks) {
     const VectorXd l = multipliers.segment(block.row, block.rows);
     if (l.isZero(0)) continue;
     if (is_of_ground(block.group)) ground += ground_gradient(block, wrench).transpose() * l;
-    if (block.group == ConstraintGroup::friction)
-      add_cone(block, l[0], wrench, instant, state, sum);
-    if (!of_foot(block.group)) continue;
-    add_foot(model, block, l, instant, state, poses[block.item]);
+    if (block.group == ConstraintGroup::friction) add_cone(block, l[0], wrench, point, state, sum);
+    if (!is_of_foot(block.group)) continue;
+    add_foot(model, block, l, point, state, poses[block.item]);
     foot[block.item] = true;
   }
   if (!foot[0] && !foot[1] && ground.isZero(0)) return sum;
@@ -178,9 +175,9 @@ Curvature curvature_of(const RobotModel& model, std::span<const ConstraintBlock>
     if (foot[s]) add_pose(model, side, poses[s], state.sole_by[s], sum.value);
   }
   if (ground.isZero(0)) return sum;
-  const Matrix3d R = instant.plane.frame.linear();
+  const Matrix3d R = point.plane.frame.linear();
   const Vector3d turn = R * ground.tail<3>();
-  const Vector3d arm = base - instant.plane.frame.translation();
+  const Vector3d arm = base - point.plane.frame.translation();
   add_power(model, R * ground.head<3>() + turn.cross(arm), turn, state, dynamics, sum);
   return sum;
 }

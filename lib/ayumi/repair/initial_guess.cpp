@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <variant>
 #include <vector>
 
 #include "ayumi/math/windows.hpp"
 
 namespace ayumi {
+
+namespace policy = repair_policy;
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -15,7 +18,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Dofs that move one body and not the other.
+// Dofs that move one of the bodies and not the other.
 std::vector<int> joints_between(const RobotModel& model, int a, int b) {
   std::vector<int> count(static_cast<size_t>(model.dof_count()), 0), result;
   for (const int body : {a, b})
@@ -26,16 +29,17 @@ std::vector<int> joints_between(const RobotModel& model, int a, int b) {
   return result;
 }
 
-std::vector<int> joints_of(const RobotModel& model, const Finding& f) {
+std::vector<int> joints_at_fault(const RobotModel& model, const Finding& f) {
   if (f.kind == FindingKind::joint_position) return {dof_of(f)};
   const BodyPairPlace* bodies = std::get_if<BodyPairPlace>(&f.place);
   return bodies ? joints_between(model, bodies->a, bodies->b) : std::vector<int>();
 }
 
-// What leads the joint from one end of a window to the other as a cubic, less where it is.
-class Bridge {
+// The difference between a cubic that leads a joint from one end of a window to the other, and the
+// motion itself.
+class StraightLine {
  public:
-  Bridge(const CommandSeries& series, int dof, const TimeWindow& window)
+  StraightLine(const CommandSeries& series, int dof, const TimeWindow& window)
       : series_(series), dof_(dof) {
     const double last = series.duration();
     begin_ = std::lround(std::clamp(window.first, 0.0, last) / series.dt);
@@ -63,14 +67,14 @@ class Bridge {
   long begin_ = 0, end_ = 0;
 };
 
-// Of soles and clearances: the sum of what violates them, and the worst.
-struct RowViolation {
+// Violation of the rows of soles and clearances.
+struct LeastLinearViolation {
   double sum = 0, worst = 0;
 };
 
-RowViolation violation(const CorrectionProblem& problem, const VectorXd& x) {
+LeastLinearViolation least_linear_violation(const CorrectionProblem& problem, const VectorXd& x) {
   const VectorXd g = problem.constraints(x);
-  RowViolation result;
+  LeastLinearViolation result;
   for (const ConstraintBlock& block : problem.blocks()) {
     if (block.group != ConstraintGroup::stance && block.group != ConstraintGroup::path &&
         block.group != ConstraintGroup::swing && block.group != ConstraintGroup::clearance)
@@ -98,38 +102,37 @@ MatrixXd with_halved_knots(const MatrixXd& c) {
   return fine;
 }
 
-MatrixXd bridge(const RobotModel& model, const CommandSeries& series,
-                const std::vector<Finding>& findings, double reach, double spacing, Index rows) {
+MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& series,
+                             const std::vector<Finding>& findings, double reach, double spacing,
+                             Index rows) {
   std::map<int, std::vector<TimeWindow>> windows;
   for (const Finding& f : findings) {
     if (f.severity != Severity::error) continue;
-    for (const int dof : joints_of(model, f))
+    for (const int dof : joints_at_fault(model, f))
       windows[dof].emplace_back(f.begin - reach, f.end + reach);
   }
   MatrixXd result = MatrixXd::Zero(rows, model.velocity_count());
   for (const auto& [dof, of_joint] : windows)
     for (const TimeWindow& window : merged(of_joint)) {
-      const Bridge over(series, dof, window);
-      for (Index i = 0; i < rows; ++i) {  // as near as control points come by their neighbours
+      const StraightLine line(series, dof, window);
+      for (Index i = 0; i < rows; ++i) {  // a control point from the values at three knots
         const double t = static_cast<double>(i - 1) * spacing;
-        result(i, 6 + dof) += (8 * over.at(t) - over.at(t - spacing) - over.at(t + spacing)) / 6;
+        result(i, 6 + dof) += (8 * line.at(t) - line.at(t - spacing) - line.at(t + spacing)) / 6;
       }
     }
   return result;
 }
 
-VectorXd start_of(const CorrectionProblem& problem, const Nlp& nlp, const RobotModel& model,
-                  const CommandSeries& series, const std::vector<Finding>& findings) {
-  constexpr double kFar = 0.01;                                               // [m], [rad]
-  constexpr double kReaches[] = {0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.6, 0.8};  // [s]
+VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp, const RobotModel& model,
+                       const CommandSeries& series, const std::vector<Finding>& findings) {
   const CorrectionTrack track = problem.track(nlp.start);
   VectorXd best = nlp.start;
-  RowViolation least = violation(problem, best);
-  if (least.worst < kFar) return best;
-  for (const double reach : kReaches) {
-    const VectorXd x = problem.point(
-        bridge(model, series, findings, reach, track.spacing, track.coefficients.rows()));
-    const RowViolation here = violation(problem, x);
+  LeastLinearViolation least = least_linear_violation(problem, best);
+  if (least.worst < policy::guess::kFarOff) return best;
+  for (const double reach : policy::guess::kReaches) {
+    const VectorXd x = problem.point(straight_line_guess(model, series, findings, reach,
+                                                         track.spacing, track.coefficients.rows()));
+    const LeastLinearViolation here = least_linear_violation(problem, x);
     if (here.sum >= least.sum) continue;
     least = here;
     best = x;

@@ -1,5 +1,5 @@
 #pragma once
-// Where the search for a correction begins.
+// The initial guess of the search for a correction.
 
 #include <Eigen/Core>
 #include <vector>
@@ -14,17 +14,18 @@ namespace ayumi {
 /// Control points of the same uniform cubic spline with knots half as far apart.
 Eigen::MatrixXd with_halved_knots(const Eigen::MatrixXd& coefficients);
 
-/// Control points, `rows` of them `spacing` [s] apart, that lead the joints the errors are about
-/// straight over: from `reach` [s] before an error to `reach` after it, with the angles and speeds
-/// the motion has there. A joint beyond its limit is taken back so, and of two bodies that overlap
-/// all joints between them.
-Eigen::MatrixXd bridge(const RobotModel& model, const CommandSeries& series,
-                       const std::vector<Finding>& findings, double reach, double spacing,
-                       Eigen::Index rows);
+/// `rows` control points, `spacing` [s] apart, that lead the joints at fault straight past the
+/// errors: from `reach` [s] before an error to `reach` after it, with the angles and speeds that
+/// the motion has at these two times. For a joint beyond its limit that is the joint itself, for
+/// two bodies that overlap all joints between them.
+Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& series,
+                                    const std::vector<Finding>& findings, double reach,
+                                    double spacing, Eigen::Index rows);
 
-/// A start for the program: no correction, or where that is far off in what is least linear (soles
-/// and clearances) the bridge that violates least there.
-Eigen::VectorXd start_of(const CorrectionProblem& problem, const Nlp& nlp, const RobotModel& model,
-                         const CommandSeries& series, const std::vector<Finding>& findings);
+/// The point from which the program starts: no correction or, where that violates the least linear
+/// rows (soles and clearances) by far, the straight-line guess that violates them least.
+Eigen::VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp,
+                              const RobotModel& model, const CommandSeries& series,
+                              const std::vector<Finding>& findings);
 
 }  // namespace ayumi

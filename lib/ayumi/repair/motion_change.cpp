@@ -6,12 +6,11 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/repair/policy.hpp"
 
 namespace ayumi {
 
 namespace {
-
-constexpr double kMoved = 1e-6;  // less is no change [rad]
 
 void raise(LargestChange& largest, double size, double t) {
   if (size > largest.size) largest = {size, t};
@@ -31,7 +30,7 @@ JointChange joint_change(const RobotModel& model, int dof, const CommandSeries& 
   }
   bool begun = false;
   for (size_t k = 0; k < count; ++k) {
-    if (std::abs(at(k)) <= 0.1 * std::abs(change.most)) continue;
+    if (std::abs(at(k)) <= repair_policy::report::kChangeShare * std::abs(change.most)) continue;
     change.end = before.dt * static_cast<double>(k);
     if (!begun) change.begin = change.end;
     begun = true;
@@ -52,7 +51,7 @@ MotionChange motion_change(const RobotModel& model, const CommandSeries& before,
   change.compared = before.dt * static_cast<double>(count - 1);
   for (int dof = 0; dof < model.dof_count(); ++dof) {
     const JointChange joint = joint_change(model, dof, before, after, count);
-    if (std::abs(joint.most) > kMoved) change.joints.push_back(joint);
+    if (std::abs(joint.most) > repair_policy::report::kMoved) change.joints.push_back(joint);
     raise(change.joint, std::abs(joint.most), joint.at);
   }
   std::stable_sort(change.joints.begin(), change.joints.end(), [](const auto& a, const auto& b) {

@@ -1,5 +1,6 @@
 #pragma once
-// What changed from one motion to another: which joints, when, how much; COG and ZMP.
+// What changed from one motion to another: which joints, when and by how much, and COG, ZMP and
+// feet.
 
 #include <string>
 #include <vector>
@@ -11,27 +12,27 @@ namespace ayumi {
 
 struct JointChange {
   std::string joint;
-  double most = 0;            ///< signed [rad], sliding joints [m]
-  double at = 0;              ///< of it [s]
-  double begin = 0, end = 0;  ///< where it is more than a tenth of that [s]
+  double most = 0;            ///< largest change, signed [rad], of sliding joints [m]
+  double at = 0;              ///< time of the largest change [s]
+  double begin = 0, end = 0;  ///< between these the change exceeds a tenth of it [s]
 };
 
-/// The largest distance of a quantity, and when.
+/// The largest change of a quantity, and its time [s].
 struct LargestChange {
   double size = 0, at = 0;
 };
 
 struct MotionChange {
   std::vector<JointChange> joints;  ///< those that move more than 1e-6 rad, the most first
-  LargestChange joint;              ///< over all joints [rad]
-  LargestChange cog;                ///< of the postures [m]
-  LargestChange zmp;                ///< of the commanded ZMP [m]
-  LargestChange fz;                 ///< of the commanded force [N]
-  LargestChange foot;               ///< of a sole's origin [m]
-  double compared = 0;              ///< time that both motions have [s]
+  LargestChange joint;              ///< of any joint [rad]
+  LargestChange cog;                ///< COG of the postures [m]
+  LargestChange zmp;                ///< commanded ZMP [m]
+  LargestChange fz;                 ///< commanded vertical force [N]
+  LargestChange foot;               ///< origin of a sole [m]
+  double compared = 0;              ///< length of the time that both motions have [s]
 };
 
-/// Both series sampled at one rate; the longer one's rest is not looked at. Throws Error(usage)
+/// Both series are sampled at one rate; the rest of the longer one is left out. Throws Error(usage)
 /// when the rates differ.
 MotionChange motion_change(const RobotModel& model, const CommandSeries& before,
                            const CommandSeries& after);

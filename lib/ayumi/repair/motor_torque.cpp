@@ -1,12 +1,14 @@
-// A joint between base and sole takes  -ratio (a . n - a . (p x f))  of the foot's wrench (f, n)
-// about the base origin, a its axis, p its place from there. A small rotation w of everything below
-// it about a point r away from p changes  a . m,  m = n - p x f,  by
+// The wrench (f, n) of a foot about the base origin adds  -ratio (a . n - a . (p x f))  to the
+// torque of a joint between base and sole, with a the joint's axis and p its position from that
+// origin. A small rotation w of everything below the joint, about a point at distance r from p,
+// changes a . m,  m = n - p x f,  by
 //   w . (a x m - (a . r) f + (r . f) a),
-// and a sliding joint's  a . f  by  w . (a x f). How the wrench is shared between two feet depends
-// on the ZMP alone, in pieces; its slope is taken by differences within a piece.
+// and  a . f  of a sliding joint by  w . (a x f). The sharing of the wrench between two feet
+// depends on the ZMP alone and is piecewise smooth; its slope is taken by differences within a
+// piece.
 #include "ayumi/repair/motor_torque.hpp"
 
-#include "ayumi/model/gravity.hpp"
+#include "ayumi/repair/ground_rows.hpp"
 
 namespace ayumi {
 
@@ -19,30 +21,30 @@ namespace {
 
 using FootWrenches = std::array<Vector6d, 2>;
 
-FootWrenches shared(const RobotModel& model, const CollocationPoint& instant, const Vector3d& base,
-                    const Vector6d& wrench) {
-  const GroundDemand use = ground_demand(instant.plane, plane_wrench(instant.plane, base, wrench),
-                                         kContactThreshold * model.mass() * kGravity);
-  const Support support = instant.contact[0] ? (instant.contact[1] ? Support::both : Support::left)
-                          : instant.contact[1] ? Support::right
-                                               : Support::none;
-  return foot_wrenches(model, support, instant.ground, instant.plane, use, base, wrench);
+FootWrenches shared_load(const RobotModel& model, const CollocationPoint& point,
+                         const Vector3d& base, const Vector6d& wrench) {
+  const GroundDemand demand =
+      ground_demand(point.plane, plane_wrench(point.plane, base, wrench), contact_threshold(model));
+  const Support support = point.contact[0]   ? (point.contact[1] ? Support::both : Support::left)
+                          : point.contact[1] ? Support::right
+                                             : Support::none;
+  return foot_wrenches(model, support, point.ground, point.plane, demand, base, wrench);
 }
 
-// 6 x 9 by Side: by base position and wrench.
+// Derivatives of the foot wrenches by base position and wrench, 6 x 9 by Side.
 std::array<Eigen::Matrix<double, 6, 9>, 2> sharing_slope(const RobotModel& model,
-                                                         const CollocationPoint& instant,
+                                                         const CollocationPoint& point,
                                                          const Vector3d& base,
                                                          const Vector6d& wrench) {
   std::array<Eigen::Matrix<double, 6, 9>, 2> slope;
   for (auto& s : slope) s.setZero();
-  if (!(instant.contact[0] && instant.contact[1])) {
+  if (!(point.contact[0] && point.contact[1])) {
     for (int s = 0; s < 2; ++s)
-      if (instant.contact[s]) slope[s].rightCols<6>().setIdentity();
+      if (point.contact[s]) slope[s].rightCols<6>().setIdentity();
     return slope;
   }
   for (int i = 0; i < 9; ++i) {
-    const double h = i < 3 ? 1e-6 : 1e-5;  // [m]; [N], [N m]
+    const double h = i < 3 ? repair_policy::solver::kBaseStep : repair_policy::solver::kWrenchStep;
     Vector3d base_up = base, base_down = base;
     Vector6d up = wrench, down = wrench;
     if (i < 3) {
@@ -52,21 +54,21 @@ std::array<Eigen::Matrix<double, 6, 9>, 2> sharing_slope(const RobotModel& model
       up[i - 3] += h;
       down[i - 3] -= h;
     }
-    const FootWrenches a = shared(model, instant, base_up, up);
-    const FootWrenches b = shared(model, instant, base_down, down);
+    const FootWrenches a = shared_load(model, point, base_up, up);
+    const FootWrenches b = shared_load(model, point, base_down, down);
     for (int s = 0; s < 2; ++s) slope[s].col(i) = (a[s] - b[s]) / (2 * h);
   }
   return slope;
 }
 
-// Gradient by a small rotation about a point `r` away from joint `i`'s place.
+// Gradient by a small rotation about a point at distance `r` from the joint.
 Vector3d by_rotation(const Body& body, const Vector3d& axis, const Vector3d& r, const Vector3d& m,
                      const Vector3d& f) {
   if (body.prismatic) return axis.cross(f);
   return axis.cross(m) - axis.dot(r) * f + r.dot(f) * axis;
 }
 
-// What the wrench of one foot takes from the torques: rows by the wrench, and its change with the
+// Adds the part of one foot's wrench to the torques: derivatives by the wrench, and by the
 // configuration at a constant wrench.
 void add_foot(const RobotModel& model, Side side, const Vector6d& wrench, const RobotData& data,
               const Matrix3d& tangent, MatrixXd& by_wrench, MatrixXd& by_value) {
@@ -97,27 +99,27 @@ void add_foot(const RobotModel& model, Side side, const Vector6d& wrench, const 
 
 }  // namespace
 
-void fill_motor_torques(const RobotModel& model, const CollocationPoint& instant,
+void fill_motor_torques(const RobotModel& model, const CollocationPoint& point,
                         const VectorXd& force, const std::array<MatrixXd, 3>* force_by,
                         const RobotData& data, PointState& state) {
   const CorrectedMotion& m = state.motion;
   const Vector3d& base = m.state.base.position;
-  const FootWrenches wrench = shared(model, instant, base, state.wrench);
+  const FootWrenches wrench = shared_load(model, point, base, state.wrench);
   state.torque = motor_torques(model, m.state, m.acceleration, force, wrench, data);
   if (!force_by) return;
   const int dof = model.dof_count();
   for (int k = 0; k < 3; ++k) state.torque_by[k] = (*force_by)[k].bottomRows(dof);
-  const auto slope = sharing_slope(model, instant, base, state.wrench);
+  const auto slope = sharing_slope(model, point, base, state.wrench);
   for (Side side : {Side::left, Side::right}) {
     const int s = static_cast<int>(side);
-    if (!instant.contact[s]) continue;
+    if (!point.contact[s]) continue;
     MatrixXd by_wrench = MatrixXd::Zero(dof, 6);
     add_foot(model, side, wrench[s], data, m.tangent, by_wrench, state.torque_by[0]);
     for (int k = 0; k < 3; ++k)
       state.torque_by[k] += by_wrench * slope[s].rightCols<6>() * state.wrench_by[k];
     state.torque_by[0].leftCols<3>() += by_wrench * slope[s].leftCols<3>();
   }
-  // Rotor inertia and viscous friction; dry friction within the ramp of its sign.
+  // Rotor inertia, viscous friction, and Coulomb friction within the ramp of its sign.
   for (int i = 0; i < dof; ++i) {
     const ServoDescription& servo = model.dofs()[i].servo;
     state.torque_by[2](i, 6 + i) += servo.rotor_inertia;

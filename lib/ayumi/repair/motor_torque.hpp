@@ -1,15 +1,15 @@
 #pragma once
-// Motor torques of a corrected motion (motor_torques of check/residuals.hpp), and how they change
-// with the correction's value, rate and acceleration.
+// Motor torques of a corrected motion (motor_torques() of demand/ground_demand.hpp), and their
+// derivatives by the correction's value, rate and acceleration.
 
-#include "ayumi/repair/correction_constraints.hpp"
+#include "ayumi/repair/constraint_rows.hpp"
 
 namespace ayumi {
 
-/// Needs the wrench of `state`, and `data` as inverse_dynamics left it for `force`. Fills
-/// state.torque; with `force_by` (whole rows of inverse_dynamics by value, rate, acceleration) also
-/// state.torque_by.
-void fill_motor_torques(const RobotModel& model, const CollocationPoint& instant,
+/// Fills state.torque and, with `force_by`, state.torque_by. `force`: of inverse_dynamics(), which
+/// left `data`; `force_by`: all its rows by value, rate and acceleration, or null. The wrench of
+/// `state` must be set.
+void fill_motor_torques(const RobotModel& model, const CollocationPoint& point,
                         const Eigen::VectorXd& force,
                         const std::array<Eigen::MatrixXd, 3>* force_by, const RobotData& data,
                         PointState& state);

@@ -1,6 +1,11 @@
 #pragma once
-// The nearest consistent pattern by Ipopt: smooth corrections (cubic B-splines) to base and joints
-// that bring a command series back inside support, joint and contact limits with least change.
+// The nearest consistent pattern: smooth corrections (cubic B-splines) to base and joints that
+// bring a command series back inside all limits of the check with least change, found by Ipopt.
+//
+// Ipopt takes Ayumi's linear solver under the name MA27, in one place of the whole process. That
+// place is held only while a repair runs, for the threads that run one, and it is empty again
+// afterwards. A host program that has its own MA27 keeps it, and repairs then use MUMPS. See
+// repair/nlp/nlp.hpp.
 
 #include <array>
 #include <map>
@@ -14,28 +19,29 @@
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"
 #include "ayumi/repair/motion_change.hpp"
+#include "ayumi/repair/policy.hpp"
 #include "ayumi/repair/weighted_change.hpp"
 
 namespace ayumi {
 
 struct RepairOptions {
   CheckOptions check;
-  std::vector<std::string> locked_joints;  ///< do not change, to the bit
-  std::array<bool, 2> locked_feet = {};    ///< by Side: keep their way (0.01 mm)
-  /// Nothing changes there, to the bit; in one without length the posture of the sample there,
-  /// while the motion through it may [s].
+  std::vector<std::string> locked_joints;  ///< joints that stay bit-identical
+  std::array<bool, 2> locked_feet = {};    ///< by Side: feet that keep their paths (0.01 mm)
+  /// Windows [begin, end] in which samples are bit-identical; begin == end fixes one posture, not
+  /// its velocity [s].
   std::vector<std::pair<double, double>> locked_windows;
-  std::map<std::string, double> joint_weights;  ///< factors on the cost of a joint
+  std::map<std::string, double> joint_weights;  ///< factors on the cost of moving a joint
   Trust trust = Trust::posture;
-  /// Factor on the price of safety; 0: none is bought, the least change that passes the check.
+  /// Factor on the robustness cost; 0: the smallest change that passes the check.
   double safety = 1;
-  bool keep_partial = false;   ///< stopped: conclude with the least violating point seen
-  double knot_spacing = 0.05;  ///< of the B-splines [s]
-  /// To keep the ZMP inside the support polygon where the motion's own is too near its edge [m];
-  /// none: safe_margin().
+  bool keep_partial = false;  ///< when stopped, conclude with the least violating point seen
+  double knot_spacing = repair_policy::knots::kSpacing;  ///< of the B-splines [s]
+  /// Wanted distance of the ZMP from the support edge where the motion has less [m]; none:
+  /// safe_margin().
   std::optional<double> zmp_margin;
-  int max_iterations = 100;  ///< of Ipopt in each round
-  bool mumps = false;        ///< its linear systems by MUMPS, to compare
+  int max_iterations = repair_policy::rounds::kMostIterations;  ///< of Ipopt in each round
+  bool mumps = false;  ///< linear systems by MUMPS, to compare
 };
 
 enum class RepairStatus { already_consistent, repaired, infeasible, not_converged };
@@ -46,48 +52,51 @@ inline const char* name_of(RepairStatus status) {
   return kNames[static_cast<int>(status)];
 }
 
-/// Something that no correction could mend.
+/// An error that no correction removed (infeasibility_report.hpp).
 struct Obstacle {
-  Finding finding;         ///< as the nearest motion found has it
-  double excess = 0;       ///< worst over limit; of lengths and angles: what is missing
+  Finding finding;         ///< as in the nearest motion found
+  double excess = 0;       ///< violation: worst / limit, or worst - limit for lengths and angles
   bool is_ratio = false;   ///< `excess` is a ratio, else in the finding's unit
-  double time_factor = 0;  ///< the window would pass when it took this much longer; 0: it would not
-  std::string text;        ///< all of it in words
+  double time_factor = 0;  ///< the window would pass if it took this much longer; 0: it would not
+  std::string text;        ///< the whole in words
 };
 
 /// Work of the solver, over all rounds. The seconds differ from run to run.
 struct RepairWork {
   int rounds = 0, iterations = 0;
-  int variables = 0, constraints = 0;  ///< of the last round
-  int jacobian_nonzeros = 0, hessian_nonzeros = 0;
-  double function_seconds = 0, solver_seconds = 0;  ///< in functions and derivatives; in the rest
+  int variables = 0, constraints = 0;               ///< of the last round
+  int jacobian_nonzeros = 0, hessian_nonzeros = 0;  ///< of the last round
+  double function_seconds = 0;                      ///< in functions and derivatives
+  double solver_seconds = 0;                        ///< in Ipopt itself
 };
 
 struct RepairResult {
   RepairStatus status = RepairStatus::not_converged;
-  bool partial = false;         ///< stopped by the caller; the least violating point
-  CorrectionTrack correction;   ///< empty when already consistent
+  bool partial = false;         ///< stopped by the caller: the least violating point
+  CorrectionTrack correction;   ///< empty when the series was consistent
   CommandSeries series;         ///< the repaired command series, full rate
   ConsistencyReport before;     ///< of the series as given
   ConsistencyReport check;      ///< of `series`
   MotionChange moved;           ///< from the series as given to `series`
-  WeightedChange change;        ///< the same weighted: what was made small
+  WeightedChange change;        ///< the same, weighted: the quantity that was minimized
   double max_joint_change = 0;  ///< [rad]
   double max_cog_change = 0;    ///< [m]
   std::string where;            ///< joint that moved most
-  double at = 0;                ///< when [s]
+  double at = 0;                ///< time at which it moved most [s]
   int variables = 0, constraints = 0, iterations = 0;
-  double constraint_violation = 0;   ///< scaled, of the NLP
-  std::vector<Obstacle> obstacles;   ///< when not repaired, ranked
-  std::vector<std::string> reasons;  ///< the same in words, the first few
+  double constraint_violation = 0;   ///< scaled, of the last program
+  std::vector<Obstacle> obstacles;   ///< when not repaired, the most severe first
+  std::vector<std::string> reasons;  ///< the first few of them in words
   RepairWork work;
 };
 
-/// A margin with which a walk played open loop stands, though its servos sag and its feet land a
-/// little early: 0.9 of the largest circle's radius that the smaller sole holds about its centre.
+/// A ZMP margin with which a walk played open loop stands, although its servos sag and its feet
+/// land a little early [m]: 0.9 of the radius of the largest circle about the centre of the smaller
+/// sole.
 double safe_margin(const RobotModel& model);
 
-/// Throws Error(usage) for a joint, window or weight that is not there or out of range.
+/// Throws Error(usage) for a joint, window or weight that does not exist or is out of range, and
+/// Interrupted when `progress` stops the work and no partial result is wanted.
 RepairResult repair(const RobotModel& model, const CommandSeries& series,
                     const RepairOptions& options = {}, const Progress& progress = {});
 

@@ -13,10 +13,9 @@
 
 namespace ayumi {
 
-namespace {
+namespace policy = repair_policy;
 
-constexpr double kMarginBetween = 5e-4;  // of the ZMP, for what happens between constraints [m]
-constexpr double kKnotsOfFlight = 8;
+namespace {
 
 std::vector<bool> locked_dofs(const RobotModel& model, const std::vector<std::string>& names) {
   std::vector<bool> locked(model.dof_count(), false);
@@ -30,7 +29,7 @@ std::vector<bool> locked_dofs(const RobotModel& model, const std::vector<std::st
   return locked;
 }
 
-void require_windows(const std::vector<std::pair<double, double>>& windows) {
+void require_windows(const std::vector<TimeWindow>& windows) {
   for (const auto& [begin, end] : windows)
     if (!(begin <= end) || !std::isfinite(begin) || !std::isfinite(end))
       fail(ErrorCode::usage, "locked window " + text::exact(begin) + ".." + text::exact(end) +
@@ -38,8 +37,8 @@ void require_windows(const std::vector<std::pair<double, double>>& windows) {
 }
 
 // Locked windows without length, at the samples nearest to them.
-std::vector<double> kept_instants(const std::vector<std::pair<double, double>>& windows,
-                                  const CommandSeries& series) {
+std::vector<double> kept_times(const std::vector<TimeWindow>& windows,
+                               const CommandSeries& series) {
   std::set<long> samples;
   for (const auto& [begin, end] : windows)
     if (begin == end)
@@ -50,7 +49,7 @@ std::vector<double> kept_instants(const std::vector<std::pair<double, double>>& 
   return times;
 }
 
-/// [s]; without a flight no bound.
+// [s]; without a flight no bound.
 double shortest_flight(const CommandSeries& series) {
   double shortest = kNoBound;
   size_t first = 0;
@@ -70,7 +69,7 @@ double safe_margin(const RobotModel& model) {
     const ConvexPolygon polygon(model.sole(side).polygon);
     least = std::min(least, polygon.margin(polygon.centroid()));
   }
-  return 0.9 * least;
+  return policy::zmp::kSafeShare * least;
 }
 
 bool flight_is_at_fault(const ConsistencyReport& report) {
@@ -82,19 +81,17 @@ bool flight_is_at_fault(const ConsistencyReport& report) {
 
 double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& report,
                          double finest) {
-  constexpr double kKnotsOfFaultyFlight = 20;  // what is wrong there is as short as the flight
-  constexpr double kKnotsOfSlip = 10;          // soles in their places ask for all of what slipped
-  double spacing =
-      flight_is_at_fault(report) ? shortest_flight(series) / kKnotsOfFaultyFlight : kNoBound;
+  double spacing = flight_is_at_fault(report)
+                       ? shortest_flight(series) / policy::knots::kInFaultyFlight
+                       : kNoBound;
   for (const Finding& f : report.findings)
     if (f.kind == FindingKind::foot_slip && f.severity == Severity::error)
-      spacing = std::min(spacing, std::max((f.end - f.begin) / kKnotsOfSlip, finest));
+      spacing = std::min(spacing, std::max((f.end - f.begin) / policy::knots::kInSlip, finest));
   return spacing;
 }
 
-std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>& findings,
-                                                      double pad) {
-  std::vector<std::pair<double, double>> windows;
+std::vector<TimeWindow> windows_around(const std::vector<Finding>& findings, double pad) {
+  std::vector<TimeWindow> windows;
   for (const Finding& f : findings)
     if (f.severity == Severity::error || f.kind == FindingKind::support_margin ||
         !f.follows_from.empty())
@@ -103,7 +100,8 @@ std::vector<std::pair<double, double>> windows_around(const std::vector<Finding>
 }
 
 CorrectionTrack trimmed(const CorrectionTrack& track) {
-  const Eigen::MatrixXd c = (track.coefficients * 1e9).array().round() / 1e9;
+  const Eigen::MatrixXd c =
+      (track.coefficients * policy::report::kWritten).array().round() / policy::report::kWritten;
   Eigen::Index first = c.rows(), last = -1;
   for (Eigen::Index i = 0; i < c.rows(); ++i) {
     if (c.row(i).isZero(0)) continue;
@@ -129,8 +127,8 @@ CorrectionTrack trimmed(const CorrectionTrack& track) {
   return result;
 }
 
-// Only what moves is moved further; the first and last three points are zero or tied to each other.
-// Twice, for the second pass takes back the rounding of the first.
+// Only control points that move already are moved further; the first and last three are zero or
+// tied to each other. The second pass takes back the rounding of the first.
 CorrectionTrack kept_at(CorrectionTrack track, const std::vector<double>& times) {
   Eigen::MatrixXd& c = track.coefficients;
   const double end = track.begin + track.spacing * static_cast<double>(c.rows() - 3);
@@ -155,12 +153,12 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
                            const RepairOptions& options) {
   require_windows(options.locked_windows);
   CorrectionSpec spec;
-  spec.spacing = std::min(options.knot_spacing, shortest_flight(series) / kKnotsOfFlight);
+  spec.spacing = std::min(options.knot_spacing, shortest_flight(series) / policy::knots::kInFlight);
   spec.locked = locked_dofs(model, options.locked_joints);
   spec.locked_feet = options.locked_feet;
   for (const auto& window : options.locked_windows)
     if (window.first < window.second) spec.locked_windows.push_back(window);
-  spec.kept_instants = kept_instants(options.locked_windows, series);
+  spec.kept_times = kept_times(options.locked_windows, series);
   spec.weights = weight_factors(model, options.joint_weights);
   spec.trust = options.trust;
   spec.tolerance = tolerances(options.check, model, series);
@@ -168,15 +166,15 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   spec.friction = options.check.friction;
   const double least = tolerances(options.check)[FindingKind::support_margin];
   const double safe = options.trust == Trust::zmp ? least : safe_margin(model);
-  spec.safe_margin = options.zmp_margin.value_or(safe) + kMarginBetween;
-  spec.zmp_margin = std::min(spec.safe_margin, least + kMarginBetween);
-  spec.gentle_swings = options.safety > 0;
-  if (!spec.gentle_swings) spec.safe_margin = spec.zmp_margin;
+  spec.safe_margin = options.zmp_margin.value_or(safe) + policy::kFirstBackoff.zmp;
+  spec.zmp_margin = std::min(spec.safe_margin, least + policy::kFirstBackoff.zmp);
+  spec.swing_goals = options.safety > 0;
+  if (!spec.swing_goals) spec.safe_margin = spec.zmp_margin;
   return spec;
 }
 
 std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report) {
-  constexpr double kAround = 0.3;  // [s]
+  constexpr double kAround = policy::dcm::kWrongPlanAround;
   std::vector<TimeWindow> windows;
   for (const Finding& f : report.findings)
     if (f.severity == Severity::error &&
@@ -188,7 +186,7 @@ std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report) {
 
 void add_near_pairs(const RobotModel& model, const CommandSeries& series,
                     const CollisionModel& collisions, std::vector<int>& pairs) {
-  constexpr double kNear = 0.005;  // [m]
+  constexpr double kNear = policy::clearance::kWatchedBodies;
   std::set<int> near(pairs.begin(), pairs.end());
   scan_clearance(model, series, collisions, kNear, [&](int pair, int, double clearance) {
     if (clearance < kNear) near.insert(pair);
@@ -204,12 +202,23 @@ bool locked_out(const CorrectionSpec& spec, const ConsistencyReport& report) {
                        (f.kind == FindingKind::joint_position ||
                         f.kind == FindingKind::joint_speed || f.kind == FindingKind::servo_step);
     const bool window = within(spec.locked_windows, f.at);
-    const bool instant =
-        is_of_posture(f) && std::any_of(spec.kept_instants.begin(), spec.kept_instants.end(),
+    const bool posture =
+        is_of_posture(f) && std::any_of(spec.kept_times.begin(), spec.kept_times.end(),
                                         [&](const double t) { return t >= f.begin && t <= f.end; });
-    if (joint || window || instant) return true;
+    if (joint || window || posture) return true;
   }
   return false;
+}
+
+// The finding of a mean over many samples at an end is no fault of the posture there.
+std::array<bool, 2> faulty_ends(const ConsistencyReport& report, double duration, double spacing) {
+  std::array<bool, 2> ends = {};
+  for (const Finding& f : report.findings) {
+    if (f.severity != Severity::error || f.kind == FindingKind::continuous_torque) continue;
+    if (f.begin < spacing) ends[0] = true;
+    if (f.end > duration - spacing) ends[1] = true;
+  }
+  return ends;
 }
 
 }  // namespace ayumi

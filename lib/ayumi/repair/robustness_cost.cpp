@@ -11,6 +11,8 @@
 
 namespace ayumi {
 
+namespace policy = repair_policy;
+
 using Eigen::VectorXd;
 
 namespace {
@@ -20,11 +22,11 @@ bool differ(const RobotState& a, const RobotState& b) {
          a.base.attitude.coeffs() != b.base.attitude.coeffs();
 }
 
-// Where `after` is another motion, wide enough for the control points that act there.
-std::vector<std::pair<double, double>> windows_of(const CommandSeries& before,
-                                                  const CommandSeries& after, double spacing) {
-  const double pad = 4 * spacing;
-  std::vector<std::pair<double, double>> windows;
+// Where the motions differ, widened by the reach of the control points that act there.
+std::vector<TimeWindow> windows_of_change(const CommandSeries& before, const CommandSeries& after,
+                                          double spacing) {
+  const double pad = 4 * spacing;  // a cubic spline has four control points at each time
+  std::vector<TimeWindow> windows;
   for (size_t k = 0; k < before.samples.size(); ++k) {
     if (!differ(before.samples[k].state, after.samples[k].state)) continue;
     const double t = before.dt * static_cast<double>(k);
@@ -33,47 +35,47 @@ std::vector<std::pair<double, double>> windows_of(const CommandSeries& before,
   return merged(std::move(windows));
 }
 
-// What the check asks for as well is no matter of safety: a motion that breaks it does not pass.
-bool is_bought(ConstraintGroup group) {
+// Limits that the check has in the same form are left out: a motion that violates them fails.
+bool is_robustness_goal(ConstraintGroup group) {
   switch (group) {
     case ConstraintGroup::support:
-    case ConstraintGroup::unilateral:
+    case ConstraintGroup::normal_force:
     case ConstraintGroup::stance:
     case ConstraintGroup::swing:
     case ConstraintGroup::landing:
     case ConstraintGroup::foot_clearance:
     case ConstraintGroup::position:
     case ConstraintGroup::clearance:
-    case ConstraintGroup::capture:
+    case ConstraintGroup::dcm:
       return true;
     default:
       return false;
   }
 }
 
-// Feet stay in their places whatever safety is worth.
-double factor_of(ConstraintGroup group, double safety) {
+// Feet stay in their places whatever robustness is worth.
+double price_factor(ConstraintGroup group, double safety) {
   const bool foot = group == ConstraintGroup::stance || group == ConstraintGroup::swing;
   return foot ? 1 : safety;
 }
 
-double lack(const CorrectionProblem& problem, const ConstraintBlock& block, const VectorXd& g) {
-  constexpr double kMet = 1e-6;  // of its unit: the solver's tolerance
+double violation_of(const CorrectionProblem& problem, const ConstraintBlock& block,
+                    const VectorXd& g) {
   double most = 0;
   for (int i = block.row; i < block.row + block.rows; ++i)
     most = std::max({most, problem.lower()[i] - g[i], g[i] - problem.upper()[i]});
   most /= price_of(block.group).unit;
-  return most > kMet ? most : 0;
+  return most > policy::prices::kMet ? most : 0;
 }
 
 }  // namespace
 
-double safety_price(const RobotModel& model, const CommandSeries& before,
-                    const CommandSeries& after, const RepairOptions& options,
-                    const ConsistencyReport& check) {
+double robustness_cost(const RobotModel& model, const CommandSeries& before,
+                       const CommandSeries& after, const RepairOptions& options,
+                       const ConsistencyReport& check) {
   if (before.samples.size() != after.samples.size()) return 0;
   CorrectionSpec spec = repair_spec(model, before, options);
-  spec.windows = windows_of(before, after, spec.spacing);
+  spec.windows = windows_of_change(before, after, spec.spacing);
   if (spec.windows.empty()) return 0;
   spec.wrong_plan = wrong_plan(check);
   const CollisionModel collisions(model);
@@ -84,20 +86,20 @@ double safety_price(const RobotModel& model, const CommandSeries& before,
   spec.joint_margin = 0;
   const CorrectionProblem problem(model, before, spec);
   const VectorXd g = problem.constraints_of(after);
-  std::map<std::tuple<int, int, long>, double> lacks;  // by limit and window
+  std::map<std::tuple<int, int, long>, double> violations;  // by limit and window
   double sum = 0;
   for (const ConstraintBlock& block : problem.blocks()) {
-    const int k = problem.instants()[static_cast<size_t>(block.instant)].sample;
+    const int k = problem.points()[static_cast<size_t>(block.point)].sample;
     const auto sample = static_cast<size_t>(k);
-    if (!is_bought(block.group) ||
+    if (!is_robustness_goal(block.group) ||
         !differ(before.samples[sample].state, after.samples[sample].state))
       continue;
-    const Price price = price_of(block.group);
+    const ViolationPrice price = price_of(block.group);
     const std::tuple key(static_cast<int>(block.group), block.item,
                          std::lround(k * before.dt / price.window));
-    double& most = lacks[key];
-    const double here = lack(problem, block, g);
-    sum += factor_of(block.group, options.safety) * std::max(0.0, here - most) * price.change;
+    double& most = violations[key];
+    const double here = violation_of(problem, block, g);
+    sum += price_factor(block.group, options.safety) * std::max(0.0, here - most) * price.change;
     most = std::max(most, here);
   }
   return sum;

@@ -3,43 +3,41 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/motion/differentiate.hpp"
+
 namespace ayumi {
 
-namespace {
+namespace policy = repair_policy;
 
-constexpr double kHair = 1e-6;  // of a limit, for rounding
-
-}  // namespace
-
-CorrectionSpec at_limits(const CorrectionSpec& spec, const CorrectionSpec& asked, double safety) {
-  auto tolerance = [&](FindingKind kind) { return spec.tolerance[kind]; };
-  const bool safe = spec.safe_margin > spec.zmp_margin;  // was to be had
+CorrectionSpec at_check_limits(const CorrectionSpec& spec, const CorrectionSpec& asked,
+                               double robustness) {
+  const bool reached = spec.safe_margin > spec.zmp_margin;
   CorrectionSpec limits = spec;
   limits.zmp_margin = asked.zmp_margin;
-  limits.safe_margin = safe ? asked.safe_margin : asked.zmp_margin;
-  // Given up to get on, not because there was no solution with them.
-  limits.gentle_swings = spec.gentle_swings || (safe && asked.gentle_swings);
-  limits.at_limits = true;
-  limits.joint_margin = kHair;
-  limits.share = 1 - kHair;
-  limits.force_share = tolerance(FindingKind::unilateral);
-  if (safety > 0) return limits;
-  limits.joint_margin = kHair - tolerance(FindingKind::joint_position);
-  limits.force_share = kHair;
-  limits.clearance = kHair;
-  limits.gentle_swings = false;
-  limits.zmp_margin = limits.safe_margin = kHair * 1e-3;
+  limits.safe_margin = reached ? asked.safe_margin : asked.zmp_margin;
+  // Swing goals may have been given up to make progress, although there was a solution with them.
+  limits.swing_goals = spec.swing_goals || (reached && asked.swing_goals);
+  limits.at_check_limits = true;
+  limits.joint_margin = policy::kRounding;
+  limits.limit_share = 1 - policy::kRounding;
+  limits.least_normal_force = spec.tolerance[FindingKind::unilateral];
+  if (robustness > 0) return limits;
+  limits.joint_margin = policy::kRounding - spec.tolerance[FindingKind::joint_position];
+  limits.least_normal_force = policy::kRounding;
+  limits.clearance = policy::kRounding;
+  limits.swing_goals = false;
+  limits.zmp_margin = limits.safe_margin = policy::tighten::kZmpMargin;
   return limits;
 }
 
-void add_instants(const ConsistencyReport& report, double dt, std::vector<double>& instants) {
-  constexpr int kMost = 12;  // of one window
+void add_error_times(const ConsistencyReport& report, double dt, std::vector<double>& times) {
   for (const Finding& f : report.findings) {
     if (f.severity != Severity::error) continue;
     const double length = f.end - f.begin;
-    const int steps = std::clamp(static_cast<int>(std::lround(length / dt)), 1, kMost);
-    for (int i = 0; i <= steps; ++i) instants.push_back(f.begin + length * i / steps);
-    instants.push_back(f.at);
+    const int steps = std::clamp(static_cast<int>(std::lround(length / dt)), 1,
+                                 policy::collocation::kMostPerError);
+    for (int i = 0; i <= steps; ++i) times.push_back(f.begin + length * i / steps);
+    times.push_back(f.at);
   }
 }
 
@@ -47,6 +45,81 @@ CorrectionTrack between(const CorrectionTrack& a, const CorrectionTrack& b, doub
   CorrectionTrack track = a;
   track.coefficients += share * (b.coefficients - a.coefficients);
   return track;
+}
+
+namespace {
+
+// Whether a table of the result passes, in which rates are differences of its rows.
+bool table_passes(const RepairState& state) {
+  CommandSeries table = state.result.series;
+  fill_rates(table.samples, table.dt, false);
+  return report_of(state, table).consistent;
+}
+
+// The correction that passed before, and whether its table did.
+struct PassingResult {
+  RepairResult result;
+  CorrectionTrack track;
+  bool as_table;
+};
+
+// Takes the result itself, or the first motion between it and the passing one that passes, at most
+// a share of the way back. False where there is none; the result is then unchanged.
+bool take_first_passing(RepairState& state, const PassingResult& passing, double most_back) {
+  const CorrectionTrack wanted = state.track;
+  auto passes = [&] {
+    return state.result.check.consistent && (!passing.as_table || table_passes(state));
+  };
+  if (passes()) return true;
+  for (double share = policy::tighten::kFirstBack; share <= most_back;
+       share *= policy::tighten::kBackFactor) {
+    take(state, between(wanted, passing.track, share));
+    if (passes()) return true;
+  }
+  take(state, wanted);
+  return false;
+}
+
+void set_limits_of_the_check(RepairState& state) {
+  const double spacing = state.track.spacing;
+  state.spec.active = state.problem->beside_active(state.problem->point(state.track.coefficients));
+  state.spec = at_check_limits(state.spec, state.asked, state.options.safety);
+  state.spec.spacing = spacing;
+  state.spec.initial = state.track.coefficients;
+}
+
+void solve_at_the_limits(RepairState& state, const PassingResult& passing) {
+  const double tolerance =
+      std::clamp(policy::tighten::kTolerance * state.objective, policy::tighten::kLeastTolerance,
+                 policy::tighten::kMostTolerance);
+  for (int round = 0; round < policy::tighten::kMostRounds; ++round) {
+    solve_program(state, "repair, least change", tolerance);
+    if (state.status != NlpStatus::solved || state.result.check.consistent) return;
+    const bool last = round + 1 == policy::tighten::kMostRounds;
+    if (!last && take_first_passing(state, passing, policy::tighten::kMostBack)) return;
+    add_error_times(state.result.check, state.series.dt, state.spec.extra_times);
+    state.spec.initial =
+        between(state.track, passing.track, policy::tighten::kStartBack).coefficients;
+  }
+}
+
+}  // namespace
+
+void tighten(RepairState& state) {
+  const PassingResult passing = {state.result, state.track, table_passes(state)};
+  set_limits_of_the_check(state);
+  try {
+    solve_at_the_limits(state, passing);
+  } catch (const Interrupted&) {
+    if (!state.options.keep_partial) throw;
+    state.result = passing.result;
+    state.result.partial = true;
+    return;
+  }
+  if (state.status == NlpStatus::solved && take_first_passing(state, passing, 1)) return;
+  take(state, passing.track);
+  state.result.constraint_violation = passing.result.constraint_violation;
+  state.status = NlpStatus::solved;
 }
 
 }  // namespace ayumi

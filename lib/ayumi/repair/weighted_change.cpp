@@ -6,25 +6,22 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/repair/policy.hpp"
 
 namespace ayumi {
+
+namespace policy = repair_policy;
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
 
-// One radian of a joint moves the robot by about a leg's half length; turning the whole trunk is
-// worth more than a joint.
-constexpr double kPositionWeight = 1000.0;  // [1/m^2] against joint weight 1 [1/rad^2]
-constexpr double kRotationWeight = 4.0;
-constexpr double kNothing = 1e-15;  // rounding of a part [s]
-
-Vector3d turned(const CommandSample& a, const CommandSample& b) {
+Vector3d base_rotation_change(const CommandSample& a, const CommandSample& b) {
   return log_rotation(b.state.base.attitude * a.state.base.attitude.conjugate());
 }
 
-// Second differences; at the ends of the motion those beside them.
+// Second differences; at the ends of the motion those of the samples beside them.
 std::vector<Vector3d> turning_accelerations(const std::vector<Vector3d>& r, double dt) {
   std::vector<Vector3d> dd(r.size(), Vector3d::Zero());
   if (r.size() < 3) return dd;
@@ -40,8 +37,8 @@ VectorXd change_weights(const RobotModel& model, const CommandSeries& series,
                         const VectorXd& factors) {
   const int dof = model.dof_count();
   VectorXd weight(model.velocity_count());
-  weight.head<3>().setConstant(kPositionWeight);
-  weight.segment<3>(3).setConstant(kRotationWeight);
+  weight.head<3>().setConstant(policy::change_weight::kBasePosition);
+  weight.segment<3>(3).setConstant(policy::change_weight::kBaseRotation);
   weight.tail(dof) = series.joint_weight.size() == dof ? series.joint_weight : model.joint_weight();
   if (factors.size() == dof) weight.tail(dof) = weight.tail(dof).cwiseProduct(factors);
   return weight;
@@ -69,9 +66,10 @@ WeightedChange weighted_change(const RobotModel& model, const CommandSeries& bef
     fail(ErrorCode::usage, "motions sampled every " + text::exact(before.dt) + " s and every " +
                                text::exact(after.dt) + " s cannot be compared");
   const size_t count = std::min(before.samples.size(), after.samples.size());
-  const double smooth = std::pow(kSmoothTime, 4);
+  const double smooth = std::pow(policy::change_weight::kSmoothTime, 4);
   std::vector<Vector3d> r;
-  for (size_t k = 0; k < count; ++k) r.push_back(turned(before.samples[k], after.samples[k]));
+  for (size_t k = 0; k < count; ++k)
+    r.push_back(base_rotation_change(before.samples[k], after.samples[k]));
   const std::vector<Vector3d> ddr = turning_accelerations(r, before.dt);
   VectorXd sum = VectorXd::Zero(model.velocity_count()), d = sum, dd = sum;
   for (size_t k = 0; k < count; ++k) {
@@ -79,7 +77,7 @@ WeightedChange weighted_change(const RobotModel& model, const CommandSeries& bef
     d << b.state.base.position - a.state.base.position, r[k], b.state.theta - a.state.theta;
     dd = b.acceleration - a.acceleration;
     dd.segment<3>(3) = ddr[k];
-    const double share = k == 0 || k + 1 == count ? 0.5 : 1;  // trapezoids
+    const double share = k == 0 || k + 1 == count ? 0.5 : 1;  // trapezoidal rule
     sum += share * before.dt * (d.cwiseAbs2() + smooth * dd.cwiseAbs2());
   }
   const VectorXd weight = change_weights(model, before, factors);
@@ -87,10 +85,10 @@ WeightedChange weighted_change(const RobotModel& model, const CommandSeries& bef
   WeightedChange change;
   auto add = [&](const std::string& what, double part, double each) {
     change.change += part;
-    if (part > kNothing) change.parts.push_back({what, each, part});
+    if (part > policy::change_weight::kRounding) change.parts.push_back({what, each, part});
   };
-  add("base position", sum.head<3>().sum(), kPositionWeight);
-  add("base rotation", sum.segment<3>(3).sum(), kRotationWeight);
+  add("base position", sum.head<3>().sum(), policy::change_weight::kBasePosition);
+  add("base rotation", sum.segment<3>(3).sum(), policy::change_weight::kBaseRotation);
   for (int i = 0; i < model.dof_count(); ++i) add(model.dofs()[i].name, sum[6 + i], weight[6 + i]);
   std::stable_sort(change.parts.begin(), change.parts.end(),
                    [](const auto& a, const auto& b) { return a.change > b.change; });

@@ -1,7 +1,7 @@
 #pragma once
-// What a repair makes small, of any motion against another:
+// The weighted change, which a repair makes small, of any motion against another:
 //   sum_c w_c integral (d_c^2 + tau^4 d_c''^2) dt,   tau = 0.1 s,
-// d the differences of base position, base rotation (vector of R_b R_a') and joints.
+// with d the differences of base position, base rotation (vector of R_b R_a') and joints.
 
 #include <Eigen/Core>
 #include <map>
@@ -13,32 +13,31 @@
 
 namespace ayumi {
 
-inline constexpr double kSmoothTime = 0.1;  ///< tau [s]
-
 struct ChangePart {
   std::string what;   ///< "base position", "base rotation" or a joint
-  double weight = 0;  ///< w: of joints their W times the factor asked for [1/rad^2, 1/m^2]
-  double change = 0;  ///< its part of the sum [s]
+  double weight = 0;  ///< w; for a joint its W times the factor of the options [1/rad^2, 1/m^2]
+  double change = 0;  ///< the part's share of the sum [s]
 };
 
 struct WeightedChange {
   double change = 0;              ///< the sum above [s]
-  double safety = 0;              ///< price of the safety that is lacking (safety_price.hpp) [s]
-  std::vector<ChangePart> parts;  ///< those that are not 0, the largest first
+  double safety = 0;              ///< robustness cost (robustness_cost.hpp) [s]
+  std::vector<ChangePart> parts;  ///< parts that are not 0, the largest first
   double total() const { return change + safety; }
 };
 
-/// w by column (base position, base rotation, joints): 1000 per m^2, 4, and W of the motion (of the
-/// robot where the motion names none) times `factors` by joint (empty: 1).
+/// w by column: base position and base rotation (policy.hpp), then W of the motion (of the robot
+/// where the motion has none) times `factors` by joint (empty: 1).
 Eigen::VectorXd change_weights(const RobotModel& model, const CommandSeries& series,
                                const Eigen::VectorXd& factors = {});
 
-/// One factor by joint, 1 where none is named. Throws Error(usage) for a joint the robot has not
-/// and a factor that is not above 0.
+/// One factor by joint, 1 where `weights` names none. Throws Error(usage) for a joint that the
+/// robot does not have and for a factor that is not above 0.
 Eigen::VectorXd weight_factors(const RobotModel& model,
                                const std::map<std::string, double>& weights);
 
-/// Without safety, over the time that both have. Throws Error(usage) when their rates differ.
+/// Without the robustness cost, over the time that both motions have. Throws Error(usage) when
+/// their rates differ.
 WeightedChange weighted_change(const RobotModel& model, const CommandSeries& before,
                                const CommandSeries& after, const Eigen::VectorXd& factors = {});
 

@@ -1,22 +1,24 @@
-// The face is that of the solver MA27, which Ipopt's loader takes from outside: analyse the
-// pattern, factor, solve. All memory is Ipopt's: `ikeep` (3 n) goes from analysis to factorization,
-// `iw` and `a` from there to the solution, and stay as they are from one factorization to the next,
-// so that nothing is kept here.
-//   ikeep  class or place of every unknown [n], width of the band (minus it once iw holds the
+// The interface is that of the solver MA27, which Ipopt's loader takes from outside: analyse the
+// pattern, factor, solve. All memory belongs to Ipopt: `ikeep` (3 n) is passed from analysis to
+// factorization, `iw` and `a` from factorization to solution, and all stay unchanged from one
+// factorization to the next, so that the solver itself has no state.
+//   ikeep  class or place of every unknown [n], width of the band (negative once iw holds the
 //          plan), number of places
-//   iw     the same, number of nonzeros, then the plan: which nonzero goes where
+//   iw     the same, number of nonzeros, then the plan: the target of every nonzero
 //   a      values of the nonzeros, pivots [n], values of the rows by group, the band
-// Rows that meet the same unknowns form a group, a dense matrix V: the band gets V' D V, D the
-// inverse pivots. The band is stored by columns, each as long as the width and a panel, so that
-// parts of it are dense matrices whose columns lie one less than that apart; what a panel holds
-// beyond the width is zero and stays so.
+// Rows with the same unknowns form a group, a dense matrix V: V' D V is added to the band, with D
+// the inverse pivots. The band is stored by columns. Each is as long as the width and a panel, so
+// that parts of the band are dense matrices whose columns are one less than that length apart; the
+// entries of a panel beyond the width are zero and stay zero.
 #include "ayumi/repair/nlp/banded_kkt_solver.hpp"
 
 #include <coin/HSLLoader.h>
+#include <dlfcn.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <map>
+#include <mutex>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -44,13 +46,14 @@ struct Nonzeros {
 
 struct Band {
   static constexpr int kPanel = 32;  // columns factored at once
-  int width = 1, places = 0;         // farthest below the diagonal, columns that mean something
+  int width = 1, places = 0;         // farthest entry below the diagonal; columns in use
   int columns() const { return (places + kPanel - 1) / kPanel * kPanel; }
   int length() const { return width + kPanel; }  // of a stored column
   Index size() const { return static_cast<Index>(columns()) * length(); }
 };
 
-// Multipliers are the last unknowns; two that look like rows and meet are a variable and one.
+// Multipliers are the last unknowns. Of two neighbours that both look like rows, the first is a
+// variable and the second a multiplier.
 std::vector<int> classes(int n, const Nonzeros& entries) {
   constexpr int kNone = -1, kMany = -2;
   std::vector<int> neighbour(n, kNone), result(n, 0);
@@ -87,8 +90,8 @@ void for_sides(const Nonzeros& entries, const Use& use) {
   }
 }
 
-// Puts places in order of the lowest unknown that each one meets in a row, which is time order
-// where the unknowns come in it, and returns the band.
+// Orders the places by the lowest unknown that each one meets in a row, which is the order of time
+// where the unknowns are in that order, and returns the band.
 Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
   place = classes(n, entries);
   std::vector<int> low(n);
@@ -124,7 +127,7 @@ Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
   return band;
 }
 
-// Which nonzero goes where, as integers one after another.
+// The target of every nonzero, as a sequence of integers.
 struct Plan {
   std::vector<int> diagonal;  // unknown, nonzero
   std::vector<int> links;     // slack, its neighbour, nonzero
@@ -186,7 +189,7 @@ struct Group {
 
 using Block = Map<MatrixXd, 0, Eigen::OuterStride<>>;
 
-// What factor and solve see of Ipopt's arrays.
+// Views into Ipopt's arrays for factor and solve.
 struct Factors {
   int n;
   const int* place;
@@ -225,7 +228,7 @@ struct Factors {
   }
 };
 
-// Pivots of slacks and rows; adds what concerns places alone to the band.
+// Computes the pivots of slacks and rows, and adds the nonzeros between places to the band.
 void eliminate_slacks(const Factors& f) {
   std::fill_n(f.pivot, f.n, 0.0);
   for (const int* e = f.diagonal.at; e != f.diagonal.end(); e += 2) f.pivot[e[0]] += f.values[e[1]];
@@ -298,8 +301,8 @@ void solve_band(const Factors& f, VectorXd& x) {
   }
 }
 
-// ---- the face. Of `info`: 0 outcome (0 good, -5 singular), 4 and 5 lengths of a and iw, 14 the
-// number of negative pivots.
+// ---- the interface. Entries of `info`: 0 outcome (0 good, -5 singular), 4 and 5 lengths of a and
+// iw, 14 the number of negative pivots.
 
 void analyse(int* n, int* nz, const int* rows, const int* columns, int*, int*, int* ikeep, int*,
              int* steps, int*, int*, double*, int* info, double*) {
@@ -343,7 +346,7 @@ void factor(int* n, int* nz, const int* rows, const int* columns, double* a, int
   }
   if (info[0] != 0) return;
   eliminate_rows(f);
-  if (!factor_band(f)) ++info[14];  // of the wrong inertia: Ipopt regularizes and comes again
+  if (!factor_band(f)) ++info[14];  // wrong inertia: Ipopt regularizes and factors again
 }
 
 void solve(int* n, double* a, int*, int* iw, int*, double*, int*, double* rhs, int*, int*, int*,
@@ -379,13 +382,110 @@ void solve(int* n, double* a, int*, int* iw, int*, double*, int*, double* rhs, i
 
 void set_defaults(int*, double*) {}
 
+// ---- who is served. Ipopt has one place for MA27 in the whole process. While a solve of Ayumi
+// runs it holds the functions below: on a thread that is in such a solve they lead to this solver,
+// on any other to the HSL library that Ipopt itself would have loaded.
+
+thread_local bool serves_this_thread = false;
+
+constexpr int kNoOtherSolver = -99;  // INFO(1) where no HSL library is found: Ipopt gives up there
+
+/// The functions of MA27 in the HSL library; null without one. Loaded once and never unloaded.
+struct HslLibrary {
+  ma27ad_t analyse = nullptr;
+  ma27bd_t factor = nullptr;
+  ma27cd_t solve = nullptr;
+  ma27id_t set_defaults = nullptr;
+
+  HslLibrary() {
+    void* library = dlopen(LSL_HSLLibraryName(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) return;
+    analyse = reinterpret_cast<ma27ad_t>(dlsym(library, "ma27ad_"));
+    factor = reinterpret_cast<ma27bd_t>(dlsym(library, "ma27bd_"));
+    solve = reinterpret_cast<ma27cd_t>(dlsym(library, "ma27cd_"));
+    set_defaults = reinterpret_cast<ma27id_t>(dlsym(library, "ma27id_"));
+  }
+};
+
+const HslLibrary& hsl() {
+  static const HslLibrary library;
+  return library;
+}
+
+void route_analyse(int* n, int* nz, const int* rows, const int* columns, int* iw, int* liw,
+                   int* ikeep, int* iw1, int* steps, int* flag, int* icntl, double* cntl, int* info,
+                   double* operations) {
+  const auto routed = serves_this_thread ? analyse : hsl().analyse;
+  if (routed)
+    routed(n, nz, rows, columns, iw, liw, ikeep, iw1, steps, flag, icntl, cntl, info, operations);
+  else
+    info[0] = kNoOtherSolver;
+}
+
+void route_factor(int* n, int* nz, const int* rows, const int* columns, double* a, int* la, int* iw,
+                  int* liw, int* ikeep, int* steps, int* front, int* iw1, int* icntl, double* cntl,
+                  int* info) {
+  const auto routed = serves_this_thread ? factor : hsl().factor;
+  if (routed)
+    routed(n, nz, rows, columns, a, la, iw, liw, ikeep, steps, front, iw1, icntl, cntl, info);
+  else
+    info[0] = kNoOtherSolver;
+}
+
+void route_solve(int* n, double* a, int* la, int* iw, int* liw, double* w, int* front, double* rhs,
+                 int* iw1, int* steps, int* icntl, double* cntl) {
+  const auto routed = serves_this_thread ? solve : hsl().solve;
+  if (routed) routed(n, a, la, iw, liw, w, front, rhs, iw1, steps, icntl, cntl);
+}
+
+void route_set_defaults(int* icntl, double* cntl) {
+  const auto routed = serves_this_thread ? set_defaults : hsl().set_defaults;
+  if (routed) routed(icntl, cntl);
+}
+
+/// Solves that hold the place, over all threads.
+struct Holders {
+  std::mutex mutex;
+  int count = 0;
+};
+
+Holders& holders() {
+  static Holders all;
+  return all;
+}
+
+// False where the place belongs to the host program: its functions cannot be read back from Ipopt,
+// so that they could not be restored either.
+bool hold_place() {
+  Holders& all = holders();
+  const std::scoped_lock lock(all.mutex);
+  if (all.count == 0) {
+    if (LSL_isMA27available()) return false;
+    LSL_setMA27(route_analyse, route_factor, route_solve, route_set_defaults);
+  }
+  ++all.count;
+  return true;
+}
+
+void leave_place() {
+  Holders& all = holders();
+  const std::scoped_lock lock(all.mutex);
+  if (--all.count == 0) LSL_setMA27(nullptr, nullptr, nullptr, nullptr);
+}
+
 }  // namespace
 
-void register_condensed_solver() {
-  [[maybe_unused]] static const bool done = [] {
-    LSL_setMA27(analyse, factor, solve, set_defaults);
-    return true;
-  }();
+BandedKktScope::BandedKktScope(bool wanted)
+    : outer_(serves_this_thread), active_(wanted && hold_place()) {
+  serves_this_thread = active_;
 }
+
+BandedKktScope::~BandedKktScope() {
+  if (active_) leave_place();
+  serves_this_thread = outer_;
+}
+
+BandedKktPause::BandedKktPause() : outer_(serves_this_thread) { serves_this_thread = false; }
+BandedKktPause::~BandedKktPause() { serves_this_thread = outer_; }
 
 }  // namespace ayumi

@@ -1,17 +1,50 @@
 #pragma once
-// Linear systems of Ipopt by condensing: of
-//   [ W      J' ]   W  of the variables, S of the slacks (diagonal), J of the constraints,
-//   [    S  -I  ]   D  regularization (diagonal),
-//   [ J -I  -D  ]
-// slacks and multipliers are eliminated first, for their pivots need no search, and what is left,
+// A direct solver for the linear systems of Ipopt. Each of its steps solves a system with the
+// matrix
+//   [ W      J' ]   W: Hessian of the Lagrangian and barrier of the variables,
+//   [    S  -I  ]   S: barrier of the slacks (diagonal),   J: Jacobian of the constraints,
+//   [ J -I  -D  ]   D: regularization (diagonal).
+// Slacks and multipliers are eliminated first, because their pivots need no search. What remains,
 //   W + J' (S^-1 + D)^-1 J,
-// is banded in programs along time: a Cholesky factorization in panels of a band. An iteration
-// takes a third to a quarter of what it takes with MUMPS. Without equality
-// constraints only: those have no slack to eliminate them by.
+// is banded in programs along time and is factored by Cholesky in panels of the band. An iteration
+// takes a third to a quarter of the time that it takes with MUMPS. The method needs programs
+// without equality constraints: an equality has no slack by which it could be eliminated.
+//
+// Ipopt takes a linear solver from outside only under the name MA27, in one place of the whole
+// process. That place is therefore held only while a solve of Ayumi runs, and it is empty again
+// afterwards. Another Ipopt program of the process that asks for MA27 at that time, on another
+// thread or from within a callback, is passed on to the HSL library. A place that the host program
+// has filled (with an HSL library that is loaded, or with LSL_setMA27) is left alone.
 
 namespace ayumi {
 
-/// Makes this solver what Ipopt takes for its linear solver "ma27". Thread-safe, idempotent.
-void register_condensed_solver();
+/// While it lives, Ipopt's linear solver "ma27" is this solver on the thread that made it.
+/// Thread-safe; scopes of one thread may be nested.
+class BandedKktScope {
+ public:
+  explicit BandedKktScope(bool wanted);  ///< `wanted` false: the scope does nothing
+  ~BandedKktScope();
+  BandedKktScope(const BandedKktScope&) = delete;
+  BandedKktScope& operator=(const BandedKktScope&) = delete;
+
+  /// False where it was not wanted, or where the host program has an MA27 of its own.
+  bool active() const { return active_; }
+
+ private:
+  bool outer_, active_;
+};
+
+/// While it lives, the thread that made it is not served: for callbacks, which may run other
+/// programs.
+class BandedKktPause {
+ public:
+  BandedKktPause();
+  ~BandedKktPause();
+  BandedKktPause(const BandedKktPause&) = delete;
+  BandedKktPause& operator=(const BandedKktPause&) = delete;
+
+ private:
+  bool outer_;
+};
 
 }  // namespace ayumi

@@ -18,7 +18,7 @@ using Ipopt::Number;
 
 namespace {
 
-// Processor time of this thread: what else the machine does is no work of the solver [s].
+// Processor time of this thread [s]: other work of the machine is no work of the solver.
 double thread_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -34,7 +34,7 @@ class Adapter : public Ipopt::TNLP {
       : nlp_(nlp), options_(options), progress_(progress), stage_(stage) {}
 
   NlpSolution solution;
-  std::exception_ptr thrown;  // by a callback; Ipopt must not see it
+  std::exception_ptr thrown;  // by a callback; Ipopt must not see exceptions
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian,
                     IndexStyleEnum& style) override {
@@ -107,6 +107,7 @@ class Adapter : public Ipopt::TNLP {
                              Ipopt::IpoptCalculatedQuantities*) override {
     solution.iterations = iteration;
     if (!progress_) return true;
+    const BandedKktPause pause;
     return progress_({stage_, static_cast<double>(iteration) / options_.max_iterations,
                       "iteration " + std::to_string(iteration) + ", violation " +
                           text::brief(infeasibility, 2) + ", change " + text::brief(objective, 4)});
@@ -149,6 +150,7 @@ class Adapter : public Ipopt::TNLP {
   template <class Work>
   bool guarded(Work work) {
     if (thrown) return false;
+    const BandedKktPause pause;
     const double begin = thread_seconds();
     try {
       work();
@@ -171,12 +173,11 @@ bool has_equalities(const Nlp& nlp) {
   return (nlp.constraint_lower.array() == nlp.constraint_upper.array()).any();
 }
 
-void set_linear_solver(Ipopt::OptionsList& list, bool condensed) {
-  list.SetStringValue("linear_solver", condensed ? "ma27" : "mumps");
-  if (!condensed) return;
-  register_condensed_solver();
+void set_linear_solver(Ipopt::OptionsList& list, bool banded) {
+  list.SetStringValue("linear_solver", banded ? "ma27" : "mumps");
+  if (!banded) return;
   list.SetStringValue("linear_system_scaling", "none");
-  list.SetNumericValue("ma27_la_init_factor", 1);  // it says exactly what it needs
+  list.SetNumericValue("ma27_la_init_factor", 1);  // the solver asks for exactly what it needs
   list.SetNumericValue("ma27_liw_init_factor", 1);
 }
 
@@ -188,11 +189,11 @@ void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
   list.SetStringValue("nlp_scaling_method", "none");  // the problems come scaled
   list.SetStringValue("mu_strategy", "monotone");
   list.SetNumericValue("mu_init", options.start_barrier);
-  list.SetNumericValue("mu_linear_decrease_factor", 0.05);  // Newton's steps follow
-  list.SetNumericValue("mu_superlinear_decrease_power", 1.8);
+  list.SetNumericValue("mu_linear_decrease_factor", repair_policy::solver::kBarrierFactor);
+  list.SetNumericValue("mu_superlinear_decrease_power", repair_policy::solver::kBarrierPower);
   for (const char* name : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"})
     list.SetNumericValue(name, options.start_push);
-  list.SetNumericValue("constr_mult_init_max", 0);  // no system to be solved for them before
+  list.SetNumericValue("constr_mult_init_max", 0);  // multipliers start at 0, without a solve
   list.SetNumericValue("tol", options.tolerance);
   list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
   list.SetIntegerValue("max_iter", options.max_iterations);
@@ -227,7 +228,8 @@ NlpSolution solve(const Nlp& nlp, const NlpOptions& options, const Progress& pro
   Ipopt::SmartPtr<Adapter> adapter = new Adapter(nlp, options, progress, stage);
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
   set_options(*application->Options(), options);
-  set_linear_solver(*application->Options(), !options.mumps && !has_equalities(nlp));
+  const BandedKktScope banded(!options.mumps && !has_equalities(nlp));
+  set_linear_solver(*application->Options(), banded.active());
   if (application->Initialize("") != Ipopt::Solve_Succeeded)
     fail(ErrorCode::solver, "Ipopt does not start: is its MUMPS linear solver installed?");
   const double begin = thread_seconds();

@@ -1,22 +1,25 @@
 #pragma once
 // A nonlinear program as plain data and functions, and its solution by Ipopt (interior point,
-// filter line search; all options are set in code). Linear systems by condensed_solver.hpp, with
-// equality constraints by MUMPS.
+// filter line search; all options are set in code):
 //   min f(x)   lower <= x <= upper,   constraint_lower <= g(x) <= constraint_upper
+// Linear systems are solved by banded_kkt_solver.hpp, which Ipopt knows as MA27: see there what
+// this means for a host program that uses Ipopt itself. Programs with equality constraints, and all
+// programs of a host that has its own MA27, use MUMPS.
 
 #include <Eigen/Core>
 #include <functional>
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
+#include "ayumi/repair/policy.hpp"
 
 namespace ayumi {
 
 /// Bounds at or beyond this mean "none".
 inline constexpr double kNoBound = 1e19;
 
-/// Where the nonzeros of a sparse matrix are; the values come in the same order. Of the Hessian
-/// only the lower triangle.
+/// Places of the nonzeros of a sparse matrix; the values come in the same order. Of a Hessian only
+/// the lower triangle is given.
 struct SparsePattern {
   std::vector<int> rows, columns;
   int size() const { return static_cast<int>(rows.size()); }
@@ -27,7 +30,7 @@ struct SparsePattern {
 };
 
 struct Nlp {
-  Eigen::VectorXd start, lower, upper;  ///< variables
+  Eigen::VectorXd start, lower, upper;  ///< of the variables
   Eigen::VectorXd constraint_lower, constraint_upper;
   SparsePattern jacobian, hessian;
 
@@ -43,17 +46,19 @@ struct Nlp {
       hessian_values;
 };
 
-/// The most by which the start breaks a constraint; negative inside all.
+/// The largest violation of a constraint by the start; negative where it is inside all of them.
 double violation_at_start(const Nlp& nlp);
 
 struct NlpOptions {
-  int max_iterations = 100;
-  double tolerance = 1e-6;             ///< of the optimality conditions
-  double start_barrier = 1e-3;         ///< smaller from a start that is nearly right
-  double start_push = 1e-2;            ///< of a start off its bounds; likewise
-  double constraint_tolerance = 1e-7;  ///< of g, unscaled
-  bool mumps = false;                  ///< for the linear systems of any program
-  /// Kept up to date with the point of least violation seen, for work that is stopped.
+  int max_iterations = repair_policy::rounds::kMostIterations;
+  double tolerance = repair_policy::solver::kTolerance;  ///< of the optimality conditions
+  /// Initial barrier, and distance to which the start is pushed from its bounds; both are smaller
+  /// for a warm start.
+  double start_barrier = repair_policy::solver::kStartBarrier;
+  double start_push = repair_policy::solver::kStartPush;
+  double constraint_tolerance = repair_policy::solver::kConstraintTolerance;  ///< of g, unscaled
+  bool mumps = false;  ///< for the linear systems of any program
+  /// Where not null: updated with the point of least violation seen, for work that is stopped.
   Eigen::VectorXd* least_violating = nullptr;
 };
 
@@ -64,8 +69,9 @@ struct NlpSolution {
   Eigen::VectorXd x;
   int iterations = 0;
   double objective = 0;
-  double violation = 0;                             ///< largest of any constraint or bound
-  double function_seconds = 0, solver_seconds = 0;  ///< of processor, in functions; in the rest
+  double violation = 0;         ///< largest violation of a constraint or bound
+  double function_seconds = 0;  ///< processor time in the functions of the program
+  double solver_seconds = 0;    ///< processor time in Ipopt itself
 };
 
 /// Throws Interrupted when `progress` stops the work. `stage` names the work to `progress`.

@@ -1,0 +1,134 @@
+// Windows are enough because the effect of a correction decays: the COG forgets it as
+// exp(-omega t), with omega of about 6 1/s for a small robot, to 5 % after half a second, and the
+// ZMP margin at the window's edge takes up the rest. Where that is not enough the windows grow, in
+// the end to the whole motion.
+#include "ayumi/repair/repair_rounds.hpp"
+
+#include <algorithm>
+
+#include "ayumi/repair/initial_guess.hpp"
+#include "ayumi/repair/repair_setup.hpp"
+
+namespace ayumi {
+
+namespace policy = repair_policy;
+
+namespace {
+
+using FoundAt = std::pair<FindingKind, std::string>;  // kind and place
+
+// What one round leaves to the next.
+struct RoundMemory {
+  int round = 0;
+  int unsolved = 0;                          // rounds without a solution
+  int halvings = 0;                          // of the knots' spacing
+  double pad = policy::rounds::kFreeAround;  // free time around a finding [s]
+  std::vector<Finding> findings = {};        // of all rounds
+  std::set<FoundAt> errors = {};             // left by the last round where it was solved
+};
+
+// A motion whose margin the check only warns of is repaired too, if it is repaired at all.
+bool has_full_margin(const ConsistencyReport& report) {
+  return std::none_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
+    return f.kind == FindingKind::support_margin && f.severity == Severity::warning;
+  });
+}
+
+// A result that passes although its program was not solved to the end gets one more round.
+bool is_over(const RepairState& state, const RoundMemory& memory) {
+  if (memory.round >= policy::rounds::kMost || memory.unsolved >= policy::rounds::kMostUnsolved)
+    return true;
+  if (memory.round > 0) return is_done(state);
+  return state.result.check.consistent && has_full_margin(state.result.check);
+}
+
+void choose_windows(RepairState& state, RoundMemory& memory) {
+  const std::vector<Finding>& now = state.result.check.findings;
+  memory.findings.insert(memory.findings.end(), now.begin(), now.end());
+  for (const Finding& f : now)
+    if (f.severity == Severity::error && memory.round > 0)
+      state.spec.extra_times.insert(state.spec.extra_times.end(), {f.begin, f.at, f.end});
+  state.spec.windows = windows_around(memory.findings, memory.pad);
+  add_near_pairs(state.model, state.result.series, state.collisions, state.spec.near_pairs);
+}
+
+// A first program without a solution may only have been cut short. Finer knots are tried first;
+// then the soft goals are given up before the repair is.
+void widen_after_failure(RepairState& state, RoundMemory& memory) {
+  if (state.status == NlpStatus::solved) return;
+  if (memory.round > 0 || state.flight) ++memory.unsolved;
+  memory.pad *= 2;
+  if (memory.unsolved <= 1 && state.status != NlpStatus::infeasible) return;
+  state.spec.safe_margin = state.spec.zmp_margin;
+  state.spec.swing_goals = false;
+  state.spec.sole_at_knots = 1;
+}
+
+// The next round keeps more distance from the limits.
+void increase_backoff(CorrectionSpec& spec, int round) {
+  if (2 * (round + 1) >= policy::rounds::kMost) spec.swing_goals = false;
+  spec.joint_margin += policy::kBackoffStep.joint_position;
+  spec.limit_share -= policy::kBackoffStep.limit_share;
+}
+
+// Where an error outlasts the points that were added for it, or no solution is found, the knots are
+// too far apart: soles in their places ask for more than a coarse spline can follow.
+void refine_knots(RepairState& state, RoundMemory& memory) {
+  if (state.result.check.consistent) return;
+  const bool solved = state.status == NlpStatus::solved;
+  std::set<FoundAt> errors;
+  bool again = memory.round + 2 == policy::rounds::kMost || !solved;
+  for (const Finding& f : state.result.check.findings) {
+    if (f.severity != Severity::error) continue;
+    errors.emplace(f.kind, f.where);
+    again = again || memory.errors.contains({f.kind, f.where});
+  }
+  memory.errors = solved ? errors : std::set<FoundAt>();
+  const double finest = policy::knots::kFewestSamples * state.series.dt;
+  if (!again || memory.halvings == policy::knots::kMostHalvings || state.track.spacing < finest)
+    return;
+  ++memory.halvings;
+  memory.errors.clear();
+  state.spec.spacing = state.track.spacing / 2;
+  if (state.spec.initial.size() > 0) state.spec.initial = with_halved_knots(state.spec.initial);
+}
+
+void solve_round(RepairState& state, RoundMemory& memory) {
+  if (state.result.check.consistent) state.passing = state.track;
+  choose_windows(state, memory);
+  solve_program(state, "repair round " + std::to_string(memory.round + 1),
+                policy::rounds::kTolerance);
+  state.spec.zmp_margin += policy::kBackoffStep.zmp;
+  state.spec.safe_margin += policy::kBackoffStep.zmp;
+  widen_after_failure(state, memory);
+  increase_backoff(state.spec, memory.round);
+  refine_knots(state, memory);
+  ++memory.round;
+}
+
+// The least violating point of a program that was stopped.
+void keep_partial(RepairState& state) {
+  state.result.partial = true;
+  state.status = NlpStatus::iteration_limit;
+  if (!state.problem) return;
+  const int count = state.problem->variable_count();
+  if (state.least_violating.size() >= count)
+    take(state, state.problem->track(state.least_violating.head(count)));
+}
+
+}  // namespace
+
+void solve_rounds(RepairState& state) {
+  state.spec.free_ends =
+      faulty_ends(state.result.check, state.series.duration(), state.spec.spacing);
+  RoundMemory memory;
+  try {
+    while (!is_over(state, memory)) solve_round(state, memory);
+  } catch (const Interrupted&) {
+    if (!state.options.keep_partial) throw;
+    return keep_partial(state);
+  }
+  if (!state.result.check.consistent && state.passing) take(state, *state.passing);
+}
+
+}  // namespace ayumi

@@ -1,0 +1,113 @@
+#include "ayumi/repair/repair_state.hpp"
+
+#include <algorithm>
+
+#include "ayumi/repair/constraint_relaxation.hpp"
+#include "ayumi/repair/initial_guess.hpp"
+#include "ayumi/repair/repair_setup.hpp"
+
+namespace ayumi {
+
+namespace policy = repair_policy;
+
+using Eigen::VectorXd;
+
+RepairState repair_state(const RobotModel& model, const CommandSeries& series,
+                         const RepairOptions& options, const Progress& progress) {
+  RepairState state{
+      model, series, options, progress, CollisionModel(model), repair_spec(model, series, options)};
+  state.result.series = series;
+  state.result.check = state.result.before = check_consistency(model, series, options.check);
+  return state;
+}
+
+ConsistencyReport report_of(const RepairState& state, const CommandSeries& series) {
+  const RepairOptions& options = state.options;
+  if (options.trust == Trust::posture) return check_consistency(state.model, series, options.check);
+  CommandSeries judged = series;
+  for (size_t k = 0; k < judged.samples.size(); ++k) {
+    const CommandSample& commanded = state.series.samples[k];
+    if (options.trust == Trust::cog) judged.samples[k].cog = commanded.cog;
+    if (options.trust == Trust::zmp) judged.samples[k].zmp = commanded.zmp;
+  }
+  return check_consistency(state.model, judged, options.check);
+}
+
+void take(RepairState& state, const CorrectionTrack& track) {
+  state.track = track;
+  RepairResult& result = state.result;
+  result.correction = kept_at(trimmed(track), state.spec.kept_times);
+  result.series = apply_correction(state.model, state.series, result.correction);
+  result.check = report_of(state, result.series);
+}
+
+bool is_done(const RepairState& state) {
+  return state.result.check.consistent && state.result.constraint_violation <= policy::rounds::kMet;
+}
+
+NlpOptions nlp_options(RepairState& state, bool warm) {
+  NlpOptions options;
+  options.max_iterations = state.options.max_iterations;
+  options.mumps = state.options.mumps;
+  options.least_violating = &state.least_violating;
+  if (!warm) return options;
+  options.start_barrier = policy::solver::kWarmBarrier;
+  options.start_push = policy::solver::kWarmPush;
+  return options;
+}
+
+void note_work(RepairState& state, const Nlp& nlp, const NlpSolution& solution) {
+  RepairResult& result = state.result;
+  RepairWork& work = result.work;
+  ++work.rounds;
+  work.iterations += solution.iterations;
+  work.variables = static_cast<int>(nlp.start.size());
+  work.constraints = static_cast<int>(nlp.constraint_lower.size());
+  work.jacobian_nonzeros = nlp.jacobian.size();
+  work.hessian_nonzeros = nlp.hessian.size();
+  work.function_seconds += solution.function_seconds;
+  work.solver_seconds += solution.solver_seconds;
+  result.variables = work.variables;
+  result.constraints = work.constraints;
+  result.iterations = work.iterations;
+  result.constraint_violation = solution.violation;
+}
+
+namespace {
+
+// Whether the next program starts at this result. Bodies that have met are hard to part again, so
+// that an unsolved program whose result has them meet is no start.
+bool is_next_start(const RepairState& state, double violation) {
+  if (state.status == NlpStatus::solved) return true;
+  return state.status == NlpStatus::iteration_limit && violation < policy::rounds::kNearlyMet &&
+         state.result.check.summary[FindingKind::self_collision] > 0;
+}
+
+}  // namespace
+
+void solve_program(RepairState& state, const std::string& stage, double tolerance) {
+  CorrectionSpec& spec = state.spec;
+  const bool first = state.result.work.rounds == 0, guessed = spec.initial.size() > 0;
+  if (!first) spec.seen.push_back(&state.earlier.emplace_back(state.result.series));
+  const CorrectionProblem& problem = state.problem.emplace(state.model, state.series, spec);
+  Nlp hard = problem.nlp();
+  if (!guessed)
+    hard.start =
+        initial_guess(problem, hard, state.model, state.series, state.result.before.findings);
+  const bool warm = guessed && violation_at_start(hard) < policy::rounds::kNearlyMet;
+  NlpOptions options = nlp_options(state, warm);
+  const Nlp nlp =
+      with_soft_goals(problem, hard, state.series.dt, state.options.safety, options.start_barrier);
+  if (!state.flight) options.tolerance = tolerance;
+  if (!state.flight && first)
+    options.max_iterations = std::min(options.max_iterations, policy::rounds::kBeforeFinerKnots);
+  const NlpSolution solution = solve(nlp, options, state.progress, stage);
+  note_work(state, nlp, solution);
+  state.status = solution.status;
+  state.objective = solution.objective;
+  take(state, problem.track(solution.x.head(problem.variable_count())));
+  spec.initial =
+      is_next_start(state, solution.violation) ? state.track.coefficients : Eigen::MatrixXd();
+}
+
+}  // namespace ayumi

@@ -1,0 +1,68 @@
+#pragma once
+// What the stages of one repair share: the question, the program of the last round, and the best
+// result so far. Stages are functions of this state: repair_rounds, tighten_to_check_limits and
+// infeasibility_report.
+
+#include <deque>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ayumi/repair/correction_problem.hpp"
+#include "ayumi/repair/repair.hpp"
+
+namespace ayumi {
+
+struct RepairState {
+  // The question.
+  const RobotModel& model;
+  const CommandSeries& series;
+  const RepairOptions& options;
+  const Progress& progress;
+  const CollisionModel collisions;
+  CorrectionSpec asked;  ///< specification of the first round
+  bool flight = false;   ///< a flight is at fault
+
+  // The rounds so far.
+  CorrectionSpec spec = {};                       ///< of the next program
+  std::optional<CorrectionProblem> problem = {};  ///< of the last program
+  NlpStatus status = NlpStatus::failed;           ///< of the last program
+  double objective = 0;                           ///< of the last program
+  std::deque<CommandSeries> earlier = {};         ///< results of earlier rounds, named by `spec`
+  Eigen::VectorXd least_violating = {};           ///< of the last program
+
+  // The result so far.
+  CorrectionTrack track = {};  ///< of the result, every control point
+  RepairResult result = {};
+  RepairResult as_given = {};                   ///< the motion itself, with its own COG and ZMP
+  std::optional<CorrectionTrack> passing = {};  ///< an earlier result that passes the check
+  bool relaxation_cut_short = false;            ///< by its limit of iterations
+};
+
+/// The state before the first round, with the check of the motion as it is given.
+RepairState repair_state(const RobotModel& model, const CommandSeries& series,
+                         const RepairOptions& options, const Progress& progress);
+
+/// Makes the motion with a correction the result, and checks it.
+void take(RepairState& state, const CorrectionTrack& track);
+
+/// The check of a motion. A trusted quantity is judged as it was commanded, not as the corrected
+/// motion has it.
+ConsistencyReport report_of(const RepairState& state, const CommandSeries& series);
+
+/// Whether the result passes and its program was solved to the end.
+bool is_done(const RepairState& state);
+
+/// Solves one program from `spec` and takes its result; the next program starts there where it is
+/// solved or nearly so. Throws Interrupted.
+void solve_program(RepairState& state, const std::string& stage, double tolerance);
+
+/// Solver options, with those of a warm start from a point that violates little.
+NlpOptions nlp_options(RepairState& state, bool warm);
+
+/// Adds the work of one solution to the result.
+void note_work(RepairState& state, const Nlp& nlp, const NlpSolution& solution);
+
+}  // namespace ayumi
