@@ -8,7 +8,7 @@
 namespace ayumi {
 
 struct RetimeOptions {
-  CheckOptions check;
+  CheckOptions check = {};
   double dt = 0.001;                    ///< of sampling [s]
   double resolution = 0.002;            ///< relative resolution of the scale
   double fastest = 0.05, slowest = 20;  ///< range of the scale
