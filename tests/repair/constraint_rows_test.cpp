@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "ayumi/check/consistency.hpp"
 #include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "ayumi/check/consistency.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "tests/support/limited_biped.hpp"
