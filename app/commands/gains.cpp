@@ -155,11 +155,11 @@ std::string report(const RobotModel& model, const Design& d) {
   out += "short term  " + text::fixed(100 * p.zmp_gain / (1 + p.zmp_gain), 0) +
          " % of a ZMP error is answered immediately, filtered over " +
          text::fixed(1e3 * p.zmp_filter / w, 1) + " ms\n";
-  out += "return  the reference returns to the command within " + text::fixed(1e3 / (w * p.pull_rate), 0) +
-         " ms";
+  out += "return  the reference returns to the command within " +
+         text::fixed(1e3 / (w * p.pull_rate), 0) + " ms";
   out += p.offset_time > 0 ? ", a constant ZMP offset is accepted as normal after " +
-                             text::fixed(1e3 * p.offset_time / w, 0) + " ms\n"
-                       : ", a constant ZMP offset is never accepted as normal\n";
+                                 text::fixed(1e3 * p.offset_time / w, 0) + " ms\n"
+                           : ", a constant ZMP offset is never accepted as normal\n";
   out += "loop on one foot: ankle stiffness " + text::brief(d.loop.stiffness) +
          " N m/rad, sensor latency " + text::brief(1e3 * d.loop.delay) +
          " ms; the loop is stable, and would be up to ka = " +

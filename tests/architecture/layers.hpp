@@ -191,8 +191,7 @@ inline std::vector<std::string> layering_violations(const fs::path& root) {
       if (extension != ".cpp" && extension != ".hpp") continue;
       if (top != "app" && !inside.has_parent_path()) continue;  // ayumi.hpp gathers the rooms
       const std::string room = top == "app" ? "app" : room_of(inside.generic_string());
-      const bool public_header =
-          top != "app" && public_headers().contains(inside.generic_string());
+      const bool public_header = top != "app" && public_headers().contains(inside.generic_string());
       const auto breaks = file_violations(entry.path(), shown, room, public_header);
       found.insert(found.end(), breaks.begin(), breaks.end());
     }

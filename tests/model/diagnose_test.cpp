@@ -61,8 +61,7 @@ TEST(Diagnose, NamesImplausibleInertias) {
                          for (const char* name : {"l_shank", "r_foot", "r_shank"})
                            link(r, name).inertia.about_com = same;
                        }),
-                       "links r_shank, r_foot, l_shank, l_foot",
-                       "the same inertia tensor"));
+                       "links r_shank, r_foot, l_shank, l_foot", "the same inertia tensor"));
   EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "l_foot").inertia.mass = 10; }),
                        "link l_foot", "heavier than lead"));
 }
@@ -80,7 +79,7 @@ TEST(Diagnose, NamesAsymmetry) {
 TEST(Diagnose, NamesAnEncoderWhoseSignDisagrees) {
   const std::string text =
       findings([](auto& r) { r.encoders.at("l_knee").counts_per_degree = 209; });
-  EXPECT_TRUE(mentions(text, "joints l_knee/r_knee", "otherwise than on the 9 other pairs"));
+  EXPECT_TRUE(mentions(text, "joints l_knee/r_knee", "another relation than on the 9 other pairs"));
 }
 
 TEST(Diagnose, NamesMissingAndPlaceholderLimits) {

@@ -1,10 +1,10 @@
 #pragma once
 // Every tuning parameter of the repair, in one place: value, unit, reason, source, and the test
-// that would notice if it moved. Sources: "Derived" follows from another figure, "Measured" refers
-// to trials of docs/theory.md or docs/performance.md, "Chosen" is a judgement; what happens at half
-// and at twice a value is given where a trial showed it. "Test: none" means that no assertion is
-// known to depend on the value; the numbers of repaired patterns then change without a test that
-// fails. Tests are named suite.case of tests/repair, unless another folder is given.
+// that would notice if it moved. Sources: "Derived" follows from another figure, "Measured" rests
+// on a trial, "Chosen" is a judgement; what happens at half and at twice a value is given where a
+// trial showed it. "Test: none" means that no assertion is known to depend on the value; the
+// numbers of repaired patterns then change without a test that fails. Tests are named suite.case of
+// tests/repair, unless another folder is given.
 //
 // Times suit a robot of HOAP-1's height (omega = sqrt(g / z) of about 6 1/s, so 0.5 s is 3/omega);
 // they do not scale with the robot yet.

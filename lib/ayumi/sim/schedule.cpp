@@ -5,9 +5,9 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/sim/run_caution.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/sim/run_caution.hpp"
 #include "ayumi/sim/step_check.hpp"
 
 namespace ayumi {
