@@ -10,6 +10,7 @@
 // they do not scale with the robot yet.
 
 #include <array>
+#include <cstddef>
 
 #include "ayumi/repair/constraint_group.hpp"
 
