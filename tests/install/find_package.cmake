@@ -1,11 +1,5 @@
 # cmake -DCONSUMER= -DSCRATCH= -DGENERATOR= -DCOMPILER= -DCONFIG= -DFLAGS= -P find_package.cmake
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${ARGV}\nfailed (${status}):\n${output}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 cmake_path(GET CONSUMER FILENAME name)
 set(build ${SCRATCH}/${name})
