@@ -11,8 +11,8 @@ namespace ayumi::app {
 
 namespace {
 
-constexpr size_t kJointsTold = 8, kJointsDrawn = 4, kSpeedsDrawn = 2;
-constexpr double kTold = 0.005 * EIGEN_PI / 180;  // what would be 0.00 deg is no move for people
+constexpr size_t kJointsTold = 8, kJointsDrawn = 4, kSpeedsDrawn = 2;  // as many as fit a page
+constexpr double kTold = 0.005 * EIGEN_PI / 180;  // [rad] less would be written as 0.00 deg
 
 std::string millimetres(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 std::string seconds(double t) { return text::fixed(t, 3) + " s"; }
@@ -64,7 +64,7 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
 }
 
 std::string cost_words(const WeightedChange& cost) {
-  constexpr double kTold = 1e-3;  // of the change; less is rounding
+  constexpr double kTold = 1e-3;  // of the change; less does not show in three digits
   const std::string missing =
       cost.safety > kTold * cost.change
           ? " and " + text::brief(cost.safety) + " for the safety that is missing"
@@ -102,8 +102,8 @@ bool disagrees(const SimulationLog& log) {
 
 void plot_motions(const RobotModel& model, const CommandSeries& before, const CommandSeries& after,
                   const MotionPlot& plot, const std::filesystem::path& path) {
-  constexpr double kAround = 0.4;  // [s]
-  constexpr double kSeen = 0.03;   // of the joint that moved most: less would be one line twice
+  constexpr double kAround = 0.4;  // [s] of the motion drawn before and after the change
+  constexpr double kSeen = 0.03;   // share of the largest move; below it two curves look like one
   const SimulationLog a = plan_log(model, before, before);
   const SimulationLog b = plan_log(model, after, before);
   const MotionChange change = motion_change(model, before, after);

@@ -21,11 +21,20 @@ namespace {
 
 using Values = std::map<std::string, double>;
 
-constexpr int kMostTrials = 60;     // of several parameters together
-constexpr double kUnsampled = 1e6;  // worse than any motion
-constexpr double kSlowest = 8;      // more is not called a matter of time
+// Trials with several parameters together. Chosen: each costs one sampling and one check, for a
+// walk of some steps 0.1 s.
+constexpr int kMostTrials = 60;
+// Violation of a motion that cannot be sampled. Chosen: worse than any motion.
+constexpr double kUnsampled = 1e6;
+// Factor on the time from which on slowing down is not called a solution. Chosen: as kSlowest of
+// repair/policy.hpp.
+constexpr double kSlowest = 8;
+// Factor from one pace to the next, and resolution of the search between two. Chosen: 15 paces to
+// kSlowest; the pace is shown with two decimals.
 constexpr double kPaceStep = 1.15, kPaceResolution = 0.02;
-constexpr double kPart = 0.8;  // what is more of a pattern is all of it
+// Share of a pattern's time from which on the whole pattern is slowed down instead of windows.
+// Chosen: what is left then is little more than standing at both ends.
+constexpr double kPart = 0.8;
 
 bool whole(double value) { return value == std::round(value) && std::abs(value) >= 1; }
 
@@ -169,7 +178,8 @@ std::vector<std::pair<double, double>> segments_around(const Pattern& pattern,
   std::vector<std::pair<double, double>> all;
   for (const Finding& f : check.findings) {
     if (f.severity != Severity::error) continue;
-    constexpr double kSlack = 0.002;  // a finding may touch the next segment by a sample [s]
+    // [s] Chosen: a finding may touch the next segment by a sample.
+    constexpr double kSlack = 0.002;
     const auto end = marks.lower_bound(std::max(f.end - kSlack, f.at));
     auto begin = marks.upper_bound(std::min(f.begin + kSlack, f.at));
     if (begin != marks.begin()) --begin;

@@ -21,8 +21,11 @@ namespace {
 using Complex = std::complex<double>;
 using Json = nlohmann::ordered_json;
 
-constexpr double kMostKa = 20;   // looked for
-constexpr double kShown = 1e-3;  // decays below this share of omega are not told as modes
+// Largest ka up to which the edge of stability is searched. Chosen: twenty times the default.
+constexpr double kMostKa = 20;
+// Decays below this share of omega are not shown as modes. Chosen: they last longer than any
+// motion.
+constexpr double kShown = 1e-3;
 
 struct GainsCommand {
   std::string robot;

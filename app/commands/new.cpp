@@ -124,8 +124,11 @@ void new_squat(const Context& context, NewOptions options) {
              "Where the COG is over the ground is solved: the ZMP stays in the middle."});
 }
 
-constexpr double kStandFirst = 0.5;  // before a goal of VIIP [s]
-constexpr double kDisplaced = 2.5;   // for a displacement, and for its way back [s]
+// Time of standing before a goal of VIIP [s]. Chosen: 3/omega of HOAP-1.
+constexpr double kStandFirst = 0.5;
+// Time for a displacement, and for the return [s]. Chosen: 16/omega of HOAP-1, three times what
+// VIIP keeps for standing after its steps (control/laws/viip.cpp).
+constexpr double kDisplaced = 2.5;
 
 // The first profile that carries the goals out in their keyed form; "" when none does.
 std::string profile_for(const Context& context, const RobotModel& model,

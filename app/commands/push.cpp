@@ -152,7 +152,7 @@ std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const
 std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
                   const CommandSeries& series) {
   const std::string open = baseline(series);
-  constexpr size_t kLabel = 16, kCell = 7;
+  constexpr size_t kLabel = 16, kCell = 7;  // widths of columns [characters]
   const size_t directions = static_cast<size_t>(push.directions);
   std::string out;
   for (size_t p = 0; p < cases.size() / directions; ++p) {

@@ -131,7 +131,8 @@ bool is_file_of(int descriptor, const fs::path& path) {
 }  // namespace
 
 FolderLock::FolderLock(const fs::path& folder) : folder_(folder), file_(folder / ".ayumi_lock") {
-  constexpr int kTries = 100;  // another process may remove folder or file between two calls
+  // Chosen: another process may remove folder or file between two calls, but not a hundred times.
+  constexpr int kTries = 100;
   const auto stop = [&](const std::string& reason) {
     fail(ErrorCode::bad_file, folder_.string() + ": " + reason);
   };

@@ -167,8 +167,8 @@ const FindingSet kTorsion = {"`yaw_moment`", is_kind<FindingKind::yaw_moment>};
 
 // ---- intervals
 
-// Samples beside a lift-off or landing in which a jump of the path shows: the reach of differences,
-// and the two samples on either side that are of neither.
+// Samples beside a lift-off or landing in which a jump of the path shows. Derived: the reach of
+// differences (3), and the two samples on either side that are of neither.
 constexpr int kEdgeReach = 5;
 
 Interval influence_of(const Scene& scene, int i) {

@@ -13,9 +13,9 @@ struct Interval {
   bool contains(int sample) const { return first <= sample && sample <= last; }
 };
 
-/// Samples that one jump of a joint spoils to either side by differences: rates and accelerations
-/// are fitted over two samples to either side (motion/differentiate.hpp), and a jump has two
-/// samples.
+/// Samples that one jump of a joint spoils to either side by differences. Derived: rates and
+/// accelerations are fitted over two samples to either side (motion/differentiate.hpp), and a jump
+/// has two samples.
 inline constexpr int kDifferenceReach = 3;
 
 /// The window with `pad` samples on either side.

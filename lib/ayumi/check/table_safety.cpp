@@ -14,12 +14,12 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kDegreesPerRadian = 180 / EIGEN_PI;
-// Counts by which a limit may be missed: the rounding of degrees and radians in double precision is
-// far smaller, and a servo sees whole counts only.
+constexpr double kDegreesPerRadian = 180 / EIGEN_PI;  // Definition
+// Counts by which a limit may be missed. Chosen: the rounding of degrees and radians in double
+// precision is far smaller, and a servo sees whole counts only.
 constexpr double kCountSlack = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kLargestCount = 32767;  // counts are signed numbers of 16 bits (docs/formats.md)
+constexpr int kLargestCount = 32767;  // Source: docs/formats.md, signed numbers of 16 bits
 
 double counts_per_radian(const Dof& dof) {
   return dof.encoder.device > 0 ? dof.encoder.counts_per_degree * kDegreesPerRadian : 0;

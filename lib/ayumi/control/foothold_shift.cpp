@@ -28,7 +28,7 @@ namespace {
 // The figures behind the values below are in docs/theory.md, "Moving footholds": 32 walking pushes
 // of HOAP-1. Lengths are times the COG height z, times are times 1 / omega.
 
-// Share of each support that is kept in reserve, for what the point mass does not know. Chosen.
+// Share of each support that is kept in reserve. Chosen for what the point mass does not know.
 constexpr double kReserve = 0.2;
 
 // Share of the landing foot's support that is counted on. Chosen: the ZMP gets there only in the
@@ -69,7 +69,8 @@ constexpr double kSwingLandingAfter = 0.3;
 // DCM forgets a ramp that goes on after this by more than two thirds.
 constexpr double kLongestRamp = 1.3;
 
-// Peak speed of a path of least jerk from rest to rest, in units of its mean speed: 15/8.
+// Peak speed of a path of least jerk from rest to rest, in units of its mean speed. Derived: 15/8,
+// the derivative of 10 s^3 - 15 s^4 + 6 s^5 at s = 1/2.
 constexpr double kLeastJerkPeak = 1.875;
 
 ConvexPolygon about_zmp(const ConvexPolygon& polygon, const Vector2d& center) {

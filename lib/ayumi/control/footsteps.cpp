@@ -16,8 +16,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Footholds that b looks ahead. The effect of one falls by E = exp(2.1) = 8 per step, so that of
-// the seventh is below 1e-5 of a step.
+// Footholds that b looks ahead. Derived: the effect of one falls by E = exp(2.1) = 8 per step, so
+// that of the seventh is below 1e-5 of a step.
 constexpr int kPreview = 6;
 
 // Largest error of position that is taken back, times the distance of the feet. Chosen: a path that

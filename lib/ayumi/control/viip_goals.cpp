@@ -28,8 +28,8 @@ namespace {
 // to settle.
 constexpr double kGoalReached = 0.001;
 
-// The reference is led to a goal in ticks of this length [s], at most so many: 6 s, several times
-// what the slowest displacement takes.
+// The reference is led to a goal in ticks of this length [s], at most so many. Chosen: 6 s, several
+// times what the slowest displacement takes.
 constexpr double kLeadTick = 0.004;
 constexpr int kLeadTicks = 1500;
 
@@ -42,7 +42,8 @@ constexpr double kLeadSpeed = 0.1;
 // folds.
 constexpr double kLowestShare = 0.3;
 
-// Bisections of the search for what is possible: the answer is good to a thousandth of the goal.
+// Bisections of the search for what is possible. Chosen: the answer is good to a thousandth of the
+// goal.
 constexpr int kHalvings = 10;
 
 // Steps of the keyed walk that is judged in the place of a goal. Chosen: a longer walk repeats

@@ -54,7 +54,7 @@ constexpr double kCogAccelerationLimit = 4;
 // mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A foot on a bump".
 constexpr double kInsideSole = 0.15;
 
-constexpr char kTooFast = 1, kTooFar = 2;  // what a servo target was held to, as bits
+constexpr char kTooFast = 1, kTooFar = 2;  // Definition: what a servo target was held to, as bits
 
 Vector3d rotation_between(const Matrix3d& from, const Matrix3d& to) {
   return log_rotation(Eigen::Quaterniond(Matrix3d(to * from.transpose())));

@@ -17,7 +17,7 @@ namespace ayumi {
 /// Rows 0-2: COG velocity, J_G and ref dp_G; 3-5 and 6-8: linear and angular velocity of the other
 /// foot; 9-11: angular velocity of the trunk. Together 3-11 are J_C and c.
 struct StackedTask {
-  static constexpr int kRows = 12;
+  static constexpr int kRows = 12;  ///< Definition
   using Vector = Eigen::Matrix<double, kRows, 1>;
   using Rows = Eigen::Matrix<double, kRows, Eigen::Dynamic>;
   Rows J;    ///< J_U

@@ -98,7 +98,7 @@ double samples_after_contact(const RobotModel& model, const CommandSeries& serie
 }
 
 bool at_flight_edge(const CommandSeries& series, int k) {
-  // Samples to either side that fill_rates() of motion/differentiate.hpp uses.
+  // Samples to either side. Derived: those that fill_rates() of motion/differentiate.hpp uses.
   constexpr int kReach = 2;
   const int last = static_cast<int>(series.samples.size()) - 1;
   const auto flies = [&](int i) { return series.samples[i].support == Support::none; };

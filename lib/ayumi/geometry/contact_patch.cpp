@@ -23,7 +23,8 @@ constexpr double kSquare = 1e-5;
 /// Distance of two corners below which they are one [m]. Chosen: 1 um, far below any edge and far
 /// above rounding.
 constexpr double kSame = 1e-6;
-constexpr int kOther = 100, kCrossing = 200, kNearest = 1000, kSwapped = 2000;  // in ids
+// Definition: parts of the ids of points.
+constexpr int kOther = 100, kCrossing = 200, kNearest = 1000, kSwapped = 2000;
 
 /// The part of a core that is farthest out in one direction: a face (anticlockwise seen from
 /// outside), an edge or a point.

@@ -20,10 +20,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Chosen: limits near the rounding of double precision at lengths of 1 m; the number of steps is
-// only reached where rounding stops the progress.
-constexpr double kTouch = 1e-10;         // distance below which the sets overlap [m]
-constexpr double kGjkTolerance = 1e-12;  // relative error of the squared distance
+/// Distance below which the sets overlap [m]. Chosen: above the rounding of double precision at
+/// lengths of 1 m (2e-16 m), below every tolerance of a length.
+constexpr double kTouch = 1e-10;
+/// Relative error of the squared distance at which GJK ends. Chosen: above the rounding of its
+/// sums.
+constexpr double kGjkTolerance = 1e-12;
+/// Steps of GJK. Chosen: reached only where rounding stops the progress.
 constexpr int kGjkSteps = 200;
 
 double sign(double x) { return x < 0 ? -1 : 1; }
@@ -246,7 +249,7 @@ class Polytope {
   // that contains the foot of the perpendicular; otherwise they would not be opposite to each
   // other.
   ConvexPair pair_of(const Face& nearest) const {
-    constexpr double kSamePlane = 1e-9;  // [m], above rounding
+    constexpr double kSamePlane = 1e-9;  // [m]. Chosen: above rounding
     ConvexPair pair;
     pair.distance = -nearest.distance;
     pair.normal = nearest.normal;

@@ -12,7 +12,8 @@ namespace {
 /// A mesh with at most this many vertices uses all of them. Chosen: hull_faces() takes the cube of
 /// the number of points.
 constexpr size_t kMeshPoints = 32;
-/// Number of vertices beyond which duplicates are not removed first: sorting them costs more.
+/// Number of vertices beyond which duplicates are not removed first. Chosen: sorting more of them
+/// costs more than it saves; the hull is the same.
 constexpr size_t kManyVertices = 4096;
 /// Directions in which the vertices of a larger mesh are chosen. Chosen: about 21 deg apart, so
 /// that the hull is at most 4 % of its radius inside a sphere (docs/theory_plant.md).
@@ -20,7 +21,7 @@ constexpr int kDirections = 90;
 /// Distance of points from a plane below which they are in it, relative to the points' extent.
 /// Chosen: above the rounding of single precision, in which mesh files store vertices.
 constexpr double kCoplanar = 1e-6;
-/// Largest number of corners of a face that contact_patch() handles.
+/// Largest number of corners of a face. Definition: what contact_patch() handles.
 constexpr size_t kFaceCorners = 16;
 
 /// Corners of the convex polygon of points in a plane, anticlockwise about the normal.

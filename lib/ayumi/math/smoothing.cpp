@@ -15,12 +15,15 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kBand = 3;  // of the third differences
-/// Largest number of steps of the interior point method, which usually takes 20.
+/// Diagonals on either side of the main one. Derived: the order of the differences.
+constexpr int kBand = 3;
+/// Largest number of steps of the interior point method. Chosen: it usually takes 20.
 constexpr int kSteps = 60;
-/// Complementarity at which the method ends, relative to its initial value.
+/// Complementarity at which the method ends, relative to its initial value. Chosen: about
+/// the square root of the rounding of double precision.
 constexpr double kEnd = 1e-8;
-/// Fraction of the distance to the boundary that a step goes; below 1, as usual for such methods.
+/// Fraction of the distance to the boundary that a step goes. Chosen: below 1, so that slacks stay
+/// positive, as usual for such methods.
 constexpr double kToBoundary = 0.99;
 
 using Bands =
@@ -109,7 +112,8 @@ VectorXd within_one(const VectorXd& x, double weight) {
 }  // namespace
 
 VectorXd smoothed_within(const VectorXd& x, double band, double cutoff) {
-  constexpr Index kLeast = 8;  // samples; fewer have hardly a third difference. Chosen: 2 kBand + 2
+  // [samples] Chosen: 2 kBand + 2; fewer have hardly a third difference.
+  constexpr Index kLeast = 8;
   if (x.size() < kLeast || !(band > 0) || x.maxCoeff() == x.minCoeff()) return x;
   const VectorXd scaled = (x.array() - x[0]) / band;
   const double weight = std::pow(2 * EIGEN_PI * cutoff, -6);

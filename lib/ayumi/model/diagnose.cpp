@@ -21,7 +21,7 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kDegree = std::numbers::pi / 180;  // [rad]
 // Thresholds of warnings; none changes a result.
 
 /// Density above which a mass is suspicious [kg/m^3]. Chosen: twice that of lead.

@@ -21,7 +21,8 @@ using Eigen::VectorXd;
 namespace {
 
 // Changes below this are the rounding of control points that cancel each other; they become zero,
-// so that samples without a change stay bit-identical [m, rad].
+// so that samples without a change stay bit-identical [m, rad]. Chosen: above the rounding of
+// control points of metres and radians (2e-16).
 constexpr double kRounded = 1e-13;
 
 struct JacobianFactors {
@@ -75,7 +76,8 @@ SplineWeights correction_weights(const CorrectionTrack& track, double t) {
   SplineWeights weights;
   const auto last = static_cast<int>(track.coefficients.rows()) - 4;
   const double knots = (t - track.begin) / track.spacing;
-  constexpr double kRounding = 1e-6;  // in knots: the end of the track belongs to it
+  // [knots] Chosen: above rounding, so that the end of the track belongs to it.
+  constexpr double kRounding = 1e-6;
   if (last < 0 || !(knots >= -kRounding) || knots > last + 1 + kRounding) return weights;
   weights.first = std::clamp(static_cast<int>(knots), 0, last);
   const double u = knots - weights.first, v = 1 - u, h = track.spacing;

@@ -18,7 +18,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
-constexpr double kInstant = 1e-9;  // times closer than this are equal [s]: above rounding
+// Times closer than this are equal [s]. Chosen: above rounding.
+constexpr double kInstant = 1e-9;
 
 [[noreturn]] void complain(const Pattern& pattern, const std::string& place,
                            const std::string& message) {

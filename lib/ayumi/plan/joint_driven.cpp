@@ -106,7 +106,9 @@ Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last
 
 // A sole whose contact ends at the place where it began stands there; otherwise the median counts.
 Isometry3d place_of(const std::vector<Isometry3d>& soles, int first, int last) {
-  constexpr double kSame = 1e-5;  // [m], and for entries of the rotation: the rounding of tables
+  // Largest difference of two places [m], and of entries of their rotations. Chosen: the rounding
+  // of tables.
+  constexpr double kSame = 1e-5;
   const Eigen::Matrix4d change = soles[last].matrix() - soles[first].matrix();
   if (change.cwiseAbs().maxCoeff() < kSame) return soles[first];
   return median_sole(soles, first, last);

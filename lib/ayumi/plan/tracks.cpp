@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kSameTime = 1e-9;  // times closer than this are equal [s]: above rounding
+// Times closer than this are equal [s]. Chosen: above rounding.
+constexpr double kSameTime = 1e-9;
 
 using Keys = std::vector<TrackKey>;
 

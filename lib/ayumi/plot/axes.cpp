@@ -13,8 +13,9 @@ using Eigen::Vector4f;
 
 const Vector4f kGrid = {0.5f, 0.5f, 0.55f, 0.28f};
 const Vector4f kFrame = {0.25f, 0.25f, 0.28f, 1};
-constexpr double kNumbers = 11;                  // font size [pixel]
-constexpr double kName = 13, kNameOverhang = 8;  // of the name of y
+constexpr double kNumbers = 11;  // font size of numbers [pixel]
+// Font size of the name of y, and how far it stands out to the left of the numbers [pixel].
+constexpr double kName = 13, kNameOverhang = 8;
 
 /// First, lowest, highest and last point of every stretch of a quarter pixel.
 std::vector<Vector2d> thinned(const std::vector<Vector2d>& points) {
@@ -184,7 +185,7 @@ void draw_line(Drawing& drawing, const Axes& axes, const std::vector<Vector2d>& 
 }
 
 void draw_cross(Drawing& drawing, const Axes& axes, const Vector2d& value, const Vector4f& color) {
-  constexpr double kArm = 5;
+  constexpr double kArm = 5;  // [pixel]
   Vector2d center = axes.at(value.x(), value.y());
   center.x() = std::clamp(center.x(), axes.left, axes.left + axes.width);
   center.y() = std::clamp(center.y(), axes.top + kArm, axes.top + axes.height - kArm);

@@ -20,7 +20,7 @@ using Eigen::Vector4f;
 using Value = std::function<double(const SimulationSample&)>;
 
 constexpr double kGap = 12;          // between panels [pixel]
-constexpr double kBeforeFall = 0.5;  // a fall has not shown yet [s]
+constexpr double kBeforeFall = 0.5;  // so long before a fall it does not show yet [s]
 
 struct PanelPlan {
   std::string name;     ///< with unit

@@ -16,7 +16,7 @@ constexpr double kLegend = 12.5;  // font size [pixel]
 const Eigen::Vector4f kRunColors[] = {{0.84f, 0.37f, 0.00f, 1}, {0.00f, 0.45f, 0.70f, 1},
                                       {0.00f, 0.62f, 0.45f, 1}, {0.80f, 0.47f, 0.65f, 1},
                                       {0.34f, 0.71f, 0.91f, 1}, {0.72f, 0.66f, 0.05f, 1}};
-constexpr size_t kMostRuns = 6;
+constexpr size_t kMostRuns = 6;  // as many as there are colours
 
 std::string title_of(const std::vector<LociRun>& runs, const LociOptions& options) {
   if (!options.title.empty()) return options.title;

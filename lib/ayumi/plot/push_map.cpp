@@ -16,8 +16,8 @@ using Eigen::Vector4f;
 constexpr double kPanel = 300, kRadius = 108;    // of one panel, of its largest ring [pixel]
 constexpr double kHead = 74, kSide = 14;         // above and beside the panels [pixel]
 constexpr double kPhaseName = 26, kRemark = 20;  // heights of lines of text [pixel]
-constexpr size_t kColumns = 3, kMostLaws = 4;
-constexpr int kCircleSteps = 72;
+constexpr size_t kColumns = 3, kMostLaws = 4;    // of panels; as many laws as colours
+constexpr int kCircleSteps = 72;                 // corners of a ring, one every 5 degrees
 
 const Vector4f kGrid = {0.86f, 0.87f, 0.89f, 1}, kQuiet = {0.42f, 0.44f, 0.48f, 1};
 const Vector4f kBound = {0.35f, 0.37f, 0.42f, 1}, kBoundFill = {0.35f, 0.37f, 0.42f, 0.08f};

@@ -8,6 +8,7 @@
 namespace ayumi::glb {
 namespace {
 
+// Numbers of the glTF 2.0 specification.
 constexpr int kByte4 = 5126, kUnsigned = 5125;              // FLOAT, UNSIGNED_INT
 constexpr int kVertexTarget = 34962, kIndexTarget = 34963;  // ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER
 

@@ -108,7 +108,7 @@ bool floor_moves(const SimulationLog& log) {
 
 Eigen::Isometry3d marked_ground(const SimulationLog& log, double t,
                                 const SimulationSample& sample) {
-  constexpr double kLevel = 5e-4;  // soles sink in by less [m]
+  constexpr double kLevel = 5e-4;  // [m] loaded soles sink in by less, steps are higher
   Eigen::Isometry3d ground = ground_at(log, t);
   double height = 0;
   for (size_t side = 0; side < 2; ++side)
@@ -161,7 +161,8 @@ double telling_instant(const SimulationLog& log) {
 }
 
 std::vector<double> telling_instants(const SimulationLog& log, int count) {
-  constexpr double kBefore = 0.25, kAfter = 0.35;  // of the flights [s]
+  // The push before the flights and the landing after them [s].
+  constexpr double kBefore = 0.25, kAfter = 0.35;
   const std::vector<FlightRecord> flown = flights(log);
   double begin = 0, end = duration(log);
   if (!flown.empty()) {

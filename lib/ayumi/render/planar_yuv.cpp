@@ -11,6 +11,7 @@
 namespace ayumi {
 namespace {
 
+/// Shares of the luma. Source: ITU-R BT.709.
 constexpr double kRed = 0.2126, kGreen = 0.7152, kBlue = 0.0722;
 
 constexpr int unit(double share) {
@@ -19,6 +20,7 @@ constexpr int unit(double share) {
 /// Weights of R, G, B; what they make of grey is exactly nothing for the two colours.
 constexpr std::array<int, 3> kY = {unit(219.0 / 255 * kRed), unit(219.0 / 255 * kGreen),
                                    unit(219.0 / 255 * kBlue)};
+/// Range of the colours over 2 (1 - kBlue) and 2 (1 - kRed). Source: ITU-R BT.709.
 constexpr double kCbScale = 224.0 / 255 / 1.8556, kCrScale = 224.0 / 255 / 1.5748;
 constexpr std::array<int, 3> kCb = {unit(-kCbScale * kRed), unit(-kCbScale* kGreen),
                                     -unit(-kCbScale* kRed) - unit(-kCbScale* kGreen)};

@@ -24,8 +24,8 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
-constexpr size_t kShadowTriangles = 4000;  // finer ones do not show in it
-constexpr int kSamples = 4;
+constexpr size_t kShadowTriangles = 4000;  // finer ones do not show in a shadow of kShadowSize
+constexpr int kSamples = 4;                // per pixel, where edges are smoothed
 
 const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
 

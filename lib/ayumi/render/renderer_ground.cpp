@@ -9,7 +9,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kShadowBlur = 2;      // radius of the box
+constexpr int kShadowBlur = 2;      // radius of the box [pixel of the coverage]
 constexpr double kPlaneReach = 30;  // of the ground's square, in distances of the camera
 const Vector3d kHorizon = {0.877, 0.893, 0.907};  // sRGB
 const Eigen::Vector4f kWholePlane = {0, 0, 1, 1};

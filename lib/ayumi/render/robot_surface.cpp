@@ -7,7 +7,7 @@
 namespace ayumi {
 namespace {
 
-constexpr double kStick = 0.06;  // radius of a stick, of the longest one's length
+constexpr double kStick = 0.06;  // radius of sticks, as a share of the longest one's length
 
 void add_surface(BodySurface& body, Triangles surface, const Eigen::Isometry3d& pose) {
   Triangles& target = orient(surface) == SurfaceKind::closed ? body.closed : body.open;

@@ -25,7 +25,8 @@ std::vector<RisingBump> rising_bumps(const RobotModel& model, const SimulationLo
 /// Those bumps as they are at `t`.
 Triangles make_bumps(const std::vector<RisingBump>& bumps, double ground_height, double t);
 
-/// Seconds within which a bump comes up, and the share of its height so long after its begin.
+/// Time in which a bump rises [s], as in sim/schedule.cpp, and the share of its height so long
+/// after its begin.
 constexpr double kBumpRise = 0.02;
 double bump_share(double since);
 

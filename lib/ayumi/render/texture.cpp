@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* kEmbedded = "data:";
-constexpr int kMostPixels = 16384;  // on an edge of the file's picture
+// On an edge of the file's picture [pixel]; more is refused to save memory.
+constexpr int kMostPixels = 16384;
 
 // ---- PNG
 

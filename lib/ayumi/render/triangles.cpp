@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Eigen::Vector4f;
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kTurn = 2 * std::numbers::pi;  // [rad]
 constexpr int kSegments = 32;  // around an axis; a sphere takes half as many from pole to pole
 
 std::array<std::uint8_t, 4> to_bytes(const Vector4f& color) {

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kSpare = 2;  // [pixel]
+constexpr int kSpare = 2;  // [pixel] around what is seen, for smoothed edges
 
 }  // namespace
 

@@ -17,7 +17,8 @@ namespace {
 using Eigen::Vector3d;
 using html::quoted;
 
-constexpr int kFieldNodes = 96;  // a side, of a field of heights in the page
+// Nodes along a side of a field of heights; 9216 heights keep the page small.
+constexpr int kFieldNodes = 96;
 
 const std::vector<std::string> kColumns = {"t",
                                            "cog.x",

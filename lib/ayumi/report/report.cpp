@@ -21,9 +21,11 @@
 namespace ayumi {
 namespace {
 
-constexpr double kMostKeys = 4000;  // of the replay
+// To keep the page within its size: keys of the replay, triangles to which the robot is simplified
+// at most, and lowest rate of keys [Hz], between which the replay interpolates.
+constexpr double kMostKeys = 4000;
 constexpr size_t kFewestTriangles = 4000;
-constexpr double kLeastRate = 10;  // [Hz]
+constexpr double kLeastRate = 10;
 
 /// Allows what is in the page and nothing else.
 constexpr const char* kPolicy =

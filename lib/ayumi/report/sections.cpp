@@ -72,7 +72,7 @@ std::string margin(double metres) {
 }
 
 Table moved_table(const RepairNote& note) {
-  constexpr size_t kTold = 8;
+  constexpr size_t kTold = 8;                    // rows, so that the table stays short
   constexpr double kLeast = 0.005 * M_PI / 180;  // what would be 0.00 deg is no move
   Table table = {
       "What the repair moved", {"joint", "by [deg]", "at [s]", "from [s]", "to [s]"}, {}};

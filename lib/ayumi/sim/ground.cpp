@@ -20,7 +20,7 @@ constexpr double kLip = 0.001;
 constexpr double kFaceDepth = 0.005;
 /// Depth of a solid block below the plane [m]. Chosen: deeper than any body penetrates.
 constexpr double kBlockDepth = 0.5;
-// Ids of inner points: 1024 for each block, then the nodes of the height field.
+// Definition of the ids of inner points: 1024 for each block, then the nodes of the height field.
 constexpr long kBlockIds = 1 << 10, kFieldIds = 1 << 24;
 
 double cross_xy(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }

@@ -38,7 +38,8 @@ constexpr double kNearTime = 0.3;
 /// Tilt beyond which a stance foot is tilted [rad]. Chosen: above the tilt that the compliance of a
 /// loaded sole allows.
 constexpr double kTiltedFoot = 2 * M_PI / 180;
-/// Directions in which the nearest edge of the support is searched: one every 5 degrees.
+/// Directions in which the nearest edge of the support is searched. Chosen: one every 5 degrees;
+/// the distance is then at most 0.1 % too large.
 constexpr int kEdgeDirections = 72;
 /// Ticks between two tests of a run. Chosen: 10 ms, short against 1/omega.
 constexpr long kTicksPerTest = 10;

@@ -52,7 +52,8 @@ Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin,
   if (pattern.table || pattern.correction)
     fail(ErrorCode::bad_pattern,
          pattern.file + ": a part of a table or of a correction cannot be stretched alone");
-  constexpr double kSame = 1e-9;  // times closer than this are equal [s]: above rounding
+  // Times closer than this are equal [s]. Chosen: above rounding.
+  constexpr double kSame = 1e-9;
   const double weight = model.mass() * kGravity;
   const auto later = [&](double t) {
     return t <= begin ? t

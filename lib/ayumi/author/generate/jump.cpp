@@ -19,7 +19,7 @@ namespace {
 
 /// Fraction of the stoop by which a push may sink before it rises. Chosen: small against the stoop.
 constexpr double kSink = 0.02;
-/// Time of standing at both ends, in units of 1/omega, as kZmpRest of the walk.
+/// Time of standing at both ends, in units of 1/omega. Chosen: as kZmpRest of the walk.
 constexpr double kStanding = 4.5;
 /// Time of stooping, and of rising after the landing, in units of 1/omega. Chosen: slow enough for
 /// a COG that rests over the feet.

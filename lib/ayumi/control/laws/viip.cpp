@@ -62,7 +62,7 @@ constexpr double kBiasShare = 0.5;
 constexpr double kLandingBiasLimit = 0.015;
 
 // Time after which a lasting tilt of the stance foot counts as the ground's, times 1/omega: 1 s on
-// HOAP-1, as the offset time of DTAD.
+// HOAP-1. Chosen: as the offset time of DTAD.
 constexpr double kSlopeTime = 6.6;
 
 GroundPose ground_middle(const RobotModel& model, const std::array<Isometry3d, 2>& feet) {

@@ -59,15 +59,15 @@ constexpr double kNoForce = 0.5;
 constexpr double kNoForceTime = 0.015;
 
 // Largest step of a servo target, times the joint's speed limit: targets lead the joint by
-// (kd dtheta + tau) / kp, and that lead must build up within the push. Chosen.
+// (kd dtheta + tau) / kp. Chosen: that lead must build up within the push.
 constexpr double kTargetRate = 3;
 
 // Time over which the torque feedforward is faded in and out [s]. Chosen: within the stoop, and
 // long against the servos' kd / kp of 20 ms.
 constexpr double kTorqueFadeTime = 0.3;
 
-// The legs run on after release with this time constant [s]: stopping them at once asks for tens of
-// newton metres (docs/theory.md, "Flight"). The prototype had 20 ms.
+// The legs run on after release with this time constant [s]. Source: docs/theory.md, "Flight":
+// stopping them at once asks for tens of newton metres. The prototype had 20 ms.
 constexpr double kRunOnTime = 0.030;
 
 // Before touchdown the legs give way to the ground for this time [s], up to this share of the

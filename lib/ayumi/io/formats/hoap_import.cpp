@@ -31,10 +31,11 @@ int motors_of(size_t columns) {
   return columns == 25 ? 20 : columns == 27 || columns == 29 ? 21 : 0;
 }
 
-constexpr size_t kBareColumns = 23;  // 21 motors, then two that say nothing of them
+constexpr size_t kBareColumns = 23;  // Definition: 21 motors, then two that say nothing of them
 constexpr int kBareMotors = 21;
 
-// Counts per degree of the motors, in the makers' own angles.
+// Counts per degree of the motors, in the makers' own angles. Source: the encoders in
+// robots/hoap1/robot.json.
 constexpr double kCounts = 209;
 constexpr std::array<int, kBareMotors> kSigns = {1, 1, -1, 1,  1,  -1, 1, 1,  -1, -1, 1,
                                                  1, 1, -1, -1, -1, -1, 1, -1, 1,  1};
@@ -168,7 +169,9 @@ void refuse_lost_motion(const std::vector<Row>& rows, size_t device, const Robot
   const auto [least, most] = std::minmax_element(
       rows.begin(), rows.end(),
       [&](const Row& a, const Row& b) { return a.counts[device] < b.counts[device]; });
-  constexpr double kTrembling = 10;  // [counts], of an axis that holds its place
+  // Movement of an axis that holds its place [counts]. Chosen: 0.05 degrees, half of what servos do
+  // not follow (kOfCounts of table_import.cpp).
+  constexpr double kTrembling = 10;
   const double low = least->counts[device], high = most->counts[device];
   const std::string name = "device " + std::to_string(device + 1);
   if (high - low > kTrembling)

@@ -12,7 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kLargestFile = size_t{64} << 20;  // [bytes]
+// [bytes] Source: docs/formats.md.
+constexpr size_t kLargestFile = size_t{64} << 20;
 
 void require_format(const JsonNode& root, const std::string& format) {
   const std::string found = root.at("format").string();

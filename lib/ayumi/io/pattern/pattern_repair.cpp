@@ -6,7 +6,8 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kWidestMargin = 0.1;  // of the ZMP [m]
+// Margin of the ZMP [m]. Chosen: twice that of HOAP-1 standing on both feet (48 mm).
+constexpr double kWidestMargin = 0.1;
 
 std::pair<double, double> read_window(const JsonNode& node, PatternScope& scope) {
   const std::vector<double> ends = read_numbers(node, scope, 2, 2, "[begin, end]");

@@ -11,8 +11,10 @@
 namespace ayumi {
 
 inline constexpr double kRadiansPerDegree = EIGEN_PI / 180;
-inline constexpr double kLargestNumber = 1e6;    ///< anything beyond is a mistake
-inline constexpr double kLongestPattern = 3600;  ///< [s]
+/// Largest number. Source: docs/formats.md; anything beyond is a mistake.
+inline constexpr double kLargestNumber = 1e6;
+/// Longest pattern [s]. Source: docs/formats.md.
+inline constexpr double kLongestPattern = 3600;
 
 /// What the values of one file need to be understood.
 struct PatternScope {

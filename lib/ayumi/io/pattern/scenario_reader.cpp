@@ -12,8 +12,10 @@ using Eigen::Vector2d;
 
 namespace {
 
-constexpr double kHighest = 10;        // ground over its origin [m]
-constexpr size_t kLargestField = 512;  // nodes along a side
+// Ground over its origin, and shift of the floor [m]. Chosen: more is a mistake.
+constexpr double kHighest = 10;
+// Nodes along a side of a field of heights. Source: docs/formats.md.
+constexpr size_t kLargestField = 512;
 
 Vector2d read_vector2(const JsonNode& node, PatternScope& scope) {
   const std::vector<double> values = read_numbers(node, scope, 2, 2, "[x, y]");

@@ -15,9 +15,14 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kSoleThickness = 0.005;  // what is this near to the lowest point is sole [m]
-constexpr double kSideways = 0.01;        // a foot lies at least this far from the middle [m]
-constexpr double kLargestSole = 1.0;      // [m]
+// What is this near to the lowest point of a foot is sole [m]. Chosen: an eighth of the height of
+// HOAP-1's ankle (37 mm), so that rounded edges count and the ankle does not.
+constexpr double kSoleThickness = 0.005;
+// A foot lies at least this far from the middle [m]. Chosen: a quarter of where HOAP-1's feet are
+// (39 mm).
+constexpr double kSideways = 0.01;
+// Longest side of a sole [m]. Chosen: ten times HOAP-1's; a longer one is a mistake of the unit.
+constexpr double kLargestSole = 1.0;
 
 std::vector<Eigen::Vector3d> loaded_outline(const PlacedShape& placed) {
   const auto* reference = std::get_if<MeshShape>(&placed.shape);

@@ -20,8 +20,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "logs are little-endian");
 
 constexpr char kMagic[] = "AYUMILOG";
-constexpr std::uint32_t kVersion = 1;
-constexpr size_t kPrefix = 16;  // magic, version, header length
+constexpr std::uint32_t kVersion = 1;  // Definition
+constexpr size_t kPrefix = 16;         // magic, version, header length
 constexpr const char* kOutcomes[] = {"stands", "unsettled", "fell"};
 
 using OrderedJson = nlohmann::ordered_json;

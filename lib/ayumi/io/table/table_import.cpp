@@ -45,7 +45,9 @@ bool is_time(std::string name) {
   return name == "t" || name == "time";
 }
 
-constexpr double kNoAngle = 10;  // of a joint with limits [rad]: more are degrees
+// Angle of a joint with limits from which on a column is in degrees [rad]. Chosen: more than one
+// and a half turns, which no joint with limits makes.
+constexpr double kNoAngle = 10;
 
 // Joint columns by bare name or with a unit become theta columns, and a time column of any name
 // t[s].
@@ -224,8 +226,11 @@ Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, doub
 // are no accelerations of anything. Servos do not follow a tenth of a degree.
 void smooth_angles(const RobotModel& model, const ImportOptions& options,
                    ImportedMotion& imported) {
-  constexpr double kOfCounts = 0.1;  // [deg]
-  constexpr double kCutoff = 20;     // what a motion of a robot is slower than [1/s]
+  // Largest change of an angle [deg]. Chosen: 21 counts; what servos do not follow.
+  constexpr double kOfCounts = 0.1;
+  // Frequency up to which a motion is kept [1/s]. Chosen: ten times that of the steps of a walk
+  // (0.55 s each).
+  constexpr double kCutoff = 20;
   const double degrees = options.smooth.value_or(imported.format == "hoap" ? kOfCounts : 0);
   if (degrees <= 0) return;
   Eigen::MatrixXd& theta = imported.motion.theta;
@@ -301,7 +306,7 @@ ImportedMotion read_motion(const std::string& given, const std::string& file,
   const bool hoap = options.format == "hoap" || (options.format.empty() && looks_like_hoap(bytes));
   ImportedMotion result = hoap ? read_hoap_motion(bytes, file, model, options.rate)
                                : read_table_motion(bytes, file, model, options);
-  constexpr int kLeastRows = 6;  // accelerations take five
+  constexpr int kLeastRows = 6;  // Derived: accelerations take five (motion/differentiate.hpp)
   if (result.motion.theta.rows() < kLeastRows)
     fail(ErrorCode::bad_file, file + ": " + std::to_string(result.motion.theta.rows()) +
                                   " rows of motion; at least " + std::to_string(kLeastRows) +

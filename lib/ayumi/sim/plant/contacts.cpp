@@ -35,8 +35,8 @@ constexpr double kStepsAhead = 3;
 /// it holds the margin and a closing speed of 0.7 m/s over kStepsAhead steps of 1 ms.
 constexpr double kEdgeReach = 3 * kContactMargin;
 
-// Keys of contacts that are not ContactPoints; the ranges do not overlap for 1024 blocks, 2^24
-// nodes of the height field, and the pairs of LinkContacts.
+// Keys of contacts that are not ContactPoints. Definition: the ranges do not overlap for 1024
+// blocks, 2^24 nodes of the height field, and the pairs of LinkContacts.
 constexpr long kInnerKeys = 1l << 40;    // points between the corners of one sole
 constexpr long kEdgeKeys = 1l << 32;     // edges of the ground against shapes; times 4096
 constexpr long kTipKeys = 1l << 31;      // among these, nodes of the height field
