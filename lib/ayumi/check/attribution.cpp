@@ -128,9 +128,10 @@ const FindingSet kRates = {"rates",
                            [](const Violation& v) { return is_class(v, LimitClass::rate); }};
 const FindingSet kCollision = {"`self_collision`", is_kind<FindingKind::self_collision>};
 const FindingSet kForces = {"forces", is_force};
-const FindingSet kForcesOnGround = {
-    "forces but those of flight", [](const Violation& v) { return is_force(v) && !is_flight(v); }};
-const FindingSet kForcesButTorque = {"forces but `joint_torque`", [](const Violation& v) {
+const FindingSet kForcesOnGround = {"forces except those of flight", [](const Violation& v) {
+                                      return is_force(v) && !is_flight(v);
+                                    }};
+const FindingSet kForcesButTorque = {"forces except `joint_torque`", [](const Violation& v) {
                                        return is_force(v) && v.kind != FindingKind::joint_torque;
                                      }};
 const FindingSet kForcesAndMargins = {
@@ -213,7 +214,7 @@ const Where kDeviation = {
     "while the COG is off its command", [](const Scene& scene, int i) {
       return std::vector<Interval>{deviation_around(scene.motion, scene.window(i))};
     }};
-const Where kEdges = {"within 3 samples of its begin or end", [](const Scene& scene, int i) {
+const Where kEdges = {"within 3 samples of its beginning or end", [](const Scene& scene, int i) {
                         return std::vector<Interval>{edges_of(scene, i)};
                       }};
 const Where kSameFlight = {
@@ -230,7 +231,7 @@ const Where kNearFlight = {"within 5 samples of that flight", [](const Scene& sc
                              return std::vector<Interval>{
                                  around(flight_around(scene.motion, scene.window(i)), kEdgeReach)};
                            }};
-const Where kPhases = {"in the phase and the foot's swing or flight beside it",
+const Where kPhases = {"in its phase, and in the foot's swing or flight beside that phase",
                        [](const Scene& scene, int i) {
                          return std::vector<Interval>{
                              around(moved_phases(scene.motion, scene.of(i)), kDifferenceReach)};
@@ -289,13 +290,13 @@ Interval held_around(const Scene& scene, const FindingWindow& w, int dof) {
 
 const Condition kAlways = {"always", [](Scene&, int, int, const Interval&) { return true; }};
 
-const Condition kNotAskedFor = {"the command does not put its ZMP outside the support itself",
+const Condition kNotAskedFor = {"it is not a ZMP outside the support that the command asks for",
                                 [](Scene& scene, int, int j, const Interval&) {
                                   return !is_asked_for(scene.motion, scene.of(j));
                                 }};
 
 const Condition kLargerOfOneFoot = {
-    "of the same foot, and the cause is the largest displacement",
+    "the foot is the same, and the cause is its largest displacement",
     [](Scene& scene, int i, int j, const Interval&) {
       const double cause = std::abs(scene.of(i).value), effect = std::abs(scene.of(j).value);
       return same_item(scene, i, j) && (cause != effect ? cause > effect : i < j);
@@ -307,8 +308,9 @@ const Condition kJointOfLeg = {"the joint is one of a leg",
                                }};
 
 const Condition kTouchesByAngle = {
-    "the bodies overlap by at most 15 mm and not with all joints at their limits; or the joint, "
-    "not between an arm and the trunk, sets their distance and they overlap only in the excursion",
+    "the bodies overlap by at most 15 mm, and would not if all joints kept their limits; or the "
+    "joint sets their distance and is not between an arm and the trunk, and the bodies overlap "
+    "only in its excursion",
     [](Scene& scene, int i, int j, const Interval&) {
       return touches_by_limits(scene.motion, scene.of(j)) ||
              (hangs_on(scene.motion, scene.of(j), scene.of(i).item) &&
@@ -316,7 +318,7 @@ const Condition kTouchesByAngle = {
     }};
 
 const Condition kRateOfAngle = {
-    "of the same joint; a jump only when another one undoes it",
+    "the joint is the same; a jump counts only if another jump undoes it",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& v = scene.of(j);
       if (!same_item(scene, i, j)) return false;
@@ -326,18 +328,18 @@ const Condition kRateOfAngle = {
                  around(wrong_angle_around(scene.motion, scene.window(i)), kDifferenceReach));
     }};
 
-const Condition kSameJoint = {"of the same joint", [](Scene& scene, int i, int j, const Interval&) {
-                                return same_item(scene, i, j);
-                              }};
+const Condition kSameJoint = {
+    "the joint is the same",
+    [](Scene& scene, int i, int j, const Interval&) { return same_item(scene, i, j); }};
 
-const Condition kInsideInterval = {"it begins and ends there",
+const Condition kInsideInterval = {"the effect begins and ends there",
                                    [](Scene& scene, int, int j, const Interval& interval) {
                                      return interval.contains(scene.window(j));
                                    }};
 
 const Condition kJumpThereAndBack = {
-    "a jump whose joint jumps back at the other end; of a foot that is in its place before and "
-    "after, a jump of any joint of its leg",
+    "the joint jumps, and jumps back at the other end; or the joint is one of the leg, and the "
+    "foot is in its place before and after",
     [](Scene& scene, int i, int j, const Interval& interval) {
       const FindingWindow& w = scene.window(i);
       const Violation& v = scene.of(j);
@@ -348,8 +350,8 @@ const Condition kJumpThereAndBack = {
     }};
 
 const Condition kHeldJoint = {
-    "a jump of a joint between the two bodies, the last before or the first after the overlap, "
-    "which another one undoes",
+    "the joint is between the two bodies; its jump is the last one before or the first one after "
+    "the overlap, and another jump undoes it",
     [](Scene& scene, int i, int j, const Interval&) {
       const int dof = scene.of(j).item;
       if (!sets_distance(scene.motion, scene.of(i), dof)) return false;
@@ -368,15 +370,15 @@ const Condition kNearDisplacement = {
     }};
 
 const Condition kMovesCog = {
-    "the COG is off by no more than the sole, or agrees when the robot is moved so that the sole "
-    "is "
-    "in its place",
+    "the COG error is not larger than the displacement of the sole, or vanishes when the robot is "
+    "moved so that the sole is in its place",
     [](Scene& scene, int i, int j, const Interval&) {
       return moves_cog(scene.motion, scene.of(i), scene.of(j));
     }};
 
 const Condition kTouchesByFoot = {
-    "a body of that leg, by less than the foot is displaced and only while it is",
+    "a body of that leg overlaps by at most the displacement of the foot, and only during this "
+    "displacement",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& foot = scene.of(i);
       const int hip = scene.motion.model.leg(static_cast<Side>(foot.item)).front();
@@ -385,48 +387,47 @@ const Condition kTouchesByFoot = {
              displacement_around(scene.motion, scene.window(i)).contains(scene.window(j));
     }};
 
-const Condition kBeyondFlight = {
-    "the COG is off its command beyond the flight too, by more than 3 samples",
-    [](Scene& scene, int, int, const Interval& off) {
-      return !(scene.motion.flies(off.first + kDifferenceReach) &&
-               scene.motion.flies(off.last - kDifferenceReach));
-    }};
+const Condition kBeyondFlight = {"the COG error lasts more than 3 samples longer than the flight",
+                                 [](Scene& scene, int, int, const Interval& off) {
+                                   return !(scene.motion.flies(off.first + kDifferenceReach) &&
+                                            scene.motion.flies(off.last - kDifferenceReach));
+                                 }};
 
-const Condition kHoldsInFreeFlight = {
-    "it is within its limit when the base is accelerated so that nothing pushes or turns the robot",
-    [](Scene& scene, int, int j, const Interval&) {
-      return holds_in_free_flight(scene.motion, scene.of(j));
-    }};
+const Condition kHoldsInFreeFlight = {"the torque is within its limit when the robot falls freely",
+                                      [](Scene& scene, int, int j, const Interval&) {
+                                        return holds_in_free_flight(scene.motion, scene.of(j));
+                                      }};
 
 const Condition kOfFlight = {
-    "it begins and ends there, or is within 3 samples of the cause",
+    "the effect begins and ends there, or is within 3 samples of the cause",
     [](Scene& scene, int i, int j, const Interval& near) {
       return near.contains(scene.window(j)) ||
              around(scene.window(i), kDifferenceReach).touches(scene.window(j));
     }};
 
-const Condition kUncountedFoot = {"a foot that still stands is not counted there",
+const Condition kUncountedFoot = {"the contact plan misses a foot that still stands",
                                   [](Scene& scene, int, int j, const Interval&) {
                                     return uncounted_foot_stands(scene.motion, scene.of(j).sample);
                                   }};
 
 const Condition kSlowerPace = {
-    "one slower pace removes both; or a jump breaks its differences, of which it is not one itself",
+    "one slower pace removes both; or the effect is not a jump, but the differences over a jump "
+    "spoil it",
     [](Scene& scene, int i, int j, const Interval&) {
       return slower_pace_removes(scene.motion, scene.of(i), scene.of(j));
     }};
 
-const Condition kTorqueOfLeg = {"of a joint of a leg",
+const Condition kTorqueOfLeg = {"the joint is one of a leg",
                                 [](Scene& scene, int, int j, const Interval&) {
                                   return is_leg_joint(scene.motion.model, scene.of(j).item);
                                 }};
 
-const Condition kHeldByFriction = {"up to twice what the missing coefficient would hold",
-                                   [](Scene& scene, int i, int j, const Interval&) {
-                                     const double more = scene.of(i).value / scene.of(i).limit;
-                                     return scene.of(j).value <=
-                                            kArmFactor * more * scene.of(j).limit;
-                                   }};
+const Condition kHeldByFriction = {
+    "the yaw moment is at most twice the moment that the missing friction would hold",
+    [](Scene& scene, int i, int j, const Interval&) {
+      const double more = scene.of(i).value / scene.of(i).limit;
+      return scene.of(j).value <= kArmFactor * more * scene.of(j).limit;
+    }};
 
 // ---- the rules, in their order
 
