@@ -7,24 +7,28 @@
     docs/measurements/measure.py --list
 
 A page holds each table between `<!-- table: NAME -->` and `<!-- end -->`; what stands there is
-replaced, headed by the commit, the date and the command. AYUMI names the program (default:
-build/release/app/ayumi, which has to be built from the commit that is checked out), AYUMI_THREADS
-the number of threads (default 1; results do not depend on it). Needs Python 3 and nothing else.
+replaced, followed by the commit, the date and the command. AYUMI names the program (default:
+build/release/app/ayumi). The commit is the one checked out where the program is, so the program has
+to be built from it. AYUMI_THREADS is the number of threads (default 1; results do not depend on it).
+Needs Python 3 and nothing else.
 """
 
 import array
 import datetime
+import functools
 import json
 import math
 import os
 import pathlib
 import re
+import resource
 import shutil
 import struct
 import subprocess
 import sys
 import tempfile
 import time
+from random import Random
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = pathlib.Path(__file__).resolve().parent
@@ -234,11 +238,425 @@ def tracking():
     return lines
 
 
-def commit():
-    def git(*words):
-        return subprocess.run(["git", *words], capture_output=True, text=True, cwd=ROOT).stdout.strip()
+# ---- Pushes ----
 
-    return git("rev-parse", "--short=7", "HEAD")
+
+NOMINAL = ["--replicas", 0]
+FOUR = NOMINAL + ["--directions", 4]
+
+
+@functools.lru_cache(maxsize=None)
+def push_study(pattern, *words, robots=None):
+    """Thresholds of `ayumi push`."""
+    return as_json("push", pattern, *words, robots=robots)["thresholds"]
+
+
+def cases(study, standing, controller=None):
+    chosen = [c for c in study if (c["phase"] == "standing") == standing]
+    return [c for c in chosen if c["controller"] == (controller or chosen[0]["controller"])]
+
+
+def pair(values, digits=2):
+    """Worst and mean."""
+    return f"{min(values):.{digits}f} / {sum(values) / len(values):.{digits}f}"
+
+
+def in_bounds(chosen, key="impulse_Ns"):
+    return pair([c[key] / c["bound_Ns"] for c in chosen])
+
+
+def in_newton_seconds(chosen, key="impulse_Ns"):
+    return pair([c[key] for c in chosen], 2 if chosen[0]["bound_Ns"] < 10 else 1)
+
+
+def push_row(name, study, key="impulse_Ns", controller=None):
+    walking, still = cases(study, False, controller), cases(study, True, controller)
+    return row(name, in_bounds(walking, key), in_newton_seconds(walking, key),
+               in_bounds(still, key), in_newton_seconds(still, key))
+
+
+@table("pushes/laws")
+def pushes_laws():
+    lines = head("robot, law", "walking [B]", "walking [N s]", "standing [B]", "standing [N s]")
+    both = ("--controller", "dtad", "--controller", "dtad-literal")
+    for robot, pattern in (("HOAP-1", WALK), ("`humanoid30`", LARGE_WALK)):
+        study = push_study(pattern, *both)
+        lines.append(push_row(f"{robot}, DTAD", study))
+        lines.append(push_row(f"{robot}, DTAD, `--noise`", push_study(pattern, "--noise")))
+        lines.append(push_row(f"{robot}, open loop", study, "open_loop_Ns"))
+        lines.append(push_row(f"{robot}, literal law", study, controller="dtad-literal"))
+    strong = push_study(WALK, "--profile", "hoap1-strong")
+    lines.append(push_row("HOAP-1 with `hoap1-strong`, DTAD", strong))
+    lines.append(push_row("HOAP-1 with `hoap1-strong`, open loop", strong, "open_loop_Ns"))
+    return lines
+
+
+@table("pushes/directions")
+def pushes_directions():
+    study = cases(push_study(WALK, "--controller", "dtad", "--controller", "dtad-literal"), False)
+    still = cases(push_study(WALK, "--controller", "dtad", "--controller", "dtad-literal"), True)
+    directions = sorted({c["direction_rad"] for c in study})
+    lines = head("phase", *[f"{math.degrees(d):.0f}°" for d in directions])
+    for phase in dict.fromkeys(c["phase"] for c in still + study):
+        for name, key in (("DTAD", "impulse_Ns"), ("open loop", "open_loop_Ns")):
+            line = [c for c in still + study if c["phase"] == phase]
+            lines.append(row(f"{phase}, {name}", *[f"{c[key] / c['bound_Ns']:.2f}" for c in line]))
+    return lines
+
+
+@table("pushes/moderate")
+def pushes_moderate():
+    study = push_study(WALK, "--controller", "dtad", "--controller", "dtad-literal")
+    lines = head("phase, law", "falls", "stance foot tilted, longest", "back after, longest",
+                 "trunk tilt, largest")
+    chosen = cases(study, True) + cases(study, False)
+    for phase in dict.fromkeys(c["phase"] for c in chosen):
+        for name, key in (("DTAD", "moderate"), ("open loop", "open_loop_moderate")):
+            figures = [c[key] for c in chosen if c["phase"] == phase]
+            upright = [f for f in figures if f["survives"]]
+            lines.append(row(f"{phase}, {name}", f"{len(figures) - len(upright)} of {len(figures)}",
+                             f"{1e3 * max(f['foot_tilt_s'] for f in upright):.0f} ms",
+                             f"{1e3 * max(f['recovery_s'] for f in upright):.0f} ms",
+                             f"{math.degrees(max(f['trunk_tilt_rad'] for f in upright)):.1f}°"))
+    return lines
+
+
+@table("pushes/walks")
+def pushes_walks():
+    lines = head("walk", "steps as planned [B]", "`step=1` [B]", "cases lower with `step=1`")
+    for name, words in [
+        ("forward, as `hoap1_walk`", []),
+        ("turning 8° a step", ["--turn", 8]),
+        ("sideways 30 mm per pair", ["--stride", 0, "--side", 0.03]),
+        ("backwards", ["--stride", -0.03]),
+    ]:
+        made = WORK / f"walk_{len(lines)}.json"
+        ayumi("new", "walk", *words, "-o", made, "--force")
+        profile = ("--profile", "hoap1-strong", *NOMINAL)
+        fixed = cases(push_study(made, *profile), False)
+        moved = cases(push_study(made, *profile, "--gain", "step=1"), False)
+        lower = sum(m["impulse_Ns"] < f["impulse_Ns"] - 1e-9 for m, f in zip(moved, fixed))
+        lines.append(row(name, in_bounds(fixed), in_bounds(moved), f"{lower} of {len(fixed)}"))
+    return lines
+
+
+def stepping(robot, profile):
+    """Twelve steps in place by VIIP, as `hoap1_viip_step` without its push."""
+    pattern = bundled("hoap1_viip_step")
+    pattern["scenario"] = []
+    pattern["robot"] = robot
+    pattern["profile"] = profile
+    if robot != "hoap1":
+        pattern["phases"][1]["until"] = 10
+        pattern.pop("defaults")
+    return write_pattern(pattern, f"stepping_{robot}_{profile}")
+
+
+# ---- Terms and gains of DTAD ----
+
+
+def zmp_error(*words):
+    """Distance of the measured ZMP from ref ZMP in the unpushed walk, rms."""
+    figures = simulate(WALK, "--scenario", "none", "--allow-unstable", *words)
+    return "falls" if figures["outcome"] == "fell" else f"{mm(figures['zmp_tracking_rms_m'])}"
+
+
+def gain(text):
+    return [w for g in text.split() for w in ("--gain", g)]
+
+
+LAWS = [
+    ("DTAD", []),
+    ("`ka=0 conform=0`: no short term", gain("ka=0 conform=0")),
+    ("`long=0`: no long term", gain("long=0")),
+    ("`washout=0`: offsets are not forgotten", gain("washout=0")),
+    ("`ankle=0`: a tipped foot is not levelled", gain("ankle=0")),
+    ("`conform=0`: ankles do not yield on bumps", gain("conform=0")),
+    ("`trunk=0`: the trunk does not turn", gain("trunk=0")),
+    ("`as_printed=1`: printed sign of D", gain("as_printed=1")),
+    ("`step=1`: footholds move", gain("step=1")),
+]
+
+
+@table("law/terms")
+def law_terms():
+    lines = head("law", "walking [B]", "standing [B]", "ZMP error [mm]")
+    for name, words in LAWS:
+        study = push_study(WALK, *FOUR, *words)
+        walking, still = cases(study, False), cases(study, True)
+        if not words:
+            lines.append(row("open loop", in_bounds(walking, "open_loop_Ns"),
+                             in_bounds(still, "open_loop_Ns"), zmp_error("--controller", "none")))
+        lines.append(row(name, in_bounds(walking), in_bounds(still), zmp_error(*words)))
+    study = push_study(WALK, *FOUR, "--controller", "dtad-literal")
+    lines.append(row("literal law", in_bounds(cases(study, False)), in_bounds(cases(study, True)),
+                     zmp_error("--controller", "dtad-literal")))
+    return lines
+
+
+# ---- Conditions that the plan does not know ----
+
+
+def walk_under(scenario=(), **world):
+    """The walk with a world and lasting disturbances of its own."""
+    pattern = bundled("hoap1_walk")
+    pattern["world"].update(world)
+    pattern["scenario"] = list(scenario)
+    return write_pattern(pattern, f"under_{len(list(WORK.glob('under_*')))}")
+
+
+def from_start(kind, **keys):
+    return {"type": kind, "at": 0, **keys}
+
+
+def softer_soles(stiffness):
+    def change(robot):
+        for sole in robot["soles"].values():
+            sole["stiffness"] = stiffness
+    return robot_copy("hoap1", change)
+
+
+def servos_of(kp, kd):
+    def change(robot):
+        robot["servos"][0].update(kp=kp, kd=kd)
+        robot["servos"][1].update(kp=kp / 2, kd=kd / 2)
+    return robot_copy("hoap1", change)
+
+
+def payload(mass):
+    return [from_start("payload", on="torso", point=[0, 0, 0.1], mass=mass)]
+
+
+DISC_SEEDS = 24
+
+
+def disc_walk(seed):
+    """One to three discs, 3 mm high, at random places under the sole of every foothold."""
+    random = Random(seed)
+    feet = [phase["swing"]["to"] for phase in bundled("hoap1_walk")["phases"] if "swing" in phase]
+    discs = [{"position": [x + random.uniform(-0.042, 0.056), y + random.uniform(-0.0315, 0.0315)],
+              "radius": random.uniform(0.005, 0.02), "height": 0.003}
+             for x, y in feet for _ in range(1 + int(3 * random.random()))]
+    return walk_under(blocks=discs)
+
+
+# ---- VIIP ----
+
+
+def viip_pattern(robot, goal, until, profile=None, height=None):
+    pattern = {"format": "ayumi.pattern/1", "name": "goal", "robot": robot,
+               "units": {"angle": "deg"},
+               "phases": [{"until": 0.5, "viip": {"cog": [0, 0, 0]}},
+                          {"until": until, "viip": goal}],
+               "controller": {"type": "viip"}}
+    if profile:
+        pattern["profile"] = profile
+    if height:
+        pattern["defaults"] = {"cog_height": height}
+    return write_pattern(pattern, "goal")
+
+
+def settled(robot, way, within, *words):
+    """Time until the COG stays near its goal, and the distance of the ZMP from ref ZMP."""
+    figures, log = simulate(viip_pattern(robot, {"cog": way}, 3), *words, log=True)
+    if figures["outcome"] != "stands":
+        return figures["outcome"]
+    cog = log.vector("cog", "xyz")
+    first = round(0.5 / log.dt)
+    goal = [c + d for c, d in zip(cog[first], way)]
+    far = [k for k, c in enumerate(cog) if k > first and math.dist(c, goal) > within]
+    return f"{(far[-1] - first) * log.dt:.2f} s, {mm(figures['zmp_tracking_rms_m'])} mm"
+
+
+@table("viip/displacements")
+def viip_displacements():
+    lines = head("goal", "Ayumi", "`--noise`", "MuJoCo")
+    for robot, way, within in [
+        ("hoap1", [0.02, 0, 0], 0.002), ("hoap1", [0.04, 0, 0], 0.002),
+        ("hoap1", [0, 0.05, 0], 0.002), ("hoap1", [0, 0, -0.015], 0.002), ("hoap1", [0.025, 0.025, -0.015], 0.002),
+        ("humanoid30", [0.1, 0, 0], 0.005), ("humanoid30", [0, 0.125, 0], 0.005),
+    ]:
+        name = f"{ROBOT_NAMES[robot]}, {', '.join(f'{1e3 * w:.0f}' for w in way)} mm"
+        lines.append(row(name, *[settled(robot, way, within, *words)
+                                 for words in ([], ["--noise"], ["--plant", "mujoco"])]))
+    return lines
+
+
+ROBOT_NAMES = {"hoap1": "HOAP-1", "humanoid30": "`humanoid30`"}
+
+
+def speed_error(robot, velocity, *words):
+    """Mean speed from the third landing to the eleventh, against the wanted one."""
+    until = 20 if robot == "humanoid30" else 11
+    pattern = viip_pattern(robot, {"steps": 14, "velocity": velocity}, until,
+                           "hoap1-strong" if robot == "hoap1" else None,
+                           0.225 if robot == "hoap1" else None)
+    figures, log = simulate(pattern, *words, log=True)
+    if figures["outcome"] != "stands":
+        return figures["outcome"]
+    landings = [e["t_s"] for e in figures["events"] if e["kind"] == "touchdown"]
+    begin, end = (round(landings[k] / log.dt) for k in (2, 10))
+    along = 0 if velocity[0] else 1
+    cog = log.vector("cog")
+    speed = (cog[end][along] - cog[begin][along]) / ((end - begin) * log.dt)
+    return f"{100 * (speed / velocity[along] - 1):+.1f} %"
+
+
+@table("viip/walking")
+def viip_walking():
+    lines = head("goal", "Ayumi", "`--noise`", "MuJoCo")
+    for robot, velocity in [("hoap1", [0.05, 0]), ("hoap1", [0.1, 0]), ("hoap1", [0.2, 0]),
+                            ("hoap1", [-0.1, 0]), ("hoap1", [0, 0.05]),
+                            ("humanoid30", [0.15, 0]), ("humanoid30", [0.3, 0])]:
+        lines.append(row(f"{ROBOT_NAMES[robot]}, ({velocity[0]:g}, {velocity[1]:g}) m/s",
+                         *[speed_error(robot, velocity, *words)
+                           for words in ([], ["--noise"], ["--plant", "mujoco"])]))
+    return lines
+
+
+def jump(height, stoop, release, *words):
+    """Errors of the apex and of the stoop at the landing."""
+    pattern = bundled("hoap1_jump")
+    pattern["phases"][1]["viip"]["jump"] = {"height": height, "stoop": stoop, "release": release}
+    figures, log = simulate(write_pattern(pattern, "jump"), *words, log=True)
+    if figures["outcome"] != "stands":
+        return figures["outcome"]
+    planned = height if release == "ref_z" else height + stoop**2 / (4 * height)
+    z = log.columns["cog.z"]
+    top = max(range(len(z)), key=lambda k: z[k])
+    landing = min(round(e["t_s"] / log.dt) for e in figures["events"]
+                  if e["kind"] == "touchdown" and e["t_s"] / log.dt > top)
+    sunk = z[landing] - min(z[landing:])
+    return f"{100 * (figures['apex_m'] / planned - 1):+.1f} %, {100 * (sunk / stoop - 1):+.0f} %"
+
+
+@table("viip/jumps")
+def viip_jumps():
+    lines = head("z_H, z_d, release", "Ayumi", "`--noise`", "MuJoCo")
+    for height, stoop, release in [(20, 30, "ref_z"), (30, 35, "ref_z"), (40, 35, "ref_z"),
+                                   (50, 40, "ref_z"), (30, 30, "spring"), (40, 35, "spring"),
+                                   (50, 40, "spring")]:
+        lines.append(row(f"{height} mm, {stoop} mm, `{release}`",
+                         *[jump(height / 1e3, stoop / 1e3, release, *words)
+                           for words in ([], ["--noise"], ["--plant", "mujoco"])]))
+    return lines
+
+
+# ---- Repair ----
+
+
+def hill(t, center, width):
+    """1 at `center`, 0 from half of `width` away, smooth."""
+    s = (t - center) / width
+    return math.cos(math.pi * s) ** 4 if abs(s) < 0.5 else 0
+
+
+def faulty(name, change):
+    """`hoap1_walk` as a dense table without its push, and `change` plants a fault in it."""
+    folder = WORK / name
+    folder.mkdir(exist_ok=True)
+    path = folder / "walk.json"
+    source = bundled("hoap1_walk")
+    source["scenario"] = []
+    ayumi("edit", "bake", write_pattern(source, "plain"), "-o", path, "--force")
+    pattern = read_jsonc(path)
+    lines = (folder / "walk.csv").read_text().splitlines()
+    first = next(k for k, line in enumerate(lines) if line.startswith("t[s]"))
+    columns = lines[first].split(",")
+    rows = [[float(v) for v in line.split(",")] for line in lines[first + 1 :]]
+    change(pattern, columns, rows)
+    if name == "squeezed":
+        lines = [line for line in lines if not line.startswith(("# dt", "# rate_hz"))]
+        first = next(k for k, line in enumerate(lines) if line.startswith("t[s]"))
+    text = lines[: first + 1] + [",".join(repr(v) for v in r) for r in rows]
+    (folder / "walk.csv").write_text("\n".join(text) + "\n")
+    path.write_text(json.dumps(pattern))
+    return path
+
+
+def thrown(degrees, center, width, *joints):
+    """Joints thrown off by a smooth hill, the second and later ones the other way."""
+
+    def change(pattern, columns, rows):
+        for k, joint in enumerate(joints):
+            column = columns.index(f"theta.{joint}[rad]")
+            size = math.radians(degrees) * (-1 if k else 1)
+            for r in rows:
+                r[column] += size * hill(r[0], center, width)
+    return change
+
+
+def early_contact(pattern, columns, rows):
+    pattern["phases"][7]["until"] -= 0.06
+
+
+def squeezed(pattern, columns, rows):
+    for r in rows:
+        r[0] *= 0.65
+    for phase in pattern["phases"]:
+        phase["until"] *= 0.65
+
+
+def slippery(pattern, columns, rows):
+    pattern["world"]["friction"] = 0.10
+
+
+def moved_cog(pattern, columns, rows):
+    column = columns.index("cog.y[m]")
+    for r in rows:
+        r[column] += 0.015 * hill(r[0], 3, 0.6)
+
+
+FAULTS = [
+    ("knee thrown by 80°", "knee", thrown(80, 2.44, 0.4, "r_knee"), []),
+    ("elbow beyond its limit", "elbow", thrown(40, 3, 0.8, "l_elbow"), []),
+    ("arm through the trunk", "arm", thrown(-35, 3, 0.8, "l_shoulder_roll"), []),
+    ("stance foot displaced by 5 mm", "slip",
+     thrown(1.4, 2.3, 0.3, "l_hip_pitch", "l_ankle_pitch"), []),
+    ("contact 60 ms too early", "contact", early_contact, []),
+    ("0.65 of its time", "squeezed", squeezed, []),
+    ("ground of friction 0.10", "friction", slippery, []),
+    ("COG moved by 15 mm, `--trust cog`", "cog", moved_cog, ["--trust", "cog"]),
+]
+
+
+def processor_time(work):
+    begin = resource.getrusage(resource.RUSAGE_CHILDREN)
+    result = work()
+    end = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return result, end.ru_utime - begin.ru_utime
+
+
+@functools.lru_cache(maxsize=None)
+def repaired_faults():
+    results = []
+    for name, key, change, words in FAULTS:
+        path = faulty(key, change)
+        mended = WORK / key / "repaired.json"
+        _, check = processor_time(lambda: as_json("check", path))
+        figures, time_taken = processor_time(
+            lambda: as_json("repair", path, "-o", mended, "--force", *words))
+        results.append((name, path, mended, figures, time_taken / check))
+    return results
+
+
+@table("repair/outcome")
+def repair_outcome():
+    lines = head("fault", "outcome", "joint moved most", "change", "safety", "iterations",
+                 "time / check")
+    for name, _, _, figures, ratio in repaired_faults():
+        change, moved = figures["weighted_change"], figures["moved"]
+        lines.append(row(name, figures["status"].replace("_", " "),
+                         f"`{moved['where']}`, {math.degrees(moved['max_joint_rad']):.1f}°",
+                         f"{change['change']:.4f}", f"{change['safety']:.4f}",
+                         figures["iterations"], f"{ratio:.0f}"))
+    return lines
+
+
+def commit():
+    folder = pathlib.Path(AYUMI).resolve().parent
+    return subprocess.run(["git", "rev-parse", "--short=7", "HEAD"], capture_output=True, text=True,
+                          cwd=folder).stdout.strip()
 
 
 def write_page(name, lines):
