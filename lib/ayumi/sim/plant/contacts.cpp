@@ -20,19 +20,21 @@ namespace {
 
 /// A gap that may close within a step [m]. It bounds the work of the solver and no force: a contact
 /// that stays open gets the impulse 0. Chosen: 50 times the free fall within three steps of 1 ms.
+/// Half: less than 5 %; twice: viip jump, slip 1.3 to 0.743 mm.
 constexpr double kContactMargin = 1e-3;
 
 /// Tilt below which a circle has no lowest point [rad]. Chosen: on a rim of 0.1 m, a tilt of 1 mrad
 /// lifts the far side by 0.2 mm; eight fixed points on the rim carry a cylinder that is more
-/// upright.
+/// upright. No measured case changes from half to twice (constants.md).
 constexpr double kLevelTilt = 1e-3;
 
 /// Steps of the present approach that a gap has to outlast to be no contact. Chosen: gravity and
-/// servos can raise the approach within a step.
+/// servos can raise the approach within a step. Figures change by less than 5 % from half to twice.
 constexpr double kStepsAhead = 3;
 
 /// Gap within which edges and nodes of the ground are tested against shapes and soles [m]. Chosen:
-/// it holds the margin and a closing speed of 0.7 m/s over kStepsAhead steps of 1 ms.
+/// it holds the margin and a closing speed of 0.7 m/s over kStepsAhead steps of 1 ms. No measured
+/// case changes from half to twice (constants.md).
 constexpr double kEdgeReach = 3 * kContactMargin;
 
 // Keys of contacts that are not ContactPoints. Definition: the ranges do not overlap for 1024
