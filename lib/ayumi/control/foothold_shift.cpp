@@ -29,44 +29,53 @@ namespace {
 // of HOAP-1. Lengths are times the COG height z, times are times 1 / omega.
 
 // Share of each support that is kept in reserve. Chosen for what the point mass does not know.
+// Half: hurried walk, slip 5.22 to 8.86 mm; twice: pushed walk, slip 1.45 to 0.875 mm.
 constexpr double kReserve = 0.2;
 
 // Share of the landing foot's support that is counted on. Chosen: the ZMP gets there only in the
-// course of the double support.
+// course of the double support. Half: hurried walk, touchdowns 5 to 7; twice: pushed walk,
+// touchdowns 4 to 5.
 constexpr double kNextSupportShare = 0.5;
 
 // Largest distance of a foothold from the pattern's [z]. Chosen: within the reach of the legs with
-// the COG at the height of a walk.
+// the COG at the height of a walk. Half: thrown walk, touchdowns 6 to 5; twice: slip 2.98 to 2.54
+// mm.
 constexpr double kFootholdReach = 0.36;
 
 // Largest speed of a foot's shift [omega z]. Chosen: what the joint speeds of HOAP-1 leave beside
-// the swing itself.
+// the swing itself. Half: thrown walk, touchdowns 6 to 5; twice: hurried walk, touchdowns 5 to 6.
 constexpr double kFootSpeed = 0.65;
 
 // Least error at the landing that is answered [z]: 4 mm on HOAP-1. Chosen: the sole takes less.
+// Half: crossing walk, joint speed 0.738 to 0.958; twice: hurried walk, touchdowns 5 to 8.
 constexpr double kLeastError = 0.02;
 
 // A foothold is chosen from this time before lift-off on [1/omega]. Chosen: until then the present
-// support can still take the error away.
+// support can still take the error away. Half: thrown walk, touchdowns 6 to 5; twice: no change.
 constexpr double kLookAhead = 1;
 
 // Cost of moving a foothold by a length against leaving the same length over. Chosen: moving is
-// worth it as soon as it takes away a third of what it costs.
+// worth it as soon as it takes away a third of what it costs. Half: hurried walk, slip 5.22 to 9.26
+// mm; twice: 4.57 mm.
 constexpr double kMoveCost = 0.3;
 
 // Cost of the clock's rate 1 [z]. Chosen: small, so that a faster clock is taken whenever it
-// leaves less over; of two that leave the same the slower one is.
+// leaves less over; of two that leave the same the slower one is. Half: hurried walk, slip 5.22 to
+// 4.57 mm; twice: 8.97 mm.
 constexpr double kTimeScaleCost = 0.016;
 
-// Step between the rates of the clock that are tried. Chosen: 16 candidates up to 2.5.
+// Step between the rates of the clock that are tried. Chosen: 16 candidates up to 2.5. Half: less
+// than 5 %; twice: hurried walk, touchdowns 5 to 6.
 constexpr double kTimeScaleStep = 0.1;
 
 // Share of the swing before which a force on the swing foot is not a landing. Chosen: a foot that
-// has just left the ground still drags; a tipped robot's foot may land soon after.
+// has just left the ground still drags; a tipped robot's foot may land soon after. Half: thrown
+// walk, touchdowns 6 to 4; twice: no change.
 constexpr double kSwingLandingAfter = 0.3;
 
 // Longest double support over which the shift of the ZMP counts as a ramp [1/omega]. Chosen: the
-// DCM forgets a ramp that goes on after this by more than two thirds.
+// DCM forgets a ramp that goes on after this by more than two thirds. Half: thrown walk, slip 2.98
+// to 2.39 mm; twice: 2.27 mm.
 constexpr double kLongestRamp = 1.3;
 
 // Peak speed of a path of least jerk from rest to rest, in units of its mean speed. Derived: 15/8,

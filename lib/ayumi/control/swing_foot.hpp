@@ -12,7 +12,8 @@
 namespace ayumi {
 
 /// Least distance between the inner sides of two soles beside each other [m]. Chosen: a few times
-/// the error with which a foot lands (1.5 mm on HOAP-1, docs/theory.md, "Footholds").
+/// the error with which a foot lands (1.5 mm on HOAP-1, docs/theory.md, "Footholds"). Half:
+/// crossing walk, tilt 0.2 to 0.216 rad; twice: pushed steps, ZMP error 9.6 to 10.5 mm.
 inline constexpr double kSoleClearance = 0.008;
 
 /// Half the distance between a sole's sides [m].
@@ -49,7 +50,8 @@ class SwingReplan {
 
  private:
   // A path is never planned for less than this [s]: jerks grow with 1 / t^3. Chosen: 30 ticks of
-  // 1 ms; at half of it a target that moves in the last ticks asks for eight times the jerk.
+  // 1 ms; at half of it a target that moves in the last ticks asks for eight times the jerk. Half:
+  // pushed viip walk, touchdowns 5 to 4; twice: hurried walk, slip 5.22 to 4.03 mm.
   static constexpr double kLeastTime = 0.03;
 
   Vector rate_ = Vector::Zero(), acceleration_ = Vector::Zero();
