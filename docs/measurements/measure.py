@@ -440,6 +440,20 @@ def disc_walk(seed):
     return walk_under(blocks=discs)
 
 
+@table("conditions/discs")
+def conditions_discs():
+    lines = head("law", "falls", "largest trunk tilt, mean", "largest trunk tilt, worst")
+    walks = [disc_walk(seed) for seed in range(DISC_SEEDS)]
+    for name, words in [("open loop", ["--controller", "none"]), ("DTAD, `conform=0`", gain("conform=0")),
+                        ("DTAD, `conform=0.5`, the default", []), ("DTAD, `conform=1`", gain("conform=1"))]:
+        runs = [simulate(walk, *words) for walk in walks]
+        tilts = [math.degrees(f["max_tilt_rad"]) for f in runs if f["outcome"] != "fell"]
+        lines.append(row(name, f"{len(runs) - len(tilts)} of {len(runs)}",
+                         f"{sum(tilts) / len(tilts):.1f}°" if tilts else "",
+                         f"{max(tilts):.1f}°" if tilts else ""))
+    return lines
+
+
 # ---- VIIP ----
 
 
