@@ -20,7 +20,8 @@ constexpr double kMomentTolerance = 0.1;
 // it is 0.1 N m for a robot of 6 kg whose COG is 0.26 m high.
 constexpr double kMomentShare = 0.0065;
 
-constexpr int kMeanReach = 2;  // samples to either side; chosen: the reach of fill_rates()
+// Samples to either side of the mean. Derived: the reach of fill_rates().
+constexpr int kMeanReach = 2;
 
 double least_moment_tolerance(const RobotModel& model, const CommandSeries& series) {
   return kMomentShare * model.mass() * kGravity * series.samples.front().cog.z();

@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Acceleration of the COG from free fall [m/s^2]. Chosen: 5 % of g, as the tolerance of f_z.
+// Acceleration of the COG from free fall [m/s^2]. Chosen: 5 % of g, as the tolerance of f_z. No
+// measured case changes from half to twice (constants.md).
 constexpr double kFallTolerance = 0.5;
 
 // Leap of the COG at the edge of a flight [m]. Source: docs/attribution.md ("Leaps"): a force of

@@ -10,7 +10,7 @@ namespace ayumi {
 
 namespace {
 
-// Share of the cone. A law, not a choice: at 1 the sole slides.
+// Share of the cone. Definition: at 1 the sole slides.
 constexpr double kWholeCone = 1;
 
 void judge_friction(JudgedMotion& motion, const JudgedSample& s) {

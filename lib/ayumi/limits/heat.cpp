@@ -12,11 +12,12 @@ namespace ayumi {
 
 namespace {
 
-// Share of the continuous torque. A law, not a choice: the data sheet's figure is the largest one.
+// Share of the continuous torque. Definition: the data sheet's figure is the largest one.
 constexpr double kWholeContinuousTorque = 1;
 
 // Samples of the window at which torques are evaluated at another pace. Chosen: attribution only
-// asks whether the mean holds, and each sample costs one inverse dynamics.
+// asks whether the mean holds, and each sample costs one inverse dynamics. No measured case changes
+// from half to twice (constants.md).
 constexpr int kThermalLooks = 100;
 
 void note_square_sum(JudgedMotion& motion, const JudgedSample& s) {

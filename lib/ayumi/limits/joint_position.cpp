@@ -11,7 +11,7 @@ namespace ayumi {
 namespace {
 
 // [rad] or [m] Chosen: a motion planned onto the limit meets it but for the rounding of a table
-// with four decimals.
+// with four decimals. No measured case changes from half to twice (constants.md).
 constexpr double kPositionTolerance = 1e-4;
 constexpr double kLeastHalfRange = 1e-9;  // so that a joint without range divides by no zero [rad]
 

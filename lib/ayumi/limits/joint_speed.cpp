@@ -6,7 +6,7 @@ namespace ayumi {
 
 namespace {
 
-// Share of the speed limit. A law, not a choice: the data sheet's figure is the largest speed.
+// Share of the speed limit. Definition: the data sheet's figure is the largest speed.
 constexpr double kWholeSpeed = 1;
 
 void judge_joint_speeds(JudgedMotion& motion, const JudgedSample& s) {

@@ -8,7 +8,7 @@ namespace ayumi {
 
 namespace {
 
-// Share of the peak torque. A law, not a choice: the data sheet's figure is the largest torque.
+// Share of the peak torque. Definition: the data sheet's figure is the largest torque.
 constexpr double kWholeTorque = 1;
 
 void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {

@@ -11,11 +11,13 @@
 namespace ayumi {
 
 /// Lengths that are met exactly differ by rounding of at most this [m]. Chosen: a thousandth of the
-/// smallest tolerance of a length, and far above the rounding of coordinates of metres (1e-15).
+/// smallest tolerance of a length, and far above the rounding of coordinates of metres (1e-15). No
+/// measured case changes from half to twice (constants.md).
 inline constexpr double kRounding = 1e-7;
 
 /// Violations of one kind and item nearer than this are one finding [s]. Chosen: 20 samples at 1
-/// kHz, so that a figure which swings about its limit is one finding, and two steps are two.
+/// kHz, so that a figure which swings about its limit is one finding, and two steps are two. Half:
+/// no change; twice: arm finds 1 error joint_speed, not 2 error joint_speed.
 inline constexpr double kWindowGap = 0.020;
 
 struct JudgedMotion {

@@ -12,7 +12,7 @@ namespace ayumi {
 
 namespace {
 
-// Share of tau_max / J. A law, not a choice: at 1 the motor accelerates its rotor and nothing else.
+// Share of tau_max / J. Definition: at 1 the motor accelerates its rotor and nothing else.
 constexpr double kWholeMotorAcceleration = 1;
 
 /// tau_max / J of every joint [rad/s^2], [m/s^2]; infinite where J is not stated.

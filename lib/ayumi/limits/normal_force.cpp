@@ -10,7 +10,8 @@ namespace {
 
 // Normal force below which contact is a warning, as a share of the weight. Chosen: where less than
 // a twentieth of the weight rests on the ground, friction and ZMP say little. It is a warning only;
-// half or twice of it changes no verdict.
+// half or twice of it changes no verdict. No measured case changes from half to twice
+// (constants.md).
 constexpr double kLeastNormalShare = 0.05;
 
 void judge_normal_force(JudgedMotion& motion, const JudgedSample& s) {

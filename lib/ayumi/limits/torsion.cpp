@@ -8,7 +8,7 @@ namespace ayumi {
 
 namespace {
 
-// Share of the moment that friction resists. A law, not a choice: at 1 the foot turns.
+// Share of the moment that friction resists. Definition: at 1 the foot turns.
 constexpr double kWholeMoment = 1;
 
 // Nothing resists turning where the foot slides anyway, and a ZMP outside the support has no arm;

@@ -24,7 +24,8 @@ struct Violation {
 /// The foot of a violation whose item is one.
 inline Side foot_of(const Violation& v) { return static_cast<Side>(v.item); }
 
-/// Detail of a servo step of the servo's target, which leads the posture, not of the posture.
+/// Definition: detail of a servo step of the servo's target, which leads the posture, not of the
+/// posture.
 inline constexpr int kServoTarget = 1;
 
 /// Item of a support_margin: whose ZMP it is.

@@ -20,7 +20,8 @@ bool inside_a_window(const CorrectionSpec& spec, double begin, double end) {
 }
 
 bool locked_within(const CorrectionSpec& spec, double begin, double end) {
-  constexpr double kTimeRounding = 1e-9;  // [s]: of times that are multiples of the sample period
+  // Times closer than this are equal [s]. Chosen: above rounding, below the sample period.
+  constexpr double kTimeRounding = 1e-9;
   return std::any_of(spec.locked_windows.begin(), spec.locked_windows.end(), [&](const auto& w) {
     return begin < w.second + kTimeRounding && end > w.first - kTimeRounding;
   });

@@ -26,7 +26,7 @@ enum class ConstraintGroup {
   pose,                ///< the correction itself [m], [rad], 0 where the posture is locked
   dcm                  ///< DCM - planned DCM along the ground [m], then as zmp, a soft goal
 };
-inline constexpr int kConstraintGroupCount = 19;
+inline constexpr int kConstraintGroupCount = 19;  ///< Definition
 
 const char* name_of(ConstraintGroup group);
 

@@ -134,7 +134,8 @@ Nlp relaxed(const Nlp& nlp, const Slacks& relaxation) {
 }
 
 ViolationPrice price_of(ConstraintGroup group) {
-  constexpr double kChange = 2 / policy::change_weight::kObjectiveScale;  // of 1 of the objective
+  // Derived: the weighted change that costs 1 of the objective.
+  constexpr double kChange = 2 / policy::change_weight::kObjectiveScale;
   const policy::prices::GroupPrice& price = policy::prices::of(group);
   if (price.soft_goal > 0)
     return {price.unit, kChange * price.soft_goal, policy::prices::kSoftGoalWindow};

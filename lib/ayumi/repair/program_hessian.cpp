@@ -17,6 +17,8 @@ using Eigen::VectorXd;
 
 namespace {
 
+// Integrals of the products of a cubic B-spline, and of its second derivative, with the one 0 to 3
+// knots later, in units of the spacing. Derived from the polynomials.
 constexpr double kValueGram[] = {2416.0 / 5040, 1191.0 / 5040, 120.0 / 5040, 1.0 / 5040};
 constexpr double kCurvatureGram[] = {8.0 / 3, -1.5, 0, 1.0 / 6};
 

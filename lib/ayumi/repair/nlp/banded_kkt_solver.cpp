@@ -32,7 +32,8 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Classes of unknowns that are eliminated alone; the others have a place >= 0 in the band.
+// Definition: classes of unknowns that are eliminated alone; the others have a place >= 0 in the
+// band.
 constexpr int kSlack = -1;  // has a single neighbour
 constexpr int kRow = -2;    // has slacks and places for neighbours
 
@@ -45,8 +46,9 @@ struct Nonzeros {
 };
 
 struct Band {
-  static constexpr int kPanel = 32;  // columns factored at once
-  int width = 1, places = 0;         // farthest entry below the diagonal; columns in use
+  // Columns factored at once. Chosen: it changes the time of a factorization, not its result.
+  static constexpr int kPanel = 32;
+  int width = 1, places = 0;  // farthest entry below the diagonal; columns in use
   int columns() const { return (places + kPanel - 1) / kPanel * kPanel; }
   int length() const { return width + kPanel; }  // of a stored column
   Index size() const { return static_cast<Index>(columns()) * length(); }
@@ -55,7 +57,7 @@ struct Band {
 // Multipliers are the last unknowns. Of two neighbours that both look like rows, the first is a
 // variable and the second a multiplier.
 std::vector<int> classes(int n, const Nonzeros& entries) {
-  constexpr int kNone = -1, kMany = -2;
+  constexpr int kNone = -1, kMany = -2;  // Definition
   std::vector<int> neighbour(n, kNone), result(n, 0);
   auto meet = [&](int i, int j) {
     neighbour[i] = neighbour[i] == kNone || neighbour[i] == j ? j : kMany;
@@ -388,7 +390,7 @@ void set_defaults(int*, double*) {}
 
 thread_local bool serves_this_thread = false;
 
-constexpr int kNoOtherSolver = -99;  // INFO(1) where no HSL library is found: Ipopt gives up there
+constexpr int kNoOtherSolver = -99;  // Definition: INFO(1) without an HSL library; Ipopt gives up
 
 /// The functions of MA27 in the HSL library; null without one. Loaded once and never unloaded.
 struct HslLibrary {

@@ -15,7 +15,7 @@
 
 namespace ayumi {
 
-/// Bounds at or beyond this mean "none".
+/// Bounds at or beyond this mean "none". Source: Ipopt's option nlp_upper_bound_inf.
 inline constexpr double kNoBound = 1e19;
 
 /// Places of the nonzeros of a sparse matrix; the values come in the same order. Of a Hessian only
