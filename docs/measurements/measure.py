@@ -394,6 +394,19 @@ def law_terms():
     return lines
 
 
+@table("law/gains")
+def law_gains():
+    lines = head("gains", "walking [B]", "standing [B]", "ZMP error [mm]",
+                 "ZMP error, `--noise` [mm]")
+    for words in ["", "ka=0.5", "ka=2", "ks=0.9 kd=0.9", "ks=3.6 kd=3.6", "ka=2.5 ks=2 kd=2",
+                  "q=0.125", "q=0.5", "tau_z=0.02", "tau_z=0.08", "ankle=0.25", "ankle=1"]:
+        study = push_study(WALK, *FOUR, "--allow-unstable", *gain(words))
+        lines.append(row(f"`{words}`" if words else "defaults", in_bounds(cases(study, False)),
+                         in_bounds(cases(study, True)), zmp_error(*gain(words)),
+                         zmp_error(*gain(words), "--noise")))
+    return lines
+
+
 # ---- Conditions that the plan does not know ----
 
 
