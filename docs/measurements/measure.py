@@ -352,6 +352,23 @@ def stepping(robot, profile):
     return write_pattern(pattern, f"stepping_{robot}_{profile}")
 
 
+@table("pushes/viip")
+def pushes_viip():
+    lines = head("robot", "VIIP [B]", "VIIP [N s]", "landings alone [B]", "no feedback [B]")
+    for name, robot, profile, words in [
+        ("HOAP-1, `hoap1-strong`", "hoap1", "hoap1-strong", ()),
+        ("the same, `--noise`", "hoap1", "hoap1-strong", ("--noise",)),
+        ("`humanoid30`", "humanoid30", "humanoid30", ()),
+    ]:
+        study = push_study(stepping(robot, profile), *FOUR, *words, "--controller", "viip",
+                           "--controller", "viip-landings")
+        viip = cases(study, False, "viip")
+        lines.append(row(name, in_bounds(viip), in_newton_seconds(viip),
+                         in_bounds(cases(study, False, "viip-landings")),
+                         in_bounds(viip, "open_loop_Ns")))
+    return lines
+
+
 # ---- Terms and gains of DTAD ----
 
 
