@@ -427,16 +427,12 @@ def law_gains():
 # ---- Conditions that the plan does not know ----
 
 
-def walk_under(scenario=(), **world):
-    """The walk with a world and lasting disturbances of its own."""
+def walk_under(**world):
+    """The walk without its push, in another world."""
     pattern = bundled("hoap1_walk")
     pattern["world"].update(world)
-    pattern["scenario"] = list(scenario)
+    pattern["scenario"] = []
     return write_pattern(pattern, f"under_{len(list(WORK.glob('under_*')))}")
-
-
-def from_start(kind, **keys):
-    return {"type": kind, "at": 0, **keys}
 
 
 def softer_soles(stiffness):
@@ -453,8 +449,24 @@ def servos_of(kp, kd):
     return robot_copy("hoap1", change)
 
 
-def payload(mass):
-    return [from_start("payload", on="torso", point=[0, 0, 0.1], mass=mass)]
+@table("conditions/changes")
+def conditions_changes():
+    lines = head("condition", "unpushed, DTAD and open loop", "DTAD [N s]", "open loop [N s]")
+    for name, pattern, robots in [
+        ("as planned", walk_under(), None),
+        ("ground rises by 3°", walk_under(ground={"pitch": -3}), None),
+        ("ground falls by 3°", walk_under(ground={"pitch": 3}), None),
+        ("ground falls to the right by 3°", walk_under(ground={"roll": 3}), None),
+        ("friction 0.15", walk_under(friction=0.15), None),
+        ("soles of 60 kN/m", walk_under(), softer_soles(6e4)),
+        ("`kp` 200, `kd` 4", walk_under(), servos_of(200, 4)),
+    ]:
+        alone = [simulate(pattern, *words, robots=robots)["outcome"]
+                 for words in ([], ["--controller", "none"])]
+        study = cases(push_study(pattern, *FOUR, robots=robots), False)
+        lines.append(row(name, ", ".join(alone), in_newton_seconds(study),
+                         in_newton_seconds(study, "open_loop_Ns")))
+    return lines
 
 
 DISC_SEEDS = 24
