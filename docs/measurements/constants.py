@@ -333,28 +333,36 @@ def bump(t, center, width):
     return math.cos(math.pi * s) ** 4 if abs(s) < 0.5 else 0
 
 
-def plant_fault(source, name, moves, change=None, keep_commands=False):
-    """The motion of `source` at 500 Hz with `moves` of columns (name, size, center, width), and
-    without the commands of COG, ZMP and f_z unless they are kept."""
+def step(t, center, width):
+    return 1 if abs(t - center) < width / 2 else 0
+
+
+def plant_fault(source, name, moves, change=None, keep_commands=False, shape=bump, pace=1):
+    """The motion of `source` at 500 Hz, or in `pace` of its time, with `moves` of columns (name,
+    size, center, width), and without the commands of COG, ZMP and f_z unless they are kept."""
     lines = (WORK / f"{source}.csv").read_text().splitlines()
     head = next(i for i, line in enumerate(lines) if not line.startswith("#"))
     columns = lines[head].split(",")
     kept = [i for i, c in enumerate(columns) if keep_commands or not re.match("cog|zmp|fz", c)]
-    notes = [l.replace("dt: 0.001", "dt: 0.002").replace("rate_hz: 1000", "rate_hz: 500")
+    notes = [l.replace("dt: 0.001", f"dt: {0.002 * pace:g}").replace("rate_hz: 1000",
+                                                                     f"rate_hz: {500 / pace:g}")
              for l in lines[:head]]
     rows = []
     for line in lines[head + 1 :: 2]:
         values = line.split(",")
         for column, size, center, width in moves:
-            b = bump(float(values[0]), center, width)
+            b = shape(float(values[0]), center, width)
             if b:
                 i = columns.index(column)
                 values[i] = repr(float(values[i]) + size * b)
+        values[0] = f"{float(values[0]) * pace:g}"
         rows.append(",".join(values[i] for i in kept))
     (WORK / f"{name}.csv").write_text(
         "\n".join(notes + [",".join(columns[i] for i in kept)] + rows) + "\n")
     pattern = read_jsonc(WORK / f"{source}.json")
     pattern["table"] = f"{name}.csv"
+    for phase in pattern["phases"]:
+        phase["until"] *= pace
     if change:
         change(pattern)
     (WORK / f"{name}.json").write_text(json.dumps(pattern))
@@ -385,6 +393,9 @@ def make_patterns():
     def friction(value):
         return lambda p: p["world"].update(friction=value)
 
+    def leaves_early(p):
+        p["phases"][2]["until"] -= 0.045
+
     def lands_early(p):
         p["phases"][3]["until"] -= 0.05
 
@@ -400,6 +411,11 @@ def make_patterns():
     plant_fault("walk_table", "friction", [], friction(0.1))
     plant_fault("walk_table", "early", [], lands_early)
     plant_fault("walk_table", "cog", [("cog.y[m]", 0.006, 1.9, 0.4)], keep_commands=True)
+    plant_fault("walk_table", "jolt", [(knee, 0.03, 1.9, 0.1)], shape=step)
+    plant_fault("walk_table", "leaving", [], leaves_early)
+    plant_fault("walk_table", "fast", [], pace=0.6)
+    plant_fault("walk_table", "sinking", [("theta.l_knee[rad]", -0.05, 1.35, 0.3)])
+    plant_fault("jump_table", "push-off", [("theta.l_ankle_pitch[rad]", 0.05, 1.44, 0.06)])
     plant_fault("jump_table", "flight", [(arms[0], 0.25, 1.52, 0.12)])
     angles = [l.split(",") for l in (WORK / "walk_table.csv").read_text().splitlines() if l[0] != "#"]
     kept = [i for i, c in enumerate(angles[0]) if c.startswith(("t[", "theta"))]
@@ -434,7 +450,8 @@ def make_patterns():
 GOALS = {"far goal": {"cog": [0.09, 0, 0]}, "low goal": {"cog": [0, 0, -0.2]},
          "fast goal": {"steps": 4, "velocity": [0.5, 0]},
          "turning goal": {"steps": 4, "velocity": [0.05, 0], "turn": 100}}
-FAULTS = ["sway", "slip", "arm", "grip", "knee", "friction", "early", "cog", "flight"]
+FAULTS = ["sway", "slip", "arm", "grip", "knee", "friction", "early", "cog", "flight", "jolt", "leaving", "fast",
+          "sinking", "push-off"]
 for fault in FAULTS:
     check_case("check " + fault, fault + ".json")
 for fault in ("sway", "planned sway", "slip", "grip", "knee", "early", "flight", "collision"):
@@ -515,7 +532,8 @@ def tune_case(scale):
             "choices": r["choices"]}
 
 
-CHECKS = ["check " + c for c in ("sway", "arm", "grip", "knee", "early", "cog", "flight", "jump")]
+CHECKS = ["check " + c for c in ("sway", "arm", "grip", "knee", "early", "cog", "flight", "jump",
+                                "jolt", "leaving", "fast", "sinking", "push-off")]
 SIMULATIONS = [c for c in CASES if CASES[c].__qualname__.startswith("simulation_case")]
 REPAIRS = ["repair sway", "repair knee", "repair early"]
 PUSHES = ["largest push, standing", "largest push, walking"]

@@ -10,7 +10,7 @@ namespace ayumi {
 namespace {
 
 // Clearance below which bodies that do not overlap are a warning [m]. Chosen: what servos sag under
-// load moves links by about this much. Half or twice of it changes no verdict. Half: knee,
+// load moves links by about this much. Half or twice of it changes no verdict. Half: fast,
 // clearance 12.1 to 11.1 mm; twice: grip, clearance 12.2 to 14.6 mm.
 constexpr double kClearanceTolerance = 0.002;
 

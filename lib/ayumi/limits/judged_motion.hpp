@@ -17,7 +17,8 @@ inline constexpr double kRounding = 1e-7;
 
 /// Violations of one kind and item nearer than this are one finding [s]. Chosen: 20 samples at 1
 /// kHz, so that a figure which swings about its limit is one finding, and two steps are two. Half:
-/// no change; twice: arm finds 1 error joint_speed, not 2 error joint_speed.
+/// jolt finds 3 warning yaw_moment, not 2 warning yaw_moment; twice: arm finds 1 error joint_speed,
+/// not 2 error joint_speed.
 inline constexpr double kWindowGap = 0.020;
 
 struct JudgedMotion {
