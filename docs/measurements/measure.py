@@ -486,8 +486,10 @@ def disc_walk(seed):
 def conditions_discs():
     lines = head("law", "falls", "largest trunk tilt, mean", "largest trunk tilt, worst")
     walks = [disc_walk(seed) for seed in range(DISC_SEEDS)]
-    for name, words in [("open loop", ["--controller", "none"]), ("DTAD, `conform=0`", gain("conform=0")),
-                        ("DTAD, `conform=0.5`, the default", []), ("DTAD, `conform=1`", gain("conform=1"))]:
+    for name, words in [("open loop", ["--controller", "none"]),
+                        ("DTAD, `conform=0`", gain("conform=0")),
+                        ("DTAD, `conform=0.5`, the default", []),
+                        ("DTAD, `conform=1`", gain("conform=1"))]:
         runs = [simulate(walk, *words) for walk in walks]
         tilts = [math.degrees(f["max_tilt_rad"]) for f in runs if f["outcome"] != "fell"]
         lines.append(row(name, f"{len(runs) - len(tilts)} of {len(runs)}",
@@ -529,7 +531,8 @@ def viip_displacements():
     lines = head("goal", "Ayumi", "`--noise`", "MuJoCo")
     for robot, way, within in [
         ("hoap1", [0.02, 0, 0], 0.002), ("hoap1", [0.04, 0, 0], 0.002),
-        ("hoap1", [0, 0.05, 0], 0.002), ("hoap1", [0, 0, -0.015], 0.002), ("hoap1", [0.025, 0.025, -0.015], 0.002),
+        ("hoap1", [0, 0.05, 0], 0.002), ("hoap1", [0, 0, -0.015], 0.002),
+        ("hoap1", [0.025, 0.025, -0.015], 0.002),
         ("humanoid30", [0.1, 0, 0], 0.005), ("humanoid30", [0, 0.125, 0], 0.005),
     ]:
         name = f"{ROBOT_NAMES[robot]}, {', '.join(f'{1e3 * w:.0f}' for w in way)} mm"
