@@ -63,7 +63,10 @@ std::string tolerance_table() {
   std::string out;
   for (const FindingSpec* spec : finding_specs())
     out += padded(name_of(spec->kind), 20) +
-           padded(text::brief(spec->tolerance) + " " + spec->unit, 14) + spec->meaning + "\n";
+           padded(text::brief(spec->tolerance) +
+                      (std::string(spec->unit) == "1" ? "" : " " + std::string(spec->unit)),
+                  14) +
+           spec->meaning + "\n";
   return out;
 }
 

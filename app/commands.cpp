@@ -62,7 +62,7 @@ void complain(const std::string& message) { std::fprintf(stderr, "ayumi: %s\n", 
 void add_global_options(CLI::App& app, Context& context) {
   app.set_help_flag("-h,--help", "Print this page.");
   app.set_version_flag("--version", std::string("ayumi ") + version() + " (" AYUMI_LIBRARIES ")",
-                       "Print the version, and those of the libraries.");
+                       "Print the versions of Ayumi and of its libraries.");
   app.add_flag("--json", context.json, "Print one JSON object in place of text.");
   app.add_flag("-q,--quiet", context.quiet, "Print no progress.");
   app.add_flag("--force", context.force, "Overwrite existing results.");

@@ -50,13 +50,13 @@ Lines pendulum_numbers(const CollocationPoint& i) {
   Lines lines;
   for (int a = 0; a < 2; ++a) {
     const double x = s.measured_cog[a], wanted = s.reference_zmp[a], real = s.measured_zmp[a];
-    lines.push_back(std::string(1, "xy"[a]) + ": asked " + fixed(w2, 1) + " /s2 x (" + mm(x) +
+    lines.push_back(std::string(1, "xy"[a]) + ": required " + fixed(w2, 1) + " /s2 x (" + mm(x) +
                     " - " + mm(wanted) + ") = " + fixed(w2 * (x - wanted), 3) +
                     " m/s2; the ground gives " + fixed(w2, 1) + " x (" + mm(x) + " - " + mm(real) +
                     ") = " + fixed(w2 * (x - real), 3) + " m/s2");
-    lines.push_back(
-        "   the reference lacks w2 (ZMP - ref ZMP) = " + fixed(w2 * (real - wanted), 3) +
-        " m/s2; ka = " + text::brief(i.gains.zmp_gain) + " times that is added");
+    lines.push_back("   the difference is w2 (ZMP - ref ZMP) = " + fixed(w2 * (real - wanted), 3) +
+                    " m/s2; ka = " + text::brief(i.gains.zmp_gain) +
+                    " times this difference is added to the reference");
   }
   return lines;
 }
@@ -74,7 +74,7 @@ Lines omega_numbers(const CollocationPoint& i) {
   const double w2 = i.omega_squared();
   return {"w2 = " + fixed(s.reference_fz, 1) + " N / (" + fixed(i.model.mass(), 2) + " kg x " +
           mm(height(s)) + ") = " + fixed(w2, 2) + " /s2, omega = " + fixed(std::sqrt(w2), 2) +
-          " /s: an error of the ZMP grows e-fold in " + fixed(1e3 / std::sqrt(w2), 0) + " ms"};
+          " /s: an error grows by the factor e in " + fixed(1e3 / std::sqrt(w2), 0) + " ms"};
 }
 
 Lines zmp_numbers(const CollocationPoint& i) {
@@ -85,15 +85,15 @@ Lines zmp_numbers(const CollocationPoint& i) {
   for (int a = 0; a < 2; ++a) {
     const double wanted = s.command_zmp[a] - K(i) * d.e[a] - D(i) * d.de[a];
     const double cut = cut_off[a] = s.reference_zmp[a] - wanted;
-    lines.push_back(std::string(1, "xy"[a]) + ": " + mm(s.command_zmp[a]) + " - K x " + mm(d.e[a]) +
-                    " - D x " + fixed(1e3 * d.de[a], 1) + " mm/s = " + mm(wanted) +
-                    (std::abs(cut) > 1e-3
-                         ? "; cut to " + mm(s.reference_zmp[a]) + ", the nearest in the support"
-                         : "; in the support, so it is ref ZMP: " + mm(s.reference_zmp[a])));
+    lines.push_back(
+        std::string(1, "xy"[a]) + ": " + mm(s.command_zmp[a]) + " - K x " + mm(d.e[a]) + " - D x " +
+        fixed(1e3 * d.de[a], 1) + " mm/s = " + mm(wanted) +
+        (std::abs(cut) > 1e-3
+             ? "; moved to " + mm(s.reference_zmp[a]) + ", the nearest point of the support"
+             : "; inside the support, so ref ZMP = " + mm(s.reference_zmp[a])));
   }
   if (cut_off.norm() > 1e-3)
-    lines.push_back("the projection is at work: " + mm(cut_off.norm()) +
-                    " of what is wanted lie outside the support of the " +
+    lines.push_back("the wanted ZMP is " + mm(cut_off.norm()) + " outside the support of the " +
                     (s.planned_contact[0] && s.planned_contact[1] ? "feet"
                      : s.planned_contact[0]                       ? "left foot"
                                                                   : "right foot"));
@@ -127,7 +127,8 @@ Lines limit_numbers(const CollocationPoint& i) {
   for (const SimulationEvent& event : i.log.events)
     if (event.kind == "saturation" && event.t < t)
       lines.push_back("from " + fixed(event.t, 3) + " s on: " + event.text);
-  if (lines.empty()) lines.push_back("no joint has met a limit by now: no task has given way");
+  if (lines.empty())
+    lines.push_back("no joint has reached a limit so far, and no task has given way");
   return lines;
 }
 
@@ -147,8 +148,8 @@ Lines resolution_numbers(const CollocationPoint& i) {
     joints += (j ? ", " : "") + i.log.joints[static_cast<size_t>(order[j])] + " " +
               fixed(rates[order[j]], 2);
   Lines lines = {"ref COG rate " + fixed(1e3 * cog.x(), 1) + ", " + fixed(1e3 * cog.y(), 1) + ", " +
-                     fixed(1e3 * cog.z(), 1) + " mm/s is met by " + std::to_string(rates.size()) +
-                     " joints together; the fastest [rad/s]:",
+                     fixed(1e3 * cog.z(), 1) + " mm/s is produced by " +
+                     std::to_string(rates.size()) + " joints together; the fastest joints [rad/s]:",
                  "  " + joints};
   for (const std::string& line : limit_numbers(i)) lines.push_back(line);
   return lines;
@@ -158,34 +159,36 @@ const char* kTree =
     "Velocities add up along the tree of links: every point's velocity is linear in the joint "
     "rates.";
 const char* kFloating =
-    "The COG's velocity is the mean of all links' velocities weighted with their masses, the "
-    "root's included; seen from the base it is linear in the joint rates.";
+    "The velocity of the COG is the mass-weighted mean of the velocities of all links, the root "
+    "included. Relative to the base it is linear in the joint rates.";
 const char* kAnchored =
-    "The robot is not bolted down: what holds still is the foot it stands on. That decides how "
-    "the base moves when the joints do.";
+    "The robot is not bolted to the ground. The foot on which it stands is at rest, so the motion "
+    "of the joints determines the motion of the base.";
 const char* kCogJacobian =
-    "With the base's motion put in, one matrix J_G takes joint rates to the COG's velocity in the "
-    "world: the whole body moves the COG, not single joints.";
+    "With this motion of the base, one matrix J_G maps the joint rates to the velocity of the COG "
+    "in the world. All joints together move the COG.";
 const char* kPendulum =
-    "Seen from the ZMP the robot is an inverted pendulum: the ground force points from the ZMP "
-    "through the COG. The further the COG is from the ZMP, the faster it runs away from it. This "
-    "is the short term: when the ground does not give what was asked, the difference is taken up "
-    "by moving the reference COG.";
+    "The robot is an inverted pendulum above its ZMP: the ground force points from the ZMP through "
+    "the COG. The farther the COG is from the ZMP, the faster it accelerates away from the ZMP. "
+    "The short term of DTAD uses this: when the measured ZMP differs from the reference ZMP, the "
+    "reference COG moves to absorb the difference.";
 const char* kLong =
-    "Long term: where the ZMP should be to bring the COG back to the command. It goes further out "
-    "than the COG has gone (K > 1), and further still when the COG is running away (D > 0; the "
-    "printed + is a misprint). What lies outside the feet is cut to the nearest point of the "
-    "support: no robot can do more.";
+    "The long term of DTAD computes the ZMP that brings the COG back to the command. The ZMP moves "
+    "farther than the COG is off (K > 1), and still farther while the COG moves away (D > 0; the "
+    "printed + is a misprint). A ZMP outside the support is replaced by the nearest point of the "
+    "support, because the ground cannot push outside the feet.";
 const char* kResolve =
-    "Among all joint rates that give the COG its reference velocity while the free foot and the "
-    "trunk follow the plan, the ones nearest to the commanded rates, weighted with W, are taken "
-    "(v is u - J_U cmd dtheta; printed with the other sign).";
+    "Many joint rates give the COG its reference velocity while the free foot and the trunk follow "
+    "the plan. This equation selects the rates nearest to the commanded ones, weighted with W. (v "
+    "is u - J_U cmd dtheta; the paper prints the other sign.)";
 const char* kJump =
-    "Height law of the variable impedant pendulum: a spring and damper between the COG and its "
-    "reference height. Gains of (25) hold without overshoot, of (26) throw the robot z_H high "
-    "from a stoop of z_d, of (27) catch it within z_d after touchdown. The corrected (25) needs "
-    "the mass: K_Dz^2 >= 4 m K_Pz.";
-const char* kSynergy = "(22)(23) without commanded rates: the whole body follows the COG alone.";
+    "Height law of the variable impedant pendulum: a spring and a damper act between the COG and "
+    "its reference height. The gains of (25) hold the height without overshoot. The gains of (26) "
+    "throw the robot z_H high from a stoop of depth z_d. The gains of (27) stop it within z_d "
+    "after "
+    "touchdown. The corrected (25) contains the mass: K_Dz^2 >= 4 m K_Pz.";
+const char* kSynergy =
+    "This is (22)(23) without commanded rates: the whole body follows only the COG.";
 
 }  // namespace
 
@@ -208,22 +211,27 @@ const std::vector<Equation>& equations() {
     };
     add(1, 4, "0v_k = 0J_k dtheta,  0w_k = 0J_wk dtheta", kTree, nullptr);
     add(5, 7, "0dp_G = sum m_k 0dp_Gk / sum m_k = 0J_G dtheta", kFloating, cog_numbers);
-    add(8, 11, "w_0 = w_F - R_0 0J_wF dtheta,  dp_0 likewise, with the foot F at rest", kAnchored,
-        nullptr);
+    add(8, 11, "w_0 = w_F - R_0 0J_wF dtheta,  dp_0 analogously, with the foot F at rest",
+        kAnchored, nullptr);
     add(12, 13, "dp_G = J_G dtheta", kCogJacobian, cog_numbers);
     add(14, 15, "ddx = w2 (x - x_Z),  ddy = w2 (y - y_Z)", kPendulum, pendulum_numbers);
     add(16, 16, "ddz = f_z / m - g",
-        "The vertical ground force carries the weight; what is more or less accelerates the COG.",
+        "The vertical ground force carries the weight; the difference between the two accelerates "
+        "the COG.",
         vertical_numbers);
     add(17, 17, "w2 = f_z / (m (z_G - z_Z))",
-        "The pendulum's rate: a lower robot falls faster. Without ground force it has no meaning.",
+        "w is the rate of the pendulum: a lower robot falls faster. Without a ground force, w has "
+        "no "
+        "meaning.",
         omega_numbers);
     add(18, 19, "ref x_Z = cmd x_Z - K Delta x - D Delta dx, then the nearest point of the support",
         kLong, zmp_numbers);
     add(20, 20, "ref f_z = cmd f_z + m (K_z Delta z + D_z Delta dz), not below f_min",
-        "The same for the height: push harder when the COG is too low or sinks.", force_numbers);
+        "This is the law for the height: the feet push harder when the COG is too low or sinks.",
+        force_numbers);
     add(21, 21, "Delta = cmd - measured",
-        "How far the robot is behind its command, in the frame of the foot it stands on.",
+        "Delta is the command minus the measurement, in the frame of the foot on which the robot "
+        "stands.",
         delta_numbers);
     add(22, 23, "ref dtheta = cmd dtheta + W^-1 J_U' (J_U W^-1 J_U')^-1 v,  v = u - J_U cmd dtheta",
         kResolve, resolution_numbers);

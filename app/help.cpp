@@ -34,7 +34,7 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
   std::string text = app->get_description() + "\n\n";
   if (!app->get_footer().empty()) text += app->get_footer() + "\n\n";
   text += make_usage(app, name) + make_positionals(app) + make_groups(app, mode);
-  return text + "\nOptions that every command takes: ayumi --help\n";
+  return text + "\nayumi --help lists the options that every command takes.\n";
 }
 
 }  // namespace ayumi::app

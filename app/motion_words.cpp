@@ -49,7 +49,7 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
     out += (i == 0 ? "  moved " : "        ") + joint_words(model, change.joints[i]) + "\n";
   const size_t rest = change.joints.size() - told;
   if (told == kJointsTold && rest > 0)
-    out += "        and " + std::to_string(rest) + " joints by less\n";
+    out += "        and " + std::to_string(rest) + " more joints by less\n";
   if (change.cog.size > 5e-5 || change.foot.size > 5e-5)
     out += "  " + largest("COG", change.cog, millimetres(change.cog.size)) + "; " +
            largest("a foot", change.foot, millimetres(change.foot.size)) + "\n";
@@ -65,10 +65,9 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
 
 std::string cost_words(const WeightedChange& cost) {
   constexpr double kTold = 1e-3;  // of the change; less does not show in three digits
-  const std::string missing =
-      cost.safety > kTold * cost.change
-          ? " and " + text::brief(cost.safety) + " for the safety that is missing"
-          : "";
+  const std::string missing = cost.safety > kTold * cost.change
+                                  ? " and " + text::brief(cost.safety) + " for missing robustness"
+                                  : "";
   return "  weighted change " + text::brief(cost.change) + missing;
 }
 

@@ -101,7 +101,7 @@ std::vector<Drawn> draw_all(const PreviewBatch& batch, const std::vector<fs::pat
 void run_batch(const PreviewBatch& batch, Context& context) {
   const std::vector<fs::path> targets = targets_of(batch);
   if (!batch.sheet.empty() && fs::path(batch.sheet).extension() != ".png")
-    fail(ErrorCode::usage, batch.sheet + ": a contact sheet is a .png");
+    fail(ErrorCode::usage, batch.sheet + ": --sheet needs a file name that ends in .png");
   std::error_code error;
   fs::create_directories(batch.folder, error);
   if (!fs::is_directory(batch.folder))

@@ -120,15 +120,15 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   const std::string bytes = read_file(file);
   try {
     const Json json = Json::parse(bytes);
-    if (json.at("format") != kFormat) refuse("is not a file of push results");
+    if (json.at("format") != kFormat) refuse("this is not a file of push results");
     // The order of keys says nothing.
     if (nlohmann::json::parse(json.at("study").dump()) != nlohmann::json::parse(study.dump()))
-      refuse("holds the results of another study");
+      refuse("this file holds the results of another study");
     for (const Json& entry : json.at("cases")) known.at(entry.at("index")) = case_from(entry);
   } catch (const Json::exception&) {
-    refuse("is not a file of push results");
+    refuse("this is not a file of push results");
   } catch (const std::out_of_range&) {
-    refuse("has a case that this study does not have");
+    refuse("this file has a case that this study does not have");
   }
   return known;
 }

@@ -40,7 +40,7 @@ void lock_window(const std::string& word, const Task& input, RepairOptions& opti
   const size_t dots = word.find("..");
   double begin = 0, end = 0;
   if (!read_number(word.substr(0, dots), begin) || !read_number(word.substr(dots + 2), end))
-    complain(word, "a time window is two numbers of seconds, such as 1.2..1.8");
+    complain(word, "a time window has the form BEGIN..END in seconds, for example 1.2..1.8");
   const double last = input.series.duration();
   if (!(begin <= end) || begin < 0 || begin > last)
     complain(word, "the window must lie in the motion, 0..." + text::exact(last) +

@@ -11,9 +11,10 @@ RobotModel robot_of_run(const Context& context, const std::string& chosen,
   const bool elsewhere = chosen.empty() && recorded.find('/') != std::string::npos &&
                          !std::filesystem::exists(recorded);
   if (elsewhere)
-    fail(ErrorCode::bad_file, recorded +
-                                  ": no such file; a run names its robot as seen from the folder "
-                                  "where it was made; go there, or name it by --robot");
+    fail(ErrorCode::bad_file,
+         recorded +
+             ": no such file; the run names its robot relative to the folder in "
+             "which it was made; run the command there, or name the robot with --robot");
   return load_robot(chosen.empty() ? recorded : chosen, robot_search(context), options);
 }
 

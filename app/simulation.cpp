@@ -48,7 +48,7 @@ void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool a
   const std::string reason =
       instability(input.robot, spec, first.cog.z() - first.zmp.z(), input.series.dt);
   if (!reason.empty())
-    fail(ErrorCode::bad_pattern, reason + "; --allow-unstable runs it all the same");
+    fail(ErrorCode::bad_pattern, reason + "; --allow-unstable runs these gains nevertheless");
 }
 
 ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choice) {

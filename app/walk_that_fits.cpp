@@ -54,7 +54,7 @@ std::string what_fits(const RobotModel& model, const WalkParameters& asked) {
       (at(middle) ? fits : fails) = middle;
     }
     return std::string(m.option) + " " + text::brief(std::copysign(fits * m.step, given)) +
-           " is what the legs can do";
+           " is the most that the legs can reach";
   }
   return "";
 }

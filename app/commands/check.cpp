@@ -64,16 +64,16 @@ Json check_one(const Context& context, const CheckCommand& options, const std::s
   const ActuatorNeed own = own_need(input, judged);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  context.print(
-      file + ": " + (report.consistent ? "consistent" : "INCONSISTENT") + ", " +
-      text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
-      (need.text.empty() ? "" : "  " + need.text + "\n") +
-      (own.text.empty()
-           ? ""
-           : "  the robot as it is: " + own.text +
-                 (has_encoders(input.robot) ? " (`export --format hoap` judges by it)" : "") +
-                 "\n") +
-      check_table(report) + origin_words(input.series.origin));
+  context.print(file + ": " + (report.consistent ? "consistent" : "INCONSISTENT") + ", " +
+                text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
+                (need.text.empty() ? "" : "  " + need.text + "\n") +
+                (own.text.empty() ? ""
+                                  : "  the robot's own motors: " + own.text +
+                                        (has_encoders(input.robot)
+                                             ? " (`export --format hoap` judges by this profile)"
+                                             : "") +
+                                        "\n") +
+                check_table(report) + origin_words(input.series.origin));
   Json json = {{"pattern", file}};
   json.update(Json::parse(check_json(report)));
   json["actuators"] = {{"enough", need.text.empty()},

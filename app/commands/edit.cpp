@@ -137,9 +137,9 @@ FastestPace limits_of(const Context& context, const EditCommand& options, const 
                                 "; the posture of the table itself is wrong, and no pace changes "
                                 "it; try repair");
   if (!pace.found)
-    fail(ErrorCode::solver, options.pattern + ": no uniform scaling up to " +
-                                text::brief(retime.slowest) + " passes the check; last: " +
-                                pace.limited_by + "; more time alone is not enough, try repair");
+    fail(ErrorCode::solver, options.pattern + ": no time scale up to " +
+                                text::brief(retime.slowest) + " passes the check: " +
+                                pace.limited_by + "; more time alone is not enough; try repair");
   return pace;
 }
 
@@ -163,7 +163,9 @@ void retime(Context& context, const EditCommand& options) {
 // Patterns one after the other; the table of what is joined so far is only in memory.
 void join(Context& context, const EditCommand& options) {
   if (options.patterns.size() < 2)
-    fail(ErrorCode::usage, "edit concat, edit blend: give two patterns or more, in their order");
+    fail(ErrorCode::usage,
+         "edit concat, edit blend: give at least two patterns, in the order in which they are "
+         "played");
   refuse_overwriting(context, options.out);
   const std::string table = table_beside(options.out).string();
   Task input = load_pattern(context, options.patterns.front(), options.input);
@@ -186,7 +188,8 @@ void join(Context& context, const EditCommand& options) {
 
 void ramp(Context& context, const EditCommand& options) {
   if (options.ramps.in <= 0 && options.ramps.out <= 0)
-    fail(ErrorCode::usage, "edit ramp: --from or --back must be above 0");
+    fail(ErrorCode::usage,
+         "edit ramp: both --from and --back are 0; give at least one of them a time above 0");
   const Task input = load(context, options);
   const Pattern edited = ramped(input.robot, {input.pattern, input.series}, options.ramps,
                                 table_beside(options.out).string());
@@ -245,8 +248,9 @@ void add_edit(CLI::App& app, Context& context) {
   });
   add_join_of(*command, "concat", "play one pattern after the other, without a pause", options)
       .callback([&context] { join(context, options); });
-  CLI::App& blend_command = add_join_of(
-      *command, "blend", "play one pattern after the other, with a transition between", options);
+  CLI::App& blend_command =
+      add_join_of(*command, "blend",
+                  "play one pattern after the other, with a transition between them", options);
   blend_command.add_option("--over", options.over, "Duration of the transition [s].")
       ->required()
       ->check(number_within(0.02, 60.0))

@@ -31,7 +31,7 @@ const Equation& find_equation(const std::string& word) {
   for (const Equation& e : equations())
     if (std::to_string(e.number) == digits) return e;
   fail(ErrorCode::usage, "explain: there is no equation '" + word +
-                             "'; those of the paper are 1 to " +
+                             "'; the equations of the paper are 1 to " +
                              std::to_string(equations().back().number));
 }
 
@@ -43,7 +43,7 @@ struct Place {
 Place place_of(const std::string& text) {
   const size_t at = text.rfind('@');
   if (at == std::string::npos)
-    fail(ErrorCode::usage, "explain: '" + text + "' names no instant; write RUN@SECONDS");
+    fail(ErrorCode::usage, "explain: '" + text + "' has no time; write RUN@SECONDS");
   Place place{text.substr(0, at)};
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data() + at + 1, end, place.t);
@@ -91,7 +91,7 @@ Numbers numbers_of(const Context& context, const Equation& e, const ExplainComma
   const RobotModel model = robot_of_run(context, options.robot, log.provenance.robot);
   if (model.dof_names() != log.joints)
     fail(ErrorCode::usage,
-         place.run + ": was made with other joints than those of " + model.name());
+         place.run + ": the joints of the run are not those of robot " + model.name());
   ControllerSpec spec;
   for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
     spec.gains.emplace_back(name, value);
@@ -114,7 +114,7 @@ void explain(Context& context, const ExplainCommand& options) {
   if (!options.run.empty()) {
     const Numbers n = numbers_of(context, e, options);
     out += n.where + ", " + n.controller + ", t = " + text::fixed(n.t, 3) + " s\n";
-    if (n.lines.empty()) out += "  a log keeps no numbers of this one\n";
+    if (n.lines.empty()) out += "  The log has no numbers for this equation.\n";
     for (const std::string& line : n.lines) out += "  " + line + "\n";
     if (!n.sampled_from.empty()) out += origin_words(n.sampled_from);
     json.update({{"controller", n.controller},
@@ -135,13 +135,14 @@ void add_explain(CLI::App& app, Context& context) {
       "Examples:\n  ayumi explain 18\n"
       "  ayumi explain 14 out/hoap1_walk@3.05\n"
       "  ayumi explain 14 out/hoap1_walk@3.05 --log open_loop\n"
-      "Gains are those of the robot, unless --gain names those of the run's pattern.");
+      "The gains are the robot's. If the run used other gains, give them with --gain.");
   auto options = std::make_shared<ExplainCommand>();
   command->add_option("EQ", options->equation, "Number of the equation, 1 to 29.")->required();
   command->add_option("RUN@t", options->run, "Run folder or log file, and a time [s].");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
-  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
-  command->add_option("--gain", options->gains, "A gain of that run.")
+  command->add_option("--robot", options->robot,
+                      "Robot to use in place of the one that the run names.");
+  command->add_option("--gain", options->gains, "Gain that the run used (default: the robot's).")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->callback([options, &context] { explain(context, *options); });

@@ -76,9 +76,10 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
       load_pattern(context, options.input,
                    {.set = options.set, .profile = {}, .robot = options.robot}, draws(options));
   if (!input.series.viip.empty())
-    fail(ErrorCode::bad_pattern, options.input +
-                                     ": phases: the pattern has VIIP goals, which it holds still "
-                                     "for: run it (ayumi run), then export the RUN");
+    fail(ErrorCode::bad_pattern,
+         options.input +
+             ": phases: the pattern has VIIP goals, so its joint angles are "
+             "known only after a simulation; run it (ayumi run), then export the RUN");
   Source source{input.robot,
                 open_loop_reference(input.robot, input.series),
                 input.caution.disturbances,
@@ -108,7 +109,7 @@ Source source_of_table(const ExportOptions& options, const Context& context,
   require_joints(source.reference, source.model.dof_names(), options.input);
   if (!made.robot_sha256.empty() && made.robot_sha256 != source.model.description().sha256)
     fail(ErrorCode::bad_file, options.input + ": robot '" + source.model.name() +
-                                  "' has changed since this was made; run the pattern again");
+                                  "' has changed since this table was made; run the pattern again");
   if (!caution.unfit.empty()) source.unfit.push_back(caution.unfit);
   return source;
 }
@@ -249,7 +250,7 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
   if (!options.force_unsafe) reasons = source.unfit;
   if (!disturbances.empty() && !options.pushed)
     reasons.push_back("the table is from a run with disturbances (" + disturbances +
-                      ") and holds the reactions to them; --pushed exports it all the same");
+                      ") and contains the reactions to them; --pushed exports it nevertheless");
   if (!safe.report.safe && !options.force_unsafe) reasons.emplace_back("the table is unsafe");
   return reasons;
 }
@@ -263,7 +264,7 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
            text::brief(1 / safe.table.dt) + " Hz, " + std::to_string(safe.table.joints.size()) +
            " joints (" + options.format + ")\n";
   else
-    text = options.output + ": not written, " + text::join(refused, "\n  and ") + "\n";
+    text = options.output + ": not written, because " + text::join(refused, "\n  and ") + "\n";
   if (refused.empty())
     for (const std::string& reason : source.unfit) text += "  written although " + reason + "\n";
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) + " s";
@@ -272,12 +273,12 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
             report.worst_joint + " at " + text::fixed(report.worst_at, 3) + " s)";
   if (!report.margin_joint.empty())
     text += "; " + text::brief(report.min_limit_margin * 180 / EIGEN_PI, 3) +
-            " deg inside the position limits (" + report.margin_joint + ")";
+            " deg from the nearest position limit (" + report.margin_joint + ")";
   text += "\n";
   for (const SafetyViolation& violation : report.violations)
     text += "  unsafe: " + text_of(violation) + "\n";
   if (!options.force_unsafe && (!source.unfit.empty() || !report.safe))
-    text += "  --force-unsafe writes it all the same\n";
+    text += "  --force-unsafe writes the table nevertheless\n";
   return text;
 }
 
@@ -350,11 +351,13 @@ void export_table(ExportOptions options, Context& context) {
   context.print(in_words(options, source, safe, refused));
   if (!safe.report.safe)
     context.print("  judged by profile " + options.safety.profile + "; " +
-                  (others.empty() ? "the motors of no other profile would do"
-                                  : "the motors of " + text::join(others, ", ") + " would do") +
+                  (others.empty()
+                       ? "no other profile has motors that are strong enough"
+                       : "the motors of " + text::join(others, ", ") + " are strong enough") +
                   "\n");
   if (options.format == "hoap" && !knows_torque(source))
-    context.print("  torque not judged: a table alone does not tell it; export the RUN\n");
+    context.print(
+        "  torque not checked, because a table has no torques; export the RUN to check them\n");
   context.print_json(as_json(options, safe, others, refused));
   context.exit_code = refused.empty() ? 0 : 1;
 }
@@ -380,13 +383,16 @@ void add_export(CLI::App& app, Context& context) {
       ->check(number_within(0.0, 60.0))
       ->capture_default_str();
   command
-      ->add_option("--from", options->safety.from,
-                   "Posture of the robot before the ramp, or 'first' for that of the motion.")
+      ->add_option(
+          "--from", options->safety.from,
+          "Posture of the robot before the ramp, or 'first' for the first posture of the motion.")
       ->capture_default_str();
   command->add_option("--profile", options->safety.profile,
-                      "Actuator profile that the table is judged by (default: see docs/cli.md).");
+                      "Actuator profile that the table is judged by (default: for hoap the robot's "
+                      "first, else that of the pattern or run).");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
-  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
+  command->add_option("--robot", options->robot,
+                      "Robot to use in place of the one that the run names.");
   command->add_option("--set", options->set, "Set a parameter that the pattern declares.")
       ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);

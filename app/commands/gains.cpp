@@ -56,18 +56,19 @@ void read_wishes(GainsCommand& options) {
                    (options.frequency != 0 || options.damping != 0);
   if (ways > 1)
     fail(ErrorCode::usage,
-         "give the poles once: --poles, --time-constants, or --frequency with --damping");
+         "the poles are given more than once; use only one of --poles, --time-constants, and "
+         "--frequency with --damping");
   if (!options.poles.empty())
     options.wishes.poles = {{{Complex(options.poles[0]), Complex(options.poles[1])}}};
   for (const double t : options.time_constants)
     if (!(t > 0))
-      fail(ErrorCode::usage, "--time-constants: " + text::brief(t) + " s must be positive");
+      fail(ErrorCode::usage, "--time-constants: " + text::brief(t) + " s is not above 0");
   if (!options.time_constants.empty())
     options.wishes.poles = {
         {Complex(-1 / options.time_constants[0]), Complex(-1 / options.time_constants[1])}};
   if (options.frequency != 0 || options.damping != 0) {
     if (!(options.frequency > 0) || !(options.damping > 0))
-      fail(ErrorCode::usage, "--frequency and --damping belong together, both positive");
+      fail(ErrorCode::usage, "give --frequency and --damping together, both above 0");
     const double w = 2 * M_PI * options.frequency, d = options.damping;
     const Complex root = std::sqrt(Complex(d * d - 1));
     options.wishes.poles = {{w * (-d + root), w * (-d - root)}};
@@ -150,11 +151,11 @@ std::string report(const RobotModel& model, const Design& d) {
   const double w = d.omega;
   std::string out = model.name() + ": COG " + text::fixed(d.loop.height, 3) +
                     " m above the soles, omega " + text::fixed(w, 2) + " /s\n";
-  out += "gains, as they stand in a pattern or sidecar:\n ";
+  out += "gains, as a pattern or a sidecar names them:\n ";
   for (const auto& [name, value] : gain_list(p)) out += " " + name + "=" + text::brief(value);
   out += "\n(18)(19)  K = " + text::brief(long_term_k(p)) +
          ", D = " + text::fixed(1e3 * long_term_d(p) / w, 1) +
-         " ms: an error of the COG moves the reference ZMP K times as far\n";
+         " ms: the reference ZMP moves K times as far as the COG is off\n";
   out += "short term  " + text::fixed(100 * p.zmp_gain / (1 + p.zmp_gain), 0) +
          " % of a ZMP error is answered immediately, filtered over " +
          text::fixed(1e3 * p.zmp_filter / w, 1) + " ms\n";
@@ -165,8 +166,9 @@ std::string report(const RobotModel& model, const Design& d) {
                            : ", a constant ZMP offset is never accepted as normal\n";
   out += "loop on one foot: ankle stiffness " + text::brief(d.loop.stiffness) +
          " N m/rad, sensor latency " + text::brief(1e3 * d.loop.delay) +
-         " ms; the loop is stable, and would be up to ka = " +
-         (d.most_ka >= kMostKa ? "more than " + text::brief(kMostKa) : text::fixed(d.most_ka, 2)) +
+         " ms; the loop is stable, and stays stable " +
+         (d.most_ka >= kMostKa ? "beyond ka = " + text::brief(kMostKa)
+                               : "up to ka = " + text::fixed(d.most_ka, 2)) +
          "; slowest modes:\n";
   int shown = 0;
   for (const Complex& pole : d.analysis.poles)
@@ -216,10 +218,10 @@ void add_gains(CLI::App& app, Context& context) {
       "Examples:\n  ayumi gains hoap1\n"
       "  ayumi gains hoap1 --time-constants 0.16,0.64 --absorb 0.6 --return-time 0.1\n"
       "  ayumi gains hoap1 --frequency 1 --damping 1 --latency 0.005\n"
-      "Unstable gains are refused, and the mode that grows is named. What is not given is the "
+      "Unstable gains are refused with the reason. Gains that are not given are the "
       "robot's.");
   auto options = std::make_shared<GainsCommand>();
-  command->add_option("ROBOT", options->robot, "Bundled name, folder, sidecar or URDF.")
+  command->add_option("ROBOT", options->robot, "Name of a bundled robot, folder, sidecar or URDF.")
       ->required();
   command
       ->add_option("--poles", options->poles,
@@ -229,7 +231,7 @@ void add_gains(CLI::App& app, Context& context) {
       ->type_name("P1,P2");
   command
       ->add_option("--time-constants", options->time_constants,
-                   "The same as two time constants [s].")
+                   "Two time constants of the COG in place of poles [s].")
       ->delimiter(',')
       ->expected(2)
       ->type_name("T1,T2");

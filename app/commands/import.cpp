@@ -82,7 +82,7 @@ void add_import(CLI::App& app, Context& context) {
   static ImportCommand options;
   static std::string unit = "rad";
   command->add_option("FILE", options.file, "Sequence or table; - is standard input.")->required();
-  command->add_option("--robot", options.robot, "Bundled name, folder, sidecar or URDF.")
+  command->add_option("--robot", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
       ->required()
       ->type_name("ROBOT");
   command
@@ -94,7 +94,7 @@ void add_import(CLI::App& app, Context& context) {
       ->add_option("--format", options.import.format,
                    "Format of the file (default: recognized by its content).")
       ->check(CLI::IsMember({"hoap", "csv", "json"}));
-  command->add_option("--unit", unit, "Unit of columns that are named by bare joint names.")
+  command->add_option("--unit", unit, "Unit of columns whose names are bare joint names.")
       ->check(CLI::IsMember({"rad", "deg"}))
       ->capture_default_str();
   command->add_option("--rate", options.import.rate, "Rate of a table without a time column [1/s].")

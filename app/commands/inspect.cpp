@@ -273,7 +273,7 @@ SimulationLog stand_of(const RobotModel& model) {
 std::vector<std::string> write_picture(const Context& context, const RobotModel& model,
                                        const std::string& file, const std::string& view) {
   if (std::filesystem::path(file).extension() != ".png")
-    fail(ErrorCode::usage, "--picture " + file + ": a picture is a .png");
+    fail(ErrorCode::usage, "--picture " + file + ": --picture needs a file name that ends in .png");
   refuse_overwriting(context, file);
   ClipOptions options;
   options.camera.view = view;
@@ -310,7 +310,7 @@ void add_inspect(CLI::App& app, Context& context) {
       "  ayumi inspect somebody.urdf --picture somebody.png\n"
       "For a bare URDF, soles, servos and limits are inferred and listed as assumptions.");
   auto options = std::make_shared<InspectOptions>();
-  command->add_option("robot", options->robot, "Bundled name, folder, sidecar or URDF.")
+  command->add_option("robot", options->robot, "Name of a bundled robot, folder, sidecar or URDF.")
       ->required()
       ->type_name("ROBOT");
   command->add_option("--picture", options->picture, "Draw the home posture on the ground, .png.")

@@ -47,7 +47,7 @@ bool write_new(const Context& context, const RobotModel& model, Pattern pattern,
 }
 
 void add_common(CLI::App& command, NewOptions& options) {
-  command.add_option("--robot", options.robot, "Bundled name, folder, sidecar or URDF.")
+  command.add_option("--robot", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
       ->type_name("ROBOT")
       ->capture_default_str();
   command.add_option("-o,--out", options.out, "Pattern file to write.")->type_name("F")->required();
@@ -167,23 +167,25 @@ void new_viip(const Context& context, const NewOptions& options) {
   const bool steps = options.viip_steps > 0;
   if (steps == !options.cog.empty())
     fail(ErrorCode::usage,
-         "viip: give --cog, a displacement, or --steps, with or without "
-         "--velocity and --turn");
+         "viip: give either --cog DX,DY,DZ or --steps N; --velocity and --turn may be added to "
+         "--steps");
   if (!steps && (!options.velocity.empty() || options.turn_deg != 0))
-    fail(ErrorCode::usage, "viip: --velocity and --turn go with --steps");
+    fail(ErrorCode::usage, "viip: --velocity and --turn need --steps N");
   const auto moves = [](double v) { return v != 0; };
   if (options.viip_steps == 1 &&
       (options.turn_deg != 0 ||
        std::any_of(options.velocity.begin(), options.velocity.end(), moves)))
-    fail(
-        ErrorCode::usage,
-        "viip: the last step closes, so that one step goes nowhere; one step forward is --steps 2");
+    fail(ErrorCode::usage,
+         "viip: the last step brings the feet together, so one step cannot go forward; give "
+         "--steps 2");
   Pattern pattern;
   pattern.robot = options.robot;
   pattern.controller.type = ControllerKind::viip;
   for (const std::vector<double>& values : {options.cog, options.velocity, {options.turn_deg}})
     for (const double value : values)
-      if (!std::isfinite(value)) fail(ErrorCode::usage, "viip: a value is not a finite number");
+      if (!std::isfinite(value))
+        fail(ErrorCode::usage,
+             "viip: a value of --cog, --velocity or --turn is not a finite number");
   double t = kStandFirst;
   const auto phase = [&](double length, const ViipGoal& goal) {
     t += length;
@@ -233,7 +235,9 @@ void add_scaled(CLI::App& command, const char* name, std::optional<double>& valu
 }
 
 void add_gait(CLI::App& command, NewOptions& options) {
-  command.add_option("--steps", options.walk.steps, "Steps before the closing one.")
+  command
+      .add_option("--steps", options.walk.steps,
+                  "Number of steps; one more step brings the feet together.")
       ->capture_default_str()
       ->type_name("N");
   add_scaled(command, "--period", options.period, "Time of one step [s]", WalkParameters().period,
@@ -268,10 +272,10 @@ void add_walk(CLI::App& command, NewOptions& options) {
       ->capture_default_str()
       ->type_name("DEG");
   command
-      .add_option(
-          "--rise", options.rise,
-          "Height of a stair [m]: each stride leads onto one, and the other foot follows. The "
-          "pattern's world gets the stairs.")
+      .add_option("--rise", options.rise,
+                  "Height of a stair [m]. Each stride leads onto the next stair, and the other "
+                  "foot follows. "
+                  "The stairs are added to the world of the pattern.")
       ->type_name("M");
   command.add_option("--side", options.walk.side, "Distance to the left per pair of steps [m].")
       ->capture_default_str()
@@ -321,9 +325,9 @@ void add_viip(CLI::App& command, NewOptions& options) {
       ->expected(3)
       ->type_name("DX,DY,DZ");
   command
-      .add_option(
-          "--steps", options.viip_steps,
-          "Number of steps; the last one brings the feet together. Without --velocity in place.")
+      .add_option("--steps", options.viip_steps,
+                  "Number of steps; the last one brings the feet together. Without --velocity, the "
+                  "robot steps in place.")
       ->check(CLI::Range(1, 10000).description(""))
       ->type_name("N");
   command

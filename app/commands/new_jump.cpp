@@ -133,7 +133,7 @@ void new_jump(Context& context, JumpOptions options) {
                     " m, a stoop of " + text::brief(p.stoop) + " m and ref z_G " +
                     text::brief(p.cog_height) +
                     " m: choose a lower --height, another --stoop or --cog-height; `ayumi check` "
-                    "names what is passed\n");
+                    "names the limits that are exceeded\n");
   }
   Pattern pattern = jump_pattern(model, p);
   pattern.profile = options.profile;
@@ -152,7 +152,7 @@ void add_new_jump(CLI::App& parent, Context& context) {
       "  ayumi new jump --times 3 -o hop.json\n"
       "  ayumi new jump --forward 0.02 -o forward.json\n"
       "  ayumi new jump --highest --profile hoap1 -o highest.json");
-  command->add_option("--robot", options.robot, "Bundled name, folder, sidecar or URDF.")
+  command->add_option("--robot", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
       ->type_name("ROBOT")
       ->capture_default_str();
   command->add_option("-o,--out", options.out, "Pattern file to write.")

@@ -128,7 +128,8 @@ void add_plot(CLI::App& app, Context& context) {
   command->add_option("--to", options->loci.end, "Last time [s] (default: the end).");
   command->add_option("--title", options->loci.title, "Heading of the picture.");
   command->add_option("--width", options->loci.width, "Width in pixels.")->capture_default_str();
-  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
+  command->add_option("--robot", options->robot,
+                      "Robot to use in place of the one that the run names.");
   command->footer(
       "Examples:\n"
       "  ayumi plot out/ -o loci.svg            open loop, closed loop and command together\n"

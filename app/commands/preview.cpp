@@ -58,8 +58,8 @@ void switch_marks(const std::string& option, const std::vector<std::string>& nam
         found = true;
       }
     if (!found)
-      fail(ErrorCode::usage, option + " " + word + ": not one of " + text::join(known, ", ") +
-                                 text::suggestion(word, known));
+      fail(ErrorCode::usage, option + " " + word + ": this mark is not one of " +
+                                 text::join(known, ", ") + text::suggestion(word, known));
   }
 }
 
@@ -67,7 +67,8 @@ void parse_size(const std::string& words, RenderOptions& picture) {
   int used = 0;
   if (std::sscanf(words.c_str(), "%dx%d%n", &picture.width, &picture.height, &used) != 2 ||
       size_t(used) != words.size())
-    fail(ErrorCode::usage, "--size " + words + ": WIDTHxHEIGHT is needed, e.g. 1280x720");
+    fail(ErrorCode::usage,
+         "--size " + words + ": the size must have the form WIDTHxHEIGHT, for example 1280x720");
 }
 
 CameraMode camera_mode(const std::string& name) {
@@ -89,7 +90,7 @@ void settle(PreviewOptions& options, const Context& context) {
   clip.picture.antialias = !options.draft;
   clip.threads = thread_count(context);
   if (options.strip > 0 && options.exposures > 0)
-    fail(ErrorCode::usage, "--strip and --exposures: one of them at a time");
+    fail(ErrorCode::usage, "give either --strip or --exposures, not both");
 }
 
 /// Snapshots between --from and --to; without either, those that tell most.
@@ -240,7 +241,7 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
       ->check(CLI::Range(1, 400));
   command
       .add_option("--exposures", options.exposures,
-                  "Number of times drawn over each other in a .png.")
+                  "Number of postures that are drawn into one .png, evenly spaced in time.")
       ->check(CLI::Range(1, 100));
   command.add_option("--columns", options.columns, "Columns of --strip and --sheet.")
       ->check(CLI::Range(1, 100))
@@ -263,7 +264,7 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
                    "forces, push, trails, heat, caption or all."},
         {"--show", &options.show, "Draw marks; heat shows joints near their limits in red."}})
     command.add_option(name, *list, what)->delimiter(',')->allow_extra_args(false);
-  command.add_option("--title", clip.title, "First words of the caption.");
+  command.add_option("--title", clip.title, "Text at the beginning of the caption.");
   command.add_flag("--draft", options.draft, "Draw faster, without antialiasing.");
 }
 
@@ -286,7 +287,8 @@ void add_preview(CLI::App& app, Context& context) {
       ->required()
       ->type_name("FILE");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
-  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
+  command->add_option("--robot", options->robot,
+                      "Robot to use in place of the one that the run names.");
   command->add_option("--format", options->format, "Format of the clips of several runs.")
       ->check(CLI::IsMember({"mp4", "webm", "gif", "apng", "png", "glb"}).description(""))
       ->capture_default_str();

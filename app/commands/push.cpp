@@ -127,7 +127,7 @@ std::string motion_of(const CommandSeries& series) {
   const auto steps = [](const ViipSpan& s) { return std::holds_alternative<StepGoal>(s.goal); };
   const bool walks = std::any_of(series.samples.begin(), series.samples.end(), one) ||
                      std::any_of(series.viip.begin(), series.viip.end(), steps);
-  return walks ? "walking" : "in the pattern";
+  return walks ? "walking" : "during the pattern";
 }
 
 std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const PushOptions& push,
@@ -141,7 +141,7 @@ std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const
       lines.push_back((standing ? "standing" : motion) + ": " + name_of(push.controllers[k].type) +
                       " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
                       " B; " + open + " worst " + text::fixed(s.open_worst, 2) + " B, mean " +
-                      text::fixed(s.open_mean, 2) + " B; below " + open + " in " +
+                      text::fixed(s.open_mean, 2) + " B; less than " + open + " in " +
                       std::to_string(s.below_open) + " of " + std::to_string(s.cases) + " cases");
     }
   return lines;
@@ -176,7 +176,9 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
            [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
   }
   for (const std::string& line : summary_lines(cases, push, series)) out += line + "\n";
-  return out + "B = largest push that a point mass could absorb; + = largest push tried\n";
+  return out +
+         "B = largest push that a point mass could absorb; + = the largest push that was tried, "
+         "survived\n";
 }
 
 PushMap push_map(const Task& input, const std::vector<PushCase>& cases, const PushOptions& push) {
@@ -286,7 +288,7 @@ void add_push(CLI::App& app, Context& context) {
   command
       ->add_option(
           "--controller", options->controllers,
-          "Controller to study beside open loop; may be repeated (default: the pattern's).")
+          "Controller to compare with open loop; may be repeated (default: the pattern's).")
       ->type_name("NAME")
       ->allow_extra_args(false);
   command->add_option("--gain", options->gains, "Set a gain of the controller.")
@@ -315,7 +317,7 @@ void add_push(CLI::App& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--replicas", push.replicas,
-                   "Small variations of every push, all of which must be survived.")
+                   "Number of small variations of every push; the robot must survive all of them.")
       ->check(CLI::Range(0, 100).description(""))
       ->type_name("N")
       ->capture_default_str();

@@ -101,7 +101,7 @@ std::string in_words(const RepairCommand& options, const Task& input, const Repa
   out += steering_words(options, input.pattern);
   const bool moves = result.moved.joint.size > 1e-4;
   if (result.status != RepairStatus::repaired && !options.repair.keep_partial && moves)
-    out += "  the motion with the smallest violation (not written) would have\n";
+    out += "  the motion with the smallest violation, which is not written, would have\n";
   out += motion_words(model, result.moved, result.before, result.check);
   out += cost_words(result.change) + "; " + std::to_string(result.variables) + " variables, " +
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
@@ -118,7 +118,7 @@ std::string in_words(const std::vector<PassingValues>& all) {
     for (const PassingValue& v : values)
       words.push_back(v.parameter + " = " + text::exact(v.passing) + " instead of " +
                       text::exact(v.given));
-    out += "  with " + text::join(words, " and ") + " the pattern passes as it is\n";
+    out += "  the pattern passes without a repair with " + text::join(words, " and ") + "\n";
   }
   return out;
 }
@@ -129,16 +129,17 @@ std::string in_words(const PassingPace& pace) {
     std::vector<std::string> windows;
     for (const auto& [begin, end] : pace.windows)
       windows.push_back(text::fixed(begin, 3) + "-" + text::fixed(end, 3) + " s");
-    out += "  with " + text::join(windows, ", ") + " taking " + text::exact(pace.factor) +
-           " times as long the pattern passes as it is\n";
+    out += "  the pattern passes without a repair when " + text::join(windows, ", ") + " last " +
+           text::exact(pace.factor) + " times as long\n";
   }
   if (pace.tried > 0 && pace.factor == 0 && pace.whole == 0)
-    out += "  the pattern with its keys played more slowly, up to " + text::brief(pace.tried) +
-           " times, does not pass either: more time alone is not enough\n";
+    out +=
+        "  more time alone is not enough: the pattern does not pass when its keys are played up "
+        "to " +
+        text::brief(pace.tried) + " times more slowly\n";
   if (pace.whole > 0)
-    out += "  played " + text::exact(pace.whole) +
-           " times as slowly from end to end it passes as it is (edit retime --scale " +
-           text::exact(pace.whole) + ")\n";
+    out += "  the pattern passes without a repair when it lasts " + text::exact(pace.whole) +
+           " times as long from end to end (edit retime --scale " + text::exact(pace.whole) + ")\n";
   return out;
 }
 
@@ -321,7 +322,7 @@ void add_repair(CLI::App& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--max-iterations", options.repair.max_iterations,
-                   "Most iterations of Ipopt in each round.")
+                   "Largest number of iterations of Ipopt in each round.")
       ->check(CLI::Range(1, 10000))
       ->type_name("N")
       ->capture_default_str();

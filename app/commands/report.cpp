@@ -26,11 +26,12 @@ struct ReportCommand {
 void report_run(ReportCommand options, Context& context) {
   refuse_overwriting(context, options.output);
   if (!is_run_folder(options.input))
-    fail(ErrorCode::bad_file, options.input +
-                                  ": is no RUN, the folder that `ayumi run` or `ayumi simulate` "
-                                  "wrote");
+    fail(ErrorCode::bad_file,
+         options.input +
+             ": this is not a RUN, the folder that `ayumi run` or `ayumi simulate` "
+             "wrote");
   if (!(options.max_megabytes > 0) || options.max_megabytes > 1000)
-    fail(ErrorCode::usage, "--max-size: must be above 0 and at most 1000 MB");
+    fail(ErrorCode::usage, "--max-size: the size must be above 0 and at most 1000 MB");
   options.report.max_bytes = static_cast<size_t>(1e6 * options.max_megabytes);
   options.report.replay = !options.no_replay;
   const RunFolder run = read_run(options.input);
@@ -65,7 +66,8 @@ void add_report(CLI::App& app, Context& context) {
       ->add_option("--push", options->push,
                    "Results of ayumi push (default: push.json in the RUN, if there is one).")
       ->type_name("FILE");
-  command->add_option("--robot", options->robot, "Robot in place of the recorded one.");
+  command->add_option("--robot", options->robot,
+                      "Robot to use in place of the one that the run names.");
   command->add_option("--max-size", options->max_megabytes, "Largest size of the page [MB].")
       ->capture_default_str();
   command->add_option("--rate", options->report.rate, "Postures per second of the replay.")

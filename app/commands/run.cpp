@@ -103,7 +103,7 @@ std::string check_text(const ConsistencyReport& report) {
   text += ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
           " mm, joint speed " + text::fixed(100 * report.summary[FindingKind::joint_speed], 0) +
           " %, torque " + text::fixed(100 * report.summary[FindingKind::joint_torque], 0) +
-          " % of " + report.profile;
+          " % of the limits of " + report.profile;
   for (const Finding& finding : report.findings)
     if (finding.severity == Severity::error)
       text += std::string("\n            ") + name_of(finding.kind) + " at " +
@@ -212,7 +212,7 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
   if (!caution.unfit.empty()) {
     text = "no table for a robot: " + caution.unfit + "\n            " + text;
   } else if (!caution.disturbances.empty()) {
-    text = "no table for a robot: the pattern's table is from a run with disturbances: " +
+    text = "no table for a robot: the table of the pattern is from a run with disturbances: " +
            caution.disturbances + "\n            " + text;
   } else if (encoders && safe.report.safe) {
     write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));

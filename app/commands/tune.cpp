@@ -102,7 +102,7 @@ void add_tune(CLI::App& app, Context& context) {
   add_pattern_options(*command, options->input);
   command
       ->add_option("--gain", options->start,
-                   "Start the search from this gain (default: the pattern's).")
+                   "Gain at the start of the search (default: the pattern's).")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_option("--tune", t.gains, "Gains to change (default: ka,q,ks,kd,tau_z,ankle).")
@@ -125,7 +125,7 @@ void add_tune(CLI::App& app, Context& context) {
                    "Times of the pushes [s] (default: standing, and four gait phases).")
       ->delimiter(',')
       ->type_name("T");
-  command->add_option("--rounds", t.rounds, "How often the search goes through all gains.")
+  command->add_option("--rounds", t.rounds, "Number of passes of the search through all gains.")
       ->check(CLI::Range(1, 50).description(""))
       ->capture_default_str()
       ->type_name("N");

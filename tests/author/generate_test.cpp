@@ -141,7 +141,7 @@ TEST(WalkPattern, NamesTheParameterOutOfRange) {
   EXPECT_NE(with([](auto& p) { p.lift = 0; }).find("lift"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.rise = 0.01; }).find("shorter than a stair has to be"),
             std::string::npos);
-  EXPECT_NE(with([](auto& p) { p.rise = 0.01, p.turn = 0.1; }).find("rise goes straight ahead"),
+  EXPECT_NE(with([](auto& p) { p.rise = 0.01, p.turn = 0.1; }).find("climbed straight ahead"),
             std::string::npos);
   EXPECT_NE(with([](auto& p) { p.turn = 1; }).find("turn"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.side = -1; }).find("side"), std::string::npos);

@@ -240,7 +240,8 @@ TEST_F(CheckRepair, WishesOfTheFile) {
   for (const auto& [wishes, message] : std::vector<std::pair<std::string, std::string>>{
            {R"({"lock": {"joints": ["l_kne"]}})", "repair/lock/joints/0: the robot 'hoap1'"},
            {R"({"lock": {"windows": [[90, 91]]}})", "after the motion's end at"},
-           {R"({"lock": {"keyframes": [21]}})", "21 is no keyframe; they are numbered 0 to 20"},
+           {R"({"lock": {"keyframes": [21]}})",
+            "21 is not the number of a keyframe; keyframes are numbered from 0 to 20"},
            {R"({"weights": {"l_kne": 2}})", "repair/weights/l_kne: the robot"}}) {
     with_wishes(wishes);
     const Output wrong = ayumi({"repair", "outside.json", "-o", "out.json"});
@@ -255,7 +256,7 @@ TEST_F(CheckRepair, LocksInWords) {
        std::vector<std::pair<std::string, std::string>>{{"foot:middle", "foot:left and foot:right"},
                                                         {"keyframe:99", "numbered 0 to 20"},
                                                         {"3..2", "must lie in the motion"},
-                                                        {"a..b", "two numbers of seconds"},
+                                                        {"a..b", "BEGIN..END in seconds"},
                                                         {"l_kne", "did you mean 'l_knee'?"}}) {
     const Output wrong = ayumi({"repair", "outside.json", "-o", "out.json", "--lock", lock});
     EXPECT_EQ(wrong.exit_code, 2) << lock;

@@ -150,7 +150,9 @@ TEST_F(Export, ParametersAndExistingFiles) {
   ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--set", "lifted=70"}).exit_code, 0);
   const Output again = ayumi({"p.json", "--format", "csv", "-o", "a.csv"});
   EXPECT_EQ(again.exit_code, 3);
-  EXPECT_NE(again.err.find("exists already; choose another name or --force"), std::string::npos);
+  EXPECT_NE(
+      again.err.find("this already exists; choose another name, or overwrite it with --force"),
+      std::string::npos);
   EXPECT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv", "--force"}).exit_code, 0);
   const Output typo = ayumi({"p.json", "--format", "csv", "-o", "b.csv", "--set", "lift=1"});
   EXPECT_EQ(typo.exit_code, 2);
@@ -170,7 +172,7 @@ TEST_F(Export, BrokenPatternsAreOneLineAndExit3) {
            {"\"hoap1\"", "\"hoap9\"", "hoap9"},
            {"keyframes", "keyframe", "did you mean 'keyframes'?"},
            {"\"both\"", "\"none\"", "none"},
-           {"pattern/1", "pattern/2", "this version reads 'ayumi.pattern/1'"},
+           {"pattern/1", "pattern/2", "this version of Ayumi reads 'ayumi.pattern/1'"},
            {"${lifted}", "${lift}", "unknown parameter 'lift'; did you mean 'lifted'?"}}) {
     std::string text = kArmUp;
     text.replace(text.find(each.from), each.from.size(), each.to);

@@ -49,13 +49,14 @@ TEST(GainsCommand, RefusesWithTheReason) {
     EXPECT_NE(made.err.find(why), std::string::npos) << made.err;
   };
   refused({"gains", "hoap1", "--poles", "1,-2"},
-          "pole [1/s] 1: not left of 0; the COG would never come back");
+          "pole [1/s] 1: the real part must be below 0, or the COG never comes back");
   refused({"gains", "hoap1", "--gain", "k=1", "--gain", "d=1"}, "need K > 1 and D > 0");
   refused({"gains", "hoap1", "--gain", "k=2", "--gain", "d=0"}, "need K > 1 and D > 0");
   refused({"gains", "hoap1", "--absorb", "0.95"}, "the loop grows at");
   refused({"gains", "hoap1", "--latency", "0.05"}, "s late the loop grows at");
   refused({"gains", "hoap1", "--absorb", "1"}, "absorbed share 1");
-  refused({"gains", "hoap1", "--poles", "-1,-2", "--time-constants", "1,2"}, "give the poles once");
+  refused({"gains", "hoap1", "--poles", "-1,-2", "--time-constants", "1,2"},
+          "the poles are given more than once");
 }
 
 TEST(GainsCommand, WhatItRefusesIsNotRunUnlessAsked) {

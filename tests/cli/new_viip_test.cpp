@@ -25,7 +25,7 @@ TEST_F(NewViip, RefusesWhatTheRobotCannotReach) {
   for (const Case& c : {Case{{"--cog", "0.2,0,0"}, 3, "outside the support of the feet"},
                         Case{{"--cog", "0,0,-0.1"}, 3, "is possible"},
                         Case{{"--cog", "nan,0,0"}, 2, "not a finite"},
-                        Case{{"--steps", "6", "--velocity", "0.5"}, 3, "m/s at most"},
+                        Case{{"--steps", "6", "--velocity", "0.5"}, 3, "the largest step is"},
                         Case{{"--steps", "6", "--turn", "300"}, 3, "deg/s"},
                         Case{{"--steps", "1", "--velocity", "0.1"}, 2, "--steps 2"},
                         Case{{"--steps", "6", "--velocity", "inf"}, 2, "not a finite"}}) {

@@ -22,18 +22,19 @@ TEST(NewWalk, StairsAreWrittenForTheProfileThatClimbsThem) {
   // It passes with the motors it asks for, and a table for the robot as it is would be refused.
   const Output check = run_program({"check", "-q", "w.json"}, folder.path());
   EXPECT_EQ(check.exit_code, 0);
-  EXPECT_NE(check.out.find("the robot as it is: profile hoap1 is not enough: needs "),
+  EXPECT_NE(check.out.find("the robot's own motors: profile hoap1 is not enough: needs "),
             std::string::npos)
       << check.out;
-  EXPECT_NE(check.out.find("(`export --format hoap` judges by it)"), std::string::npos);
+  EXPECT_NE(check.out.find("(`export --format hoap` judges by this profile)"), std::string::npos);
 }
 
 TEST(NewWalk, OnTheLevelItIsTheRobotsOwn) {
   Folder folder;
   EXPECT_EQ(made(folder, {"--steps", "2"}).out.find("profile"), std::string::npos);
   EXPECT_EQ(contents(folder.path() / "w.json").find("\"profile\""), std::string::npos);
-  EXPECT_EQ(run_program({"check", "-q", "w.json"}, folder.path()).out.find("robot as it is"),
-            std::string::npos);
+  EXPECT_EQ(
+      run_program({"check", "-q", "w.json"}, folder.path()).out.find("the robot's own motors"),
+      std::string::npos);
 }
 
 TEST(NewWalk, WhatNoProfileMendsIsSaid) {
@@ -43,7 +44,7 @@ TEST(NewWalk, WhatNoProfileMendsIsSaid) {
   EXPECT_NE(out.out.find("`ayumi check` finds it inconsistent: self_collision r_foot - l_foot"),
             std::string::npos)
       << out.out;
-  EXPECT_NE(out.out.find(" is what the legs can do"), std::string::npos) << out.out;
+  EXPECT_NE(out.out.find(" is the most that the legs can reach"), std::string::npos) << out.out;
 }
 
 // A way aside that asks too much of the ankles, or is out of reach, is told with the one that fits.
@@ -60,7 +61,8 @@ TEST(NewWalk, AsideNoFartherThanTheLegsCan) {
   EXPECT_EQ(run_program({"check", "-q", "w.json"}, folder.path()).exit_code, 0);
   const Output beyond = made(folder, {"--steps", "2", "--stride", "0", "--side", "0.07"});
   EXPECT_EQ(beyond.exit_code, 3) << beyond.out;
-  EXPECT_NE(beyond.err.find("; --side " + fits + " is what the legs can do"), std::string::npos)
+  EXPECT_NE(beyond.err.find("; --side " + fits + " is the most that the legs can reach"),
+            std::string::npos)
       << beyond.err;
 }
 

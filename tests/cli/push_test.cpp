@@ -44,7 +44,7 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
   const Study study;
   const Output first = study.run(study.command);
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_NE(first.out.find("in the pattern: dtad worst"), std::string::npos) << first.out;
+  EXPECT_NE(first.out.find("during the pattern: dtad worst"), std::string::npos) << first.out;
   const std::string whole = contents(study.folder / "results.json");
   Json partly = Json::parse(whole);
   ASSERT_EQ(partly["cases"].size(), 2u);
@@ -65,7 +65,8 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
 
   const Output other = study.run(study.command, {"--gain", "ka=1"});
   EXPECT_EQ(other.exit_code, 3);
-  EXPECT_NE(other.err.find("results.json: holds the results of another study"), std::string::npos)
+  EXPECT_NE(other.err.find("results.json: this file holds the results of another study"),
+            std::string::npos)
       << other.err;
 }
 

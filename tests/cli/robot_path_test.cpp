@@ -26,7 +26,7 @@ TEST(RobotPath, HoldsFromTheWorkingFolderWhereverThePatternIsWritten) {
   const Output lost =
       run_program({"preview", "../run", "--size", "64x48", "-o", "b.png"}, folder / "mine");
   EXPECT_EQ(lost.exit_code, 3) << "seen from here, patterns/../mine is not there";
-  EXPECT_NE(lost.err.find("name it by --robot"), std::string::npos) << lost.err;
+  EXPECT_NE(lost.err.find("name the robot with --robot"), std::string::npos) << lost.err;
   EXPECT_EQ(run_program({"preview", "../run", "--robot", ".", "--size", "64x48", "-o", "b.png"},
                         folder / "mine")
                 .exit_code,

@@ -138,7 +138,8 @@ TEST_F(Run, ARunThatFellGivesNoTableForARobot) {
   for (const std::string format : {"hoap", "csv", "json"}) {
     const Output refused = exported({}, format);
     EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_EQ(refused.out.find("t: not written, under its disturbances the run fell at"), 0u)
+    EXPECT_EQ(refused.out.find("t: not written, because under its disturbances the run fell at"),
+              0u)
         << refused.out;
   }
   EXPECT_FALSE(fs::exists(folder / "t"));
@@ -160,7 +161,8 @@ TEST_F(Run, AnInconsistentPatternGivesNoTableForARobot) {
   EXPECT_FALSE(fs::exists(folder / "out/hoap.csv"));
   const Output of_run = exported({});
   EXPECT_EQ(of_run.exit_code, 1);
-  EXPECT_EQ(of_run.out.find("t: not written, the pattern is inconsistent"), 0u) << of_run.out;
+  EXPECT_EQ(of_run.out.find("t: not written, because the pattern is inconsistent"), 0u)
+      << of_run.out;
   const Output of_pattern =
       ayumi({"export", "fast.json", "--format", "csv", "-o", "t", "-q", "--json"});
   EXPECT_EQ(of_pattern.exit_code, 1) << of_pattern.err;
@@ -190,7 +192,8 @@ TEST_F(Run, ExportRefusesAFolderThatHasChanged) {
     write(folder / "out" / name, after);
     const Output refused = exported({});
     EXPECT_EQ(refused.exit_code, 3) << name;
-    EXPECT_NE(refused.err.find(name + ": has changed since the run was written"), std::string::npos)
+    EXPECT_NE(refused.err.find(name + ": the file has changed since the run was written"),
+              std::string::npos)
         << refused.err;
     write(folder / "out" / name, before);
   }
@@ -206,7 +209,7 @@ TEST_F(Run, ExportRefusesAFolderThatHasChanged) {
   fs::remove(folder / "out/run.json");
   const Output none = exported({});
   EXPECT_EQ(none.exit_code, 3);
-  EXPECT_NE(none.err.find("out: holds no run.json; a RUN is needed"), std::string::npos)
+  EXPECT_NE(none.err.find("out: the folder has no run.json; a RUN is needed"), std::string::npos)
       << none.err;
   EXPECT_FALSE(fs::exists(folder / "t"));
 }
@@ -216,7 +219,8 @@ TEST_F(Run, ForceLeavesNothingOfTheRunBeforeAndEverythingOfTheUser) {
   write(folder / "out/notes.txt", "mine");
   const Output second = run("calm.json");
   EXPECT_EQ(second.exit_code, 3);
-  EXPECT_NE(second.err.find("out: exists already; choose another name or --force"),
+  EXPECT_NE(second.err.find(
+                "out: this already exists; choose another name, or overwrite it with --force"),
             std::string::npos)
       << second.err;
   EXPECT_TRUE(fs::exists(folder / "out/reference_pushed.csv"));
@@ -237,7 +241,8 @@ TEST_F(Run, AFileOfTheUserIsNeverOverwritten) {
        {std::vector<std::string>{}, std::vector<std::string>{"--force"}}) {
     const Output refused = run("calm.json", more);
     EXPECT_EQ(refused.exit_code, 3);
-    EXPECT_NE(refused.err.find("out/hoap.csv: exists already"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("out/hoap.csv: this already exists"), std::string::npos)
+        << refused.err;
   }
   EXPECT_EQ(contents(folder / "out/hoap.csv"), "mine");
   EXPECT_EQ(folder.files(),
@@ -321,7 +326,8 @@ TEST_F(Run, AllCommandsRefuseAnExistingFileInOneSentence) {
     words.emplace_back("-q");
     const Output refused = ayumi(words);
     EXPECT_EQ(refused.exit_code, 3) << words[0] << refused.err;
-    EXPECT_NE(refused.err.find(": exists already; choose another name or --force\n"),
+    EXPECT_NE(refused.err.find(
+                  ": this already exists; choose another name, or overwrite it with --force\n"),
               std::string::npos)
         << words[0] << ": " << refused.err;
   }

@@ -80,7 +80,8 @@ TEST(BrokenRobot, WhatIsNoFile) {
   const TemporaryFolder folder;
   EXPECT_EQ(message_of(folder, "missing.urdf"), "missing.urdf: no such file");
   std::filesystem::create_directory(folder.path() / "folder.urdf");
-  EXPECT_EQ(message_of(folder, "folder.urdf"), "folder.urdf: is a directory, a file is needed");
+  EXPECT_EQ(message_of(folder, "folder.urdf"),
+            "folder.urdf: this is a folder, but a file is needed");
   EXPECT_EQ(message_of(folder, "empty_folder"),
             "robot 'empty_folder': no such file, folder or bundled robot");
   std::filesystem::create_directory(folder.path() / "bare");
@@ -236,10 +237,10 @@ TEST(BrokenRobot, WrongSidecars) {
   const TemporaryFolder folder;
   folder.write("robot.json", sidecar(""));
   EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /urdf: there is no robot.urdf, and no folder of --robot-path has "
+            "robot.json: /urdf: there is no file robot.urdf, and no folder of --robot-path has "
             "robot.urdf, itself or in urdf/");
   folder.write("robot.json", "");
-  EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty, JSON is needed");
+  EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty; it must hold JSON");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");
   EXPECT_EQ(message_of(folder, "robot.json"),
             "robot.json: /format: 'ayumi.pattern/1' is not one of ayumi.robot/1");

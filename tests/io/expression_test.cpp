@@ -39,7 +39,7 @@ TEST(Expression, NamesWhatItUsed) {
 TEST(Expression, SaysWhatIsWrong) {
   EXPECT_NE(message("${b}").find("f: /x: expression \"${b}\": unknown parameter 'b'"),
             std::string::npos);
-  EXPECT_NE(message("${a} *").find("missing at the end"), std::string::npos);
+  EXPECT_NE(message("${a} *").find("ends where a number is expected"), std::string::npos);
   EXPECT_NE(message("${a} 2").find("unexpected '2'"), std::string::npos);
   EXPECT_NE(message("(${a}").find("')' is missing"), std::string::npos);
   EXPECT_NE(message("${a}/0").find("division by zero"), std::string::npos);

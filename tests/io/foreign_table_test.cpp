@@ -74,7 +74,7 @@ TEST(ForeignTable, UnitsMayStandInTheHeadRow) {
 TEST(ForeignTable, MistakesAreOneLine) {
   const std::string good = table("t,l_elbow,r_knee", ',', '.', 1, 1);
   EXPECT_EQ(refusal(good),
-            "a.csv: column 'l_elbow' reaches 19 rad, which no joint does: give "
+            "a.csv: column 'l_elbow' reaches 19 rad, which no joint reaches; give "
             "--unit deg if the angles are in degrees");
   EXPECT_EQ(refusal("\xFF\xFEt\0,\0"), "a.csv: is UTF-16 text; save it as UTF-8");
   EXPECT_EQ(refusal("t l_elbow r_knee\n0 0 0\n1 0 0\n"),
@@ -85,7 +85,7 @@ TEST(ForeignTable, MistakesAreOneLine) {
   EXPECT_EQ(refusal("t;l_elbow\n0;0\n0,1;nan\n"),
             "a.csv:3: column 'l_elbow': 'nan' is not a finite number");
   EXPECT_EQ(refusal("t;l_elbow\n0;0\n0,1;0;0\n"),
-            "a.csv:3: 3 values where the head row names 2 columns");
+            "a.csv:3: 3 values in the row, but the head row names 2 columns");
   EXPECT_NE(refusal("t,l_elbow[turns]\n0,0\n1,0\n").find("unknown column 'l_elbow[turns]'"),
             std::string::npos);
 }

@@ -74,9 +74,10 @@ TEST(Hoap, BlanksAndLineEndsOfRealFiles) {
 }
 
 TEST(Hoap, SaysWhatIsWrong) {
-  EXPECT_EQ(message(""), "s.csv: no sequence row");
-  EXPECT_NE(message("1,2,0,0,R,R,R\n").find("s.csv:1: 7 columns, this robot's sequences have 8"),
-            std::string::npos);
+  EXPECT_EQ(message(""), "s.csv: the file has no row of a sequence");
+  EXPECT_NE(
+      message("1,2,0,0,R,R,R\n").find("s.csv:1: 7 columns, but sequences of this robot have 8"),
+      std::string::npos);
   EXPECT_NE(message("1,3,0,0,0,R,R,R\n").find("s.csv:1: command '3'"), std::string::npos);
   EXPECT_NE(message("1,2,0,0,1.5,R,R,R\n").find("column 5: '1.5' is not a whole number"),
             std::string::npos);

@@ -22,7 +22,7 @@ std::string parse_error(const std::string& bytes) {
 TEST(JsonReader, NamesLineAndColumnOfASyntaxError) {
   EXPECT_TRUE(parse_error("{\n  \"a\": 1,\n  \"b\": }\n").starts_with("f.json:3:8: "))
       << parse_error("{\n  \"a\": 1,\n  \"b\": }\n");
-  EXPECT_EQ(parse_error(" \n"), "f.json: the file is empty, JSON is needed");
+  EXPECT_EQ(parse_error(" \n"), "f.json: the file is empty; it must hold JSON");
   EXPECT_TRUE(parse_error("{\"a\": NaN}").starts_with("f.json:1:"));
   EXPECT_NE(parse_error("{\"a\": 1e999}").find("f.json"), std::string::npos);
   EXPECT_EQ(parse_error("{\"a\": {\"b\": 1, \"b\": 2}}"),
@@ -44,7 +44,7 @@ TEST(JsonReader, NamesThePointerOfAWrongValue) {
   EXPECT_EQ(message_of([&] { key.at("n").integer(); }),
             "f.json: /keys/0/n: expected a whole number, found 1.5");
   EXPECT_EQ(message_of([&] { key.at("v").vector3(); }),
-            "f.json: /keys/0/v: expected 3 numbers, found an array of 2");
+            "f.json: /keys/0/v: expected 3 numbers, found an array of length 2");
   EXPECT_EQ(message_of([&] { key.at("w").vector3(); }),
             "f.json: /keys/0/w/1: expected a number, found null");
   EXPECT_EQ(message_of([&] { key.at("tume"); }), "f.json: /keys/0: the key 'tume' is missing");
@@ -55,7 +55,7 @@ TEST(JsonReader, NamesThePointerOfAWrongValue) {
             }),
             "f.json: /keys/0/time: unknown key; did you mean 'tine'?");
   EXPECT_EQ(message_of([&] { key.at("n").number_within(0, 1); }),
-            "f.json: /keys/0/n: 1.5 is above the largest allowed, 1");
+            "f.json: /keys/0/n: 1.5 is too large; the largest allowed value is 1");
 }
 
 }  // namespace

@@ -86,14 +86,14 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
                                            "takes time",
                                            "does not move",
                                            "a bump needs",
-                                           "1.5 is above",
+                                           "1.5 is too large",
                                            "joint friction needs",
                                            "the range is empty",
                                            "only a sine",
                                            "'frequency' is missing",
                                            "'base.y[m]' is missing",
-                                           "a window ends after",
-                                           "99 is no keyframe"};
+                                           "the window must end after",
+                                           "99 is not the number of a keyframe"};
   int judged = 0;
   for (const Broken& each : mistakes()) {
     const std::string reason = message(with(each.key, each.value));

@@ -228,18 +228,20 @@ TEST(RunFolderFile, SaysWhatIsWrong) {
             }).find("no log 'closedloop' in this run; did you mean 'closed_loop'?"),
             std::string::npos);
   std::ofstream(folder / "log_open_loop.bin", std::ios::app) << "x";
-  EXPECT_NE(message([&] { read_run(folder); }).find("has changed since the run was written"),
-            std::string::npos);
+  EXPECT_NE(
+      message([&] { read_run(folder); }).find("the file has changed since the run was written"),
+      std::string::npos);
   fs::remove(folder / "log_open_loop.bin");
   EXPECT_NE(message([&] { read_run(folder); }).find("log_open_loop.bin: no such file"),
             std::string::npos);
   std::string text = read_file(folder / "run.json");
   text.replace(text.find("ayumi.run/1"), 11, "ayumi.run/7");
   write_file(folder / "run.json", text);
-  EXPECT_NE(message([&] { read_run(folder); }).find("/format: 'ayumi.run/7' is not readable here"),
+  EXPECT_NE(message([&] { read_run(folder); }).find("/format: 'ayumi.run/7' cannot be read"),
             std::string::npos);
   fs::remove(folder / "run.json");
-  EXPECT_NE(message([&] { read_run(folder); }).find("holds no run.json"), std::string::npos);
+  EXPECT_NE(message([&] { read_run(folder); }).find("the folder has no run.json"),
+            std::string::npos);
   RunFolder run = example();
   run.files = {"absent.svg"};
   EXPECT_NE(message([&] { write_run(folder, run); }).find("absent.svg: no such file"),

@@ -164,8 +164,8 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
            {"0,1\n1,2\n", ":1: the head row is missing: found the number '0'"},
            {"t[s],theta.a[rad],\n0,1,2\n", ":1: column 3 has no name"},
            {"t[s],theta.a[rad],t[s]\n0,1,2\n", ":1: the column 't[s]' appears twice"},
-           {head + "0,1\n0.001\n", ":3: 1 values where the head row names 2 columns"},
-           {head + "0,1,2\n", ":2: 3 values where the head row names 2 columns"},
+           {head + "0,1\n0.001\n", ":3: 1 values in the row, but the head row names 2 columns"},
+           {head + "0,1,2\n", ":2: 3 values in the row, but the head row names 2 columns"},
            {head + "0,one\n", ":2: column 'theta.a[rad]': 'one' is not a number"},
            {head + "0,\n", ":2: column 'theta.a[rad]': '' is not a number"},
            {head + "0,1 rad\n", "'1 rad' is not a number"},
@@ -185,7 +185,7 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
            {head + "0,1\n1e9,1\n", "more than the 3600 s that are read"},
            {"{\"columns\": [\"t[s]\"]}", "the key 'data' is missing"},
            {"{\"columns\": [\"t[s]\"], \"data\": []}", "/data: no data row"},
-           {"{\"columns\": [\"t[s]\"], \"data\": [[0], [1, 2]]}", "/data/1: 2 values where"},
+           {"{\"columns\": [\"t[s]\"], \"data\": [[0], [1, 2]]}", "/data/1: 2 values in the row"},
            {"{\"columns\": [\"t[s]\"], \"data\": [[\"0\"]]}",
             "/data/0/0: expected a number, found a string"}}) {
     const std::string text = dense_message(each.text);
@@ -201,7 +201,7 @@ TEST(Table, ReferencesNeedTheirFormatAndAllColumns) {
                 .find("some are missing"),
             std::string::npos);
   text.replace(text.find("reference/1"), 11, "reference/9");
-  EXPECT_NE(reference_message(text).find("format 'ayumi.reference/9' is not readable here"),
+  EXPECT_NE(reference_message(text).find("format 'ayumi.reference/9' cannot be read"),
             std::string::npos);
 }
 

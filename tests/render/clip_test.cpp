@@ -96,7 +96,7 @@ TEST_F(Clip, AFolderOfFramesHoldsExactTimes) {
     EXPECT_EQ(read_file(folder / "frames" / ("frame_0000" + std::to_string(k) + ".png")),
               encode_png(renderer.frame(0.25 + k * 0.25)))
         << k;
-  EXPECT_NE(message_of(folder / "frames", ErrorCode::bad_file).find("exists already"),
+  EXPECT_NE(message_of(folder / "frames", ErrorCode::bad_file).find("already exists"),
             std::string::npos);
 }
 

@@ -46,7 +46,7 @@ TEST_F(ReportCommand, TakesPushThresholds) {
 TEST_F(ReportCommand, SaysWhatIsWrong) {
   const Output none = ayumi({"report", "nowhere", "-o", "r.html"});
   EXPECT_EQ(none.exit_code, 3);
-  EXPECT_NE(none.err.find("nowhere: is no RUN"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("nowhere: this is not a RUN"), std::string::npos) << none.err;
   EXPECT_EQ(ayumi({"report", "run", "-o", "nowhere/r.html"}).exit_code, 3);
   EXPECT_EQ(ayumi({"report", "run", "-o", "r.html", "--max-size", "0"}).exit_code, 2);
   EXPECT_FALSE(fs::exists(folder / "r.html"));

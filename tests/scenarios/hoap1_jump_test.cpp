@@ -107,8 +107,8 @@ TEST(Hoap1Jump, GeneratedKeysNeedTheStrongActuators) {
   options.profile = "hoap1";
   const ConsistencyReport real = check_consistency(hoap1(), series, options);
   const ActuatorNeed need = actuator_need(hoap1(), series, options, real);
-  for (const char* words :
-       {"profile hoap1 is not enough: needs ", " N m at ", " rad/s at ", "hoap1-strong would do"})
+  for (const char* words : {"profile hoap1 is not enough: needs ", " N m at ", " rad/s at ",
+                            "hoap1-strong is strong enough"})
     EXPECT_NE(need.text.find(words), std::string::npos) << need.text;
   EXPECT_EQ(need.sufficient, std::vector<std::string>{"hoap1-strong"});
 }

@@ -41,9 +41,9 @@ TEST(ViipGoals, DisplacementsBeyondFeetOrLegsAreRefused) {
   };
   for (const Case& c : {Case{{0.2, 0, 0}, "151.0 mm outside the support of the feet"},
                         Case{{-0.2, 0, 0}, "outside the support of the feet"},
-                        Case{{0, 0.06, 0}, "l_ankle_roll at its limit; that way 0.0, 51"},
+                        Case{{0, 0.06, 0}, "l_ankle_roll at its limit; in this direction 0.0, 51"},
                         Case{{0, 0, 0.05}, "the legs end"},
-                        Case{{0, 0, -0.1}, "at its limit; that way 0.0, 0.0, -66"},
+                        Case{{0, 0, -0.1}, "at its limit; in this direction 0.0, 0.0, -66"},
                         Case{{0, 0, -5}, "above the ground"},
                         Case{{std::numeric_limits<double>::quiet_NaN(), 0, 0}, "not finite"}})
     EXPECT_NE(refusal(CogGoal{c.displacement}).find(c.words), std::string::npos)
@@ -52,7 +52,7 @@ TEST(ViipGoals, DisplacementsBeyondFeetOrLegsAreRefused) {
 
 TEST(ViipGoals, StepsBeyondTheLegsAreRefused) {
   StepGoal far{6, {0.5, 0}, 0}, turning{6, {0, 0}, 5}, aside{6, {0, 0.3}, 0};
-  EXPECT_NE(refusal(far).find("0.369 m/s at most"), std::string::npos) << refusal(far);
+  EXPECT_NE(refusal(far).find("0.369 m/s"), std::string::npos) << refusal(far);
   EXPECT_NE(refusal(turning).find("60.4 deg/s"), std::string::npos) << refusal(turning);
   EXPECT_NE(refusal(aside).find("out of range"), std::string::npos) << refusal(aside);
 }

@@ -23,7 +23,7 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
     fail(ErrorCode::bad_file, path.string() + ": cannot be read (" + status_error.message() + ")");
   if (!fs::exists(status)) fail(ErrorCode::bad_file, path.string() + ": no such file");
   if (fs::is_directory(status))
-    fail(ErrorCode::bad_file, path.string() + ": is a directory, a file is needed");
+    fail(ErrorCode::bad_file, path.string() + ": this is a folder, but a file is needed");
   if (fs::is_regular_file(status) && fs::file_size(path) > max_bytes)
     fail(ErrorCode::bad_file, path.string() + ": " + std::to_string(fs::file_size(path)) +
                                   " bytes, more than the " + std::to_string(max_bytes) +
@@ -59,7 +59,7 @@ void require_file_target(const fs::path& path) {
     case fs::file_type::regular:
       return;
     case fs::file_type::directory:
-      refuse("is a directory, a file name is needed");
+      refuse("is a folder; name a file");
       break;
     case fs::file_type::symlink:
       refuse("is a symbolic link, which Ayumi neither replaces nor follows; name the file itself");
@@ -82,7 +82,9 @@ void require_file_target(const fs::path& path) {
 void refuse_existing(const fs::path& path) {
   std::error_code ignored;
   if (fs::exists(fs::symlink_status(path, ignored)))
-    fail(ErrorCode::bad_file, path.string() + ": exists already; choose another name or --force");
+    fail(
+        ErrorCode::bad_file,
+        path.string() + ": this already exists; choose another name, or overwrite it with --force");
 }
 
 void write_file_with(const fs::path& path, const std::function<void(const fs::path&)>& produce) {

@@ -45,8 +45,10 @@ ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
   }
   need.text = "profile " + report.profile + " is not enough: needs " + text::join(parts, ", ") +
               "; " +
-              (need.sufficient.empty() ? "no other profile would do"
-                                       : text::join(need.sufficient, ", ") + " would do");
+              (need.sufficient.empty()
+                   ? "no other profile is strong enough"
+                   : text::join(need.sufficient, ", ") +
+                         (need.sufficient.size() > 1 ? " are strong enough" : " is strong enough"));
   return need;
 }
 
@@ -64,7 +66,8 @@ ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>
     ActuatorNeed need =
         need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
     if (need.text.empty()) continue;
-    need.text = goal.place + ": " + need.text + " (times from the start of its keyed form)";
+    need.text = goal.place + ": " + need.text +
+                " (times count from the start of the equivalent motion with keys)";
     return need;
   }
   return {};

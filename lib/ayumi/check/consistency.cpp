@@ -69,7 +69,7 @@ Finding finding_of(const JudgedMotion& motion, const std::vector<FindingWindow>&
     const Violation& cause = windows[window.cause].worst;
     f.follows_from = std::string(name_of(cause.kind)) + " " + place_text(motion, cause) + " at " +
                      text::fixed(cause.sample * dt, 3) + " s";
-    f.hint = f.remedy = "follows from " + f.follows_from + ": mend that first";
+    f.hint = f.remedy = "follows from " + f.follows_from + ": correct that finding first";
   }
   return f;
 }
@@ -103,8 +103,8 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
                                     const CheckOptions& options) {
   if (!model.has_soles())
     fail(ErrorCode::bad_model, model.name() +
-                                   ": has no soles, so nothing can be said about its "
-                                   "contacts; name them in the sidecar");
+                                   ": the robot has no soles, so its "
+                                   "contacts cannot be checked; give /soles in the sidecar");
   if (series.samples.empty())
     fail(ErrorCode::bad_pattern, "the command series is empty: nothing to check");
   if (!(series.dt > 0)) fail(ErrorCode::usage, "the command series has no sample time");

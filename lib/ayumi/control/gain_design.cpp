@@ -106,10 +106,10 @@ LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params) {
 DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2, DtadParams params) {
   const std::complex<double> sum = p1 + p2, product = p1 * p2;
   if (std::abs(sum.imag()) > 1e-9 || std::abs(product.imag()) > 1e-9)
-    fail(ErrorCode::usage, "poles: two real ones or a conjugate pair");
+    fail(ErrorCode::usage, "poles: give two real poles or a conjugate pair");
   if (p1.real() >= 0 || p2.real() >= 0)
     fail(ErrorCode::usage, "poles: " + text::brief(std::max(p1.real(), p2.real())) +
-                               " is not left of 0; the COG would never come back");
+                               " is not below 0, so the COG would never come back");
   params.k = 1 + product.real();  // ddx = w2 (x - K x - D dx)
   params.d = -sum.real();
   return params;
@@ -123,24 +123,27 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
     const auto& [p1, p2] = *wishes.poles;
     const double right = p1.real() < 0 ? p2.real() : p1.real();
     if (!(p1.real() < 0 && p2.real() < 0))
-      refuse("pole [1/s]", right, "not left of 0; the COG would never come back");
+      refuse("pole [1/s]", right, "the real part must be below 0, or the COG never comes back");
     params = gains_from_poles(p1 / omega, p2 / omega, params);
   }
   if (wishes.absorb) {
     if (!(*wishes.absorb >= 0 && *wishes.absorb < 1))
-      refuse("absorbed share", *wishes.absorb, "from 0 (replay) to below 1 (the limit is (14))");
+      refuse("absorbed share", *wishes.absorb, "the share must be at least 0 and below 1");
     params.zmp_gain = *wishes.absorb / (1 - *wishes.absorb);
   }
   if (wishes.return_time) {
-    if (!(*wishes.return_time > 0)) refuse("return time", *wishes.return_time, "must be positive");
+    if (!(*wishes.return_time > 0))
+      refuse("return time", *wishes.return_time, "the time must be above 0 s");
     params.pull_rate = params.pull_damping = 1 / (omega * *wishes.return_time);
   }
   if (wishes.zmp_filter) {
-    if (!(*wishes.zmp_filter > 0)) refuse("ZMP filter", *wishes.zmp_filter, "must be positive");
+    if (!(*wishes.zmp_filter > 0))
+      refuse("ZMP filter", *wishes.zmp_filter, "the time must be above 0 s");
     params.zmp_filter = omega * *wishes.zmp_filter;
   }
   if (wishes.forget) {
-    if (!(*wishes.forget >= 0)) refuse("forgetting time", *wishes.forget, "must not be negative");
+    if (!(*wishes.forget >= 0))
+      refuse("forgetting time", *wishes.forget, "the time must be at least 0 s");
     params.offset_time = omega * *wishes.forget;
   }
   return params;

@@ -144,7 +144,7 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
   if (inside < margin)
     return "the COG would be " + text::fixed(1e3 * std::abs(inside), 1) + " mm " +
            (inside < 0 ? "outside" : "inside") + " the support of the feet, of which " +
-           text::fixed(1e3 * margin, 1) + " mm are kept";
+           text::fixed(1e3 * margin, 1) + " mm must remain free at the edge";
   const Attempt attempt = lead_to(model, held, goal);
   if (attempt.miss < kGoalReached) return {};
   return "the legs end " + text::fixed(1e3 * attempt.miss, 1) + " mm before it" +
@@ -166,9 +166,9 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
     }
   fail(ErrorCode::bad_pattern,
        place + "COG displacement " + in_millimetres(goal.displacement) + ": " + why + "; " +
-           (possible > 0 ? "that way " + in_millimetres(possible * goal.displacement) +
+           (possible > 0 ? "in this direction " + in_millimetres(possible * goal.displacement) +
                                " is possible: ask for less, or hold the COG at another height"
-                         : std::string("not even the posture held keeps them")));
+                         : std::string("not even the posture without a displacement is possible")));
 }
 
 void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,
@@ -182,8 +182,8 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
     fail(ErrorCode::bad_pattern, place + "a COG velocity of " + text::brief(goal.velocity.norm()) +
                                      " m/s asks for steps of " + text::fixed(1e3 * length, 1) +
                                      " mm every " + text::fixed(period, 3) +
-                                     " s; footholds reach " + text::fixed(1e3 * most, 1) + " mm, " +
-                                     text::fixed(most / period, 3) + " m/s at most");
+                                     " s; the largest step is " + text::fixed(1e3 * most, 1) +
+                                     " mm, " + text::fixed(most / period, 3) + " m/s");
   const double turn = std::abs(goal.turn) * period;
   if (!(turn <= kStepTurnLimit))
     fail(ErrorCode::bad_pattern,

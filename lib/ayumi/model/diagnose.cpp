@@ -79,7 +79,9 @@ class Doctor {
     if (link.inertia.mass == 0) {
       const Body& body = model_.bodies()[link.body];
       if (body.inertia.mass == 0 && body.name == link.name)
-        warn(where, "has no mass although a joint moves it; taken for a frame between two axes");
+        warn(where,
+             "has no mass although a joint moves it; Ayumi takes this link for a frame between two "
+             "axes");
       else if (!link.visuals.empty() || !link.collisions.empty())
         warn(where, "has a shape but no mass; its mass must be contained in " + body.name);
       return;
@@ -113,13 +115,13 @@ class Doctor {
     if (box.isEmpty()) {
       if (gyration > size_)
         warn(where, "its inertia is that of a body of " + millimetres(gyration) +
-                        " radius, more than the robot's size; a placeholder?");
+                        " radius, more than the robot's size; is this a placeholder?");
       return;
     }
     if (gyration > reach)
       warn(where, "its inertia is that of a body of " + millimetres(gyration) +
                       " radius, but its shape reaches only " + millimetres(reach) +
-                      " from its centre of mass; a placeholder?");
+                      " from its centre of mass; is this a placeholder?");
     if (box.diagonal().norm() > 5 * size_)
       warn(where, "its shape measures " + millimetres(box.diagonal().norm()) +
                       ", far more than the robot; is the mesh in millimetres? set its scale");
@@ -150,7 +152,7 @@ class Doctor {
       }
       if (same.size() > 2 && other_mass)
         warn("links " + text::join(same, ", "),
-             "have the same inertia tensor but different masses; placeholders?");
+             "have the same inertia tensor but different masses; are these placeholders?");
     }
   }
 
@@ -180,12 +182,12 @@ class Doctor {
     else if (dof.upper - dof.lower < 1e-6)
       warn(where, "its limits leave no range; make it a fixed joint");
     else if (!dof.prismatic && dof.upper - dof.lower > 4 * std::numbers::pi)
-      warn(where, "its range is more than two turns; a placeholder?");
+      warn(where, "its range is more than two turns; is this a placeholder?");
     if (std::isinf(limits.speed[index]))
       warn(where, "no speed limit is stated");
     else if (!dof.prismatic && limits.speed[index] > kFastest)
       warn(where, "speed limit " + text::brief(limits.speed[index]) +
-                      " rad/s is faster than servos are; a placeholder?");
+                      " rad/s is faster than servos are; is this a placeholder?");
     if (std::isinf(limits.peak_torque[index])) warn(where, "no torque limit is stated");
     if (!model_.description().servos.contains(dof.name))
       warn(where, "has no servo constants; give it a kp and kd");
@@ -201,11 +203,11 @@ class Doctor {
     const double largest = 10 * model_.mass() * kGravity * size_;
     if (torque.maxCoeff() > largest)
       warn("limits", "a torque limit of " + text::brief(torque.maxCoeff()) +
-                         " N m could throw the robot; a placeholder?");
+                         " N m could throw the robot; is this a placeholder?");
     const double decade = std::log10(torque[0]);
     if (torque.minCoeff() == torque.maxCoeff() && std::abs(decade - std::round(decade)) < 1e-9)
-      warn("limits",
-           "every joint has the torque limit " + text::brief(torque[0]) + " N m; a placeholder?");
+      warn("limits", "every joint has the torque limit " + text::brief(torque[0]) +
+                         " N m; is this a placeholder?");
   }
 
   // The right-hand name that belongs to a left-hand name; empty when the name has no side.

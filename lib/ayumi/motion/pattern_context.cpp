@@ -33,7 +33,8 @@ std::map<std::string, double> posture_joints(const RobotModel& model, const Patt
     for (const auto& [joint, angle] : own->second) {
       const std::string where = in_file(pattern, "postures/" + name + "/" + joint);
       find_joint(model, joint, where);
-      if (!std::isfinite(angle)) fail(ErrorCode::bad_pattern, where + ": is not a finite number");
+      if (!std::isfinite(angle))
+        fail(ErrorCode::bad_pattern, where + ": the angle is not a finite number");
     }
     return own->second;
   }

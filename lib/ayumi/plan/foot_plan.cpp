@@ -104,7 +104,8 @@ FootPlan::FootPlan(const RobotModel& model, const Pattern& pattern)
 
 void FootPlan::read_phases(const Pattern& pattern) {
   if (phases_.empty())
-    complain(pattern, "phases", "there are none; at least one has to state the support");
+    complain(pattern, "phases",
+             "the list is empty; give at least one phase, which says which feet carry the robot");
   std::array<Isometry3d, 2> now = start_;
   double begin = 0;
   for (size_t i = 0; i < phases_.size(); ++i) {
@@ -149,7 +150,7 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
     if (!moves_[index(side)].empty())
       complain(pattern, key.place,
                std::string("the ") + name_of(side) +
-                   " foot has both keys and swings in the phases; keep one");
+                   " foot has keys and also swings in the phases; keep one of them");
     if (keys[0].empty() && key.t > 0)
       add(0, start.translation(), matrix_to_rpy(start.linear()), Interpolation::hold);
     if (!keys[0].empty() && key.t <= keys[0].back().t)

@@ -92,10 +92,11 @@ bool has_viip_phases(const Pattern& pattern) {
 void refuse_viip_phases(const Pattern& pattern, const std::string& done) {
   for (size_t i = 0; i < pattern.phases.size(); ++i)
     if (pattern.phases[i].viip)
-      fail(ErrorCode::bad_pattern, in_file(pattern, "phases/" + std::to_string(i)) +
-                                       ": a phase with a goal moves as its controller decides, it "
-                                       "cannot be " +
-                                       done + "; simulate it and use its tables");
+      fail(ErrorCode::bad_pattern,
+           in_file(pattern, "phases/" + std::to_string(i)) +
+               ": in a phase with a goal the controller decides the motion, so it "
+               "cannot be " +
+               done + "; simulate it and use its tables");
 }
 
 Pattern without_viip_phases(const Pattern& pattern) {
@@ -120,7 +121,7 @@ Pattern without_viip_phases(const Pattern& pattern) {
         fail(ErrorCode::bad_pattern, key.place + ": the key at " + text::exact(key.t) +
                                          " s lies inside the VIIP phase from " +
                                          text::exact(cut.begin) + " to " + text::exact(cut.end) +
-                                         " s; goals take the place of keys there");
+                                         " s, in which goals replace keys; move the key");
     Keyframe moved = key;
     moved.t = time_without(cuts, key.t);
     if (!result.keyframes.empty() && moved.t <= result.keyframes.back().t + 1e-9)

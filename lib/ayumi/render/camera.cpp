@@ -76,7 +76,8 @@ CameraPath::CameraPath(const CameraOptions& options, std::vector<Vector3d> cog, 
                                text::join(view_names(), ", ") +
                                text::suggestion(options.view, view_names()));
   if (!(options.zoom > 0))
-    fail(ErrorCode::usage, "zoom: " + text::exact(options.zoom) + " is not above 0");
+    fail(ErrorCode::usage,
+         "zoom: " + text::exact(options.zoom) + " is not possible; give a number above 0");
   require(!cog.empty() && dt > 0 && height > 0 && aspect > 0, "a camera path needs a motion");
   azimuth_ = view->azimuth;
   elevation_ = view->elevation;

@@ -29,23 +29,24 @@ void check(const RobotModel& model, const SimulationLog& log, const ClipOptions&
   need(log.samples.front().state.theta.size() == model.dof_count(),
        "the run has " + std::to_string(log.samples.front().state.theta.size()) +
            " joints, the robot " + model.name() + " has " + std::to_string(model.dof_count()) +
-           ": they do not belong together");
+           "; name the robot of the run");
   if (options.ghost.log) {
     duration(*options.ghost.log);
     need(options.ghost.log->joints == log.joints,
-         "ghost: the other run is one of another robot; its joints are not the same");
+         "ghost: the joints of the other run differ, so it is of another robot");
   }
   need(!options.ghost.command || log.samples.front().command_theta.size() == model.dof_count(),
        "ghost: the log does not hold the commanded posture; simulate again");
   need(options.fps > 0 && options.fps <= 1000,
        "fps: " + text::exact(options.fps) + " is not between 0 and 1000");
   need(options.speed > 0 && std::isfinite(options.speed),
-       "speed: " + text::exact(options.speed) + " is not above 0");
+       "speed: " + text::exact(options.speed) + " is not possible; give a number above 0");
   need(options.begin >= 0 && options.begin <= last, "begin: " + text::exact(options.begin) +
                                                         " s is outside the run (0 to " +
                                                         text::brief(last) + " s)");
-  need(options.end < 0 || options.end >= options.begin,
-       "end: " + text::exact(options.end) + " s is before the beginning");
+  need(options.end < 0 || options.end >= options.begin, "end: " + text::exact(options.end) +
+                                                            " s is before the beginning at " +
+                                                            text::exact(options.begin) + " s");
   need(options.at >= 0 && options.at <= last + 1e-9, "at: " + text::exact(options.at) +
                                                          " s is outside the run (0 to " +
                                                          text::brief(last) + " s)");
@@ -69,10 +70,10 @@ std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOption
   const double cell = simplify(surface, options.max_triangles);
   if (!has_visuals(model))
     notes.push_back(
-        "the robot has no visuals: drawn by its collision shapes, and sticks between joints where "
-        "it has none");
+        "the robot has no visual meshes: it is drawn with its collision shapes, and with sticks "
+        "between joints where a link has none");
   if (cell > 0)
-    notes.push_back("the robot has " + std::to_string(before) + " triangles; drawn with " +
+    notes.push_back("the robot has " + std::to_string(before) + " triangles; it is drawn with " +
                     std::to_string(triangle_count(surface)) + ", points moved by at most " +
                     text::brief(1e3 * std::sqrt(3.0) * cell, 2) + " mm");
   return surface;

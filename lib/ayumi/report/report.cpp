@@ -210,7 +210,7 @@ std::vector<std::string> caps_of(const Plan& plan, const ReportOptions& options,
                    " triangles, the replay shows at most " + std::to_string(plan.replay.triangles));
   if (plan.with_replay)
     caps.push_back("the replay has " + text::brief(plan.replay.rate) +
-                   " postures per second and moves evenly between them");
+                   " postures per second and interpolates between them");
   const std::string size = size_words(options);
   if (!plan.with_replay && no_replay.empty())
     caps.push_back("no replay: with it the page would be larger than " + size);

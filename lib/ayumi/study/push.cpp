@@ -207,7 +207,7 @@ void check_options(const PushOptions& options, const CommandSeries& series) {
     refuse("directions: " + std::to_string(options.directions) + "; give 1 to 360");
   if (!(options.step > 0) || !(options.cap >= options.step))
     refuse("the search step must be positive and not above the cap");
-  if (options.replicas < 0) refuse("replicas must not be negative");
+  if (options.replicas < 0) refuse("the number of replicas must not be negative");
   for (const PushPhase& phase : options.phases)
     if (!phase.standing && !(phase.at >= options.time_spread + series.dt &&
                              phase.at + options.duration <= series.duration()))

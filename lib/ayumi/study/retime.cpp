@@ -151,7 +151,7 @@ class PaceSearch {
     reason_ = std::string(name_of(shown->kind)) + " " + shown->where + " at " +
               text::fixed(shown->at, 3) + " s of " + text::fixed(duration, 3) +
               " s: " + text::brief(shown->worst) + " " + shown->unit + ", limit " +
-              text::brief(shown->limit);
+              text::brief(shown->limit) + " " + shown->unit;
     trial.reason = reason_;
     return trial;
   }

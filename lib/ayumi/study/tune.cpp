@@ -171,7 +171,7 @@ void check(const TuneOptions& options, const CommandSeries& series, const Gains&
   for (const std::string& name : options.gains)
     if (!known.count(name))
       refuse("gain '" + name + "' cannot be tuned" + text::suggestion(name, names) +
-             " (those that can: " + text::join(names, ", ") + ")");
+             " (gains that can be tuned: " + text::join(names, ", ") + ")");
   for (const PushPhase& phase : options.phases)
     if (!phase.standing &&
         !(phase.at >= kBranchLead && phase.at + options.duration <= series.duration()))
@@ -205,7 +205,8 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
   result.gains = result.start;
   result.before = result.after = tuner.evaluate(result.start);
   if (result.before.unpushed >= kFall)
-    fail(ErrorCode::usage, "tune: the robot falls without a push with the initial gains");
+    fail(ErrorCode::usage,
+         "tune: with the initial gains the robot falls without a push; start from other gains");
 
   double factor = options.factor;
   for (int round = 0; round < options.rounds && factor > kSmallestFactor; ++round) {

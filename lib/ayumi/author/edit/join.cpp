@@ -165,7 +165,7 @@ void require_same_stand(const Pattern& second, const Feet& last, const Feet& fir
       continue;
     fail(ErrorCode::bad_pattern,
          in_file(second, "start") + ": its feet stand " + text::fixed(1000 * distance, 1) +
-             " mm from the feet at the end of the first motion; limit " +
+             " mm from where the feet are at the end of the first motion; limit " +
              text::fixed(1000 * kSamePlace, 1) + " mm; let one motion end where the other begins");
   }
 }
@@ -177,7 +177,7 @@ void require_same_posture(const RobotModel& model, const Pattern& second, const 
   const double distance = (last.base.position - first.base.position).norm();
   const double turn = last.base.attitude.angularDistance(first.base.attitude);
   if (distance > kSameBase || turn > kSameJoint)
-    fail(ErrorCode::bad_pattern, in_file(second, "start") + ": its base is " +
+    fail(ErrorCode::bad_pattern, in_file(second, "start") + ": the base is " +
                                      text::fixed(1000 * distance, 2) + " mm and " +
                                      text::fixed(turn * 180 / M_PI, 2) +
                                      " deg from the end of the first motion; blend the two over "
@@ -196,7 +196,7 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
   const CommandSeries &a = first.series, &b = second.series;
   if (std::abs(a.dt - b.dt) > 1e-12)
     fail(ErrorCode::usage, "motions of " + text::exact(a.dt) + " and " + text::exact(b.dt) +
-                               " s per sample do not join");
+                               " s per sample cannot be joined");
   require_stand(first.pattern, a.samples.back(), "end");
   require_stand(second.pattern, b.samples.front(), "start");
   const Feet last = soles_of(model, a.samples.back().state);

@@ -14,7 +14,8 @@ namespace ayumi {
 
 Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
   if (!(scale >= 0.01 && scale <= 100))
-    fail(ErrorCode::usage, "a time scale of " + text::exact(scale) + "; 0.01 to 100 is possible");
+    fail(ErrorCode::usage,
+         "a time scale of " + text::exact(scale) + " is not possible; give 0.01 to 100");
   refuse_viip_phases(pattern, "retimed");
   Pattern result = pattern;
   if (scale == 1) return result;

@@ -59,7 +59,8 @@ SoleLength sole_length(const RobotModel& model) {
 void check_stairs(const RobotModel& model, const WalkParameters& p) {
   const SoleLength sole = sole_length(model);
   if (p.turn != 0 || p.side != 0)
-    fail(ErrorCode::usage, "walk: rise goes straight ahead; leave turn and side out");
+    fail(ErrorCode::usage,
+         "walk: stairs (rise) are climbed straight ahead; leave turn and side out");
   require_range("walk", "rise", p.rise, 0, 0.15 * leg_length(model), " m");
   if (p.stride < sole.front + sole.back + 2 * kStairClearance)
     fail(ErrorCode::usage, "walk: stride " + text::exact(p.stride) +
@@ -96,7 +97,7 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   require_range("walk", "double_support", p.double_support, 0.05, 0.6, "");
   require_range("walk", "lift", p.lift, 0.01 * leg, 0.4 * leg, " m");
   require_range("walk", "side", p.side, -0.4 * leg, 0.4 * leg, " m");
-  require_range("walk", "turn", p.turn, -0.6, 0.6, " rad");
+  require_range("walk", "turn", p.turn * 180 / M_PI, -0.6 * 180 / M_PI, 0.6 * 180 / M_PI, " deg");
   if (p.cog_height != 0)
     require_range("walk", "cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
   if (p.rise != 0) check_stairs(model, p);

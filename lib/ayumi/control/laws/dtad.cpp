@@ -86,7 +86,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   if (p.k.has_value() != p.d.has_value())
     fail(ErrorCode::usage, "controller gains: k and d are given together or not at all");
   if (p.k && q_given)
-    fail(ErrorCode::usage, "controller gains: q sets K and D; give q, or k and d, not both");
+    fail(ErrorCode::usage, "controller gains: q determines K and D; give either q, or k and d");
   if (p.k && (*p.k <= 1 || *p.d <= 0))
     fail(ErrorCode::usage, "controller gains: k = " + text::brief(*p.k) +
                                ", d = " + text::brief(*p.d) +

@@ -181,13 +181,13 @@ ViipJump::ViipJump(const RobotModel& model, const ActuatorLimits& limits, const 
   if (goal.stoop > 0.5 * height_ || goal.height > 2 * height_)
     fail(ErrorCode::bad_pattern, "jump: a stoop of " + text::brief(goal.stoop) +
                                      " m or a height of " + text::brief(goal.height) +
-                                     " m is out of proportion for a COG at " +
-                                     text::brief(height_) + " m");
+                                     " m is too large for a COG at " + text::brief(height_) +
+                                     " m; the limits are 0.5 and 2 times this height");
   if (goal.release == JumpGoal::Release::spring && goal.height <= 0.5 * goal.stoop)
     fail(ErrorCode::bad_pattern,
-         "jump: released by the spring, a height of " + text::brief(goal.height) +
-             " m needs a stoop below twice that, not " + text::brief(goal.stoop) +
-             " m: f_z would never be zero; deepen the height or release at ref_z");
+         "jump: with the release 'spring' the stoop must be less than twice the height of " +
+             text::brief(goal.height) + " m; with a stoop of " + text::brief(goal.stoop) +
+             " m, f_z would never be zero; change one of them or set the release to 'ref_z'");
   offset_ = held.cog.head<2>() - middle_of_soles(model, held.feet);
   plan_.feet = start.plan.feet;
   plan_.support = Support::both;

@@ -23,7 +23,7 @@ class SequenceParser {
       ++line_;
       if (!line.empty()) row(line);
     }
-    if (counts_.empty()) fail(ErrorCode::bad_file, file_ + ": no sequence row");
+    if (counts_.empty()) fail(ErrorCode::bad_file, file_ + ": the file has no row of a sequence");
     HoapSequence sequence;
     sequence.interval_ms = interval_;
     sequence.counts =
@@ -42,9 +42,10 @@ class SequenceParser {
     const std::vector<std::string_view> cells = cells_of(line);
     if (cells.size() > 1 && cells[1] != "2")
       stop("command '" + std::string(cells[1].substr(0, 16)) +
-           "': only fixed commands (2) are read, general commands (3) are not");
+           "': only fixed commands (2) are allowed here; `ayumi import` also reads general "
+           "commands (3)");
     if (cells.size() != static_cast<size_t>(layout_.columns()))
-      stop(std::to_string(cells.size()) + " columns, this robot's sequences have " +
+      stop(std::to_string(cells.size()) + " columns, but sequences of this robot have " +
            std::to_string(layout_.columns()) + " (interval, 2, " + std::to_string(layout_.motors) +
            " motors, " + std::to_string(layout_.rc_words + layout_.requests) + " more)");
     const int interval = whole_number(cells[0], 1);

@@ -89,7 +89,7 @@ class Reader {
   // One row per tick of 1 ms until the rate is known.
   void read_bare(const std::vector<std::string_view>& cells) {
     if (cells.size() != kBareColumns)
-      stop(std::to_string(cells.size()) + " columns, the rows before have 23");
+      stop(std::to_string(cells.size()) + " columns, but the rows before have 23");
     Row row{now_++, {}};
     for (int m = 0; m < kBareMotors; ++m) {
       const std::string_view cell = cells[static_cast<size_t>(m)];
@@ -122,7 +122,7 @@ class Reader {
     const int motors = motors_of(cells.size());
     if (motors == 0 || (columns_ != 0 && cells.size() != columns_))
       stop(std::to_string(cells.size()) + " columns" +
-           (columns_ != 0 ? ", the rows before have " + std::to_string(columns_)
+           (columns_ != 0 ? ", but the rows before have " + std::to_string(columns_)
                           : "; sequences have 25 (HOAP-1), 27 (HOAP-2) or 29 (HOAP-3)"));
     columns_ = cells.size();
     Row row{now_, {}};
@@ -177,9 +177,9 @@ void refuse_lost_motion(const std::vector<Row>& rows, size_t device, const Robot
   if (high - low > kTrembling)
     fail(ErrorCode::bad_file, file + ": " + name + " moves from " + text::brief(low) + " to " +
                                   text::brief(high) + " counts, but no joint of '" + model.name() +
-                                  "' has it (encoders in its sidecar)");
-  filled.push_back(name + " is not on this robot and is ignored; it rests at " + text::brief(low) +
-                   " counts");
+                                  "' has this device; add it to \"encoders\" in the sidecar");
+  filled.push_back(name + " is not on this robot and is ignored; its target is always " +
+                   text::brief(low) + " counts");
 }
 
 // Rows without intervals: one per millisecond as robots answer, one per 2 ms as files in radians
@@ -221,8 +221,9 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
     result.filled.push_back("the intervals change: rows are interpolated linearly, every " +
                             std::to_string(tick) + " ms");
   if (reader.general_commands() > 0)
-    result.filled.push_back(std::to_string(reader.general_commands()) +
-                            " commands to single devices are ignored; their time passes");
+    result.filled.push_back(
+        std::to_string(reader.general_commands()) +
+        " commands to single devices are ignored, but the time of their rows counts");
   const Eigen::VectorXd home = model.posture();
   const size_t motors = rows.front().counts.size();
   std::vector<int> dof_of_device(motors, -1);
@@ -245,8 +246,9 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
   }
   for (int dof = 0; dof < model.dof_count(); ++dof)
     if (!told[static_cast<size_t>(dof)])
-      result.filled.push_back(model.dofs()[dof].name +
-                              ": not in the file; it keeps the home posture");
+      result.filled.push_back(
+          model.dofs()[dof].name +
+          ": the file does not have this joint; it keeps its angle of the home posture");
   return result;
 }
 

@@ -18,7 +18,7 @@ std::string kind_of(const Json& value) {
     case Json::value_t::object:
       return "an object";
     case Json::value_t::array:
-      return "an array of " + std::to_string(value.size());
+      return "an array of length " + std::to_string(value.size());
     case Json::value_t::string:
       return "a string";
     case Json::value_t::boolean:
@@ -55,7 +55,7 @@ std::string reason_of(const std::string& message) {
 Json parse_json(const std::string& bytes, const std::string& file, ErrorCode code) {
   const bool blank =
       std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
-  if (blank) fail(code, file + ": the file is empty, JSON is needed");
+  if (blank) fail(code, file + ": the file is empty; it must hold JSON");
   std::vector<std::set<std::string>> keys;  // of the objects that are open
   std::string duplicate;
   const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
@@ -73,7 +73,7 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
     const size_t offset = error.byte > 0 ? error.byte - 1 : 0;
     fail(code, file + ":" + line_and_column(bytes, offset) + ": " + reason_of(error.what()));
   } catch (const Json::exception& error) {
-    fail(code, file + ": not usable JSON: " + reason_of(error.what()));
+    fail(code, file + ": the JSON cannot be used: " + reason_of(error.what()));
   }
   if (!duplicate.empty())
     fail(code, file + ": the key '" + duplicate + "' appears twice in one object; keep one");
@@ -147,9 +147,11 @@ double JsonNode::number() const {
 double JsonNode::number_within(double lower, double upper) const {
   const double value = number();
   if (value < lower)
-    complain(text::exact(value) + " is below the least allowed, " + text::exact(lower));
+    complain(text::exact(value) + " is too small; the smallest allowed value is " +
+             text::exact(lower));
   if (value > upper)
-    complain(text::exact(value) + " is above the largest allowed, " + text::exact(upper));
+    complain(text::exact(value) + " is too large; the largest allowed value is " +
+             text::exact(upper));
   return value;
 }
 

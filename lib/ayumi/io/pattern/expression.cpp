@@ -111,7 +111,7 @@ class Parser {
   }
 
   double number() {
-    if (at_end()) stop("a number is missing at the end");
+    if (at_end()) stop("the expression ends where a number is expected");
     double value = 0;
     const auto [end, error] =
         std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);

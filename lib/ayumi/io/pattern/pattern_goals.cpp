@@ -22,17 +22,19 @@ StepGoal read_steps(const JsonNode& node, PatternScope& scope) {
   if (const auto step = node.find("step")) {
     step->one_of({"in_place"});
     for (const char* const key : {"velocity", "turn"})
-      if (node.has(key)) node.at(key).complain("\"step\" is in place; leave one of the two out");
+      if (node.has(key))
+        node.at(key).complain(
+            "\"step\": \"in_place\" excludes a velocity and a turn; leave one of the two keys out");
   }
   if (const auto steps = node.find("steps")) goal.steps = read_count(*steps, scope, kMostSteps);
   if (const auto velocity = node.find("velocity")) {
     const std::vector<double> v = read_numbers(*velocity, scope, 2, 2, "[forward, left]");
     goal.velocity = {v[0], v[1]};
-    if (goal.velocity.norm() > kFastest) velocity->complain("more than 10 m/s is not a walk");
+    if (goal.velocity.norm() > kFastest) velocity->complain("the velocity must be at most 10 m/s");
   }
   if (const auto turn = node.find("turn")) {
     goal.turn = read_angle(*turn, scope);
-    if (std::abs(goal.turn) > kFastest) turn->complain("more than 10 rad/s is not a turn");
+    if (std::abs(goal.turn) > kFastest) turn->complain("the turning rate must be at most 10 rad/s");
   }
   return goal;
 }

@@ -67,7 +67,7 @@ void read_posture(const JsonNode& node, Keyframe& key, PatternScope& scope) {
 
 void read_cog(const JsonNode& node, Keyframe& key, PatternScope& scope) {
   only_pattern_keys(node, "cog");
-  if (node.size() == 0) node.complain("no coordinate is named (x, y, height)");
+  if (node.size() == 0) node.complain("the object is empty; give x, y or height");
   if (const auto x = node.find("x")) key.cog_x = read_number(*x, scope);
   if (const auto y = node.find("y")) key.cog_y = read_number(*y, scope);
   if (const auto height = node.find("height")) key.cog_height = read_number(*height, scope);
@@ -75,7 +75,7 @@ void read_cog(const JsonNode& node, Keyframe& key, PatternScope& scope) {
 
 Eigen::Vector3d read_torso(const JsonNode& node, PatternScope& scope) {
   only_pattern_keys(node, "torso");
-  if (node.size() == 0) node.complain("no angle is named (roll, pitch, yaw)");
+  if (node.size() == 0) node.complain("the object is empty; give roll, pitch or yaw");
   Eigen::Vector3d rpy = Eigen::Vector3d::Zero();
   const char* const names[] = {"roll", "pitch", "yaw"};
   for (int i = 0; i < 3; ++i)
@@ -93,7 +93,9 @@ Phase read_phase(const JsonNode& node, PatternScope& scope) {
     phase.viip = read_viip_goal(*goal, scope);
     for (const char* const key : {"swing", "support"})
       if (node.has(key))
-        node.at(key).complain("VIIP chooses support and footholds of a phase with \"viip\"");
+        node.at(key).complain(
+            "a phase with \"viip\" has neither support nor swing, because VIIP chooses the "
+            "footholds; leave this key out");
     return phase;
   }
   phase.support = read_support(node.at("support"));
@@ -133,9 +135,9 @@ ControllerSpec read_controller(const JsonNode& node, PatternScope& scope) {
   const auto gains = node.find("gains");
   if (!gains) return controller;
   if (gains->has("q") && (gains->has("k") || gains->has("d")))
-    gains->complain("q sets k and d; give either q or k and d, not both");
+    gains->complain("q determines k and d; give either q, or k and d");
   if (gains->has("k") != gains->has("d"))
-    gains->complain("k and d go together; give both, or q instead");
+    gains->complain("k needs d, and d needs k; give both, or give q");
   for (const auto& [name, value] : gains->members())
     controller.gains.emplace_back(name, read_number(value, scope));
   return controller;

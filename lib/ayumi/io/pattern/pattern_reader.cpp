@@ -18,7 +18,7 @@ constexpr size_t kLargestFile = size_t{64} << 20;
 void require_format(const JsonNode& root, const std::string& format) {
   const std::string found = root.at("format").string();
   if (found != format)
-    root.at("format").complain("'" + found + "' is not readable here; this version reads '" +
+    root.at("format").complain("'" + found + "' cannot be read; this version of Ayumi reads '" +
                                format + "'");
 }
 
@@ -28,7 +28,7 @@ void read_parameters(const JsonNode& root, const std::map<std::string, double>& 
   if (const auto parameters = root.find("parameters"))
     for (const auto& [name, value] : parameters->members()) {
       if (name.empty() || name.find_first_of("${}") != std::string::npos)
-        value.complain("a parameter's name cannot be empty or hold $ { }");
+        value.complain("the name of a parameter must not be empty and must not contain $, { or }");
       PatternScope nothing;
       scope.parameters[name] = read_number(value, nothing);
     }
@@ -41,7 +41,8 @@ void read_parameters(const JsonNode& root, const std::map<std::string, double>& 
            place + " is not declared in the pattern" + text::suggestion(name, names) +
                (names.empty() ? "; it declares none" : "; declared: " + text::join(names, ", ")));
     if (!(std::abs(value) <= kLargestNumber))
-      fail(ErrorCode::usage, place + ": " + text::exact(value) + " is not a sensible number");
+      fail(ErrorCode::usage,
+           place + ": " + text::exact(value) + " is not a number of at most 1e6 in size");
     scope.parameters[name] = value;
   }
 }
@@ -51,7 +52,8 @@ void read_postures(const JsonNode& root, PatternScope& scope, Pattern& pattern) 
   if (!postures) return;
   for (const auto& [name, joints] : postures->members())
     if (!pattern.postures.emplace(name, read_joint_angles(joints, scope)).second)
-      joints.complain("a posture of this name is already included from another file");
+      joints.complain(
+          "another file that is included has a posture of this name already; rename one");
 }
 
 // Posture libraries beside the pattern; returns their bytes for the fingerprint.
@@ -112,7 +114,8 @@ void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
   const JsonNode phases = root.at("phases");
   phases.expect_array();
   if (phases.size() == 0)
-    phases.complain("is empty; at least one phase says who carries the robot");
+    phases.complain(
+        "the list is empty; give at least one phase, which says which feet carry the robot");
   double previous = 0;
   for (const JsonNode& node : phases.items()) {
     pattern.phases.push_back(read_phase(node, scope));
@@ -126,9 +129,10 @@ void read_keyframes(const JsonNode& root, PatternScope& scope, Pattern& pattern)
   const bool goals = std::any_of(pattern.phases.begin(), pattern.phases.end(),
                                  [](const Phase& phase) { return phase.viip.has_value(); });
   if (!keyframes && (root.has("table") || goals)) return;
-  if (!keyframes) root.complain("the key 'keyframes' is missing (or 'table', a sampled motion)");
+  if (!keyframes)
+    root.complain("the key 'keyframes' is missing; give keyframes, or a sampled motion as 'table'");
   keyframes->expect_array();
-  if (keyframes->size() == 0) keyframes->complain("is empty; at least one keyframe is needed");
+  if (keyframes->size() == 0) keyframes->complain("the list is empty; give at least one keyframe");
   double previous = 0;
   for (const JsonNode& node : keyframes->items()) {
     const bool first = pattern.keyframes.empty();
@@ -179,7 +183,7 @@ Pattern pattern_of_text(const std::string& text, const fs::path& path,
   pattern.file = path.string();
   if (const auto name = root.find("name")) pattern.name = name->string();
   pattern.robot = root.at("robot").string();
-  if (pattern.robot.empty()) root.at("robot").complain("is empty; name a robot");
+  if (pattern.robot.empty()) root.at("robot").complain("the name is empty; name a robot");
   if (const auto profile = root.find("profile")) pattern.profile = profile->string();
 
   PatternScope scope;

@@ -12,19 +12,21 @@ constexpr double kWidestMargin = 0.1;
 std::pair<double, double> read_window(const JsonNode& node, PatternScope& scope) {
   const std::vector<double> ends = read_numbers(node, scope, 2, 2, "[begin, end]");
   for (const double t : ends)
-    if (t < 0 || t > kLongestPattern) node.complain(text::exact(t) + " s is no time of a pattern");
+    if (t < 0 || t > kLongestPattern)
+      node.complain(text::exact(t) + " s is outside the range of times, 0 to 3600 s");
   if (ends[1] < ends[0])
-    node.complain("a window ends after it begins; " + text::exact(ends[1]) + " s comes before " +
-                  text::exact(ends[0]) + " s");
+    node.complain("the window must end after it begins, but " + text::exact(ends[1]) +
+                  " s comes before " + text::exact(ends[0]) + " s");
   return {ends[0], ends[1]};
 }
 
 int read_keyframe_number(const JsonNode& node, int keyframes) {
   const int number = node.integer();
   if (number < 0 || number >= keyframes)
-    node.complain(std::to_string(number) + " is no keyframe; " +
-                  (keyframes == 0 ? "the pattern has none"
-                                  : "they are numbered 0 to " + std::to_string(keyframes - 1)));
+    node.complain(std::to_string(number) + " is not the number of a keyframe; " +
+                  (keyframes == 0
+                       ? "the pattern has no keyframes"
+                       : "keyframes are numbered from 0 to " + std::to_string(keyframes - 1)));
   return number;
 }
 

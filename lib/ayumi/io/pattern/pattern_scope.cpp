@@ -70,16 +70,18 @@ double plain_number(const JsonNode& node, PatternScope& scope) {
 double read_number(const JsonNode& node, PatternScope& scope) {
   const double value = plain_number(node, scope);
   if (std::abs(value) > kLargestNumber)
-    node.complain(text::exact(value) + " is beyond any sensible value (limit 1e6)");
+    node.complain(text::exact(value) + " is too large; numbers may be at most 1e6 in size");
   return value;
 }
 
 double read_number(const JsonNode& node, PatternScope& scope, double lower, double upper) {
   const double value = read_number(node, scope);
   if (value < lower)
-    node.complain(text::exact(value) + " is below the least allowed, " + text::exact(lower));
+    node.complain(text::exact(value) + " is too small; the smallest allowed value is " +
+                  text::exact(lower));
   if (value > upper)
-    node.complain(text::exact(value) + " is above the largest allowed, " + text::exact(upper));
+    node.complain(text::exact(value) + " is too large; the largest allowed value is " +
+                  text::exact(upper));
   return value;
 }
 
@@ -100,7 +102,7 @@ std::vector<double> read_numbers(const JsonNode& node, PatternScope& scope, size
                                  size_t most, const std::string& form) {
   if (!node.value().is_array()) node.expect_array();
   if (node.size() < least || node.size() > most)
-    node.complain("expected " + form + ", found an array of " + std::to_string(node.size()));
+    node.complain("expected " + form + ", found an array of length " + std::to_string(node.size()));
   std::vector<double> values;
   for (const JsonNode& item : node.items()) values.push_back(read_number(item, scope));
   return values;

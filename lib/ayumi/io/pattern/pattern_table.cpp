@@ -34,9 +34,10 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
   }
   const fs::path table = table_beside(path);
   if (table == path)
-    fail(ErrorCode::bad_file, path.string() +
-                                  ": the pattern's table goes to a .csv of the same name; give "
-                                  "the pattern another ending, such as .json");
+    fail(ErrorCode::bad_file,
+         path.string() +
+             ": the table of the pattern is written to a .csv of the same name; give "
+             "the pattern another ending, such as .json");
   Pattern named = pattern;
   // Written as it holds from the pattern's old folder, which write_pattern turns into the new one.
   const fs::path from = fs::absolute(pattern.file.empty() ? path : fs::path(pattern.file));

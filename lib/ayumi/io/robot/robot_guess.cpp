@@ -97,13 +97,14 @@ void infer_soles(const RobotModel& model, RobotDescription& robot) {
                                                   {"right", sole_of(model, poses, right)}};
   for (const auto& [side, sole] : soles)
     if (!(area(sole) > 1e-6) || (sole.polygon[2] - sole.polygon[0]).maxCoeff() > kLargestSole) {
-      robot.assumptions.push_back("the " + side + " foot " + sole.link +
-                                  " has no flat underside at zero posture: no soles");
+      robot.assumptions.push_back(
+          "the " + side + " foot " + sole.link +
+          " has no flat underside with every joint at 0: the robot has no soles");
       return;
     }
   for (const auto& [side, sole] : soles)
     robot.assumptions.push_back(
-        side + " sole: link " + sole.link + ", underside at zero posture, " +
+        side + " sole: link " + sole.link + ", underside with every joint at 0, " +
         text::fixed(1000 * (sole.polygon[2] - sole.polygon[0]).x(), 0) + " x " +
         text::fixed(1000 * (sole.polygon[2] - sole.polygon[0]).y(), 0) + " mm");
   robot.soles = soles;
@@ -140,11 +141,13 @@ void infer_servos(const RobotModel& model, RobotDescription& robot) {
     robot.servos[dof.name] = {scale * servo.kp, scale * servo.kd, scale * servo.rotor_inertia,
                               joint->damping, joint->friction};
   }
-  robot.assumptions.push_back("servos: kp " + text::brief(servo.kp) + " N m/rad, kd " +
-                              text::brief(servo.kd) + " N m s/rad, rotor inertia " +
-                              text::brief(servo.rotor_inertia) +
-                              " kg m^2, scaled from mass and COG height" +
-                              std::string(sliders ? "; those of sliders over its square" : ""));
+  robot.assumptions.push_back(
+      "servos: kp " + text::brief(servo.kp) + " N m/rad, kd " + text::brief(servo.kd) +
+      " N m s/rad, rotor inertia " + text::brief(servo.rotor_inertia) +
+      " kg m^2, scaled from mass and COG height" +
+      std::string(sliders
+                      ? "; the values of sliding joints are divided by the square of the COG height"
+                      : ""));
 }
 
 }  // namespace
@@ -159,7 +162,8 @@ void infer_missing(RobotDescription& robot) {
   if (robot.servos.empty()) infer_servos(RobotModel(robot), robot);
   if (robot.profiles.empty())
     robot.assumptions.push_back(
-        "actuator limits: velocity and effort of the URDF, none where it states 0");
+        "actuator limits: velocity and effort of the URDF; a value of 0 means that there is no "
+        "limit");
 }
 
 }  // namespace ayumi

@@ -318,7 +318,7 @@ std::filesystem::path find_urdf(const JsonNode& node, const std::filesystem::pat
   for (const std::filesystem::path& folder : folders)
     for (const std::filesystem::path& path : {folder / name, folder / "urdf" / name})
       if (std::filesystem::exists(path, ignored)) return path;
-  node.complain("there is no " + beside.string() + ", and no folder of --robot-path has " +
+  node.complain("there is no file " + beside.string() + ", and no folder of --robot-path has " +
                 name.string() + ", itself or in urdf/");
 }
 

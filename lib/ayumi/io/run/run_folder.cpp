@@ -64,9 +64,10 @@ std::string sealed(const std::string& object) {
 }
 
 [[noreturn]] void complain_of_change(const fs::path& file) {
-  fail(ErrorCode::bad_file, file.string() +
-                                ": has changed since the run was written (its SHA-256 is not the "
-                                "one in run.json)");
+  fail(ErrorCode::bad_file,
+       file.string() +
+           ": the file has changed since the run was written (its SHA-256 is not the "
+           "one in run.json)");
 }
 
 std::string checked_bytes(const fs::path& folder, const JsonNode& files, const std::string& name) {
@@ -86,7 +87,7 @@ struct RunFile {
     root.expect_object();
     const std::string format = root.at("format").string();
     if (format != kRunFormat)
-      root.at("format").complain("'" + format + "' is not readable here; this version reads '" +
+      root.at("format").complain("'" + format + "' cannot be read; this version of Ayumi reads '" +
                                  kRunFormat + "'");
     // Runs of versions before 0.2.0 are not sealed.
     if (root.has(kSealKey) && !is_sealed()) complain_of_change(path);
@@ -104,7 +105,7 @@ struct RunFile {
                                     "that `ayumi run` or `ayumi simulate` wrote)");
     if (!is_run_folder(folder))
       fail(ErrorCode::bad_file, folder.string() +
-                                    ": holds no run.json; a RUN is needed (the "
+                                    ": the folder has no run.json; a RUN is needed (the "
                                     "folder that `ayumi run` or `ayumi simulate` wrote)");
     return read_file(folder / kRunFile);
   }

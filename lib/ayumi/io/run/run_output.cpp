@@ -35,14 +35,14 @@ void require_run_target(const fs::path& folder, bool replace,
   if (!is_there(folder)) return;
   std::error_code error;
   if (!fs::is_directory(folder, error))
-    fail(ErrorCode::bad_file, folder.string() + ": is not a folder, a folder is needed");
+    fail(ErrorCode::bad_file, folder.string() + ": this is not a folder; -o needs a folder");
   if (!replace && is_there(folder / "run.json")) refuse_existing(folder);
   const std::set<std::string> previous = files_of_run_in(folder);
   for (const std::string& name : previous) require_own_file(folder / name);
   for (const std::string& name : names)
     if (is_there(folder / name) && !previous.contains(name))
       fail(ErrorCode::bad_file, (folder / name).string() +
-                                    ": exists already and is not a file of a run, so no run "
+                                    ": this already exists and is not a file of a run, so no run "
                                     "replaces it; move it away or choose another folder");
 }
 

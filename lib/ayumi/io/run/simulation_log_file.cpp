@@ -300,7 +300,7 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   };
   if (bytes.empty()) stop("the file is empty, a simulation log is needed");
   if (bytes.size() < kPrefix || bytes.compare(0, 8, kMagic) != 0)
-    stop("is not a simulation log (it does not begin with AYUMILOG)");
+    stop("this is not a simulation log (it does not begin with AYUMILOG)");
   if (word_at(bytes, 8) != kVersion)
     stop("log version " + std::to_string(word_at(bytes, 8)) + " is not readable here; this " +
          "version reads " + std::to_string(kVersion));

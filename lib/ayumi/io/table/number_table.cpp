@@ -99,7 +99,8 @@ class CsvParser {
 
   std::string width_message(std::string_view line) const {
     return std::to_string(std::count(line.begin(), line.end(), ',') + 1) +
-           " values where the head row names " + std::to_string(table_.columns.size()) + " columns";
+           " values in the row, but the head row names " + std::to_string(table_.columns.size()) +
+           " columns";
   }
 
   std::string_view rest_;

@@ -130,7 +130,7 @@ void require_format(const NumberTable& table, const char* format, const std::str
     fail(ErrorCode::bad_file, file + ": no format line; '# format: " + format + "' is needed");
   if (found->second != format)
     fail(ErrorCode::bad_file, file + ": format '" + found->second +
-                                  "' is not readable here; this version reads '" + format + "'");
+                                  "' cannot be read; this version of Ayumi reads '" + format + "'");
 }
 
 Eigen::Vector3d vector_of(const NumberTable& table, Eigen::Index row, const std::vector<int>& at) {

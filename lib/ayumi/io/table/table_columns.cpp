@@ -79,7 +79,8 @@ NumberTable parse_json_table(const std::string& bytes, const std::string& file) 
   for (size_t r = 0; r < rows.size(); ++r) {
     rows[r].expect_array();
     if (rows[r].size() != table.columns.size())
-      rows[r].complain(std::to_string(rows[r].size()) + " values where \"columns\" names " +
+      rows[r].complain(std::to_string(rows[r].size()) +
+                       " values in the row, but \"columns\" names " +
                        std::to_string(table.columns.size()));
     for (Eigen::Index c = 0; c < width; ++c) {
       const Json& cell = rows[r].value()[static_cast<size_t>(c)];

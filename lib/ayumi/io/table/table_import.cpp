@@ -73,7 +73,7 @@ void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
   if (!degrees && !made.prismatic && made.limited && most > kNoAngle)
     refuse_table(file,
                  "column '" + column + "' reaches " + text::brief(most) +
-                     " rad, which no joint does: give --unit deg if the angles are in degrees");
+                     " rad, which no joint reaches; give --unit deg if the angles are in degrees");
   column = theta_column(joint);
 }
 
@@ -115,7 +115,7 @@ void even_out(NumberTable& table, std::vector<std::string>& filled, const std::s
                              " s does not come after " + text::brief(t[k - 1]) +
                              " s of the row before; times must increase");
   }
-  if (steps.empty()) refuse_table(file, "one row is no motion");
+  if (steps.empty()) refuse_table(file, "the table has only one row; a motion needs more");
   std::nth_element(steps.begin(), steps.begin() + static_cast<long>(steps.size() / 2), steps.end());
   double dt = steps[steps.size() / 2];
   const double rate = std::round(1 / dt);
@@ -198,8 +198,9 @@ void fill_theta(const NumberTable& table, const TableLayout& layout, const Robot
   }
   for (int dof = 0; dof < model.dof_count(); ++dof)
     if (!told[static_cast<size_t>(dof)])
-      result.filled.push_back(model.dofs()[dof].name +
-                              ": not in the file; it keeps the home posture");
+      result.filled.push_back(
+          model.dofs()[dof].name +
+          ": the file does not have this joint; it keeps its angle of the home posture");
 }
 
 void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
