@@ -9,8 +9,8 @@
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/demand/ground_demand.hpp"
+#include "ayumi/limits/swing_foot.hpp"
 #include "ayumi/repair/correction_problem.hpp"
-#include "ayumi/repair/foot_rows.hpp"
 #include "ayumi/repair/repair.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
@@ -54,16 +54,17 @@ TEST(Landing, ASoundWalkMeetsItsRows) {
   spec.watched_share = 0;
   const CorrectionProblem problem(hoap1(), series, spec);
   const Eigen::VectorXd g = problem.constraints(Eigen::VectorXd::Zero(problem.variable_count()));
-  std::map<ConstraintGroup, int> rows;
-  for (const ConstraintBlock& b : problem.blocks()) {
-    if (b.group != ConstraintGroup::landing && b.group != ConstraintGroup::foot_clearance) continue;
-    for (int i = b.row; i < b.row + b.rows; ++i) {
+  std::map<std::string, int> rows;
+  for (const RowBlock& b : problem.blocks()) {
+    const std::string kind = b.kind->name;
+    if (kind != "landing" && kind != "foot_clearance") continue;
+    for (int i = b.row; i < b.row + b.rows(); ++i) {
       EXPECT_GE(g[i], problem.lower()[i] - 1e-5) << "at " << problem.points()[b.point].sample;
-      ++rows[b.group];
+      ++rows[kind];
     }
   }
-  EXPECT_GT(rows[ConstraintGroup::landing], 200);
-  EXPECT_GT(rows[ConstraintGroup::foot_clearance], 100);
+  EXPECT_GT(rows["landing"], 200);
+  EXPECT_GT(rows["foot_clearance"], 100);
 }
 
 // What a swinging foot is off its place while it is lower than 1.5 mm, in the tenth of a second

@@ -1,6 +1,7 @@
 // A motor has a largest speed: |dtheta| <= speed limit of the actuator profile, which the voltage
 // of the motor and its gear set (data sheet of the robot, robot.json).
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -17,6 +18,22 @@ void judge_joint_speeds(JudgedMotion& motion, const JudgedSample& s) {
     const double ratio = std::abs(speed) / limit;
     motion.raise(FindingKind::joint_speed, ratio);
     if (ratio > most) motion.add(FindingKind::joint_speed, i, s.k, speed, most * limit, ratio);
+  }
+}
+
+const RowKind kSpeedRows = {.name = "speed", .order = {3, 1}};
+
+void place_speed_rows(RowSite& site) {
+  const double most = site.tolerance(FindingKind::joint_speed);
+  for (int i = 0; i < site.model.dof_count(); ++i) {
+    if (site.is_locked(i)) continue;
+    for (int point = 0; point < site.count(); ++point) {
+      const double speed =
+          site.most(point, [&](const CommandSample& s) { return std::abs(s.state.dtheta[i]); });
+      site.add_largest(kSpeedRows, point, JointQuantity::speed, i, speed,
+                       site.actuators.speed[i] * most, site.settings.limit_share,
+                       site.settings.active);
+    }
   }
 }
 
@@ -58,7 +75,8 @@ const Limit& joint_speed_limit() {
                                             .advice = speed_advice,
                                             .obstacle = speed_obstacle,
                                             .holds_at = joint_speed_holds}},
-                              .judge_sample = judge_joint_speeds};
+                              .judge_sample = judge_joint_speeds,
+                              .place_rows = place_speed_rows};
   return limit;
 }
 

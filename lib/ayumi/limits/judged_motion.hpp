@@ -5,6 +5,7 @@
 
 #include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
+#include "ayumi/limits/flight_moment.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/limits/violation.hpp"
 
@@ -32,7 +33,7 @@ struct JudgedMotion {
     return k >= 0 && k < count() && series.samples[k].support == Support::none;
   }
   /// In flight, and not so near its edges that the rates mix it with support.
-  bool flies_freely(int k) const { return flies(k) && !at_flight_edge(k); }
+  bool flies_freely(int k) const { return ayumi::flies_freely(series, k); }
   /// See at_flight_edge() of demand/contact_plan.hpp.
   bool at_flight_edge(int k) const { return ayumi::at_flight_edge(series, k); }
 

@@ -4,9 +4,9 @@
 //   1. its derivation;
 //   2. its value, computed from the demand (demand/) of a sample or of the whole motion;
 //   3. its tolerance with unit and source;
-//   4. the bound or the rows that the repair keeps, with their derivative;
+//   4. the rows that a repair keeps, with their derivative (row.hpp) and their places;
 //   5. its class;
-//   6. its soft goal and price, where it has one;
+//   6. the price of a violation in a repair, and its soft goal where it has one;
 //   7. its texts for people.
 // The judge (check/), attribution, the repair, the writers of JSON and pages and the program visit
 // the table limits(); limit_table.hpp has one line for each kind of finding.
@@ -22,6 +22,7 @@ namespace ayumi {
 
 struct JudgedMotion;
 struct JudgedSample;
+struct RowSite;
 struct FindingWindow;
 struct Violation;
 
@@ -88,25 +89,16 @@ struct FindingSpec {
   bool is_ratio() const { return unit[0] == '1'; }
 };
 
-/// The bound of one limit on the acceleration of single joints [rad/s^2], [m/s^2], by dof; infinite
-/// where there is none. The repair makes its rows from it: lower -bound, upper bound, derivative 1
-/// by the joint's own acceleration.
-using AccelerationBound = Eigen::VectorXd (*)(const RobotModel&, const ActuatorLimits&,
-                                              const ByFindingKind<double>& tolerance);
-
 struct Limit {
   std::vector<FindingSpec> findings;
   /// Notes what one sample violates; called for all samples in order of time.
   void (*judge_sample)(JudgedMotion&, const JudgedSample&) = nullptr;
   /// Notes what takes the whole motion to see; called after all samples.
   void (*judge_motion)(JudgedMotion&) = nullptr;
-  AccelerationBound acceleration_bound = nullptr;
+  /// Places the rows of a repair at the points of a site (row_site.hpp) where the motion is near
+  /// the limit. Null: no repair keeps this limit by itself; the check of its result looks at it.
+  void (*place_rows)(RowSite&) = nullptr;
 };
-
-/// The least bound of all limits on the acceleration of each joint [rad/s^2], [m/s^2], by dof;
-/// infinite where there is none. For the repair.
-Eigen::VectorXd acceleration_bound(const RobotModel& model, const ActuatorLimits& actuators,
-                                   const ByFindingKind<double>& tolerance);
 
 /// Every limit once, in the order of limit_table.hpp.
 const std::vector<const Limit*>& limits();
