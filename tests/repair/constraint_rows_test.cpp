@@ -95,21 +95,22 @@ struct Tally {
   double worst = 0;  // of the others
 };
 
-// The Jacobian against central differences along a way, relative where the derivative is above one.
-// Where the differences of two widths disagree there is a kink between them: dry friction turns its
-// sign, a foot begins to bear, nearest points jump to another corner.
-void compare(const CorrectionProblem& problem, const VectorXd& x, const VectorXd& way,
+// The Jacobian against central differences along a direction, relative where the derivative is
+// above one. Where the differences of two widths disagree there is a kink between them: dry
+// friction turns its sign, a foot begins to bear, nearest points jump to another corner.
+void compare(const CorrectionProblem& problem, const VectorXd& x, const VectorXd& direction,
              std::map<std::string, Tally>& tallies) {
   const Nlp nlp = problem.nlp();
-  VectorXd values(nlp.jacobian.size()), told = VectorXd::Zero(problem.constraint_count());
+  VectorXd values(nlp.jacobian.size()), computed = VectorXd::Zero(problem.constraint_count());
   nlp.jacobian_values(x, values);
   for (int i = 0; i < nlp.jacobian.size(); ++i)
-    told[nlp.jacobian.rows[i]] += values[i] * way[nlp.jacobian.columns[i]];
+    computed[nlp.jacobian.rows[i]] += values[i] * direction[nlp.jacobian.columns[i]];
   const auto difference = [&](double h) {
-    return VectorXd((problem.constraints(x + h * way) - problem.constraints(x - h * way)) /
-                    (2 * h));
+    return VectorXd(
+        (problem.constraints(x + h * direction) - problem.constraints(x - h * direction)) /
+        (2 * h));
   };
-  // Nearest points are found to 1e-10 m, which a short way would magnify.
+  // Nearest points are found to 1e-10 m, which a short step would magnify.
   for (const bool clearance : {false, true}) {
     const double h = clearance ? 1e-4 : 1e-6;
     const VectorXd wide = difference(2 * h), narrow = difference(h);
@@ -118,8 +119,8 @@ void compare(const CorrectionProblem& problem, const VectorXd& x, const VectorXd
       if (std::holds_alternative<ClearanceRows>(b.rule) != clearance) continue;
       Tally& tally = tallies[b.kind->name];
       for (int row = b.row; row < b.row + b.rows(); ++row) {
-        const double size = std::max(1.0, std::abs(told[row]));
-        const double off = std::abs(slope[row] - told[row]) / size;
+        const double size = std::max(1.0, std::abs(computed[row]));
+        const double off = std::abs(slope[row] - computed[row]) / size;
         const bool kink = std::abs(narrow[row] - wide[row]) / size > 1e-6;
         ++tally.rows;
         tally.kinks += kink && off > 1e-6;
@@ -137,7 +138,7 @@ TEST_P(ConstraintRows, DerivativesAgainstCentralDifferences) {
   for (const Trust trust : {Trust::cog, Trust::zmp, Trust::posture}) {
     const CorrectionProblem problem(model, series, spec(trust));
     for (const double size : {0.0005, 0.002})
-      for (int way = 0; way < 3; ++way)
+      for (int n = 0; n < 3; ++n)
         compare(problem, random.vector(problem.variable_count(), size),
                 random.vector(problem.variable_count(), 1), tallies);
   }
@@ -173,9 +174,9 @@ TEST_P(ConstraintRows, DerivativesAgainstCentralDifferences) {
   }
 }
 
-// At every sample, with no correction: what the program bounds is what the check tells.
+// At every sample, with no correction: what the program bounds is what the check finds.
 TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
-  std::map<std::string, double> most, told;
+  std::map<std::string, double> most, of_check;
   const auto raise = [&most](const std::string& name, double value) {
     most[name] = std::max(most.try_emplace(name, value).first->second, value);
   };
@@ -238,17 +239,17 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
             exp_rotation(Vector3d(e.normalized() * std::asin(e.norm()))).toRotationMatrix();
         const Eigen::Isometry3d& at = point.ground[static_cast<size_t>(b.item)];
         const Vector3d normal = at.linear().col(2);
-        double gap = -1, low = 1, way = 0;
+        double gap = -1, low = 1, slip = 0;
         for (const Vector2d& v : model.sole(static_cast<Side>(b.item)).polygon) {
           const Vector3d arm = at.linear() * Vector3d(v.x(), v.y(), 0);
           const Vector3d off = rows.head<3>() + R * arm - arm;
           gap = std::max(gap, normal.dot(off));
           low = std::min(low, normal.dot(off));
-          way = std::max(way, (off - normal.dot(off) * normal).norm());
+          slip = std::max(slip, (off - normal.dot(off) * normal).norm());
         }
         raise("float", gap);
         raise("penetration", -low);
-        if (low <= 0.0003) raise("slip", way);
+        if (low <= 0.0003) raise("slip", slip);
       } else if (kind == "path") {
         EXPECT_LT(rows.norm(), 1e-9);
       } else if (kind == "swing") {
@@ -288,26 +289,26 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
       if (count > 0 && turning[k].allFinite()) raise("momentum", sum.norm() / count);
     }
   }
-  told = {{"friction", summary[FindingKind::friction]},
-          {"yaw", summary[FindingKind::yaw_moment]},
-          {"zmp", summary[FindingKind::zmp_residual]},
-          {"float", summary[FindingKind::foot_float]},
-          {"penetration", summary[FindingKind::foot_penetration]},
-          {"slip", summary[FindingKind::foot_slip]},
-          {"position", summary[FindingKind::joint_position]},
-          {"speed", summary[FindingKind::joint_speed]},
-          {"acceleration", summary[FindingKind::joint_acceleration]},
-          {"torque", summary[FindingKind::joint_torque]},
-          {"overlap", -summary[FindingKind::self_collision]},
-          {"cog", summary[FindingKind::cog_residual]}};
-  if (jumps) told["ballistic"] = summary[FindingKind::ballistic];
+  of_check = {{"friction", summary[FindingKind::friction]},
+              {"yaw", summary[FindingKind::yaw_moment]},
+              {"zmp", summary[FindingKind::zmp_residual]},
+              {"float", summary[FindingKind::foot_float]},
+              {"penetration", summary[FindingKind::foot_penetration]},
+              {"slip", summary[FindingKind::foot_slip]},
+              {"position", summary[FindingKind::joint_position]},
+              {"speed", summary[FindingKind::joint_speed]},
+              {"acceleration", summary[FindingKind::joint_acceleration]},
+              {"torque", summary[FindingKind::joint_torque]},
+              {"overlap", -summary[FindingKind::self_collision]},
+              {"cog", summary[FindingKind::cog_residual]}};
+  if (jumps) of_check["ballistic"] = summary[FindingKind::ballistic];
   if (summary[FindingKind::self_collision] <
       0) {  // ends are less deep inside than shapes have to be parted
     EXPECT_GT(most["overlap"], 0);
-    EXPECT_LE(most["overlap"], told["overlap"] + 1e-9);
-    told.erase("overlap");
+    EXPECT_LE(most["overlap"], of_check["overlap"] + 1e-9);
+    of_check.erase("overlap");
   }
-  for (const auto& [name, value] : told)
+  for (const auto& [name, value] : of_check)
     EXPECT_NEAR(most[name], value, 1e-9 * std::max(1.0, std::abs(value))) << name;
   if (!jumps) return;
   // About the commanded COG here, about the posture's there, 2.3 mm apart.

@@ -45,8 +45,9 @@ void expect_jacobian(const CorrectionProblem& problem, const VectorXd& x, double
   std::map<std::string, int> rows;
   for (int v = 0; v < problem.variable_count(); ++v) {
     auto difference = [&](double h) {
-      const VectorXd way = h * VectorXd::Unit(x.size(), v);
-      return VectorXd((problem.constraints(x + way) - problem.constraints(x - way)) / (2 * h));
+      const VectorXd direction = h * VectorXd::Unit(x.size(), v);
+      return VectorXd((problem.constraints(x + direction) - problem.constraints(x - direction)) /
+                      (2 * h));
     };
     const VectorXd slope = (4 * difference(1e-6) - difference(2e-6)) / 3;
     const VectorXd off =
@@ -188,15 +189,15 @@ TEST(CorrectionProblem, JacobianOfClearances) {
   MatrixXd J = MatrixXd::Zero(problem.constraint_count(), problem.variable_count());
   for (int i = 0; i < nlp.jacobian.size(); ++i)
     J(nlp.jacobian.rows[i], nlp.jacobian.columns[i]) += values[i];
-  const VectorXd way = random.vector(problem.variable_count(), 1);
+  const VectorXd direction = random.vector(problem.variable_count(), 1);
   const double h = 1e-6;
   const VectorXd slope =
-      (problem.constraints(x + h * way) - problem.constraints(x - h * way)) / (2 * h);
+      (problem.constraints(x + h * direction) - problem.constraints(x - h * direction)) / (2 * h);
   for (const RowBlock& b : problem.blocks()) {
     if (std::string_view(b.kind->name) != "clearance") continue;
     ++rows;
     if (g[b.row] < 0) ++deep;
-    EXPECT_NEAR(slope[b.row], J.row(b.row).dot(way), 1e-5) << g[b.row];
+    EXPECT_NEAR(slope[b.row], J.row(b.row).dot(direction), 1e-5) << g[b.row];
   }
   EXPECT_GT(rows, 10);
   EXPECT_GT(deep, 2);

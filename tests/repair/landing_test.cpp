@@ -29,20 +29,20 @@ Pattern table_of(const WalkParameters& parameters) {
 
 // 3 mm ahead, 4 mm to the left and 20 mm above a place that is turned and on a slope, rolled by
 // 0.01 and turned by 0.02 rad: along the place's axes, and 70 mm away, where the sole ends.
-TEST(Landing, WayIsAlongThePlacesAxes) {
+TEST(Landing, OffsetIsAlongThePlacesAxes) {
   Isometry3d place = Isometry3d::Identity();
   place.linear() = exp_rotation({0.1, -0.05, 0.8}).toRotationMatrix();
   place.translation() = Vector3d(0.3, -0.2, 0.05);
   Isometry3d off = Isometry3d::Identity();
   off.translation() = Vector3d(0.003, 0.004, 0.020);
   off.linear() = exp_rotation({0.01, 0, 0.02}).toRotationMatrix();
-  const auto way = landing_offset(hoap1(), Side::left, place * off, place);
+  const auto offset = landing_offset(hoap1(), Side::left, place * off, place);
   const double reach = std::hypot(0.056, 0.0315);
-  EXPECT_NEAR(way[0], 0.003, 1e-12);
-  EXPECT_NEAR(way[1], 0.004, 1e-12);
-  EXPECT_NEAR(way[2], 0.01 * reach, 3e-7);  // its sine
-  EXPECT_NEAR(way[3], 0, 1e-12);
-  EXPECT_NEAR(way[4], 0.02 * reach, 3e-7);
+  EXPECT_NEAR(offset[0], 0.003, 1e-12);
+  EXPECT_NEAR(offset[1], 0.004, 1e-12);
+  EXPECT_NEAR(offset[2], 0.01 * reach, 3e-7);  // its sine
+  EXPECT_NEAR(offset[3], 0, 1e-12);
+  EXPECT_NEAR(offset[4], 0.02 * reach, 3e-7);
 }
 
 // The rows of a walk as it was made hold: they ask for nothing that it does not do.
@@ -69,7 +69,7 @@ TEST(Landing, ASoundWalkMeetsItsRows) {
 
 // What a swinging foot is off its place while it is lower than 1.5 mm, in the tenth of a second
 // before it lands [m].
-double low_way(const CommandSeries& series, Side side, int landing) {
+double low_offset(const CommandSeries& series, Side side, int landing) {
   const Isometry3d place = series.samples[landing + 10].feet[static_cast<int>(side)];
   RobotData data(hoap1());
   double most = 0;
@@ -92,7 +92,7 @@ TEST(Landing, EarlyContactComesDownOnItsPlace) {
   const RepairResult r = repair(hoap1(), series);
   ASSERT_EQ(r.status, RepairStatus::repaired);
   const int landing = static_cast<int>(std::lround(pattern.phases[step].until / series.dt));
-  EXPECT_LT(low_way(r.series, pattern.phases[step].swing->foot, landing), 0.0012);
+  EXPECT_LT(low_offset(r.series, pattern.phases[step].swing->foot, landing), 0.0012);
 }
 
 // The lowest corner of a foot in the middle half of a swing [m].

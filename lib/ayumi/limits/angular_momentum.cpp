@@ -78,7 +78,7 @@ Advice angular_momentum_advice(const JudgedMotion&, const FindingWindow&) {
          "against each other";
 }
 
-std::string angular_momentum_obstacle(const Finding&, double) {
+std::string angular_momentum_infeasibility(const Finding&, double) {
   return "the angular momentum changes in flight";
 }
 
@@ -96,9 +96,10 @@ const Limit& angular_momentum_limit() {
                                .label = "largest rate of the angular momentum in flight",
                                .unit = "N m",
                                .line = 19},
+                    .repair = {.in_flight = true},
                     .place = axis_place,
                     .advice = angular_momentum_advice,
-                    .obstacle = angular_momentum_obstacle,
+                    .infeasibility = angular_momentum_infeasibility,
                     .holds_at = angular_momentum_holds}},
       .judge_sample = note_moment,
       .judge_motion = judge_angular_momentum};

@@ -96,7 +96,7 @@ Advice clearance_advice(const JudgedMotion&, const FindingWindow& window) {
                        : "only " + in_mm(clearance) + " between these bodies";
 }
 
-std::string clearance_obstacle(const Finding& f, double) {
+std::string clearance_infeasibility(const Finding& f, double) {
   return f.where + " overlap by " + in_mm(f.worst);
 }
 
@@ -117,7 +117,7 @@ const Limit& clearance_limit() {
                                .line = 20},
                     .place = body_pair_place,
                     .advice = clearance_advice,
-                    .obstacle = clearance_obstacle}},
+                    .infeasibility = clearance_infeasibility}},
       .judge_motion = judge_clearances,
       .place_rows = place_clearance_rows};
   return limit;

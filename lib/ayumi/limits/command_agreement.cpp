@@ -138,11 +138,11 @@ Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
          " off here: judge by the full model";
 }
 
-std::string cog_obstacle(const Finding& f, double) {
+std::string cog_infeasibility(const Finding& f, double) {
   return "the posture is " + in_mm(f.worst) + " from the trusted COG";
 }
 
-std::string zmp_obstacle(const Finding& f, double) {
+std::string zmp_infeasibility(const Finding& f, double) {
   return "the motion is " + in_mm(f.worst) + " from the trusted ZMP";
 }
 
@@ -160,9 +160,10 @@ const Limit& command_agreement_limit() {
                                .unit = "mm",
                                .scale = 1e3,
                                .line = 2},
+                    .repair = {.is_of_plan = true},
                     .place = axis_place,
                     .advice = cog_advice,
-                    .obstacle = cog_obstacle},
+                    .infeasibility = cog_infeasibility},
                    {.kind = FindingKind::zmp_residual,
                     .limit_class = LimitClass::command,
                     .unit = "m",
@@ -173,9 +174,10 @@ const Limit& command_agreement_limit() {
                                .unit = "mm",
                                .scale = 1e3,
                                .line = 3},
+                    .repair = {.is_of_plan = true},
                     .place = axis_place,
                     .advice = zmp_advice,
-                    .obstacle = zmp_obstacle,
+                    .infeasibility = zmp_infeasibility,
                     .holds_at = zmp_holds},
                    {.kind = FindingKind::fz_residual,
                     .limit_class = LimitClass::command,

@@ -108,7 +108,7 @@ Advice free_fall_advice(const JudgedMotion& motion, const FindingWindow& window)
          " s of flight: leave the COG keys of the flight out";
 }
 
-std::string free_fall_obstacle(const Finding&, double) {
+std::string free_fall_infeasibility(const Finding&, double) {
   return "the COG does not fall freely in flight";
 }
 
@@ -124,9 +124,10 @@ const Limit& free_fall_limit() {
                                                        .label = "largest deviation from free fall",
                                                        .unit = "m/s^2",
                                                        .line = 18},
+                                            .repair = {.in_flight = true},
                                             .place = axis_place,
                                             .advice = free_fall_advice,
-                                            .obstacle = free_fall_obstacle,
+                                            .infeasibility = free_fall_infeasibility,
                                             .holds_at = free_fall_holds}},
                               .judge_sample = judge_free_fall,
                               .judge_motion = judge_leaps,

@@ -98,8 +98,9 @@ Advice friction_advice(const JudgedMotion& motion, const FindingWindow& window) 
          " or take shorter steps";
 }
 
-std::string friction_obstacle(const Finding& f, double excess) {
-  return "the motion needs " + ratio_text(excess) + " of the available friction (" + f.where + ")";
+std::string friction_infeasibility(const Finding& f, double violation) {
+  return "the motion needs " + ratio_text(violation) + " of the available friction (" + f.where +
+         ")";
 }
 
 }  // namespace
@@ -120,7 +121,7 @@ const Limit& friction_limit() {
                                .line = 11},
                     .place = support_place,
                     .advice = friction_advice,
-                    .obstacle = friction_obstacle,
+                    .infeasibility = friction_infeasibility,
                     .holds_at = friction_holds}},
       .judge_sample = judge_friction,
       .place_rows = place_friction_rows};

@@ -70,17 +70,18 @@ const char* position_unit(const JudgedMotion& motion, const Violation& v) {
 Advice position_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const Dof& dof = motion.model.dofs()[v.item];
-  const double excess = std::abs(v.value - v.limit);
+  const double beyond = std::abs(v.value - v.limit);
   return {"move " + dof.name + " back by " +
-              (dof.prismatic ? in_mm(excess) : text::fixed(excess * 180 / EIGEN_PI, 2) + " deg") +
+              (dof.prismatic ? in_mm(beyond) : text::fixed(beyond * 180 / EIGEN_PI, 2) + " deg") +
               " in this window",
           kOrRepair};
 }
 
-std::string position_obstacle(const Finding& f, double excess) {
+std::string position_infeasibility(const Finding& f, double violation) {
   const bool prismatic = f.unit == "m";
   return f.where + " goes " +
-         (prismatic ? in_mm(excess) : text::fixed(std::abs(excess) * 180 / EIGEN_PI, 1) + " deg") +
+         (prismatic ? in_mm(violation)
+                    : text::fixed(std::abs(violation) * 180 / EIGEN_PI, 1) + " deg") +
          " beyond its limit";
 }
 
@@ -97,10 +98,11 @@ const Limit& joint_position_limit() {
                                                        .scale = 100,
                                                        .share_name = "position",
                                                        .line = 6},
+                                            .repair = {.is_of_one_joint = true},
                                             .finding_unit = position_unit,
                                             .place = joint_place,
                                             .advice = position_advice,
-                                            .obstacle = position_obstacle}},
+                                            .infeasibility = position_infeasibility}},
                               .judge_sample = judge_joint_positions,
                               .place_rows = place_position_rows};
   return limit;

@@ -51,8 +51,8 @@ Advice speed_advice(const JudgedMotion& motion, const FindingWindow& window) {
          motion.model.dofs()[v.item].name + " swing through a smaller angle";
 }
 
-std::string speed_obstacle(const Finding& f, double excess) {
-  return f.where + " speed reaches " + ratio_text(excess) + " of its limit";
+std::string speed_infeasibility(const Finding& f, double violation) {
+  return f.where + " speed reaches " + ratio_text(violation) + " of its limit";
 }
 
 }  // namespace
@@ -70,10 +70,11 @@ const Limit& joint_speed_limit() {
                                                        .share_name = "speed",
                                                        .line = 7},
                                             .actuator = {.line = 3},
+                                            .repair = {.is_of_one_joint = true},
                                             .finding_unit = speed_unit,
                                             .place = joint_place,
                                             .advice = speed_advice,
-                                            .obstacle = speed_obstacle,
+                                            .infeasibility = speed_infeasibility,
                                             .holds_at = joint_speed_holds}},
                               .judge_sample = judge_joint_speeds,
                               .place_rows = place_speed_rows};

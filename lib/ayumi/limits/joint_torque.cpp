@@ -68,8 +68,8 @@ Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
          " where inertia is the cause, or straighten the leg where weight is";
 }
 
-std::string torque_obstacle(const Finding& f, double excess) {
-  return f.where + " torque reaches " + ratio_text(excess) + " of its limit";
+std::string torque_infeasibility(const Finding& f, double violation) {
+  return f.where + " torque reaches " + ratio_text(violation) + " of its limit";
 }
 
 }  // namespace
@@ -90,7 +90,7 @@ const Limit& joint_torque_limit() {
                                             .finding_unit = torque_unit,
                                             .place = joint_place,
                                             .advice = torque_advice,
-                                            .obstacle = torque_obstacle,
+                                            .infeasibility = torque_infeasibility,
                                             .holds_at = joint_torque_holds}},
                               .judge_sample = judge_joint_torques,
                               .place_rows = place_torque_rows};

@@ -62,6 +62,23 @@ struct Advice {
   std::string remedy, or_repair;
 };
 
+/// What an error of one kind means for a repair.
+struct RepairTraits {
+  /// Of the motion in flight: the knots of a correction have to be near each other there.
+  bool in_flight = false;
+  /// As brief as the time in which a sole leaves its place: needs knots within its window.
+  bool is_brief = false;
+  /// The commanded COG or ZMP may itself be wrong around it, and is then no goal.
+  bool is_of_plan = false;
+  /// Of the motion of one joint alone: where that joint is locked, nothing removes it.
+  bool is_of_one_joint = false;
+  /// Of a mean over a fixed time: no fault of the posture of one sample, and no slower motion
+  /// removes it.
+  bool is_mean = false;
+  /// A motion that is repaired at all is repaired where the check only warns, too.
+  bool warnings_too = false;
+};
+
 /// Everything about one kind of finding.
 struct FindingSpec {
   FindingKind kind = FindingKind::cog_residual;
@@ -73,14 +90,15 @@ struct FindingSpec {
   double (*least_tolerance)(const RobotModel&, const CommandSeries&) = nullptr;
   SummaryFigure figure = {};
   ActuatorNeedWords actuator = {};
+  RepairTraits repair = {};
 
   /// Unit of the values of a violation; null: `unit`.
   const char* (*finding_unit)(const JudgedMotion&, const Violation&) = nullptr;
   Place (*place)(const JudgedMotion&, const Violation&) = nullptr;
   Advice (*advice)(const JudgedMotion&, const FindingWindow&) = nullptr;
-  /// What stands in the way of a repair. `excess`: value over limit where is_ratio(), else their
+  /// Why no repair was found, in words. `violation`: value over limit where is_ratio(), else their
   /// distance. Null: a general text.
-  std::string (*obstacle)(const Finding&, double excess) = nullptr;
+  std::string (*infeasibility)(const Finding&, double violation) = nullptr;
   /// Whether the violated sample keeps the limit when the path is played at this pace: rates times
   /// the pace, accelerations times its square. Null: another pace changes nothing.
   bool (*holds_at)(JudgedMotion&, const Violation&, double pace) = nullptr;

@@ -73,8 +73,8 @@ Advice motor_acceleration_advice(const JudgedMotion& motion, const FindingWindow
          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) + " or smooth the joint here";
 }
 
-std::string motor_acceleration_obstacle(const Finding& f, double excess) {
-  return f.where + " acceleration reaches " + ratio_text(excess) +
+std::string motor_acceleration_infeasibility(const Finding& f, double violation) {
+  return f.where + " acceleration reaches " + ratio_text(violation) +
          " of what its motor can give to its own rotor";
 }
 
@@ -97,7 +97,7 @@ const Limit& motor_acceleration_limit() {
                     .finding_unit = motor_acceleration_unit,
                     .place = joint_place,
                     .advice = motor_acceleration_advice,
-                    .obstacle = motor_acceleration_obstacle,
+                    .infeasibility = motor_acceleration_infeasibility,
                     .holds_at = motor_acceleration_holds}},
       .judge_motion = judge_motor_accelerations,
       .place_rows = place_motor_rows};

@@ -55,7 +55,7 @@ Advice normal_force_advice(const JudgedMotion&, const FindingWindow&) {
   return "the ground cannot pull: lower the COG with less than free fall, or plan a flight phase";
 }
 
-std::string normal_force_obstacle(const Finding& f, double) {
+std::string normal_force_infeasibility(const Finding& f, double) {
   return "the ground would have to pull (" + f.where + ")";
 }
 
@@ -72,7 +72,7 @@ const Limit& normal_force_limit() {
                     .finding_unit = normal_force_unit,
                     .place = support_place,
                     .advice = normal_force_advice,
-                    .obstacle = normal_force_obstacle,
+                    .infeasibility = normal_force_infeasibility,
                     .holds_at = normal_force_holds}},
       .judge_sample = judge_normal_force,
       .place_rows = place_normal_force_rows};

@@ -222,15 +222,15 @@ Advice float_advice(const JudgedMotion& motion, const FindingWindow& window) {
          "lower the foot";
 }
 
-std::string slip_obstacle(const Finding& f, double) {
+std::string slip_infeasibility(const Finding& f, double) {
   return "the " + f.where + " foot slips " + in_mm(f.worst);
 }
 
-std::string penetration_obstacle(const Finding& f, double) {
+std::string penetration_infeasibility(const Finding& f, double) {
   return "the " + f.where + " foot is " + in_mm(f.worst) + " in the ground";
 }
 
-std::string float_obstacle(const Finding& f, double) {
+std::string float_infeasibility(const Finding& f, double) {
   return "the " + f.where + " foot stands " + in_mm(f.worst) + " in the air";
 }
 
@@ -247,9 +247,10 @@ const Limit& stance_limit() {
                                .unit = "mm",
                                .scale = 1e3,
                                .line = 13},
+                    .repair = {.is_brief = true},
                     .place = foot_place,
                     .advice = slip_advice,
-                    .obstacle = slip_obstacle},
+                    .infeasibility = slip_infeasibility},
                    {.kind = FindingKind::foot_penetration,
                     .unit = "m",
                     .tolerance = kDepthTolerance,
@@ -261,7 +262,7 @@ const Limit& stance_limit() {
                                .line = 14},
                     .place = foot_place,
                     .advice = penetration_advice,
-                    .obstacle = penetration_obstacle},
+                    .infeasibility = penetration_infeasibility},
                    {.kind = FindingKind::foot_float,
                     .unit = "m",
                     .tolerance = kFloatTolerance,
@@ -273,7 +274,7 @@ const Limit& stance_limit() {
                                .line = 15},
                     .place = foot_place,
                     .advice = float_advice,
-                    .obstacle = float_obstacle}},
+                    .infeasibility = float_infeasibility}},
       .judge_sample = note_soles,
       .judge_motion = judge_stance,
       .place_rows = place_stance_rows};

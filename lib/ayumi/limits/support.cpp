@@ -118,8 +118,8 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
          in_mm(v.limit);
 }
 
-std::string support_obstacle(const Finding& f, double excess) {
-  return "the ZMP is " + in_mm(excess) + " outside the support (" + f.where + ")";
+std::string support_infeasibility(const Finding& f, double violation) {
+  return "the ZMP is " + in_mm(violation) + " outside the support (" + f.where + ")";
 }
 
 }  // namespace
@@ -139,9 +139,10 @@ const Limit& support_limit() {
                                .scale = 1e3,
                                .least = true,
                                .line = 1},
+                    .repair = {.is_of_plan = true, .warnings_too = true},
                     .place = support_place,
                     .advice = support_advice,
-                    .obstacle = support_obstacle,
+                    .infeasibility = support_infeasibility,
                     .holds_at = support_holds}},
       .judge_sample = judge_support,
       .place_rows = place_support_rows};

@@ -100,8 +100,8 @@ Advice torsion_advice(const JudgedMotion&, const FindingWindow& window) {
          " or swing the arms against the legs";
 }
 
-std::string torsion_obstacle(const Finding& f, double excess) {
-  return "the foot would turn: " + ratio_text(excess) +
+std::string torsion_infeasibility(const Finding& f, double violation) {
+  return "the foot would turn: " + ratio_text(violation) +
          " of the yaw moment that friction can resist (" + f.where + ")";
 }
 
@@ -124,7 +124,7 @@ const Limit& torsion_limit() {
                                .line = 12},
                     .place = support_place,
                     .advice = torsion_advice,
-                    .obstacle = torsion_obstacle,
+                    .infeasibility = torsion_infeasibility,
                     .holds_at = torsion_holds}},
       .judge_sample = judge_torsion,
       .place_rows = place_torsion_rows};

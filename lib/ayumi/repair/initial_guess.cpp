@@ -30,7 +30,7 @@ std::vector<int> joints_between(const RobotModel& model, int a, int b) {
 }
 
 std::vector<int> joints_at_fault(const RobotModel& model, const Finding& f) {
-  if (f.kind == FindingKind::joint_position) return {dof_of(f)};
+  if (dof_of(f) >= 0 && spec_of(f.kind).limit_class == LimitClass::posture) return {dof_of(f)};
   const BodyPairPlace* bodies = std::get_if<BodyPairPlace>(&f.place);
   return bodies ? joints_between(model, bodies->a, bodies->b) : std::vector<int>();
 }

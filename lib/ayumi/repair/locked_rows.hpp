@@ -1,5 +1,5 @@
 #pragma once
-// Rows of what a repair was told to leave alone: postures at locked times and paths of locked feet.
+// Rows of what a repair has to leave alone: postures at locked times and paths of locked feet.
 // They belong to no limit.
 
 #include "ayumi/limits/row_site.hpp"
