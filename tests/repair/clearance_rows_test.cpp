@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/demand/clearance_points.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/repair/clearance_points.hpp"
 #include "tests/support/biped.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/random_robot.hpp"
@@ -206,7 +206,7 @@ TEST(ClearanceRows, EdgesAreARowWhereNoCornerIsNearer) {
     update_positions(model, state, data);
     ShapePair boxes;  // the first shape of either
     EXPECT_EQ(clearance_point_count(collisions, boxes), 16);
-    const bool meet = edges_meet(collisions, boxes, data);
+    const bool meet = edges_meet(collisions, boxes, data, 1e-6);
     double least = 1;
     for (const Closest& c : clearance_points(collisions, boxes, data))
       least = std::min(least, c.clearance);

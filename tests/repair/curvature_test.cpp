@@ -1,5 +1,5 @@
 // The Hessian of the repair's program against differences of its gradient: at the motion itself,
-// held still in the middle of a step, where nothing is left out; along ways of base and
+// held still in the middle of a step, where nothing is left out; along directions of base and
 // legs.
 
 #include <gtest/gtest.h>
@@ -47,13 +47,13 @@ class CurvatureOfRows : public testing::TestWithParam<RobotMotion> {
   }
 };
 
-// Of J' l, by central differences of two widths along a way.
-VectorXd slope(const Nlp& nlp, const VectorXd& multipliers, const VectorXd& way) {
+// Of J' l, by central differences of two widths along a direction.
+VectorXd slope(const Nlp& nlp, const VectorXd& multipliers, const VectorXd& direction) {
   constexpr double kStep = 2e-6;
-  VectorXd sum = VectorXd::Zero(way.size()), values(nlp.jacobian.size());
+  VectorXd sum = VectorXd::Zero(direction.size()), values(nlp.jacobian.size());
   for (const auto& [steps, share] : {std::pair(1, 4.0 / 3), std::pair(2, -1.0 / 6)})
     for (const int side : {1, -1}) {
-      nlp.jacobian_values(side * steps * kStep * way, values);
+      nlp.jacobian_values(side * steps * kStep * direction, values);
       for (int i = 0; i < nlp.jacobian.size(); ++i)
         sum[nlp.jacobian.columns[i]] +=
             side * share * values[i] * multipliers[nlp.jacobian.rows[i]] / (2 * kStep);
@@ -61,13 +61,13 @@ VectorXd slope(const Nlp& nlp, const VectorXd& multipliers, const VectorXd& way)
   return sum;
 }
 
-VectorXd told(const Nlp& nlp, const VectorXd& multipliers, const VectorXd& way) {
-  VectorXd values(nlp.hessian.size()), sum = VectorXd::Zero(way.size());
-  nlp.hessian_values(VectorXd::Zero(way.size()), 0, multipliers, values);
+VectorXd computed(const Nlp& nlp, const VectorXd& multipliers, const VectorXd& direction) {
+  VectorXd values(nlp.hessian.size()), sum = VectorXd::Zero(direction.size());
+  nlp.hessian_values(VectorXd::Zero(direction.size()), 0, multipliers, values);
   for (int i = 0; i < nlp.hessian.size(); ++i) {
     const int a = nlp.hessian.rows[i], b = nlp.hessian.columns[i];
-    sum[a] += values[i] * way[b];
-    if (a != b) sum[b] += values[i] * way[a];
+    sum[a] += values[i] * direction[b];
+    if (a != b) sum[b] += values[i] * direction[a];
   }
   return sum;
 }
@@ -75,7 +75,7 @@ VectorXd told(const Nlp& nlp, const VectorXd& multipliers, const VectorXd& way) 
 }  // namespace
 
 TEST_P(CurvatureOfRows, AgainstDifferencesOfTheGradient) {
-  std::set<ConstraintGroup> seen;
+  std::set<std::string> seen;
   for (const bool slopes : {false, true}) {  // on a slope a robot at rest slides
     const CommandSeries series = still(slopes);
     const CorrectionProblem problem(model, series, spec(series));
@@ -86,19 +86,19 @@ TEST_P(CurvatureOfRows, AgainstDifferencesOfTheGradient) {
       for (const int dof : model.leg(side)) curved.col(6 + dof).setOnes();
     const VectorXd mask = problem.point(curved);
     Random random(5);
-    const VectorXd way = random.vector(problem.variable_count(), 1).cwiseProduct(mask);
-    for (const auto group : {ConstraintGroup::support, ConstraintGroup::friction,
-                             ConstraintGroup::stance, ConstraintGroup::path, ConstraintGroup::swing,
-                             ConstraintGroup::landing, ConstraintGroup::foot_clearance}) {
-      if (group == ConstraintGroup::friction && !slopes) continue;  // beside its rounded tip
+    const VectorXd direction = random.vector(problem.variable_count(), 1).cwiseProduct(mask);
+    for (const std::string kind :
+         {"support", "friction", "stance", "path", "swing", "landing", "foot_clearance"}) {
+      if (kind == "friction" && !slopes) continue;  // beside its rounded tip
       VectorXd multipliers = random.vector(problem.constraint_count(), 1);
-      for (const ConstraintBlock& b : problem.blocks()) {
-        if (b.group == group) seen.insert(group);
-        if (b.group != group) multipliers.segment(b.row, b.rows).setZero();
+      for (const RowBlock& b : problem.blocks()) {
+        if (b.kind->name == kind) seen.insert(kind);
+        if (b.kind->name != kind) multipliers.segment(b.row, b.rows()).setZero();
       }
-      const VectorXd expected = slope(nlp, multipliers, way).cwiseProduct(mask);
-      EXPECT_LT((told(nlp, multipliers, way) - expected).norm(), 1e-6 * (1 + expected.norm()))
-          << name_of(group) << ", size " << expected.norm() << (slopes ? ", on a slope" : "");
+      const VectorXd expected = slope(nlp, multipliers, direction).cwiseProduct(mask);
+      EXPECT_LT((computed(nlp, multipliers, direction) - expected).norm(),
+                1e-6 * (1 + expected.norm()))
+          << kind << ", size " << expected.norm() << (slopes ? ", on a slope" : "");
     }
   }
   EXPECT_EQ(seen.size(), 7U);

@@ -258,15 +258,15 @@ TEST_F(Faults, ReasonsNameJointTimeRatioAndTimeNeeded) {
   series = sample(hoap1(), pattern);
   const RepairResult r = repair(hoap1(), series, options);
   EXPECT_NE(r.status, RepairStatus::repaired);
-  const auto speed = std::find_if(r.obstacles.begin(), r.obstacles.end(), [](const Obstacle& o) {
-    return o.finding.kind == FindingKind::joint_speed;
-  });
-  ASSERT_NE(speed, r.obstacles.end());
-  const Obstacle& first = *speed;
+  const auto speed = std::find_if(
+      r.causes.begin(), r.causes.end(),
+      [](const InfeasibilityCause& o) { return o.finding.kind == FindingKind::joint_speed; });
+  ASSERT_NE(speed, r.causes.end());
+  const InfeasibilityCause& first = *speed;
   EXPECT_GE(first.finding.at, 1.75);
   EXPECT_LE(first.finding.at, 2.1);
   EXPECT_TRUE(first.is_ratio);
-  EXPECT_NEAR(first.time_factor, first.excess, 0.011);
+  EXPECT_NEAR(first.time_factor, first.violation, 0.011);
   EXPECT_NE(first.text.find("speed reaches 1."), std::string::npos) << first.text;
   EXPECT_NE(first.text.find("times longer"), std::string::npos) << first.text;
   EXPECT_NE(first.text.find("locked"), std::string::npos) << first.text;

@@ -1,4 +1,4 @@
-// What stands in the way of a repair, in words: each kind of finding in its own unit.
+// Why no repair was found, in words: each kind of finding in its own unit.
 
 #include "ayumi/repair/infeasibility_report.hpp"
 
@@ -19,7 +19,8 @@ TEST(InfeasibilityReport, NamesTheTimeForWhichAFootStandsOn) {
   RepairOptions options;
   options.locked_windows = {{0, 10}};
   const ConsistencyReport report = check_consistency(hoap1(), series, options.check);
-  const std::vector<Obstacle> found = infeasibility_report(hoap1(), series, report, options);
+  const std::vector<InfeasibilityCause> found =
+      infeasibility_report(hoap1(), series, report, options);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].finding.kind, FindingKind::contact_ends_early);
   EXPECT_EQ(found[0].finding.unit, "s");

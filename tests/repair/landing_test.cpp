@@ -9,8 +9,8 @@
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/demand/ground_demand.hpp"
+#include "ayumi/limits/swing_foot.hpp"
 #include "ayumi/repair/correction_problem.hpp"
-#include "ayumi/repair/foot_rows.hpp"
 #include "ayumi/repair/repair.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
@@ -29,20 +29,20 @@ Pattern table_of(const WalkParameters& parameters) {
 
 // 3 mm ahead, 4 mm to the left and 20 mm above a place that is turned and on a slope, rolled by
 // 0.01 and turned by 0.02 rad: along the place's axes, and 70 mm away, where the sole ends.
-TEST(Landing, WayIsAlongThePlacesAxes) {
+TEST(Landing, OffsetIsAlongThePlacesAxes) {
   Isometry3d place = Isometry3d::Identity();
   place.linear() = exp_rotation({0.1, -0.05, 0.8}).toRotationMatrix();
   place.translation() = Vector3d(0.3, -0.2, 0.05);
   Isometry3d off = Isometry3d::Identity();
   off.translation() = Vector3d(0.003, 0.004, 0.020);
   off.linear() = exp_rotation({0.01, 0, 0.02}).toRotationMatrix();
-  const auto way = landing_offset(hoap1(), Side::left, place * off, place);
+  const auto offset = landing_offset(hoap1(), Side::left, place * off, place);
   const double reach = std::hypot(0.056, 0.0315);
-  EXPECT_NEAR(way[0], 0.003, 1e-12);
-  EXPECT_NEAR(way[1], 0.004, 1e-12);
-  EXPECT_NEAR(way[2], 0.01 * reach, 3e-7);  // its sine
-  EXPECT_NEAR(way[3], 0, 1e-12);
-  EXPECT_NEAR(way[4], 0.02 * reach, 3e-7);
+  EXPECT_NEAR(offset[0], 0.003, 1e-12);
+  EXPECT_NEAR(offset[1], 0.004, 1e-12);
+  EXPECT_NEAR(offset[2], 0.01 * reach, 3e-7);  // its sine
+  EXPECT_NEAR(offset[3], 0, 1e-12);
+  EXPECT_NEAR(offset[4], 0.02 * reach, 3e-7);
 }
 
 // The rows of a walk as it was made hold: they ask for nothing that it does not do.
@@ -54,21 +54,22 @@ TEST(Landing, ASoundWalkMeetsItsRows) {
   spec.watched_share = 0;
   const CorrectionProblem problem(hoap1(), series, spec);
   const Eigen::VectorXd g = problem.constraints(Eigen::VectorXd::Zero(problem.variable_count()));
-  std::map<ConstraintGroup, int> rows;
-  for (const ConstraintBlock& b : problem.blocks()) {
-    if (b.group != ConstraintGroup::landing && b.group != ConstraintGroup::foot_clearance) continue;
-    for (int i = b.row; i < b.row + b.rows; ++i) {
+  std::map<std::string, int> rows;
+  for (const RowBlock& b : problem.blocks()) {
+    const std::string kind = b.kind->name;
+    if (kind != "landing" && kind != "foot_clearance") continue;
+    for (int i = b.row; i < b.row + b.rows(); ++i) {
       EXPECT_GE(g[i], problem.lower()[i] - 1e-5) << "at " << problem.points()[b.point].sample;
-      ++rows[b.group];
+      ++rows[kind];
     }
   }
-  EXPECT_GT(rows[ConstraintGroup::landing], 200);
-  EXPECT_GT(rows[ConstraintGroup::foot_clearance], 100);
+  EXPECT_GT(rows["landing"], 200);
+  EXPECT_GT(rows["foot_clearance"], 100);
 }
 
 // What a swinging foot is off its place while it is lower than 1.5 mm, in the tenth of a second
 // before it lands [m].
-double low_way(const CommandSeries& series, Side side, int landing) {
+double low_offset(const CommandSeries& series, Side side, int landing) {
   const Isometry3d place = series.samples[landing + 10].feet[static_cast<int>(side)];
   RobotData data(hoap1());
   double most = 0;
@@ -91,7 +92,7 @@ TEST(Landing, EarlyContactComesDownOnItsPlace) {
   const RepairResult r = repair(hoap1(), series);
   ASSERT_EQ(r.status, RepairStatus::repaired);
   const int landing = static_cast<int>(std::lround(pattern.phases[step].until / series.dt));
-  EXPECT_LT(low_way(r.series, pattern.phases[step].swing->foot, landing), 0.0012);
+  EXPECT_LT(low_offset(r.series, pattern.phases[step].swing->foot, landing), 0.0012);
 }
 
 // The lowest corner of a foot in the middle half of a swing [m].

@@ -39,12 +39,12 @@ int motor_rows(const CommandSeries& series, double bound) {
   spec.windows = {{0, 0.5}};
   spec.extra_times = {kBegin + 0.001};
   const CorrectionProblem problem(hoap1(), series, spec);
-  return static_cast<int>(std::count_if(problem.blocks().begin(), problem.blocks().end(),
-                                        [&](const ConstraintBlock& block) {
-                                          return block.group == ConstraintGroup::acceleration &&
-                                                 block.item == hoap1().find_dof("l_elbow") &&
-                                                 std::abs(block.scale * bound - 1) < 1e-9;
-                                        }));
+  return static_cast<int>(
+      std::count_if(problem.blocks().begin(), problem.blocks().end(), [&](const RowBlock& block) {
+        return std::string(block.kind->name) == "motor_acceleration" &&
+               block.item == hoap1().find_dof("l_elbow") &&
+               std::abs(std::get<JointRow>(block.rule).scale * bound - 1) < 1e-9;
+      }));
 }
 
 TEST(MotorAccelerationRows, ArePlacedWhereTheMotorComesNearItsLimit) {

@@ -531,7 +531,7 @@ std::vector<int> causes_of(const Scene& scene, const Rule& rule) {
     if (scene.open(i) && rule.cause.contains(scene.of(i))) causes.push_back(i);
   if (rule.order != Order::by_time)
     std::stable_sort(causes.begin(), causes.end(),
-                     [&](int a, int b) { return scene.of(a).excess > scene.of(b).excess; });
+                     [&](int a, int b) { return scene.of(a).size > scene.of(b).size; });
   return causes;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
@@ -14,6 +15,10 @@ using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+
+double contact_threshold(const RobotModel& model) {
+  return kContactThreshold * model.mass() * kGravity;
+}
 
 SupportPlane support_plane(const RobotModel& model, Support support,
                            const std::array<Isometry3d, 2>& soles) {

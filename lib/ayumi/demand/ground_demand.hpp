@@ -42,6 +42,9 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> support_rows(const SupportPlane& plane)
 /// No measured case changes from half to twice (constants.md).
 inline constexpr double kContactThreshold = 0.02;
 
+/// The normal force above which the ground force of a robot has a ZMP with a meaning [N].
+double contact_threshold(const RobotModel& model);
+
 /// Ground force in the axes of the plane, and the ZMP where it has a meaning (f_n > min_force).
 struct GroundDemand {
   double normal_force = 0;      ///< [N]

@@ -60,7 +60,7 @@ void MotionDynamics::evaluate(int k) {
   now_.moment = now_.wrench.tail<3>() + (base - data_.cog).cross(Vector3d(now_.wrench.head<3>()));
   now_.use = plane_.empty() ? GroundDemand{}
                             : ground_demand(plane_, plane_wrench(plane_, base, now_.wrench),
-                                            kContactThreshold * model_.mass() * kGravity);
+                                            contact_threshold(model_));
   const auto foot = foot_wrenches(model_, s.support, soles_, plane_, now_.use, base, now_.wrench);
   now_.torque = motor_torques(model_, state_, acceleration_, force, foot, data_);
 }

@@ -1,8 +1,10 @@
 // In flight no moment acts, so the angular momentum L about the COG is constant: dL/dt = 0, where
 // dL/dt is the moment of the demanded ground wrench about the COG. The rate of a single sample
-// holds the rounding of differences, so the mean over five samples is judged.
+// holds the rounding of differences, so the mean over five samples is judged. A repair keeps it
+// with the force, in the rows of free_fall.cpp.
 #include <algorithm>
 
+#include "ayumi/limits/flight_moment.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -23,6 +25,28 @@ constexpr double kMomentShare = 0.0065;
 // Samples to either side of the mean. Derived: the reach of fill_rates().
 constexpr int kMeanReach = 2;
 
+}  // namespace
+
+bool flies_freely(const CommandSeries& series, int sample) {
+  return sample >= 0 && sample < static_cast<int>(series.samples.size()) &&
+         series.samples[sample].support == Support::none && !at_flight_edge(series, sample);
+}
+
+Vector3d mean_flight_moment(const CommandSeries& series, int sample,
+                            const std::function<Vector3d(int)>& moment) {
+  Vector3d sum = Vector3d::Zero();
+  int samples = 0;
+  for (int i = sample - kMeanReach; i <= sample + kMeanReach; ++i) {
+    if (!flies_freely(series, i)) continue;
+    sum += moment(i);
+    ++samples;
+  }
+  if (samples > 0) sum /= samples;
+  return sum;
+}
+
+namespace {
+
 double least_moment_tolerance(const RobotModel& model, const CommandSeries& series) {
   return kMomentShare * model.mass() * kGravity * series.samples.front().cog.z();
 }
@@ -35,14 +59,8 @@ void judge_angular_momentum(JudgedMotion& motion) {
   const double limit = motion.tolerance(FindingKind::angular_momentum);
   for (int k = 0; k < motion.count(); ++k) {
     if (!motion.flies_freely(k)) continue;
-    Vector3d sum = Vector3d::Zero();
-    int samples = 0;
-    for (int i = k - kMeanReach; i <= k + kMeanReach; ++i) {
-      if (!motion.flies_freely(i)) continue;
-      sum += motion.flight_moment[i];
-      ++samples;
-    }
-    const Vector3d mean = sum / samples;
+    const Vector3d mean =
+        mean_flight_moment(motion.series, k, [&](int i) { return motion.flight_moment[i]; });
     const double size = mean.norm();
     motion.raise(FindingKind::angular_momentum, size);
     if (size > limit)
@@ -60,7 +78,7 @@ Advice angular_momentum_advice(const JudgedMotion&, const FindingWindow&) {
          "against each other";
 }
 
-std::string angular_momentum_obstacle(const Finding&, double) {
+std::string angular_momentum_infeasibility(const Finding&, double) {
   return "the angular momentum changes in flight";
 }
 
@@ -78,9 +96,10 @@ const Limit& angular_momentum_limit() {
                                .label = "largest rate of the angular momentum in flight",
                                .unit = "N m",
                                .line = 19},
+                    .repair = {.in_flight = true},
                     .place = axis_place,
                     .advice = angular_momentum_advice,
-                    .obstacle = angular_momentum_obstacle,
+                    .infeasibility = angular_momentum_infeasibility,
                     .holds_at = angular_momentum_holds}},
       .judge_sample = note_moment,
       .judge_motion = judge_angular_momentum};

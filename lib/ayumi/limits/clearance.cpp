@@ -2,8 +2,12 @@
 // negative where they overlap (geometry/distance.hpp), stays above a margin. Every 20 ms all pairs
 // are looked at, then every sample around the places where a pair is near
 // (demand/collision_scan.hpp).
+#include <algorithm>
+
 #include "ayumi/demand/collision_scan.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -34,6 +38,53 @@ void judge_clearances(JudgedMotion& motion) {
       [&motion](int pair, int k, double clearance) { note_clearance(motion, pair, k, clearance); });
 }
 
+const RowKind kClearanceRows = {
+    .name = "clearance", .unit = &RowPrices::length, .beyond_check = true, .order = {6, 0}};
+
+// Bodies come no nearer than they are kept apart, or than the motion brings them by itself without
+// a touch. `own`: what the given motion keeps between the bodies [m].
+void add_clearance(RowSite& site, int point, const ShapePair& shapes, double own) {
+  const RowSettings& settings = site.settings;
+  const double kept = settings.clearance.kept;
+  const double least = own > settings.clearance.touch ? std::min(kept, own) : kept;
+  const int rows = clearance_point_count(*settings.collisions, shapes);
+  Eigen::VectorXd lower = Eigen::VectorXd::Constant(rows, least);
+  if (shapes.edges) lower[0] -= std::min(settings.clearance.edge_allowance, 0.5 * least);
+  site.add(kClearanceRows, point, shapes.pair, ClearanceRows{settings.collisions, shapes}, lower,
+           Eigen::VectorXd::Constant(rows, kUnbounded));
+}
+
+// Shapes are watched from farther away than bodies, because the next nearest ones are not far.
+void place_pair_rows(RowSite& site, int point, int pair, RobotData& data) {
+  const CollisionModel& collisions = *site.settings.collisions;
+  const auto& settings = site.settings.clearance;
+  std::vector<ShapePair> shapes = shape_pairs(collisions, pair);
+  std::vector<double> least(shapes.size(), kUnbounded);
+  double own = kUnbounded;
+  const std::vector<const CommandSample*> samples = site.watched(point);
+  for (const CommandSample* sample : samples) {
+    update_positions(site.model, sample->state, data);
+    for (size_t i = 0; i < shapes.size(); ++i) {
+      const double here = shape_clearance(collisions, shapes[i], data, settings.watched_shapes);
+      least[i] = std::min(least[i], here);
+      if (sample == samples.front()) own = std::min(own, here);
+      shapes[i].edges =
+          shapes[i].edges || (here < settings.watched_shapes &&
+                              edges_meet(collisions, shapes[i], data, settings.same_distance));
+    }
+  }
+  if (*std::min_element(least.begin(), least.end()) >= settings.watched_bodies) return;
+  for (size_t i = 0; i < shapes.size(); ++i)
+    if (least[i] < settings.watched_shapes) add_clearance(site, point, shapes[i], own);
+}
+
+void place_clearance_rows(RowSite& site) {
+  RobotData data(site.model);
+  for (int point = 0; point < site.count(); ++point)
+    if (site.points[point].only.empty())
+      for (const int pair : site.settings.near_pairs) place_pair_rows(site, point, pair, data);
+}
+
 Place body_pair_place(const JudgedMotion& motion, const Violation& v) {
   const CollisionModel::Pair& pair = motion.collisions.pairs()[v.item];
   return BodyPairPlace{pair.a, pair.b};
@@ -45,7 +96,7 @@ Advice clearance_advice(const JudgedMotion&, const FindingWindow& window) {
                        : "only " + in_mm(clearance) + " between these bodies";
 }
 
-std::string clearance_obstacle(const Finding& f, double) {
+std::string clearance_infeasibility(const Finding& f, double) {
   return f.where + " overlap by " + in_mm(f.worst);
 }
 
@@ -66,8 +117,9 @@ const Limit& clearance_limit() {
                                .line = 20},
                     .place = body_pair_place,
                     .advice = clearance_advice,
-                    .obstacle = clearance_obstacle}},
-      .judge_motion = judge_clearances};
+                    .infeasibility = clearance_infeasibility}},
+      .judge_motion = judge_clearances,
+      .place_rows = place_clearance_rows};
   return limit;
 }
 

@@ -8,7 +8,9 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/limits/command_rows.hpp"
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -67,6 +69,34 @@ void judge_command(JudgedMotion& motion, const JudgedSample& s) {
   if (s.has_zmp()) judge_zmp(motion, s);
 }
 
+}  // namespace
+
+WrenchRows commanded_zmp_rows(const RowSite& site, int point) {
+  const Vector3d zmp = site.points[point].plane.frame.inverse() * site.given(point).zmp;
+  Eigen::Matrix<double, 2, 6> rows;
+  rows.row(0) << 0, 0, -zmp.x(), 0, -1, 0;
+  rows.row(1) << 0, 0, -zmp.y(), 1, 0, 0;
+  return linear_rows(rows / site.weight());
+}
+
+namespace {
+
+const RowKind kCogRows = {.name = "cog", .unit = &RowPrices::length, .order = {7, 0}};
+const RowKind kZmpRows = {.name = "zmp", .unit = &RowPrices::length, .order = {7, 1}};
+
+// Where the COG or the ZMP is trusted, the motion comes to the commanded one.
+void place_command_rows(RowSite& site) {
+  const RowSettings& settings = site.settings;
+  const double cog = settings.trusted_share * site.tolerance(FindingKind::cog_residual);
+  const double zmp = settings.trusted_share * site.tolerance(FindingKind::zmp_residual);
+  for (int i = 0; i < site.count(); ++i) {
+    if (settings.trust == Trust::cog)
+      site.add(kCogRows, i, 0, CogRows{site.given(i).cog}, 3, -cog, cog);
+    if (settings.trust == Trust::zmp && site.points[i].stands())
+      site.add(kZmpRows, i, 0, commanded_zmp_rows(site, i), 2, -zmp, zmp);
+  }
+}
+
 bool zmp_holds(JudgedMotion& motion, const Violation& v, double pace) {
   const SampleDynamics& now = motion.dynamics.at(v.sample, pace);
   return now.use.has_zmp &&
@@ -108,11 +138,11 @@ Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
          " off here: judge by the full model";
 }
 
-std::string cog_obstacle(const Finding& f, double) {
+std::string cog_infeasibility(const Finding& f, double) {
   return "the posture is " + in_mm(f.worst) + " from the trusted COG";
 }
 
-std::string zmp_obstacle(const Finding& f, double) {
+std::string zmp_infeasibility(const Finding& f, double) {
   return "the motion is " + in_mm(f.worst) + " from the trusted ZMP";
 }
 
@@ -130,9 +160,10 @@ const Limit& command_agreement_limit() {
                                .unit = "mm",
                                .scale = 1e3,
                                .line = 2},
+                    .repair = {.is_of_plan = true},
                     .place = axis_place,
                     .advice = cog_advice,
-                    .obstacle = cog_obstacle},
+                    .infeasibility = cog_infeasibility},
                    {.kind = FindingKind::zmp_residual,
                     .limit_class = LimitClass::command,
                     .unit = "m",
@@ -143,9 +174,10 @@ const Limit& command_agreement_limit() {
                                .unit = "mm",
                                .scale = 1e3,
                                .line = 3},
+                    .repair = {.is_of_plan = true},
                     .place = axis_place,
                     .advice = zmp_advice,
-                    .obstacle = zmp_obstacle,
+                    .infeasibility = zmp_infeasibility,
                     .holds_at = zmp_holds},
                    {.kind = FindingKind::fz_residual,
                     .limit_class = LimitClass::command,
@@ -174,7 +206,8 @@ const Limit& command_agreement_limit() {
                                .line = 5},
                     .place = axis_place,
                     .advice = point_mass_advice}},
-      .judge_sample = judge_command};
+      .judge_sample = judge_command,
+      .place_rows = place_command_rows};
   return limit;
 }
 

@@ -36,7 +36,7 @@ Advice contact_end_advice(const JudgedMotion&, const FindingWindow& window) {
          text::fixed(window.worst.value, 3) + " s after its contact ends: end it that much later";
 }
 
-std::string contact_end_obstacle(const Finding& f, double) {
+std::string contact_end_infeasibility(const Finding& f, double) {
   return "the " + f.where + " foot stands in its place for " + text::fixed(1000 * f.worst, 0) +
          " ms after its contact has ended";
 }
@@ -52,7 +52,7 @@ const Limit& contact_timing_limit() {
                         "time for which a foot stands on in its place after its contact has ended",
                     .place = foot_place,
                     .advice = contact_end_advice,
-                    .obstacle = contact_end_obstacle}},
+                    .infeasibility = contact_end_infeasibility}},
       .judge_motion = judge_contact_ends};
   return limit;
 }

@@ -4,7 +4,9 @@
 // Speed may change where a flight begins or ends, position may not: the step of the COG between the
 // two samples beside the edge is the mean of the steps before and after it.
 #include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -52,6 +54,47 @@ void judge_leaps(JudgedMotion& motion) {
   }
 }
 
+// Force and moment that the given motion needs in flight, about its planned COG, over the weight.
+Vector6d own_flight_wrench(const RowSite& site, int sample) {
+  const CommandSample& s = site.series.samples[sample];
+  SupportPlane plane;
+  plane.frame.translation() = s.cog;
+  RobotData data(site.model);
+  const Vector6d wrench = inverse_dynamics(site.model, s.state, s.acceleration, data).head<6>();
+  return plane_wrench(plane, s.state.base.position, wrench) / site.weight();
+}
+
+// The ground wrench in flight over m g is 0: the force by free fall, the moment by the angular
+// momentum. Both stand in one block, so that they share what a relaxed program violates them by.
+const RowKind kFlightRows = {
+    .name = "flight", .unit = &RowPrices::length, .relaxed = &RowPrices::foot, .order = {4, 0}};
+
+// The band is a share of what the check allows, shared among three axes, or what the motion does by
+// itself where that passes. A deviation of one sample from the mean moment is rounding and is left
+// alone.
+void place_flight_rows(RowSite& site) {
+  const auto& settings = site.settings.flight;
+  const double weight = site.weight();
+  const double most[] = {site.tolerance(FindingKind::ballistic) / kGravity,
+                         site.tolerance(FindingKind::angular_momentum) / weight};
+  const auto moment = [&](int k) { return Vector3d(own_flight_wrench(site, k).tail<3>()); };
+  for (int i = 0; i < site.count(); ++i) {
+    if (!site.points[i].flies() || !site.points[i].only.empty()) continue;
+    const int k = site.points[i].sample;
+    const Vector6d own = own_flight_wrench(site, k);
+    Vector6d kept, offset = Vector6d::Zero(), band;
+    kept << own.head<3>(), mean_flight_moment(site.series, k, moment);
+    offset.tail<3>() = own.tail<3>() - kept.tail<3>();
+    for (int part : {0, 1}) {
+      const double used = kept.segment<3>(3 * part).norm() / most[part];
+      kept.segment<3>(3 * part) *= used > settings.own_share ? 0.0 : 1.0;
+      band.segment<3>(3 * part).setConstant(settings.band / std::sqrt(3.0) * most[part]);
+    }
+    site.add(kFlightRows, i, 0, linear_rows(Eigen::Matrix<double, 6, 6>::Identity() / weight),
+             offset + (-band).cwiseMin(kept), offset + band.cwiseMax(kept));
+  }
+}
+
 bool free_fall_holds(JudgedMotion& motion, const Violation& v, double pace) {
   return flight_is_free(motion, v.sample, pace, std::abs(v.limit));
 }
@@ -65,7 +108,7 @@ Advice free_fall_advice(const JudgedMotion& motion, const FindingWindow& window)
          " s of flight: leave the COG keys of the flight out";
 }
 
-std::string free_fall_obstacle(const Finding&, double) {
+std::string free_fall_infeasibility(const Finding&, double) {
   return "the COG does not fall freely in flight";
 }
 
@@ -81,12 +124,14 @@ const Limit& free_fall_limit() {
                                                        .label = "largest deviation from free fall",
                                                        .unit = "m/s^2",
                                                        .line = 18},
+                                            .repair = {.in_flight = true},
                                             .place = axis_place,
                                             .advice = free_fall_advice,
-                                            .obstacle = free_fall_obstacle,
+                                            .infeasibility = free_fall_infeasibility,
                                             .holds_at = free_fall_holds}},
                               .judge_sample = judge_free_fall,
-                              .judge_motion = judge_leaps};
+                              .judge_motion = judge_leaps,
+                              .place_rows = place_flight_rows};
   return limit;
 }
 

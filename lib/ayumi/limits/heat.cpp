@@ -75,8 +75,8 @@ Advice heat_advice(const JudgedMotion& motion, const FindingWindow& window) {
          " without a time limit: add a rest, or straighten the leg";
 }
 
-std::string heat_obstacle(const Finding& f, double excess) {
-  return f.where + " torque, over the motor's thermal window, reaches " + ratio_text(excess) +
+std::string heat_infeasibility(const Finding& f, double violation) {
+  return f.where + " torque, over the motor's thermal window, reaches " + ratio_text(violation) +
          " of its continuous limit";
 }
 
@@ -97,10 +97,11 @@ const Limit& heat_limit() {
                                .share_name = "continuous",
                                .line = 10},
                     .actuator = {.line = 2, .after = " lasting"},
+                    .repair = {.is_mean = true},
                     .finding_unit = heat_unit,
                     .place = joint_place,
                     .advice = heat_advice,
-                    .obstacle = heat_obstacle,
+                    .infeasibility = heat_infeasibility,
                     .holds_at = heat_holds}},
       .judge_sample = note_square_sum,
       .judge_motion = judge_heat};

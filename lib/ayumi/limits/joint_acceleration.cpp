@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -24,6 +25,20 @@ void judge_joint_accelerations(JudgedMotion& motion, const JudgedSample& s) {
     motion.rough[s.k] = true;
     motion.add(FindingKind::joint_acceleration, i, s.k, acceleration, most, std::abs(acceleration),
                0, Severity::warning);
+  }
+}
+
+const RowKind kRoughnessRows = {.name = "acceleration", .order = {3, 3}};
+
+// A motion that is rough already gets no rougher: the check only warns of it.
+void place_roughness_rows(RowSite& site) {
+  const double most = site.tolerance(FindingKind::joint_acceleration);
+  for (int i = 0; i < site.model.dof_count(); ++i) {
+    if (site.is_locked(i)) continue;
+    const auto size = [i](const CommandSample& s) { return std::abs(s.acceleration[6 + i]); };
+    for (int point = 0; point < site.count(); ++point)
+      site.add_largest(kRoughnessRows, point, JointQuantity::acceleration, i,
+                       site.most(point, size), std::max(most, size(site.given(point))), 1);
   }
 }
 
@@ -53,7 +68,8 @@ const Limit& joint_acceleration_limit() {
                     .finding_unit = acceleration_unit,
                     .place = joint_place,
                     .advice = acceleration_advice}},
-      .judge_sample = judge_joint_accelerations};
+      .judge_sample = judge_joint_accelerations,
+      .place_rows = place_roughness_rows};
   return limit;
 }
 

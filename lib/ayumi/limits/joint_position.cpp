@@ -5,6 +5,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -15,19 +16,50 @@ namespace {
 constexpr double kPositionTolerance = 1e-4;
 constexpr double kLeastHalfRange = 1e-9;  // so that a joint without range divides by no zero [rad]
 
+struct Range {
+  double lower = 0, upper = 0;
+
+  double half() const { return 0.5 * (upper - lower); }
+  double share(double theta) const {
+    return std::abs(theta - 0.5 * (lower + upper)) / std::max(half(), kLeastHalfRange);
+  }
+};
+
+Range range_of(const Dof& dof, double margin) { return {dof.lower + margin, dof.upper - margin}; }
+
 void judge_joint_positions(JudgedMotion& motion, const JudgedSample& s) {
   const double margin = motion.model.description().soft_limit_margin;
   for (int i = 0; i < motion.model.dof_count(); ++i) {
     const Dof& dof = motion.model.dofs()[i];
     if (!dof.limited) continue;
     const double theta = s.command.state.theta[i];
-    const double lower = dof.lower + margin, upper = dof.upper - margin;
-    const double half = 0.5 * (upper - lower);
-    motion.raise(FindingKind::joint_position,
-                 std::abs(theta - 0.5 * (lower + upper)) / std::max(half, kLeastHalfRange));
+    const Range range = range_of(dof, margin);
+    const auto [lower, upper] = range;
+    motion.raise(FindingKind::joint_position, range.share(theta));
     const double beyond = std::max(lower - theta, theta - upper);
     if (beyond > motion.tolerance(FindingKind::joint_position))
       motion.add(FindingKind::joint_position, i, s.k, theta, theta > upper ? upper : lower, beyond);
+  }
+}
+
+const RowKind kPositionRows = {
+    .name = "position", .unit = &RowPrices::angle, .beyond_check = true, .order = {3, 0}};
+
+void place_position_rows(RowSite& site) {
+  const RowSettings& settings = site.settings;
+  const double margin = site.model.description().soft_limit_margin + settings.joint_margin;
+  for (int i = 0; i < site.model.dof_count(); ++i) {
+    const Dof& dof = site.model.dofs()[i];
+    const Range range = range_of(dof, margin);
+    if (!dof.limited || site.is_locked(i) || range.half() < 0) continue;
+    for (int point = 0; point < site.count(); ++point) {
+      const double used = site.most(
+          point, [&](const CommandSample& sample) { return range.share(sample.state.theta[i]); });
+      if (used <= settings.watched_share) continue;
+      site.add(kPositionRows, point, i, JointRow{JointQuantity::angle, i}, 1, range.lower,
+               range.upper)
+          .active = settings.active;
+    }
   }
 }
 
@@ -38,17 +70,18 @@ const char* position_unit(const JudgedMotion& motion, const Violation& v) {
 Advice position_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const Dof& dof = motion.model.dofs()[v.item];
-  const double excess = std::abs(v.value - v.limit);
+  const double beyond = std::abs(v.value - v.limit);
   return {"move " + dof.name + " back by " +
-              (dof.prismatic ? in_mm(excess) : text::fixed(excess * 180 / EIGEN_PI, 2) + " deg") +
+              (dof.prismatic ? in_mm(beyond) : text::fixed(beyond * 180 / EIGEN_PI, 2) + " deg") +
               " in this window",
           kOrRepair};
 }
 
-std::string position_obstacle(const Finding& f, double excess) {
+std::string position_infeasibility(const Finding& f, double violation) {
   const bool prismatic = f.unit == "m";
   return f.where + " goes " +
-         (prismatic ? in_mm(excess) : text::fixed(std::abs(excess) * 180 / EIGEN_PI, 1) + " deg") +
+         (prismatic ? in_mm(violation)
+                    : text::fixed(std::abs(violation) * 180 / EIGEN_PI, 1) + " deg") +
          " beyond its limit";
 }
 
@@ -65,11 +98,13 @@ const Limit& joint_position_limit() {
                                                        .scale = 100,
                                                        .share_name = "position",
                                                        .line = 6},
+                                            .repair = {.is_of_one_joint = true},
                                             .finding_unit = position_unit,
                                             .place = joint_place,
                                             .advice = position_advice,
-                                            .obstacle = position_obstacle}},
-                              .judge_sample = judge_joint_positions};
+                                            .infeasibility = position_infeasibility}},
+                              .judge_sample = judge_joint_positions,
+                              .place_rows = place_position_rows};
   return limit;
 }
 

@@ -1,6 +1,7 @@
 // A motor has a largest speed: |dtheta| <= speed limit of the actuator profile, which the voltage
 // of the motor and its gear set (data sheet of the robot, robot.json).
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -20,6 +21,22 @@ void judge_joint_speeds(JudgedMotion& motion, const JudgedSample& s) {
   }
 }
 
+const RowKind kSpeedRows = {.name = "speed", .order = {3, 1}};
+
+void place_speed_rows(RowSite& site) {
+  const double most = site.tolerance(FindingKind::joint_speed);
+  for (int i = 0; i < site.model.dof_count(); ++i) {
+    if (site.is_locked(i)) continue;
+    for (int point = 0; point < site.count(); ++point) {
+      const double speed =
+          site.most(point, [&](const CommandSample& s) { return std::abs(s.state.dtheta[i]); });
+      site.add_largest(kSpeedRows, point, JointQuantity::speed, i, speed,
+                       site.actuators.speed[i] * most, site.settings.limit_share,
+                       site.settings.active);
+    }
+  }
+}
+
 bool joint_speed_holds(JudgedMotion&, const Violation& v, double pace) {
   return std::abs(v.value) * pace <= std::abs(v.limit);
 }
@@ -34,8 +51,8 @@ Advice speed_advice(const JudgedMotion& motion, const FindingWindow& window) {
          motion.model.dofs()[v.item].name + " swing through a smaller angle";
 }
 
-std::string speed_obstacle(const Finding& f, double excess) {
-  return f.where + " speed reaches " + ratio_text(excess) + " of its limit";
+std::string speed_infeasibility(const Finding& f, double violation) {
+  return f.where + " speed reaches " + ratio_text(violation) + " of its limit";
 }
 
 }  // namespace
@@ -53,12 +70,14 @@ const Limit& joint_speed_limit() {
                                                        .share_name = "speed",
                                                        .line = 7},
                                             .actuator = {.line = 3},
+                                            .repair = {.is_of_one_joint = true},
                                             .finding_unit = speed_unit,
                                             .place = joint_place,
                                             .advice = speed_advice,
-                                            .obstacle = speed_obstacle,
+                                            .infeasibility = speed_infeasibility,
                                             .holds_at = joint_speed_holds}},
-                              .judge_sample = judge_joint_speeds};
+                              .judge_sample = judge_joint_speeds,
+                              .place_rows = place_speed_rows};
   return limit;
 }
 

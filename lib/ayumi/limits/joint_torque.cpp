@@ -2,7 +2,9 @@
 // dynamics and the ground wrench shared between the feet, plus the rotor's inertia, viscous and dry
 // friction of the servo (demand/ground_demand.hpp, motor_torques()). Beside a flight's edges
 // accelerations have no meaning, so torques are not judged there.
+#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -23,6 +25,34 @@ void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {
   }
 }
 
+// By dof: the largest size over the watched samples.
+Eigen::VectorXd watched_torques(const RowSite& site, int point) {
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(site.model.dof_count());
+  RobotData data(site.model);
+  for (const CommandSample* s : site.watched(point)) {
+    const Eigen::VectorXd force = inverse_dynamics(site.model, s->state, s->acceleration, data);
+    const auto feet =
+        shared_load(site.model, site.points[point], s->state.base.position, force.head<6>());
+    most = most.cwiseMax(
+        motor_torques(site.model, s->state, s->acceleration, force, feet, data).cwiseAbs());
+  }
+  return most;
+}
+
+const RowKind kTorqueRows = {.name = "torque", .order = {5, 0}};
+
+void place_torque_rows(RowSite& site) {
+  const Eigen::VectorXd most =
+      site.actuators.peak_torque * site.tolerance(FindingKind::joint_torque);
+  for (int point = 0; point < site.count(); ++point) {
+    if (!site.points[point].forces_known) continue;
+    const Eigen::VectorXd torque = watched_torques(site, point);
+    for (int i = 0; i < site.model.dof_count(); ++i)
+      site.add_largest(kTorqueRows, point, JointQuantity::motor_torque, i, torque[i], most[i],
+                       site.settings.limit_share, site.settings.active);
+  }
+}
+
 bool joint_torque_holds(JudgedMotion& motion, const Violation& v, double pace) {
   return std::abs(motion.dynamics.at(v.sample, pace).torque[v.item]) <= std::abs(v.limit);
 }
@@ -38,8 +68,8 @@ Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
          " where inertia is the cause, or straighten the leg where weight is";
 }
 
-std::string torque_obstacle(const Finding& f, double excess) {
-  return f.where + " torque reaches " + ratio_text(excess) + " of its limit";
+std::string torque_infeasibility(const Finding& f, double violation) {
+  return f.where + " torque reaches " + ratio_text(violation) + " of its limit";
 }
 
 }  // namespace
@@ -60,9 +90,10 @@ const Limit& joint_torque_limit() {
                                             .finding_unit = torque_unit,
                                             .place = joint_place,
                                             .advice = torque_advice,
-                                            .obstacle = torque_obstacle,
+                                            .infeasibility = torque_infeasibility,
                                             .holds_at = joint_torque_holds}},
-                              .judge_sample = judge_joint_torques};
+                              .judge_sample = judge_joint_torques,
+                              .place_rows = place_torque_rows};
   return limit;
 }
 

@@ -93,9 +93,7 @@ const char* joint_unit(const JudgedMotion& motion, const Violation& v, const cha
 
 std::string in_mm(double metres) { return text::fixed(1000 * std::abs(metres), 1) + " mm"; }
 
-std::string ratio_text(double excess) {
-  return text::fixed(std::ceil(100 * excess - 1e-9) / 100, 2);
-}
+std::string ratio_text(double ratio) { return text::fixed(std::ceil(100 * ratio - 1e-9) / 100, 2); }
 
 std::string slow_down_text(double factor) {
   return "slow this window down by " + text::fixed(std::ceil(100 * factor) / 100, 2);

@@ -5,6 +5,7 @@
 
 #include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
+#include "ayumi/limits/flight_moment.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/limits/violation.hpp"
 
@@ -32,14 +33,14 @@ struct JudgedMotion {
     return k >= 0 && k < count() && series.samples[k].support == Support::none;
   }
   /// In flight, and not so near its edges that the rates mix it with support.
-  bool flies_freely(int k) const { return flies(k) && !at_flight_edge(k); }
+  bool flies_freely(int k) const { return ayumi::flies_freely(series, k); }
   /// See at_flight_edge() of demand/contact_plan.hpp.
   bool at_flight_edge(int k) const { return ayumi::at_flight_edge(series, k); }
 
-  /// Notes a violation; `excess` orders the samples of a finding, `detail` is carried along.
-  void add(FindingKind kind, int item, int sample, double value, double limit, double excess,
+  /// Notes a violation; `size` orders the samples of a finding, `detail` is carried along.
+  void add(FindingKind kind, int item, int sample, double value, double limit, double size,
            int detail = 0, Severity severity = Severity::error) {
-    windows.add({kind, item, sample, severity, value, limit, excess, detail});
+    windows.add({kind, item, sample, severity, value, limit, size, detail});
   }
   /// Notes a value of a figure of the summary: the largest, or the least, stays.
   void raise(FindingKind kind, double value) {
@@ -111,7 +112,7 @@ const char* axis_name(int axis);
 const char* joint_unit(const JudgedMotion&, const Violation&, const char* rotary,
                        const char* prismatic);
 std::string in_mm(double metres);           ///< of the size, "12.0 mm"
-std::string ratio_text(double excess);      ///< rounded up to 0.01, "1.04"
+std::string ratio_text(double ratio);       ///< rounded up to 0.01, "1.04"
 std::string slow_down_text(double factor);  ///< "slow this window down by 1.04"
 inline constexpr const char* kOrRepair = ", or repair";
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -67,16 +66,6 @@ const std::vector<const FindingSpec*>& summary_figures() {
 const std::vector<const FindingSpec*>& actuator_findings() {
   static const auto findings = by_line([](const FindingSpec& spec) { return spec.actuator.line; });
   return findings;
-}
-
-Eigen::VectorXd acceleration_bound(const RobotModel& model, const ActuatorLimits& actuators,
-                                   const Tolerances& tolerance) {
-  Eigen::VectorXd bound =
-      Eigen::VectorXd::Constant(model.dof_count(), std::numeric_limits<double>::infinity());
-  for (const Limit* limit : limits())
-    if (limit->acceleration_bound)
-      bound = bound.cwiseMin(limit->acceleration_bound(model, actuators, tolerance));
-  return bound;
 }
 
 bool is_of_posture(const Finding& finding) {

@@ -4,9 +4,9 @@
 //   1. its derivation;
 //   2. its value, computed from the demand (demand/) of a sample or of the whole motion;
 //   3. its tolerance with unit and source;
-//   4. the bound or the rows that the repair keeps, with their derivative;
+//   4. the rows that a repair keeps, with their derivative (row.hpp) and their places;
 //   5. its class;
-//   6. its soft goal and price, where it has one;
+//   6. the price of a violation in a repair, and its soft goal where it has one;
 //   7. its texts for people.
 // The judge (check/), attribution, the repair, the writers of JSON and pages and the program visit
 // the table limits(); limit_table.hpp has one line for each kind of finding.
@@ -22,6 +22,7 @@ namespace ayumi {
 
 struct JudgedMotion;
 struct JudgedSample;
+struct RowSite;
 struct FindingWindow;
 struct Violation;
 
@@ -61,6 +62,23 @@ struct Advice {
   std::string remedy, or_repair;
 };
 
+/// What an error of one kind means for a repair.
+struct RepairTraits {
+  /// Of the motion in flight: the knots of a correction have to be near each other there.
+  bool in_flight = false;
+  /// As brief as the time in which a sole leaves its place: needs knots within its window.
+  bool is_brief = false;
+  /// The commanded COG or ZMP may itself be wrong around it, and is then no goal.
+  bool is_of_plan = false;
+  /// Of the motion of one joint alone: where that joint is locked, nothing removes it.
+  bool is_of_one_joint = false;
+  /// Of a mean over a fixed time: no fault of the posture of one sample, and no slower motion
+  /// removes it.
+  bool is_mean = false;
+  /// A motion that is repaired at all is repaired where the check only warns, too.
+  bool warnings_too = false;
+};
+
 /// Everything about one kind of finding.
 struct FindingSpec {
   FindingKind kind = FindingKind::cog_residual;
@@ -72,14 +90,15 @@ struct FindingSpec {
   double (*least_tolerance)(const RobotModel&, const CommandSeries&) = nullptr;
   SummaryFigure figure = {};
   ActuatorNeedWords actuator = {};
+  RepairTraits repair = {};
 
   /// Unit of the values of a violation; null: `unit`.
   const char* (*finding_unit)(const JudgedMotion&, const Violation&) = nullptr;
   Place (*place)(const JudgedMotion&, const Violation&) = nullptr;
   Advice (*advice)(const JudgedMotion&, const FindingWindow&) = nullptr;
-  /// What stands in the way of a repair. `excess`: value over limit where is_ratio(), else their
+  /// Why no repair was found, in words. `violation`: value over limit where is_ratio(), else their
   /// distance. Null: a general text.
-  std::string (*obstacle)(const Finding&, double excess) = nullptr;
+  std::string (*infeasibility)(const Finding&, double violation) = nullptr;
   /// Whether the violated sample keeps the limit when the path is played at this pace: rates times
   /// the pace, accelerations times its square. Null: another pace changes nothing.
   bool (*holds_at)(JudgedMotion&, const Violation&, double pace) = nullptr;
@@ -88,25 +107,16 @@ struct FindingSpec {
   bool is_ratio() const { return unit[0] == '1'; }
 };
 
-/// The bound of one limit on the acceleration of single joints [rad/s^2], [m/s^2], by dof; infinite
-/// where there is none. The repair makes its rows from it: lower -bound, upper bound, derivative 1
-/// by the joint's own acceleration.
-using AccelerationBound = Eigen::VectorXd (*)(const RobotModel&, const ActuatorLimits&,
-                                              const ByFindingKind<double>& tolerance);
-
 struct Limit {
   std::vector<FindingSpec> findings;
   /// Notes what one sample violates; called for all samples in order of time.
   void (*judge_sample)(JudgedMotion&, const JudgedSample&) = nullptr;
   /// Notes what takes the whole motion to see; called after all samples.
   void (*judge_motion)(JudgedMotion&) = nullptr;
-  AccelerationBound acceleration_bound = nullptr;
+  /// Places the rows of a repair at the points of a site (row_site.hpp) where the motion is near
+  /// the limit. Null: no repair keeps this limit by itself; the check of its result looks at it.
+  void (*place_rows)(RowSite&) = nullptr;
 };
-
-/// The least bound of all limits on the acceleration of each joint [rad/s^2], [m/s^2], by dof;
-/// infinite where there is none. For the repair.
-Eigen::VectorXd acceleration_bound(const RobotModel& model, const ActuatorLimits& actuators,
-                                   const ByFindingKind<double>& tolerance);
 
 /// Every limit once, in the order of limit_table.hpp.
 const std::vector<const Limit*>& limits();

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -41,9 +42,20 @@ void judge_motor_accelerations(JudgedMotion& motion) {
   }
 }
 
-Eigen::VectorXd motor_acceleration_bound(const RobotModel& model, const ActuatorLimits& actuators,
-                                         const Tolerances& tolerance) {
-  return tolerance[FindingKind::motor_acceleration] * motor_acceleration(model, actuators);
+const RowKind kMotorRows = {.name = "motor_acceleration", .order = {3, 2}};
+
+void place_motor_rows(RowSite& site) {
+  const Eigen::VectorXd most = site.tolerance(FindingKind::motor_acceleration) *
+                               motor_acceleration(site.model, site.actuators);
+  for (int i = 0; i < site.model.dof_count(); ++i) {
+    if (site.is_locked(i)) continue;
+    for (int point = 0; point < site.count(); ++point) {
+      const double acceleration =
+          site.most(point, [&](const CommandSample& s) { return std::abs(s.acceleration[6 + i]); });
+      site.add_largest(kMotorRows, point, JointQuantity::acceleration, i, acceleration, most[i],
+                       site.settings.limit_share);
+    }
+  }
 }
 
 bool motor_acceleration_holds(JudgedMotion&, const Violation& v, double pace) {
@@ -61,8 +73,8 @@ Advice motor_acceleration_advice(const JudgedMotion& motion, const FindingWindow
          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) + " or smooth the joint here";
 }
 
-std::string motor_acceleration_obstacle(const Finding& f, double excess) {
-  return f.where + " acceleration reaches " + ratio_text(excess) +
+std::string motor_acceleration_infeasibility(const Finding& f, double violation) {
+  return f.where + " acceleration reaches " + ratio_text(violation) +
          " of what its motor can give to its own rotor";
 }
 
@@ -85,10 +97,10 @@ const Limit& motor_acceleration_limit() {
                     .finding_unit = motor_acceleration_unit,
                     .place = joint_place,
                     .advice = motor_acceleration_advice,
-                    .obstacle = motor_acceleration_obstacle,
+                    .infeasibility = motor_acceleration_infeasibility,
                     .holds_at = motor_acceleration_holds}},
       .judge_motion = judge_motor_accelerations,
-      .acceleration_bound = motor_acceleration_bound};
+      .place_rows = place_motor_rows};
   return limit;
 }
 

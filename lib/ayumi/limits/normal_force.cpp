@@ -2,7 +2,10 @@
 // demanded ground force along the normal of the support plane. A COG that is to fall faster than
 // gravity (ddz < -g) needs f_n < 0: the feet would leave the ground, which only a planned flight
 // may.
+#include <algorithm>
+
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -24,6 +27,24 @@ void judge_normal_force(JudgedMotion& motion, const JudgedSample& s) {
              static_cast<int>(s.command.support), pulls ? Severity::error : Severity::warning);
 }
 
+// f_n / (m g) is at least a share of the weight, above the check's, so that the ZMP keeps its
+// meaning between two samples.
+const RowKind kNormalForceRows = {.name = "normal_force", .beyond_check = true, .order = {4, 3}};
+
+void place_normal_force_rows(RowSite& site) {
+  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
+  row[2] = 1;
+  for (int i = 0; i < site.count(); ++i) {
+    if (!site.points[i].stands()) continue;
+    double least = site.weight();
+    for (const GroundDemand& demand : site.watched_demand(i))
+      least = std::min(least, demand.normal_force);
+    if (least >= site.settings.normal_force.light * site.weight()) continue;
+    site.add(kNormalForceRows, i, 0, linear_rows(row / site.weight()), 1,
+             site.settings.normal_force.least, kUnbounded);
+  }
+}
+
 bool normal_force_holds(JudgedMotion& motion, const Violation& v, double pace) {
   return motion.dynamics.at(v.sample, pace).use.normal_force >= 0;
 }
@@ -34,7 +55,7 @@ Advice normal_force_advice(const JudgedMotion&, const FindingWindow&) {
   return "the ground cannot pull: lower the COG with less than free fall, or plan a flight phase";
 }
 
-std::string normal_force_obstacle(const Finding& f, double) {
+std::string normal_force_infeasibility(const Finding& f, double) {
   return "the ground would have to pull (" + f.where + ")";
 }
 
@@ -51,9 +72,10 @@ const Limit& normal_force_limit() {
                     .finding_unit = normal_force_unit,
                     .place = support_place,
                     .advice = normal_force_advice,
-                    .obstacle = normal_force_obstacle,
+                    .infeasibility = normal_force_infeasibility,
                     .holds_at = normal_force_holds}},
-      .judge_sample = judge_normal_force};
+      .judge_sample = judge_normal_force,
+      .place_rows = place_normal_force_rows};
   return limit;
 }
 

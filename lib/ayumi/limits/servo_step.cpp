@@ -101,8 +101,8 @@ Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
          text::fixed(std::ceil(std::abs(v.value / v.limit)), 0) + " periods";
 }
 
-std::string step_obstacle(const Finding& f, double excess) {
-  return f.where + " steps by " + ratio_text(excess) +
+std::string step_infeasibility(const Finding& f, double violation) {
+  return f.where + " steps by " + ratio_text(violation) +
          " of what the speed limit allows in one servo period";
 }
 
@@ -124,10 +124,11 @@ const Limit& servo_step_limit() {
                                .scale = 100,
                                .line = 17},
                     .actuator = {.line = 4},
+                    .repair = {.is_of_one_joint = true},
                     .finding_unit = step_unit,
                     .place = joint_place,
                     .advice = step_advice,
-                    .obstacle = step_obstacle,
+                    .infeasibility = step_infeasibility,
                     .holds_at = servo_step_holds}},
       .judge_motion = judge_servos};
   return limit;

@@ -12,6 +12,8 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
+#include "ayumi/limits/sole_rows.hpp"
 
 namespace ayumi {
 
@@ -115,6 +117,82 @@ void judge_stance(JudgedMotion& motion) {
   }
 }
 
+// How far a sole may turn in its place. A long sole may turn less, because its corners rise and
+// sink.
+double angle_band(const RowSite& site, Side side) {
+  double reach = 0;
+  for (const Eigen::Vector2d& v : site.model.sole(side).polygon)
+    reach = std::max(reach, v.lpNorm<1>());
+  const double off = std::min(site.tolerance(FindingKind::foot_float),
+                              site.tolerance(FindingKind::foot_penetration));
+  const auto& settings = site.settings.stance;
+  return std::min(settings.angle, settings.corner_share * off / reach);
+}
+
+double position_band(const RowSite& site) {
+  const double share = site.settings.stance.tolerance_share;
+  return std::min({site.settings.sole_position, share * site.tolerance(FindingKind::foot_slip),
+                   share * site.tolerance(FindingKind::foot_penetration),
+                   share * site.tolerance(FindingKind::foot_float)});
+}
+
+// Time from landing to a sample, or from there to lift-off, where a foot lands or lifts off [s].
+double time_to_edge(const RowSite& site, int sample, const ContactInterval& contact) {
+  const int last = static_cast<int>(site.series.samples.size()) - 1;
+  const double landed = contact.first == 0 ? kUnbounded : (sample - contact.first) * site.series.dt;
+  const double left = contact.last == last ? kUnbounded : (contact.last - sample) * site.series.dt;
+  return std::min(landed, left);
+}
+
+// A foot that lands or lifts off softly is not quite in its place for a moment. The check allows
+// that; what the motion does so by itself stays, up to a share of what is allowed.
+void soften_landing(const RowSite& site, int point, Side side, Vector6d& lower, Vector6d& upper) {
+  const auto& settings = site.settings.stance;
+  const CollocationPoint& at = site.points[point];
+  const ContactInterval& contact = site.plan.at(side, at.sample);
+  if (time_to_edge(site, at.sample, contact) >= settings.soft_time) return;
+  const Eigen::Isometry3d& sole = at.path[static_cast<int>(side)];
+  const SoleError error = sole_error(site.model.sole(side), sole, contact.sole);
+  const double used = std::max({error.gap / site.tolerance(FindingKind::foot_float),
+                                error.penetration / site.tolerance(FindingKind::foot_penetration),
+                                error.slip / site.tolerance(FindingKind::foot_slip)});
+  Vector6d own = std::min(1.0, settings.soft_share / std::max(used, 1e-9)) *
+                 sole_deviation(sole, contact.sole);
+  // A sole above its place has not landed yet, which is to be mended.
+  const Eigen::Vector3d normal = contact.sole.linear().col(2);
+  own.head<3>() -= std::max(0.0, normal.dot(own.head<3>())) * normal;
+  upper[2] *= settings.soft_upwards;
+  lower += own.cwiseMin(0);
+  upper += own.cwiseMax(0);
+}
+
+const RowKind kStanceRows = {.name = "stance",
+                             .unit = &RowPrices::length,
+                             .relaxed = &RowPrices::foot,
+                             .beyond_check = true,
+                             .order = {2, 0}};
+
+// The pose of a supporting sole stays in a band about its place that is much narrower than the
+// check's tolerances. Rows of slip, depth and height would have kinks at the corners.
+void place_stance_rows(RowSite& site) {
+  const double position = position_band(site);
+  for (Side side : {Side::left, Side::right}) {
+    const int foot = static_cast<int>(side);
+    const double turn = angle_band(site, side);
+    for (int i = 0; i < site.count(); ++i) {
+      const CollocationPoint& at = site.points[i];
+      if (!at.contact[foot]) continue;
+      const double share = at.at_knot ? site.settings.stance.share_at_knots : 1;
+      const double band = share * position, angle = share * turn;
+      Vector6d upper;
+      upper << band, band, band, angle, angle, angle;
+      Vector6d lower = -upper;
+      soften_landing(site, i, side, lower, upper);
+      site.add(kStanceRows, i, foot, deviation_rows(side, at.ground[foot]), lower, upper);
+    }
+  }
+}
+
 Advice slip_advice(const JudgedMotion&, const FindingWindow& window) {
   return {"the " + std::string(name_of(foot_of(window.worst))) + " sole moves " +
               in_mm(window.worst.value) + " while it supports: keep the foot still",
@@ -144,15 +222,15 @@ Advice float_advice(const JudgedMotion& motion, const FindingWindow& window) {
          "lower the foot";
 }
 
-std::string slip_obstacle(const Finding& f, double) {
+std::string slip_infeasibility(const Finding& f, double) {
   return "the " + f.where + " foot slips " + in_mm(f.worst);
 }
 
-std::string penetration_obstacle(const Finding& f, double) {
+std::string penetration_infeasibility(const Finding& f, double) {
   return "the " + f.where + " foot is " + in_mm(f.worst) + " in the ground";
 }
 
-std::string float_obstacle(const Finding& f, double) {
+std::string float_infeasibility(const Finding& f, double) {
   return "the " + f.where + " foot stands " + in_mm(f.worst) + " in the air";
 }
 
@@ -169,9 +247,10 @@ const Limit& stance_limit() {
                                .unit = "mm",
                                .scale = 1e3,
                                .line = 13},
+                    .repair = {.is_brief = true},
                     .place = foot_place,
                     .advice = slip_advice,
-                    .obstacle = slip_obstacle},
+                    .infeasibility = slip_infeasibility},
                    {.kind = FindingKind::foot_penetration,
                     .unit = "m",
                     .tolerance = kDepthTolerance,
@@ -183,7 +262,7 @@ const Limit& stance_limit() {
                                .line = 14},
                     .place = foot_place,
                     .advice = penetration_advice,
-                    .obstacle = penetration_obstacle},
+                    .infeasibility = penetration_infeasibility},
                    {.kind = FindingKind::foot_float,
                     .unit = "m",
                     .tolerance = kFloatTolerance,
@@ -195,9 +274,10 @@ const Limit& stance_limit() {
                                .line = 15},
                     .place = foot_place,
                     .advice = float_advice,
-                    .obstacle = float_obstacle}},
+                    .infeasibility = float_infeasibility}},
       .judge_sample = note_soles,
-      .judge_motion = judge_stance};
+      .judge_motion = judge_stance,
+      .place_rows = place_stance_rows};
   return limit;
 }
 

@@ -2,7 +2,11 @@
 // with f_n > 0 and the inward unit normal a of each edge (a . x >= b inside),
 //   margin = min over the edges of (a . ZMP - b) >= 0.
 // The margin is positive inside. Outside no contact forces produce the motion: the robot tips.
+#include <algorithm>
+
+#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
@@ -36,6 +40,68 @@ void judge_support(JudgedMotion& motion, const JudgedSample& s) {
     judge_margin(motion, s, kCommandZmp, command_margin);
 }
 
+// Of the motion as given; unbounded where the ZMP has no meaning, 0 where the ground would pull.
+std::vector<double> own_margins(const RowSite& site) {
+  RobotData data(site.model);
+  std::vector<double> own;
+  for (int i = 0; i < site.count(); ++i) {
+    const CollocationPoint& at = site.points[i];
+    if (!at.stands()) {
+      own.push_back(kUnbounded);
+      continue;
+    }
+    const CommandSample& sample = site.given(i);
+    const Vector6d wrench =
+        inverse_dynamics(site.model, sample.state, sample.acceleration, data).head<6>();
+    const GroundDemand demand =
+        ground_demand(at.plane, plane_wrench(at.plane, sample.state.base.position, wrench),
+                      contact_threshold(site.model));
+    own.push_back(demand.has_zmp ? demand.margin : 0);
+  }
+  return own;
+}
+
+// The margin wanted at every point. Where the motion's ZMP is outside or too near an edge, and for
+// a while around, that is the safe margin; elsewhere it is a share of the motion's own margin, at
+// most the safe one. A step that begins badly is not safe when only its end is.
+std::vector<double> wanted_margins(const RowSite& site) {
+  const auto& settings = site.settings.support;
+  const double safe = std::max(settings.safe, settings.least);
+  const std::vector<double> own = own_margins(site);
+  std::vector<double> wanted;
+  for (size_t i = 0; i < own.size(); ++i) {
+    double least = own[i];
+    for (size_t j = 0; j < own.size(); ++j)
+      if (std::abs(site.points[i].sample - site.points[j].sample) * site.series.dt <=
+          settings.safe_around)
+        least = std::min(least, own[j]);
+    wanted.push_back(least < settings.least
+                         ? safe
+                         : std::clamp(settings.own_share * own[i], settings.least, safe));
+  }
+  return wanted;
+}
+
+// f_n (distance of the ZMP inside each edge - wanted margin) / (m g) >= 0, linear in the wrench.
+// The wanted margin is a soft goal, violated at most down to the least margin.
+const RowKind kMarginRows = {.name = "support",
+                             .unit = &RowPrices::length,
+                             .soft_goal = &RowPrices::zmp_margin,
+                             .beyond_check = true,
+                             .order = {4, 2}};
+
+void place_support_rows(RowSite& site) {
+  const std::vector<double> wanted = wanted_margins(site);
+  for (int i = 0; i < site.count(); ++i) {
+    if (!site.points[i].stands()) continue;
+    Eigen::MatrixXd rows = support_rows(site.points[i].plane);
+    rows.col(2).array() -= wanted[i];
+    site.add(kMarginRows, i, 0, linear_rows(rows / site.weight()), static_cast<int>(rows.rows()), 0,
+             kUnbounded)
+        .most_violation = wanted[i] - site.settings.support.least;
+  }
+}
+
 bool support_holds(JudgedMotion& motion, const Violation& v, double pace) {
   const SampleDynamics& now = motion.dynamics.at(v.sample, pace);
   return now.use.has_zmp && now.use.margin >= -kRounding;
@@ -52,8 +118,8 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
          in_mm(v.limit);
 }
 
-std::string support_obstacle(const Finding& f, double excess) {
-  return "the ZMP is " + in_mm(excess) + " outside the support (" + f.where + ")";
+std::string support_infeasibility(const Finding& f, double violation) {
+  return "the ZMP is " + in_mm(violation) + " outside the support (" + f.where + ")";
 }
 
 }  // namespace
@@ -73,11 +139,13 @@ const Limit& support_limit() {
                                .scale = 1e3,
                                .least = true,
                                .line = 1},
+                    .repair = {.is_of_plan = true, .warnings_too = true},
                     .place = support_place,
                     .advice = support_advice,
-                    .obstacle = support_obstacle,
+                    .infeasibility = support_infeasibility,
                     .holds_at = support_holds}},
-      .judge_sample = judge_support};
+      .judge_sample = judge_support,
+      .place_rows = place_support_rows};
   return limit;
 }
 

@@ -2,30 +2,90 @@
 //   |n_z| <= mu f_n r,
 // where r is torsional_friction_arm(): the mean distance from the ZMP over the largest part of the
 // support that is symmetric about it, a lower bound of what is possible (demand/ground_demand.hpp).
+#include <algorithm>
+
+#include "ayumi/limits/friction.hpp"
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 namespace {
 
 // Share of the moment that friction resists. Definition: at 1 the foot turns.
 constexpr double kWholeMoment = 1;
 
+/// Share of the torsional friction that a motion uses, by the arm r [m].
+double torsion_ratio(const GroundDemand& demand, double coefficient, double arm) {
+  return std::abs(demand.yaw_moment) / (coefficient * demand.normal_force * arm);
+}
+
 // Nothing resists turning where the foot slides anyway, and a ZMP outside the support has no arm;
 // both are findings of their own.
 void judge_torsion(JudgedMotion& motion, const JudgedSample& s) {
   if (!s.has_zmp()) return;
   const GroundDemand& use = s.demand.use;
-  const double grip = motion.friction * use.normal_force;
-  const double ratio = use.tangential_force / grip;
-  if (ratio >= 1 || use.margin <= motion.tolerance(FindingKind::support_margin)) return;
-  const double arm = torsional_friction_arm(motion.dynamics.plane().polygon, use.zmp);
-  const double yaw = std::abs(use.yaw_moment) / (grip * arm);
+  if (friction_ratio(use, motion.friction) >= 1 ||
+      use.margin <= motion.tolerance(FindingKind::support_margin))
+    return;
+  const double yaw = torsion_ratio(
+      use, motion.friction, torsional_friction_arm(motion.dynamics.plane().polygon, use.zmp));
   motion.raise(FindingKind::yaw_moment, yaw);
   const double most = motion.tolerance(FindingKind::yaw_moment);
   if (yaw > most)
     motion.add(FindingKind::yaw_moment, 0, s.k, yaw, most, yaw,
                static_cast<int>(s.command.support));
+}
+
+// (arm f_n -+ n_z) / (m g) >= 0, where n_z = w_5 + (w_3 f_x + w_4 f_y) / f_n is the yaw moment
+// about the ZMP and the arm is mu r, held as it is in the latest iterate.
+struct TurnRows {
+  double arm = 0;    // [m]
+  double scale = 0;  // 1 / (m g)
+
+  VectorXd value(const Vector6d& w) const {
+    const double most = arm * w[2], moment = w[5] + (w[3] * w[0] + w[4] * w[1]) / w[2];
+    return scale * Eigen::Vector2d(most - moment, most + moment);
+  }
+
+  MatrixXd gradient(const Vector6d& w) const {
+    Eigen::Matrix<double, 1, 6> yaw;
+    yaw << w[3], w[4], -(w[3] * w[0] + w[4] * w[1]) / w[2], w[0], w[1], w[2];
+    yaw /= w[2];
+    MatrixXd rows(2, 6);
+    rows << -yaw, yaw;
+    rows.col(2).array() += arm;
+    return scale * rows;
+  }
+};
+
+WrenchRows rows_of(const TurnRows& turn) {
+  return {.value = [turn](const Vector6d& w) { return turn.value(w); },
+          .gradient = [turn](const Vector6d& w) { return turn.gradient(w); }};
+}
+
+const RowKind kTurnRows = {
+    .name = "torsional_friction", .unit = &RowPrices::length, .order = {4, 5}};
+
+void place_torsion_rows(RowSite& site) {
+  const double most = site.tolerance(FindingKind::yaw_moment);
+  for (int i = 0; i < site.count(); ++i) {
+    if (!site.points[i].stands()) continue;
+    double used = 0, arm = 0;
+    for (const GroundDemand& demand : site.watched_demand(i)) {
+      if (!demand.has_zmp) continue;
+      const double here = torsional_friction_arm(site.points[i].plane.polygon, demand.zmp);
+      if (here <= 0) continue;
+      used = std::max(used, torsion_ratio(demand, site.friction, here));
+      arm = site.friction * here;
+    }
+    if (arm <= 0 || used <= site.settings.watched_share * most) continue;
+    const TurnRows turn = {site.settings.limit_share * most * arm, 1 / site.weight()};
+    site.add(kTurnRows, i, 0, rows_of(turn), 2, 0, kUnbounded);
+  }
 }
 
 bool torsion_holds(JudgedMotion& motion, const Violation& v, double pace) {
@@ -40,8 +100,8 @@ Advice torsion_advice(const JudgedMotion&, const FindingWindow& window) {
          " or swing the arms against the legs";
 }
 
-std::string torsion_obstacle(const Finding& f, double excess) {
-  return "the foot would turn: " + ratio_text(excess) +
+std::string torsion_infeasibility(const Finding& f, double violation) {
+  return "the foot would turn: " + ratio_text(violation) +
          " of the yaw moment that friction can resist (" + f.where + ")";
 }
 
@@ -64,9 +124,10 @@ const Limit& torsion_limit() {
                                .line = 12},
                     .place = support_place,
                     .advice = torsion_advice,
-                    .obstacle = torsion_obstacle,
+                    .infeasibility = torsion_infeasibility,
                     .holds_at = torsion_holds}},
-      .judge_sample = judge_torsion};
+      .judge_sample = judge_torsion,
+      .place_rows = place_torsion_rows};
   return limit;
 }
 

@@ -16,7 +16,7 @@ void FindingWindows::add(const Violation& v, int first, int last) {
   window.last = std::max(window.last, last);
   const bool graver = v.severity < window.worst.severity;
   const bool same = v.severity == window.worst.severity;
-  if (graver || (same && v.excess > window.worst.excess)) window.worst = v;
+  if (graver || (same && v.size > window.worst.size)) window.worst = v;
 }
 
 std::vector<FindingWindow> FindingWindows::finish() const {

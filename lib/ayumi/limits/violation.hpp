@@ -17,7 +17,7 @@ struct Violation {
   int sample = 0;
   Severity severity = Severity::error;
   double value = 0, limit = 0;  ///< in the unit of the finding
-  double excess = 0;            ///< orders the samples of a window; the largest is its worst one
+  double size = 0;              ///< orders the samples of a window; the largest is its worst one
   int detail = 0;               ///< of the worst sample; meaning depends on the kind
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "ayumi/dynamics/kinematics.hpp"
 
@@ -46,7 +47,7 @@ void free_end(const CorrectionSpec& spec, int first, double time, CorrectionVari
 
 struct SampleChoice {
   std::set<int> all, knots;
-  std::map<int, std::set<std::pair<ConstraintGroup, int>>> only;
+  std::map<int, std::vector<std::pair<const RowKind*, int>>> only;
 };
 
 SampleChoice choose_samples(const CommandSeries& series, const ContactPlan& plan,
@@ -76,7 +77,7 @@ SampleChoice choose_samples(const CommandSeries& series, const ContactPlan& plan
   }
   for (const ActiveLimit& limit : spec.active)
     if (!choice.all.contains(limit.sample))
-      choice.only[limit.sample].emplace(limit.group, limit.item);
+      choice.only[limit.sample].emplace_back(limit.kind, limit.item);
   for (const auto& [sample, rows] : choice.only) choice.all.insert(sample);
   return choice;
 }
@@ -96,7 +97,7 @@ void set_foot(const ContactPlan& plan, Side side, CollocationPoint& point) {
 }
 
 CollocationPoint point_at(const RobotModel& model, const CommandSeries& series,
-                          const ContactPlan& plan, const CorrectionSpec& spec, int k) {
+                          const ContactPlan& plan, int k) {
   CollocationPoint point;
   point.sample = k;
   point.forces_known = !at_flight_edge(series, k);
@@ -106,8 +107,6 @@ CollocationPoint point_at(const RobotModel& model, const CommandSeries& series,
   const CommandSample& sample = series.samples[k];
   update_positions(model, sample.state, data);
   point.path = {sole_pose(model, data, Side::left), sole_pose(model, data, Side::right)};
-  point.cog = sample.cog;
-  point.collisions = spec.collisions;
   if (point.plane.empty()) point.plane.frame.translation() = sample.cog;
   return point;
 }
@@ -164,7 +163,7 @@ std::vector<CollocationPoint> collocation_points(const RobotModel& model,
   for (const int k : choice.all) {
     const SplineWeights weights = correction_weights(variables.zero, k * series.dt);
     if (!variables.act_at(weights)) continue;
-    CollocationPoint point = point_at(model, series, plan, spec, k);
+    CollocationPoint point = point_at(model, series, plan, k);
     point.weights = weights;
     point.at_knot = choice.knots.contains(k);
     if (const auto few = choice.only.find(k); few != choice.only.end()) point.only = few->second;

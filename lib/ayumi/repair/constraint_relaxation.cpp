@@ -14,11 +14,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-// A goal beyond the check whose violation has no bound.
-bool is_unbounded_goal(ConstraintGroup group) {
-  return policy::prices::of(group).soft_goal > 0 && group != ConstraintGroup::support;
-}
-
 // Rows of the relaxed program: the old ones, then the upper bounds of relaxed rows that have two.
 struct RelaxedLayout {
   std::vector<int> twice;  ///< old rows that appear again
@@ -133,18 +128,18 @@ Nlp relaxed(const Nlp& nlp, const Slacks& relaxation) {
   return soft;
 }
 
-ViolationPrice price_of(ConstraintGroup group) {
+ViolationPrice price_of(const RowKind& kind) {
   // Derived: the weighted change that costs 1 of the objective.
   constexpr double kChange = 2 / policy::change_weight::kObjectiveScale;
-  const policy::prices::GroupPrice& price = policy::prices::of(group);
-  if (price.soft_goal > 0)
-    return {price.unit, kChange * price.soft_goal, policy::prices::kSoftGoalWindow};
-  return {price.unit, kChange * policy::prices::kLimit, policy::prices::kLimitWindow};
+  const RowPrices prices = row_prices();
+  if (kind.soft_goal)
+    return {prices.*kind.unit, kChange * prices.*kind.soft_goal, policy::prices::kSoftGoalWindow};
+  return {prices.*kind.unit, kChange * prices.limit, policy::prices::kLimitWindow};
 }
 
 namespace {
 
-// Slacks while they are collected: one for each limit (group and item) and window of time.
+// Slacks while they are collected: one for each limit (kind and item) and window of time.
 class SlackCollector {
  public:
   SlackCollector(const CorrectionProblem& problem, double dt, double window)
@@ -153,9 +148,9 @@ class SlackCollector {
   }
 
   // The least `most` of the blocks that share a slack holds for it.
-  void add(const ConstraintBlock& block, double unit, double price, double most) {
+  void add(const RowBlock& block, double unit, double price, double most) {
     const double t = problem_.points()[block.point].sample * dt_;
-    const std::tuple key(static_cast<int>(block.group), block.item, std::lround(t / window_));
+    const std::tuple key(block.kind, block.item, std::lround(t / window_));
     const auto [found, is_new] = index_.try_emplace(key, static_cast<int>(unit_.size()));
     if (is_new) {
       unit_.push_back(unit);
@@ -164,7 +159,7 @@ class SlackCollector {
     }
     double& bound = most_[static_cast<size_t>(found->second)];
     bound = std::min(bound, most);
-    for (int i = 0; i < block.rows; ++i) slacks_.group[block.row + i] = found->second;
+    for (int i = 0; i < block.rows(); ++i) slacks_.group[block.row + i] = found->second;
   }
 
   bool empty() const { return unit_.empty(); }
@@ -184,7 +179,7 @@ class SlackCollector {
   const CorrectionProblem& problem_;
   double dt_, window_;
   Slacks slacks_;
-  std::map<std::tuple<int, int, long>, int> index_;
+  std::map<std::tuple<const RowKind*, int, long>, int> index_;
   std::vector<double> unit_, price_, most_;
 };
 
@@ -193,13 +188,13 @@ class SlackCollector {
 Nlp with_soft_goals(const CorrectionProblem& problem, const Nlp& nlp, double dt, double robustness,
                     double barrier) {
   SlackCollector collector(problem, dt, policy::prices::kSoftGoalWindow);
-  for (const ConstraintBlock& block : problem.blocks()) {
-    const policy::prices::GroupPrice& price = policy::prices::of(block.group);
-    if (price.soft_goal <= 0) continue;
-    const double most = is_unbounded_goal(block.group)
-                            ? kNoBound
-                            : problem.soft_margin(block.point) / policy::prices::kLength;
-    if (most > 0) collector.add(block, price.unit, robustness * price.soft_goal, most);
+  const RowPrices prices = row_prices();
+  for (const RowBlock& block : problem.blocks()) {
+    const RowKind& kind = *block.kind;
+    if (!kind.soft_goal) continue;
+    const double unit = prices.*kind.unit;
+    const double most = std::min(block.most_violation / unit, kNoBound);
+    if (most > 0) collector.add(block, unit, robustness * prices.*kind.soft_goal, most);
   }
   if (collector.empty()) return nlp;
   Slacks slacks = collector.collected();
@@ -209,9 +204,10 @@ Nlp with_soft_goals(const CorrectionProblem& problem, const Nlp& nlp, double dt,
 
 Nlp with_all_limits_relaxed(const CorrectionProblem& problem, const Nlp& nlp, double dt) {
   SlackCollector collector(problem, dt, policy::prices::kLimitWindow);
-  for (const ConstraintBlock& block : problem.blocks()) {
-    const policy::prices::GroupPrice& price = policy::prices::of(block.group);
-    if (price.relaxed > 0) collector.add(block, price.unit, price.relaxed, kNoBound);
+  const RowPrices prices = row_prices();
+  for (const RowBlock& block : problem.blocks()) {
+    const RowKind& kind = *block.kind;
+    if (kind.relaxed) collector.add(block, prices.*kind.unit, prices.*kind.relaxed, kNoBound);
   }
   return relaxed(nlp, collector.collected());
 }

@@ -23,12 +23,12 @@ struct Slacks {
 /// appear twice. Refers to `nlp`, which must outlive it.
 Nlp relaxed(const Nlp& nlp, const Slacks& slacks);
 
-/// What a violation of a group costs beside the weighted change: `change` [s], in the measure of
+/// What a violation of rows costs beside the weighted change: `change` [s], in the measure of
 /// weighted_change(), for every `unit` of the largest violation of one limit in a `window` [s].
 struct ViolationPrice {
   double unit = 0, change = 0, window = 0;
 };
-ViolationPrice price_of(ConstraintGroup group);
+ViolationPrice price_of(const RowKind& kind);
 
 /// The program of `problem` with every limit relaxed, per limit and window. Feet on the ground and
 /// flight are the last to be violated; locked postures never are.

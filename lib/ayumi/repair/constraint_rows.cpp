@@ -4,6 +4,14 @@
 //   rate         D_v diag(1, dw/dr', 1) + D_a [d(dw)/dr']
 //   acceleration D_a diag(1, d(dw)/dr'', 1)
 // where [.] acts on the three rotation columns.
+//
+// With P the change of reference from the base to the support plane (axes R', arm from the plane's
+// origin to the base), the plane wrench is w = P W. A row g(w) has the derivatives  dg/dw P dW, and
+// by the base position, whose arm moves,  - (dg/dw).moment skew(f).
+//
+// The DCM is COG + COG rate / omega. Its derivatives follow from those of the COG and of its rate:
+// for a function c(x, t), d(c')/dx is half of d(c'')/dx', and m c'' is the ground force, whose
+// derivative by the correction's rate is known.
 #include "ayumi/repair/constraint_rows.hpp"
 
 #include <algorithm>
@@ -11,40 +19,15 @@
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
-#include "ayumi/repair/clearance_rows.hpp"
-#include "ayumi/repair/command_rows.hpp"
-#include "ayumi/repair/foot_rows.hpp"
-#include "ayumi/repair/ground_rows.hpp"
-#include "ayumi/repair/joint_rows.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/repair/motor_torque.hpp"
 
 namespace ayumi {
 
+using Eigen::Matrix3d;
 using Eigen::MatrixXd;
+using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-const char* name_of(ConstraintGroup group) {
-  constexpr std::array<const char*, kConstraintGroupCount> kNames = {"support",
-                                                                     "normal_force",
-                                                                     "friction",
-                                                                     "flight",
-                                                                     "zmp",
-                                                                     "torsional_friction",
-                                                                     "stance",
-                                                                     "path",
-                                                                     "swing",
-                                                                     "landing",
-                                                                     "foot_clearance",
-                                                                     "position",
-                                                                     "speed",
-                                                                     "acceleration",
-                                                                     "torque",
-                                                                     "clearance",
-                                                                     "cog",
-                                                                     "pose",
-                                                                     "dcm"};
-  return kNames[static_cast<size_t>(group)];
-}
 
 namespace {
 
@@ -61,16 +44,6 @@ std::array<MatrixXd, 3> force_derivatives(TreeDynamics& dynamics, const Correcte
 }
 
 }  // namespace
-
-ConstraintBlock block_of(ConstraintGroup group, int point, int item, int rows, double scale) {
-  ConstraintBlock block;
-  block.group = group;
-  block.point = point;
-  block.item = item;
-  block.rows = rows;
-  block.scale = scale;
-  return block;
-}
 
 PointState point_state(const RobotModel& model, const CommandSample& sample,
                        const CollocationPoint& point, const MatrixXd& coefficients,
@@ -104,38 +77,180 @@ PointState point_state(const RobotModel& model, const CommandSample& sample,
   return state;
 }
 
-std::vector<int> block_columns(const RobotModel& model, const ConstraintBlock& block,
-                               const CollocationPoint& point) {
-  if (is_of_joint_angle(block.group)) return {6 + block.item};
-  if (block.group == ConstraintGroup::clearance)
-    return clearance_columns(model, *point.collisions, block.shapes);
-  std::vector<int> columns = {0, 1, 2, 3, 4, 5};
-  if (is_of_foot(block.group)) {
-    for (int i : model.leg(static_cast<Side>(block.item))) columns.push_back(6 + i);
-    std::sort(columns.begin(), columns.end());
-  } else {
-    for (int i = 0; i < model.dof_count(); ++i) columns.push_back(6 + i);
-  }
+Vector6d plane_wrench(const CollocationPoint& point, const PointState& state) {
+  return plane_wrench(point.plane, state.motion.state.base.position, state.wrench);
+}
+
+// ---- the rows by their quantity
+
+namespace {
+
+using Derivatives = std::array<MatrixXd, 3>;
+
+// Base and joints from the root to a body.
+void add_path_columns(const RobotModel& model, int body, std::vector<int>& columns) {
+  for (int i = body; i > 0; i = model.bodies()[i].parent)
+    columns.push_back(6 + model.bodies()[i].dof);
+}
+
+std::vector<int> all_columns(const RobotModel& model) {
+  std::vector<int> columns;
+  for (int i = 0; i < model.velocity_count(); ++i) columns.push_back(i);
   return columns;
 }
 
-VectorXd block_values(const RobotModel& model, const ConstraintBlock& block,
-                      const CollocationPoint& point, const PointState& state) {
-  if (is_of_ground(block.group)) return ground_values(block, point, state);
-  if (is_of_foot(block.group)) return foot_values(model, block, point, state);
-  if (is_of_joint(block.group)) return joint_values(block, state);
-  if (block.group == ConstraintGroup::clearance) return clearance_values(block, point, state);
-  return command_values(model, block, point, state);
+VectorXd wrench_values(const WrenchRows& rows, const CollocationPoint& point,
+                       const PointState& state) {
+  return rows.value(plane_wrench(point, state));
 }
 
-std::array<MatrixXd, 3> block_derivatives(const RobotModel& model, const ConstraintBlock& block,
+Derivatives wrench_derivatives(const WrenchRows& rows, const CollocationPoint& point,
+                               const PointState& state) {
+  const Matrix3d R = point.plane.frame.linear().transpose();
+  const Vector3d arm = state.motion.state.base.position - point.plane.frame.translation();
+  Eigen::Matrix<double, 6, 6> P = Eigen::Matrix<double, 6, 6>::Zero();
+  P.topLeftCorner<3, 3>() = P.bottomRightCorner<3, 3>() = R;
+  P.bottomLeftCorner<3, 3>() = R * skew(arm);
+  const MatrixXd A = rows.gradient(plane_wrench(point, state)) * P;
+  Derivatives by;
+  for (int i = 0; i < 3; ++i) by[i] = A * state.wrench_by[i];
+  by[0].leftCols<3>() -= A.rightCols<3>() * skew(Vector3d(state.wrench.head<3>()));
+  return by;
+}
+
+struct Columns {
+  const RobotModel& model;
+
+  std::vector<int> operator()(const SoleRows& rows) const {
+    std::vector<int> columns = {0, 1, 2, 3, 4, 5};
+    for (int i : model.leg(rows.side)) columns.push_back(6 + i);
+    std::sort(columns.begin(), columns.end());
+    return columns;
+  }
+  std::vector<int> operator()(const JointRow& row) const {
+    if (row.of == JointQuantity::motor_torque) return all_columns(model);
+    return {6 + row.dof};
+  }
+  // Base and joints are left out where they move both bodies alike: the paths of the two bodies.
+  std::vector<int> operator()(const ClearanceRows& rows) const {
+    const CollisionModel::Pair& pair = rows.collisions->pairs()[rows.shapes.pair];
+    std::vector<int> columns;
+    add_path_columns(model, pair.a, columns);
+    add_path_columns(model, pair.b, columns);
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    return columns;
+  }
+  template <class Rows>
+  std::vector<int> operator()(const Rows&) const {
+    return all_columns(model);
+  }
+};
+
+struct Values {
+  const RobotModel& model;
+  const CollocationPoint& point;
+  const PointState& state;
+
+  VectorXd operator()(const WrenchRows& rows) const { return wrench_values(rows, point, state); }
+  VectorXd operator()(const SoleRows& rows) const {
+    return rows.value(state.soles[static_cast<int>(rows.side)]);
+  }
+  VectorXd operator()(const JointRow& row) const {
+    return VectorXd::Constant(1, row.scale * quantity(row));
+  }
+  VectorXd operator()(const ClearanceRows& rows) const {
+    const std::vector<Closest> points =
+        clearance_points(*rows.collisions, rows.shapes, *state.data);
+    VectorXd values(static_cast<Eigen::Index>(points.size()));
+    for (size_t i = 0; i < points.size(); ++i)
+      values[static_cast<Eigen::Index>(i)] = points[i].clearance;
+    return values;
+  }
+  VectorXd operator()(const CogRows& rows) const { return state.data->cog - rows.from; }
+  VectorXd operator()(const CorrectionRows&) const { return state.change; }
+  VectorXd operator()(const DcmRows& rows) const {
+    const Vector3d rate = cog_jacobian_floating(model, *state.data) * state.motion.state.velocity();
+    const Vector3d dcm = state.data->cog + rows.time * rate;
+    VectorXd values(4);
+    values << dcm.head<2>() - rows.from, wrench_values(rows.zmp, point, state);
+    return values;
+  }
+
+  double quantity(const JointRow& row) const {
+    switch (row.of) {
+      case JointQuantity::angle:
+        return state.motion.state.theta[row.dof];
+      case JointQuantity::speed:
+        return state.motion.state.dtheta[row.dof];
+      case JointQuantity::acceleration:
+        return state.motion.acceleration[6 + row.dof];
+      default:
+        return state.torque[row.dof];
+    }
+  }
+};
+
+struct ByCorrection {
+  const RobotModel& model;
+  const CollocationPoint& point;
+  const PointState& state;
+
+  Derivatives operator()(const WrenchRows& rows) const {
+    return wrench_derivatives(rows, point, state);
+  }
+  Derivatives operator()(const SoleRows& rows) const {
+    const auto s = static_cast<size_t>(rows.side);
+    return {rows.rate(state.soles[s], state.sole_by[s]), {}, {}};
+  }
+  Derivatives operator()(const JointRow& row) const {
+    Derivatives by;
+    if (row.of == JointQuantity::motor_torque) {
+      for (int k = 0; k < 3; ++k) by[k] = row.scale * state.torque_by[k].row(row.dof);
+      return by;
+    }
+    MatrixXd& by_order = by[static_cast<size_t>(row.of)];
+    by_order = MatrixXd::Zero(1, model.velocity_count());
+    by_order(0, 6 + row.dof) = row.scale;
+    return by;
+  }
+  Derivatives operator()(const ClearanceRows& rows) const {
+    MatrixXd by = clearance_gradient(model, *rows.collisions, rows.shapes, *state.data);
+    by.middleCols<3>(3) = (by.middleCols<3>(3) * state.motion.tangent).eval();
+    return {by, {}, {}};
+  }
+  Derivatives operator()(const CogRows&) const { return {state.cog_by, {}, {}}; }
+  Derivatives operator()(const CorrectionRows&) const {
+    return {MatrixXd::Identity(model.velocity_count(), model.velocity_count()), {}, {}};
+  }
+  Derivatives operator()(const DcmRows& rows) const {
+    const Derivatives zmp = wrench_derivatives(rows.zmp, point, state);
+    const MatrixXd cog = state.cog_by.topRows<2>();
+    const MatrixXd rate = 0.5 / model.mass() * state.wrench_by[1].topRows<2>();
+    const MatrixXd dcm[] = {cog + rows.time * rate, rows.time * cog, 0 * cog};
+    Derivatives by;
+    for (int k = 0; k < 3; ++k) {
+      by[k].resize(4, cog.cols());
+      by[k] << dcm[k], zmp[k];
+    }
+    return by;
+  }
+};
+
+}  // namespace
+
+std::vector<int> block_columns(const RobotModel& model, const RowBlock& block) {
+  return std::visit(Columns{model}, block.rule);
+}
+
+VectorXd block_values(const RobotModel& model, const RowBlock& block, const CollocationPoint& point,
+                      const PointState& state) {
+  return std::visit(Values{model, point, state}, block.rule);
+}
+
+std::array<MatrixXd, 3> block_derivatives(const RobotModel& model, const RowBlock& block,
                                           const CollocationPoint& point, const PointState& state) {
-  if (is_of_ground(block.group)) return ground_derivatives(block, point, state);
-  if (is_of_foot(block.group)) return {foot_derivatives(model, block, point, state), {}, {}};
-  if (is_of_joint(block.group)) return joint_derivatives(model, block, state);
-  if (block.group == ConstraintGroup::clearance)
-    return {clearance_derivatives(model, block, point, state), {}, {}};
-  return command_derivatives(model, block, point, state);
+  return std::visit(ByCorrection{model, point, state}, block.rule);
 }
 
 }  // namespace ayumi

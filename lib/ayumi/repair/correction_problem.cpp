@@ -19,21 +19,16 @@ SparsePattern jacobian_pattern(const PlacedRows& rows, const std::vector<Colloca
                                const Eigen::MatrixXi& index) {
   SparsePattern pattern;
   for (size_t b = 0; b < rows.blocks.size(); ++b) {
-    const ConstraintBlock& block = rows.blocks[b];
+    const RowBlock& block = rows.blocks[b];
     const int first = points[block.point].weights.first;
     for (int i = 0; i < 4; ++i)
       for (int column : rows.columns[b]) {
         const int variable = index(first + i, column);
         if (variable < 0) continue;
-        for (int row = 0; row < block.rows; ++row) pattern.add(block.row + row, variable);
+        for (int row = 0; row < block.rows(); ++row) pattern.add(block.row + row, variable);
       }
   }
   return pattern;
-}
-
-bool is_single_row(ConstraintGroup group) {
-  return group == ConstraintGroup::friction || group == ConstraintGroup::speed ||
-         group == ConstraintGroup::position || group == ConstraintGroup::torque;
 }
 
 }  // namespace
@@ -62,12 +57,12 @@ VectorXd CorrectionProblem::values(const CommandSeries& motion, const MatrixXd& 
   RobotData data(model_);
   PointState state;
   int at = -1;
-  for (const ConstraintBlock& block : rows_.blocks) {
+  for (const RowBlock& block : rows_.blocks) {
     const CollocationPoint& point = points_[block.point];
     if (block.point != at)
       state = point_state(model_, motion.samples[point.sample], point, c, nullptr, data);
     at = block.point;
-    g.segment(block.row, block.rows) = block_values(model_, block, point, state);
+    g.segment(block.row, block.rows()) = block_values(model_, block, point, state);
   }
   return g;
 }
@@ -80,7 +75,7 @@ void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) con
   int at = -1;
   Eigen::Index next = 0;
   for (size_t b = 0; b < rows_.blocks.size(); ++b) {
-    const ConstraintBlock& block = rows_.blocks[b];
+    const RowBlock& block = rows_.blocks[b];
     const CollocationPoint& point = points_[block.point];
     if (block.point != at)
       state = point_state(model_, series_.samples[point.sample], point, c, &dynamics, data);
@@ -91,7 +86,7 @@ void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) con
     for (int i = 0; i < 4; ++i)
       for (int column : rows_.columns[b]) {
         if (variables_.index(w.first + i, column) < 0) continue;
-        for (int row = 0; row < block.rows; ++row) {
+        for (int row = 0; row < block.rows(); ++row) {
           double sum = 0;
           for (int k = 0; k < 3; ++k)
             if (by[k].size() > 0) sum += (*weights[k])[i] * by[k](row, column);
@@ -112,7 +107,7 @@ void CorrectionProblem::add_curvature(const VectorXd& x, const VectorXd& multipl
   for (size_t at = 0; at < points_.size(); ++at) {
     size_t end = first;
     while (end < rows_.blocks.size() && rows_.blocks[end].point == static_cast<int>(at)) ++end;
-    const std::span<const ConstraintBlock> blocks(&rows_.blocks[0] + first, end - first);
+    const std::span<const RowBlock> blocks(&rows_.blocks[0] + first, end - first);
     first = end;
     const CollocationPoint& point = points_[at];
     const PointState state =
@@ -127,18 +122,16 @@ std::vector<ActiveLimit> CorrectionProblem::beside_active(const VectorXd& x) con
   constexpr int kParts = policy::collocation::kBesideActive;
   const VectorXd g = constraints(x);
   std::vector<ActiveLimit> limits;
-  for (const ConstraintBlock& b : rows_.blocks) {
-    const double near = b.group == ConstraintGroup::friction
-                            ? policy::collocation::kActiveFriction * b.factor
-                            : policy::collocation::kActive;
+  for (const RowBlock& b : rows_.blocks) {
+    if (b.active <= 0) continue;
     const double room = std::min(g[b.row] - rows_.lower[b.row], rows_.upper[b.row] - g[b.row]);
-    if (!is_single_row(b.group) || room > near) continue;
+    if (room > b.active) continue;
     const int here = points_[b.point].sample;
     for (const int beside : {b.point - 1, b.point + 1}) {
       if (beside < 0 || beside >= static_cast<int>(points_.size())) continue;
       const int there = points_[beside].sample;
       for (int part = 1; part <= kParts; ++part)
-        limits.push_back({here + (there - here) * part / kParts, b.group, b.item});
+        limits.push_back({here + (there - here) * part / kParts, b.kind, b.item});
     }
   }
   return limits;

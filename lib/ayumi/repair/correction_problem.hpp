@@ -23,19 +23,16 @@ class CorrectionProblem {
 
   int variable_count() const { return variables_.count; }
   int constraint_count() const { return static_cast<int>(rows_.lower.size()); }
-  const std::vector<ConstraintBlock>& blocks() const { return rows_.blocks; }
+  const std::vector<RowBlock>& blocks() const { return rows_.blocks; }
   const std::vector<CollocationPoint>& points() const { return points_; }
   const Eigen::VectorXd& lower() const { return rows_.lower; }  ///< bounds of the rows
   const Eigen::VectorXd& upper() const { return rows_.upper; }
-  /// By how much the wanted margin of the ZMP exceeds the least one at a point [m].
-  double soft_margin(int point) const { return points_[point].zmp_margin - spec_.zmp_margin; }
 
   Eigen::VectorXd constraints(const Eigen::VectorXd& x) const;
   /// The rows of another motion over the same plan, sampled alike.
   Eigen::VectorXd constraints_of(const CommandSeries& motion) const;
 
-  /// Samples beside the points at which a single-row limit is active: friction, joint position,
-  /// speed and torque, but not feet, the ZMP or clearances.
+  /// Samples beside the points at which a single row is active (RowBlock::active).
   std::vector<ActiveLimit> beside_active(const Eigen::VectorXd& x) const;
 
   /// The program; it refers to this object, which must outlive it.

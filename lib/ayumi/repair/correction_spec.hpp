@@ -10,9 +10,9 @@
 
 #include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/limits/limit.hpp"
+#include "ayumi/limits/row.hpp"
 #include "ayumi/math/windows.hpp"
 #include "ayumi/motion/command_series.hpp"
-#include "ayumi/repair/constraint_group.hpp"
 #include "ayumi/repair/policy.hpp"
 
 namespace ayumi {
@@ -20,8 +20,8 @@ namespace ayumi {
 /// A limit that gets a row at one sample between two collocation points.
 struct ActiveLimit {
   int sample = 0;
-  ConstraintGroup group = ConstraintGroup::friction;
-  int item = 0;  ///< dof or foot, as in its ConstraintBlock
+  const RowKind* kind = nullptr;
+  int item = 0;  ///< as in its RowBlock
 };
 
 struct CorrectionSpec {

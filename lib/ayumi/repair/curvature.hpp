@@ -28,7 +28,7 @@ struct Curvature {
 };
 
 /// `blocks` are those of `point`, `multipliers` those of all rows; `state` has derivatives.
-Curvature curvature_of(const RobotModel& model, std::span<const ConstraintBlock> blocks,
+Curvature curvature_of(const RobotModel& model, std::span<const RowBlock> blocks,
                        const Eigen::VectorXd& multipliers, const CollocationPoint& point,
                        const PointState& state, TreeDynamics& dynamics);
 

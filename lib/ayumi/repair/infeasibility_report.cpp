@@ -52,20 +52,20 @@ double violation_of(const Finding& f) {
   return std::abs(f.worst - f.limit);
 }
 
-Obstacle obstacle_of(const Finding& f) {
-  Obstacle o;
-  o.finding = f;
-  o.excess = violation_of(f);
-  o.is_ratio = spec_of(f.kind).is_ratio();
-  return o;
+InfeasibilityCause cause_of(const Finding& f) {
+  InfeasibilityCause cause;
+  cause.finding = f;
+  cause.violation = violation_of(f);
+  cause.is_ratio = spec_of(f.kind).is_ratio();
+  return cause;
 }
 
 // Comparable for violations of different kinds: shares of a limit, centimetres, tenths of a radian.
-double severity_of(const Obstacle& o) {
-  if (o.is_ratio) return o.excess - 1;
-  if (o.finding.unit == "m") return o.excess / policy::infeasible::kLength;
-  if (o.finding.unit == "N") return o.excess / policy::infeasible::kForce;
-  return o.excess / policy::infeasible::kOther;
+double severity_of(const InfeasibilityCause& cause) {
+  if (cause.is_ratio) return cause.violation - 1;
+  if (cause.finding.unit == "m") return cause.violation / policy::infeasible::kLength;
+  if (cause.finding.unit == "N") return cause.violation / policy::infeasible::kForce;
+  return cause.violation / policy::infeasible::kOther;
 }
 
 std::string window_text(const Finding& f) {
@@ -74,7 +74,7 @@ std::string window_text(const Finding& f) {
 }
 
 std::string violation_text(const Finding& f, double violation) {
-  if (const auto text = spec_of(f.kind).obstacle) return text(f, violation);
+  if (const auto text = spec_of(f.kind).infeasibility) return text(f, violation);
   return std::string(name_of(f.kind)) + " of " + f.where + " is " + text::brief(f.worst) +
          " against " + text::brief(f.limit) + " " + f.unit;
 }
@@ -82,9 +82,9 @@ std::string violation_text(const Finding& f, double violation) {
 }  // namespace
 
 bool is_matter_of_time(const Finding& f) {
-  if (f.kind == FindingKind::continuous_torque) return false;  // the window is the motor's
-  const LimitClass limit_class = spec_of(f.kind).limit_class;
-  return limit_class == LimitClass::rate || limit_class == LimitClass::force;
+  const FindingSpec& spec = spec_of(f.kind);
+  return !spec.repair.is_mean &&
+         (spec.limit_class == LimitClass::rate || spec.limit_class == LimitClass::force);
 }
 
 double total_violation(const ConsistencyReport& report) {
@@ -92,7 +92,7 @@ double total_violation(const ConsistencyReport& report) {
   for (const Finding& f : report.findings) {
     if (f.severity != Severity::error) continue;
     double& severity = worst[{name_of(f.kind), f.where}];
-    severity = std::max(severity, severity_of(obstacle_of(f)));
+    severity = std::max(severity, severity_of(cause_of(f)));
   }
   double sum = 0;
   for (const auto& entry : worst) sum += entry.second;
@@ -101,12 +101,12 @@ double total_violation(const ConsistencyReport& report) {
 
 namespace {
 
-std::string remedy(const Obstacle& o) {
-  if (o.time_factor > 1)
-    return "that window needs to be " + text::fixed(std::ceil(10 * o.time_factor - 1e-9) / 10, 1) +
-           " times longer";
-  return (is_matter_of_time(o.finding) ? "slowing that window down does not help: " : "") +
-         o.finding.remedy;
+std::string remedy(const InfeasibilityCause& cause) {
+  if (cause.time_factor > 1)
+    return "that window needs to be " +
+           text::fixed(std::ceil(10 * cause.time_factor - 1e-9) / 10, 1) + " times longer";
+  return (is_matter_of_time(cause.finding) ? "slowing that window down does not help: " : "") +
+         cause.finding.remedy;
 }
 
 // Which lock covers the time of a finding, in words; empty: none.
@@ -140,37 +140,40 @@ double time_factor(const RobotModel& model, const CommandSeries& series, const F
   return high;
 }
 
-std::vector<Obstacle> infeasibility_report(const RobotModel& model, const CommandSeries& series,
-                                           const ConsistencyReport& report,
-                                           const RepairOptions& options) {
+std::vector<InfeasibilityCause> infeasibility_report(const RobotModel& model,
+                                                     const CommandSeries& series,
+                                                     const ConsistencyReport& report,
+                                                     const RepairOptions& options) {
   const auto locked = [&](const Finding& f) {
     return at_locked_joint(f, options) || !time_lock(f, options).empty();
   };
   const auto is_error = [](const Finding& f) { return f.severity == Severity::error; };
   const bool by_lock = std::any_of(report.findings.begin(), report.findings.end(),
                                    [&](const Finding& f) { return is_error(f) && locked(f); });
-  std::map<std::pair<std::string, std::string>, Obstacle> worst;
+  std::map<std::pair<std::string, std::string>, InfeasibilityCause> worst;
   for (const Finding& f : report.findings) {
     if (!is_error(f) || (by_lock && !locked(f))) continue;
-    const Obstacle o = obstacle_of(f);
-    const auto found = worst.try_emplace({name_of(f.kind), f.where}, o).first;
-    if (o.excess > found->second.excess) found->second = o;
+    const InfeasibilityCause cause = cause_of(f);
+    const auto found = worst.try_emplace({name_of(f.kind), f.where}, cause).first;
+    if (cause.violation > found->second.violation) found->second = cause;
   }
-  std::vector<Obstacle> result;
+  std::vector<InfeasibilityCause> result;
   for (auto& entry : worst) {
-    Obstacle& o = entry.second;
-    o.time_factor = time_factor(model, series, o.finding, options.check);
-    o.text = violation_text(o.finding, o.excess) + " " + window_text(o.finding) + ", ";
-    if (at_locked_joint(o.finding, options))
-      o.text += o.finding.where + " is locked; unlock it, or else: ";
-    else if (const std::string lock = time_lock(o.finding, options); !lock.empty())
-      o.text += lock + "; unlock it, or else: ";
-    o.text += remedy(o);
-    result.push_back(std::move(o));
+    InfeasibilityCause& cause = entry.second;
+    cause.time_factor = time_factor(model, series, cause.finding, options.check);
+    cause.text =
+        violation_text(cause.finding, cause.violation) + " " + window_text(cause.finding) + ", ";
+    if (at_locked_joint(cause.finding, options))
+      cause.text += cause.finding.where + " is locked; unlock it, or else: ";
+    else if (const std::string lock = time_lock(cause.finding, options); !lock.empty())
+      cause.text += lock + "; unlock it, or else: ";
+    cause.text += remedy(cause);
+    result.push_back(std::move(cause));
   }
-  std::stable_sort(result.begin(), result.end(), [](const Obstacle& a, const Obstacle& b) {
-    return severity_of(a) > severity_of(b);
-  });
+  std::stable_sort(result.begin(), result.end(),
+                   [](const InfeasibilityCause& a, const InfeasibilityCause& b) {
+                     return severity_of(a) > severity_of(b);
+                   });
   return result;
 }
 

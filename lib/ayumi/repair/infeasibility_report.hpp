@@ -11,9 +11,10 @@ namespace ayumi {
 /// The errors of `report` on `series`, the largest share beyond its limit first; errors of one kind
 /// at one joint or foot are named once, where they are worst. Where something is at fault in a
 /// locked window or at a locked joint, that alone is named.
-std::vector<Obstacle> infeasibility_report(const RobotModel& model, const CommandSeries& series,
-                                           const ConsistencyReport& report,
-                                           const RepairOptions& options);
+std::vector<InfeasibilityCause> infeasibility_report(const RobotModel& model,
+                                                     const CommandSeries& series,
+                                                     const ConsistencyReport& report,
+                                                     const RepairOptions& options);
 
 /// The least factor by which the window's time [s] has to grow for this kind of finding to pass
 /// there, in steps of 0.01 up to 8; 0 when slowing down does not help.

@@ -30,7 +30,7 @@ std::vector<int> joints_between(const RobotModel& model, int a, int b) {
 }
 
 std::vector<int> joints_at_fault(const RobotModel& model, const Finding& f) {
-  if (f.kind == FindingKind::joint_position) return {dof_of(f)};
+  if (dof_of(f) >= 0 && spec_of(f.kind).limit_class == LimitClass::posture) return {dof_of(f)};
   const BodyPairPlace* bodies = std::get_if<BodyPairPlace>(&f.place);
   return bodies ? joints_between(model, bodies->a, bodies->b) : std::vector<int>();
 }
@@ -67,19 +67,22 @@ class StraightLine {
   long begin_ = 0, end_ = 0;
 };
 
-// Violation of the rows of soles and clearances.
+// Violation of the rows of soles and clearances, which are the most nonlinear ones.
 struct LeastLinearViolation {
   double sum = 0, worst = 0;
 };
 
+bool is_counted(const RowBlock& block) {
+  return !block.kind->soft_goal && (std::holds_alternative<SoleRows>(block.rule) ||
+                                    std::holds_alternative<ClearanceRows>(block.rule));
+}
+
 LeastLinearViolation least_linear_violation(const CorrectionProblem& problem, const VectorXd& x) {
   const VectorXd g = problem.constraints(x);
   LeastLinearViolation result;
-  for (const ConstraintBlock& block : problem.blocks()) {
-    if (block.group != ConstraintGroup::stance && block.group != ConstraintGroup::path &&
-        block.group != ConstraintGroup::swing && block.group != ConstraintGroup::clearance)
-      continue;
-    for (int i = block.row; i < block.row + block.rows; ++i) {
+  for (const RowBlock& block : problem.blocks()) {
+    if (!is_counted(block)) continue;
+    for (int i = block.row; i < block.row + block.rows(); ++i) {
       const double off = std::max({0.0, problem.lower()[i] - g[i], g[i] - problem.upper()[i]});
       result.sum += off;
       result.worst = std::max(result.worst, off);

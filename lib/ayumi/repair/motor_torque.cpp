@@ -8,7 +8,7 @@
 // piece.
 #include "ayumi/repair/motor_torque.hpp"
 
-#include "ayumi/repair/ground_rows.hpp"
+#include "ayumi/repair/policy.hpp"
 
 namespace ayumi {
 
@@ -20,16 +20,6 @@ using Eigen::VectorXd;
 namespace {
 
 using FootWrenches = std::array<Vector6d, 2>;
-
-FootWrenches shared_load(const RobotModel& model, const CollocationPoint& point,
-                         const Vector3d& base, const Vector6d& wrench) {
-  const GroundDemand demand =
-      ground_demand(point.plane, plane_wrench(point.plane, base, wrench), contact_threshold(model));
-  const Support support = point.contact[0]   ? (point.contact[1] ? Support::both : Support::left)
-                          : point.contact[1] ? Support::right
-                                             : Support::none;
-  return foot_wrenches(model, support, point.ground, point.plane, demand, base, wrench);
-}
 
 // Derivatives of the foot wrenches by base position and wrench, 6 x 9 by Side.
 std::array<Eigen::Matrix<double, 6, 9>, 2> sharing_slope(const RobotModel& model,

@@ -9,10 +9,7 @@
 // Times suit a robot of HOAP-1's height (omega = sqrt(g / z) of about 6 1/s, so 0.5 s is 3/omega);
 // they do not scale with the robot yet.
 
-#include <array>
 #include <cstddef>
-
-#include "ayumi/repair/constraint_group.hpp"
 
 namespace ayumi::repair_policy {
 
@@ -236,9 +233,6 @@ inline constexpr double kWrongPlanAround = 0.3;
 }  // namespace dcm
 
 namespace flight {
-/// Samples to either side over which the moment in flight is averaged. Derived: as the check does.
-/// Test: ConstraintRows.NumbersAreThoseOfTheCheck.
-inline constexpr int kMean = 2;
 /// What the motion does by itself in flight stays, up to this share of the check's limit; beyond it
 /// nothing of it does. Chosen. Half: flight, missing safety 0.00462 to 0.0067; twice: 0.0143. Test:
 /// JumpRepair.* (that the repair succeeds).
@@ -308,37 +302,6 @@ inline constexpr double kSoftGoalWindow = 0.05, kLimitWindow = 0.1;
 /// changes from half to twice (constants.md).
 inline constexpr double kLength = 1e-3, kAngle = 0.01, kShare = 0.01;
 
-struct GroupPrice {
-  ConstraintGroup group;
-  double unit;       ///< in the unit of the row
-  double soft_goal;  ///< price in the rounds; 0: a limit, which is never violated there
-  double relaxed;    ///< price in the relaxed program; 0: never violated
-};
-/// In the order of ConstraintGroup. Test: LeastChange.* (none near is cheaper by these prices).
-inline constexpr std::array<GroupPrice, kConstraintGroupCount> kOfGroup = {{
-    {ConstraintGroup::support, kLength, kZmpMargin, kLimit},
-    {ConstraintGroup::normal_force, kShare, 0, kLimit},
-    {ConstraintGroup::friction, kShare, 0, kLimit},
-    {ConstraintGroup::flight, kLength, 0, kFoot},
-    {ConstraintGroup::zmp, kLength, 0, kLimit},
-    {ConstraintGroup::torsional_friction, kLength, 0, kLimit},
-    {ConstraintGroup::stance, kLength, 0, kFoot},
-    {ConstraintGroup::path, kLength, 0, kFoot},
-    {ConstraintGroup::swing, kLength, 0, kFoot},
-    {ConstraintGroup::landing, kLength, kLanding, kLanding},
-    {ConstraintGroup::foot_clearance, kLength, kLanding, kLanding},
-    {ConstraintGroup::position, kAngle, 0, kLimit},
-    {ConstraintGroup::speed, kShare, 0, kLimit},
-    {ConstraintGroup::acceleration, kShare, 0, kLimit},
-    {ConstraintGroup::torque, kShare, 0, kLimit},
-    {ConstraintGroup::clearance, kLength, 0, kLimit},
-    {ConstraintGroup::cog, kLength, 0, kLimit},
-    {ConstraintGroup::pose, kLength, 0, 0},
-    {ConstraintGroup::dcm, kLength, kDcm, kDcm},
-}};
-constexpr const GroupPrice& of(ConstraintGroup group) {
-  return kOfGroup[static_cast<size_t>(group)];
-}
 /// Violation, in `unit`s, that counts as none. Derived: the solver's tolerance. Test: none.
 inline constexpr double kMet = 1e-6;
 }  // namespace prices

@@ -45,10 +45,10 @@ RepairStatus status_of(const RepairState& state) {
 
 void give_reasons(RepairState& state) {
   RepairResult& result = state.result;
-  result.obstacles = infeasibility_report(state.model, result.series, result.check, state.options);
-  const size_t count = result.obstacles.size();
+  result.causes = infeasibility_report(state.model, result.series, result.check, state.options);
+  const size_t count = result.causes.size();
   const size_t named = std::min(count, policy::infeasible::kMostReasons);
-  for (size_t i = 0; i < named; ++i) result.reasons.push_back(result.obstacles[i].text);
+  for (size_t i = 0; i < named; ++i) result.reasons.push_back(result.causes[i].text);
   if (count > named) result.reasons.push_back(std::to_string(count - named) + " more like these");
   if (state.relaxation_cut_short)
     result.reasons.push_back(

@@ -53,10 +53,10 @@ inline const char* name_of(RepairStatus status) {
 }
 
 /// An error that no correction removed (infeasibility_report.hpp).
-struct Obstacle {
+struct InfeasibilityCause {
   Finding finding;         ///< as in the nearest motion found
-  double excess = 0;       ///< violation: worst / limit, or worst - limit for lengths and angles
-  bool is_ratio = false;   ///< `excess` is a ratio, else in the finding's unit
+  double violation = 0;    ///< worst / limit, or worst - limit for lengths and angles
+  bool is_ratio = false;   ///< `violation` is a ratio, else in the finding's unit
   double time_factor = 0;  ///< the window would pass if it took this much longer; 0: it would not
   std::string text;        ///< the whole in words
 };
@@ -84,9 +84,9 @@ struct RepairResult {
   std::string where;            ///< joint that moved most
   double at = 0;                ///< time at which it moved most [s]
   int variables = 0, constraints = 0, iterations = 0;
-  double constraint_violation = 0;   ///< scaled, of the last program
-  std::vector<Obstacle> obstacles;   ///< when not repaired, the most severe first
-  std::vector<std::string> reasons;  ///< the first few of them in words
+  double constraint_violation = 0;         ///< scaled, of the last program
+  std::vector<InfeasibilityCause> causes;  ///< when not repaired, the most severe first
+  std::vector<std::string> reasons;        ///< the first few of them in words
   RepairWork work;
 };
 

@@ -30,7 +30,7 @@ struct RoundMemory {
 // A motion whose margin the check only warns of is repaired too, if it is repaired at all.
 bool has_full_margin(const ConsistencyReport& report) {
   return std::none_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
-    return f.kind == FindingKind::support_margin && f.severity == Severity::warning;
+    return spec_of(f.kind).repair.warnings_too && f.severity == Severity::warning;
   });
 }
 

@@ -74,8 +74,7 @@ double safe_margin(const RobotModel& model) {
 
 bool flight_is_at_fault(const ConsistencyReport& report) {
   return std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
-    return f.severity == Severity::error &&
-           (f.kind == FindingKind::ballistic || f.kind == FindingKind::angular_momentum);
+    return f.severity == Severity::error && spec_of(f.kind).repair.in_flight;
   });
 }
 
@@ -85,7 +84,7 @@ double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& r
                        ? shortest_flight(series) / policy::knots::kInFaultyFlight
                        : kNoBound;
   for (const Finding& f : report.findings)
-    if (f.kind == FindingKind::foot_slip && f.severity == Severity::error)
+    if (spec_of(f.kind).repair.is_brief && f.severity == Severity::error)
       spacing = std::min(spacing, std::max((f.end - f.begin) / policy::knots::kInSlip, finest));
   return spacing;
 }
@@ -93,7 +92,7 @@ double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& r
 std::vector<TimeWindow> windows_around(const std::vector<Finding>& findings, double pad) {
   std::vector<TimeWindow> windows;
   for (const Finding& f : findings)
-    if (f.severity == Severity::error || f.kind == FindingKind::support_margin ||
+    if (f.severity == Severity::error || spec_of(f.kind).repair.warnings_too ||
         !f.follows_from.empty())
       windows.emplace_back(f.begin - pad, f.end + pad);
   return merged(std::move(windows));
@@ -177,9 +176,7 @@ std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report) {
   constexpr double kAround = policy::dcm::kWrongPlanAround;
   std::vector<TimeWindow> windows;
   for (const Finding& f : report.findings)
-    if (f.severity == Severity::error &&
-        (f.kind == FindingKind::cog_residual || f.kind == FindingKind::zmp_residual ||
-         f.kind == FindingKind::support_margin))
+    if (f.severity == Severity::error && spec_of(f.kind).repair.is_of_plan)
       windows.emplace_back(f.begin - kAround, f.end + kAround);
   return windows;
 }
@@ -196,11 +193,10 @@ void add_near_pairs(const RobotModel& model, const CommandSeries& series,
 
 bool locked_out(const CorrectionSpec& spec, const ConsistencyReport& report) {
   for (const Finding& f : report.findings) {
-    if (f.severity != Severity::error || f.kind == FindingKind::continuous_torque) continue;
+    const RepairTraits& traits = spec_of(f.kind).repair;
+    if (f.severity != Severity::error || traits.is_mean) continue;
     const int dof = dof_of(f);
-    const bool joint = dof >= 0 && spec.locked[dof] &&
-                       (f.kind == FindingKind::joint_position ||
-                        f.kind == FindingKind::joint_speed || f.kind == FindingKind::servo_step);
+    const bool joint = dof >= 0 && spec.locked[dof] && traits.is_of_one_joint;
     const bool window = within(spec.locked_windows, f.at);
     const bool posture =
         is_of_posture(f) && std::any_of(spec.kept_times.begin(), spec.kept_times.end(),
@@ -214,7 +210,7 @@ bool locked_out(const CorrectionSpec& spec, const ConsistencyReport& report) {
 std::array<bool, 2> faulty_ends(const ConsistencyReport& report, double duration, double spacing) {
   std::array<bool, 2> ends = {};
   for (const Finding& f : report.findings) {
-    if (f.severity != Severity::error || f.kind == FindingKind::continuous_torque) continue;
+    if (f.severity != Severity::error || spec_of(f.kind).repair.is_mean) continue;
     if (f.begin < spacing) ends[0] = true;
     if (f.end > duration - spacing) ends[1] = true;
   }

@@ -35,36 +35,16 @@ std::vector<TimeWindow> windows_of_change(const CommandSeries& before, const Com
   return merged(std::move(windows));
 }
 
-// Limits that the check has in the same form are left out: a motion that violates them fails.
-bool is_robustness_goal(ConstraintGroup group) {
-  switch (group) {
-    case ConstraintGroup::support:
-    case ConstraintGroup::normal_force:
-    case ConstraintGroup::stance:
-    case ConstraintGroup::swing:
-    case ConstraintGroup::landing:
-    case ConstraintGroup::foot_clearance:
-    case ConstraintGroup::position:
-    case ConstraintGroup::clearance:
-    case ConstraintGroup::dcm:
-      return true;
-    default:
-      return false;
-  }
-}
-
 // Feet stay in their places whatever robustness is worth.
-double price_factor(ConstraintGroup group, double safety) {
-  const bool foot = group == ConstraintGroup::stance || group == ConstraintGroup::swing;
-  return foot ? 1 : safety;
+double price_factor(const RowKind& kind, double safety) {
+  return kind.relaxed == &RowPrices::foot ? 1 : safety;
 }
 
-double violation_of(const CorrectionProblem& problem, const ConstraintBlock& block,
-                    const VectorXd& g) {
+double violation_of(const CorrectionProblem& problem, const RowBlock& block, const VectorXd& g) {
   double most = 0;
-  for (int i = block.row; i < block.row + block.rows; ++i)
+  for (int i = block.row; i < block.row + block.rows(); ++i)
     most = std::max({most, problem.lower()[i] - g[i], g[i] - problem.upper()[i]});
-  most /= price_of(block.group).unit;
+  most /= price_of(*block.kind).unit;
   return most > policy::prices::kMet ? most : 0;
 }
 
@@ -86,20 +66,19 @@ double robustness_cost(const RobotModel& model, const CommandSeries& before,
   spec.joint_margin = 0;
   const CorrectionProblem problem(model, before, spec);
   const VectorXd g = problem.constraints_of(after);
-  std::map<std::tuple<int, int, long>, double> violations;  // by limit and window
+  std::map<std::tuple<const RowKind*, int, long>, double> violations;  // by limit and window
   double sum = 0;
-  for (const ConstraintBlock& block : problem.blocks()) {
+  for (const RowBlock& block : problem.blocks()) {
     const int k = problem.points()[static_cast<size_t>(block.point)].sample;
     const auto sample = static_cast<size_t>(k);
-    if (!is_robustness_goal(block.group) ||
+    if (!block.kind->beyond_check ||
         !differ(before.samples[sample].state, after.samples[sample].state))
       continue;
-    const ViolationPrice price = price_of(block.group);
-    const std::tuple key(static_cast<int>(block.group), block.item,
-                         std::lround(k * before.dt / price.window));
+    const ViolationPrice price = price_of(*block.kind);
+    const std::tuple key(block.kind, block.item, std::lround(k * before.dt / price.window));
     double& most = violations[key];
     const double here = violation_of(problem, block, g);
-    sum += price_factor(block.group, options.safety) * std::max(0.0, here - most) * price.change;
+    sum += price_factor(*block.kind, options.safety) * std::max(0.0, here - most) * price.change;
     most = std::max(most, here);
   }
   return sum;

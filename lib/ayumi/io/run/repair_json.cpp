@@ -21,18 +21,18 @@ OrderedJson largest(const LargestChange& change, const char* unit) {
   return {{std::string("most_") + unit, figure(change.size)}, {"at_s", figure(change.at)}};
 }
 
-OrderedJson obstacle_json(const Obstacle& o) {
-  return {{"kind", name_of(o.finding.kind)},
-          {"where", o.finding.where},
-          {"begin_s", figure(o.finding.begin)},
-          {"end_s", figure(o.finding.end)},
-          {"at_s", figure(o.finding.at)},
-          {"worst", figure(o.finding.worst)},
-          {"limit", figure(o.finding.limit)},
-          {"unit", o.finding.unit},
-          {"ratio", o.is_ratio ? figure(o.excess) : OrderedJson(nullptr)},
-          {"time_factor", o.time_factor > 0 ? figure(o.time_factor) : OrderedJson(nullptr)},
-          {"text", o.text}};
+OrderedJson cause_json(const InfeasibilityCause& cause) {
+  return {{"kind", name_of(cause.finding.kind)},
+          {"where", cause.finding.where},
+          {"begin_s", figure(cause.finding.begin)},
+          {"end_s", figure(cause.finding.end)},
+          {"at_s", figure(cause.finding.at)},
+          {"worst", figure(cause.finding.worst)},
+          {"limit", figure(cause.finding.limit)},
+          {"unit", cause.finding.unit},
+          {"ratio", cause.is_ratio ? figure(cause.violation) : OrderedJson(nullptr)},
+          {"time_factor", cause.time_factor > 0 ? figure(cause.time_factor) : OrderedJson(nullptr)},
+          {"text", cause.text}};
 }
 
 }  // namespace
@@ -73,8 +73,8 @@ std::string repair_json(const RepairResult& result) {
   const OrderedJson margin = {
       {"before_m", figure(result.before.summary[FindingKind::support_margin])},
       {"after_m", figure(result.check.summary[FindingKind::support_margin])}};
-  OrderedJson obstacles = OrderedJson::array();
-  for (const Obstacle& o : result.obstacles) obstacles.push_back(obstacle_json(o));
+  OrderedJson causes = OrderedJson::array();
+  for (const InfeasibilityCause& cause : result.causes) causes.push_back(cause_json(cause));
   const OrderedJson json = {
       {"status", name_of(result.status)},
       {"partial", result.partial},
@@ -86,7 +86,7 @@ std::string repair_json(const RepairResult& result) {
       {"iterations", result.iterations},
       {"constraint_violation", figure(result.constraint_violation)},
       {"reasons", result.reasons},
-      {"obstacles", obstacles},
+      {"obstacles", causes},
       {"check", OrderedJson::parse(check_json(result.check))}};
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace);
 }

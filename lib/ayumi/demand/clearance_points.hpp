@@ -28,8 +28,10 @@ std::vector<ShapePair> shape_pairs(const CollisionModel& collisions, int pair);
 /// Number of clearance_points(): 1 for two spheres; 16 for two boxes, 17 with their edges.
 int clearance_point_count(const CollisionModel& collisions, const ShapePair& shapes);
 
-/// Whether two edges are nearer than any end; needs update_positions().
-bool edges_meet(const CollisionModel& collisions, const ShapePair& shapes, const RobotData& data);
+/// Whether two edges are nearer than any end, by more than `same_distance` [m]; needs
+/// update_positions().
+bool edges_meet(const CollisionModel& collisions, const ShapePair& shapes, const RobotData& data,
+                double same_distance);
 
 /// Clearance of the two shapes; needs update_positions(). Where the bounding spheres are farther
 /// apart than `skip`, that bound is returned instead [m].

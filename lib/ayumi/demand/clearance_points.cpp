@@ -1,11 +1,10 @@
-#include "ayumi/repair/clearance_points.hpp"
+#include "ayumi/demand/clearance_points.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/geometry/box_corner.hpp"
-#include "ayumi/repair/policy.hpp"
 
 namespace ayumi {
 
@@ -100,15 +99,15 @@ int clearance_point_count(const CollisionModel& collisions, const ShapePair& sha
   return static_cast<int>(count) + (shapes.edges || count == 0 ? 1 : 0);
 }
 
-bool edges_meet(const CollisionModel& collisions, const ShapePair& shapes, const RobotData& data) {
+bool edges_meet(const CollisionModel& collisions, const ShapePair& shapes, const RobotData& data,
+                double same_distance) {
   ShapePair with = shapes;
   with.edges = true;
   const std::vector<Closest> points = clearance_points(collisions, with, data);
   double nearest_end = std::numeric_limits<double>::infinity();
   for (size_t i = 1; i < points.size(); ++i)
     nearest_end = std::min(nearest_end, points[i].clearance);
-  return nearest_end > 0 &&
-         points[0].clearance < nearest_end - repair_policy::clearance::kSameDistance;
+  return nearest_end > 0 && points[0].clearance < nearest_end - same_distance;
 }
 
 double shape_clearance(const CollisionModel& collisions, const ShapePair& shapes,

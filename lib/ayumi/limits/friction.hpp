@@ -1,0 +1,13 @@
+#pragma once
+// The rule of the friction cone, which torsional friction needs too.
+
+#include "ayumi/demand/ground_demand.hpp"
+
+namespace ayumi {
+
+/// Share of the friction cone that a motion uses, where it presses on the ground.
+inline double friction_ratio(const GroundDemand& demand, double coefficient) {
+  return demand.tangential_force / (coefficient * demand.normal_force);
+}
+
+}  // namespace ayumi
