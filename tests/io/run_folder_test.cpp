@@ -48,12 +48,10 @@ SimulationLog random_log(unsigned seed) {
   log.controller = ControllerKind::dtad;
   log.provenance = {"hoap1", "ab", "walk", "cd", "hoap1", "dtad", "ayumi run walk.json"};
   log.world.slope = {0.01, 1.0 / 3};
-  Disturbance push;
-  push.at = 0.1;
-  push.magnitude = 1.1;
-  push.shape = DisturbanceShape::half_sine;
-  push.direction = Eigen::Vector3d(1, 2, 3).normalized();
-  log.scenario = {push};
+  const Push push{.magnitude = 1.1,
+                  .direction = Eigen::Vector3d(1, 2, 3).normalized(),
+                  .shape = PushShape::half_sine};
+  log.scenario = {{.at = 0.1, .what = push}};
   log.joints = {"a", "b", "c"};
   log.events = {{0.1, "push", "1.1 N s on the \"COG\""}};
   log.result = {.outcome = Outcome::stands, .max_tilt = 0.1 + 0.2, .steps = 9};
@@ -97,8 +95,10 @@ TEST(SimulationLogFile, EveryFieldSurvives) {
   EXPECT_EQ(back.samples[7].planned_contact, log.samples[7].planned_contact);
   EXPECT_EQ(back.samples[7].contact_iterations, log.samples[7].contact_iterations);
   EXPECT_EQ(back.samples[19].push_point, log.samples[19].push_point);
-  EXPECT_EQ(back.scenario.at(0).direction, log.scenario[0].direction);
-  EXPECT_EQ(back.scenario.at(0).shape, DisturbanceShape::half_sine);
+  const Push &a = std::get<Push>(back.scenario.at(0).what),
+             &b = std::get<Push>(log.scenario[0].what);
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.shape, PushShape::half_sine);
   EXPECT_EQ(back.events.at(0).text, log.events[0].text);
   EXPECT_EQ(back.world.slope, log.world.slope);
   EXPECT_EQ(back.result.outcome, Outcome::stands);

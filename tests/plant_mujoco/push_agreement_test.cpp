@@ -33,13 +33,10 @@ class Runs {
     trunk_->advance(std::lround(at / walk().dt));
   }
   bool stands(double direction, double impulse) const {
-    Disturbance push;
-    push.at = at_;
-    push.duration = 0.02;
-    push.direction = {std::cos(direction), std::sin(direction), 0};
-    push.magnitude = impulse;
+    const Push push{.magnitude = impulse,
+                    .direction = {std::cos(direction), std::sin(direction), 0}};
     Simulator run = *trunk_;
-    run.set_scenario({push});
+    run.set_scenario({{.at = at_, .duration = 0.02, .what = push}});
     while (run.advance(100) && !run.fell()) {
     }
     return !run.fell() && run.result().outcome == Outcome::stands;

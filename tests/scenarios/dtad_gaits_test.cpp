@@ -19,12 +19,9 @@ namespace {
 using test::hoap1;
 
 Disturbance push(double at, double angle, double impulse) {
-  Disturbance d;
-  d.at = at;
-  d.duration = 0.02;
-  d.direction = {std::cos(angle), std::sin(angle), 0};
-  d.magnitude = impulse;
-  return d;
+  return {.at = at,
+          .duration = 0.02,
+          .what = Push{.magnitude = impulse, .direction = {std::cos(angle), std::sin(angle), 0}}};
 }
 
 /// Runs the pattern under DTAD.

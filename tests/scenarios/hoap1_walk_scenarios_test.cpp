@@ -81,8 +81,7 @@ TEST(Hoap1Walk, PushWithNoisyLateSensors) {
 
 TEST(Hoap1Walk, PushWithSensorsThreeMillisecondsLate) {
   SimulateOptions options = pushed("dtad");
-  options.scenario.push_back({.type = DisturbanceType::latency, .duration = 100});
-  options.scenario.back().magnitude = 0.003;
+  options.scenario.push_back({.duration = 100, .what = Latency{0.003}});
   expect_stands(run(options), 0.002);
 }
 
@@ -90,8 +89,7 @@ TEST(Hoap1Walk, PushWithAWeightInOneHand) {
   for (const char* hand : {"l_forearm", "r_forearm"}) {
     SCOPED_TRACE(hand);
     SimulateOptions options = pushed("dtad");
-    options.scenario.push_back({.type = DisturbanceType::payload, .duration = 100, .on = hand});
-    options.scenario.back().magnitude = 0.3;
+    options.scenario.push_back({.duration = 100, .what = Payload{.on = hand, .mass = 0.3}});
     expect_stands(run(options), 0.002);
   }
 }

@@ -56,12 +56,9 @@ StepGoal walk(int steps, double velocity, double turn = 0) {
 }
 
 Disturbance push(double at, const Vector3d& direction, double impulse) {
-  Disturbance d;
-  d.at = at;
-  d.duration = 0.02;
-  d.direction = direction.normalized();
-  d.magnitude = impulse;
-  return d;
+  return {.at = at,
+          .duration = 0.02,
+          .what = Push{.magnitude = impulse, .direction = direction.normalized()}};
 }
 
 TEST(ViipHoap1, CogGoesToADisplacementOnBothFeet) {

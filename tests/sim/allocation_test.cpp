@@ -113,8 +113,7 @@ TEST_F(Allocations, ATickThatMovesFootholdsHasNoneAfterTheFirstSteps) {
   options.controller = {ControllerKind::dtad, {{"step", 1}}};
   options.profile = "hoap1-strong";
   options.scenario = pattern.scenario;
-  options.scenario.front().direction = {1, 0, 0};
-  options.scenario.front().magnitude = 2.8;
+  options.scenario.front().what = Push{.magnitude = 2.8, .direction = {1, 0, 0}};
   Simulator simulator(model, series, options);
   simulator.keep_samples(false);
   simulator.advance(3700);  // joints at their limits have been told

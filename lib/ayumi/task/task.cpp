@@ -21,13 +21,23 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
   for (size_t i = 0; i < pattern.scenario.size(); ++i) {
     const Disturbance& d = pattern.scenario[i];
     const std::string place = pattern.file + ": /scenario/" + std::to_string(i);
-    if (std::find(links.begin(), links.end(), d.on) == links.end())
-      fail(ErrorCode::bad_pattern, place + "/on: " + robot.name() + " has no link '" + d.on + "'" +
-                                       text::suggestion(d.on, links) +
-                                       "; 'cog' pushes through the centre of gravity");
-    if (!d.joint.empty() && std::find(joints.begin(), joints.end(), d.joint) == joints.end())
-      fail(ErrorCode::bad_pattern, place + "/joint: " + robot.name() + " has no joint '" + d.joint +
-                                       "'" + text::suggestion(d.joint, joints));
+    const auto refuse_link = [&](const std::string& name) {
+      if (std::find(links.begin(), links.end(), name) == links.end())
+        fail(ErrorCode::bad_pattern, place + "/on: " + robot.name() + " has no link '" + name +
+                                         "'" + text::suggestion(name, links) +
+                                         "; 'cog' pushes through the centre of gravity");
+    };
+    const auto refuse_joint = [&](const std::string& name) {
+      if (!name.empty() && std::find(joints.begin(), joints.end(), name) == joints.end())
+        fail(ErrorCode::bad_pattern, place + "/joint: " + robot.name() + " has no joint '" + name +
+                                         "'" + text::suggestion(name, joints));
+    };
+    std::visit(
+        [&](const auto& what) {
+          if constexpr (requires { what.on; }) refuse_link(what.on);
+          if constexpr (requires { what.joint; }) refuse_joint(what.joint);
+        },
+        d.what);
   }
 }
 

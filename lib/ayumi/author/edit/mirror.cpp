@@ -115,7 +115,7 @@ class Mirror {
     if (result.correction) mirror(*result.correction);
     result.repair = of(pattern_.repair);
     result.world.slope.x() *= -1;
-    for (Disturbance& push : result.scenario) mirror(push);
+    for (Disturbance& disturbance : result.scenario) mirror(disturbance);
     return result;
   }
 
@@ -237,12 +237,21 @@ class Mirror {
     }
   }
 
-  void mirror(Disturbance& push) const {
-    const bool axial = push.type == DisturbanceType::torque;
-    push.direction = axial ? axial_image(push.direction) : image(push.direction);
-    push.point = image(push.point);
-    const int link = model_.find_link(push.on);
-    if (link >= 0) push.on = model_.links()[map_.link[link]].name;
+  void mirror_link(std::string& name) const {
+    const int link = model_.find_link(name);
+    if (link >= 0) name = model_.links()[map_.link[link]].name;
+  }
+
+  void mirror(Disturbance& disturbance) const {
+    if (auto* push = std::get_if<Push>(&disturbance.what)) {
+      const bool axial = push->kind == PushKind::torque;
+      push->direction = axial ? axial_image(push->direction) : image(push->direction);
+      push->point = image(push->point);
+      mirror_link(push->on);
+    } else if (auto* payload = std::get_if<Payload>(&disturbance.what)) {
+      payload->point = image(payload->point);
+      mirror_link(payload->on);
+    }
   }
 
   const RobotModel& model_;
