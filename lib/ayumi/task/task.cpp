@@ -133,11 +133,20 @@ SimulationLog simulate(const Task& task, const SimulateOptions& options, const P
   return log;
 }
 
-std::vector<std::string> unfit_reasons(const Judgement& judgement, const SimulationLog& log) {
+std::vector<std::string> unfit_reasons(const std::string& inconsistent, const SimulationLog& log,
+                                       const SimulationLog* undisturbed) {
   std::vector<std::string> reasons;
-  for (const std::string& reason : {judgement.reason(), unfit_words(log)})
-    if (!reason.empty()) reasons.push_back(reason);
+  const auto add = [&](const std::string& run, const std::string& reason) {
+    if (!reason.empty()) reasons.push_back(run + reason);
+  };
+  add("", inconsistent);
+  add(undisturbed ? "under its disturbances " : "", unfit_words(log));
+  if (undisturbed) add("without disturbances ", unfit_words(*undisturbed));
   return reasons;
+}
+
+std::vector<std::string> unfit_reasons(const Judgement& judgement, const SimulationLog& log) {
+  return unfit_reasons(judgement.reason(), log);
 }
 
 }  // namespace ayumi
