@@ -13,6 +13,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {
@@ -68,17 +69,11 @@ fs::path fresh_folder() {
 }
 
 template <typename Do>
-std::string message(const Do& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_file);
-    return error.what();
-  }
-  return "no error";
+std::string file_error(const Do& work) {
+  return test::error_message(work, ErrorCode::bad_file);
 }
 std::string parse_message(const std::string& bytes) {
-  return message([&] { parse_log(bytes, "x.bin"); });
+  return file_error([&] { parse_log(bytes, "x.bin"); });
 }
 
 TEST(SimulationLogFile, EveryFieldSurvives) {
@@ -220,31 +215,32 @@ TEST(RunFolderFile, SameRunSameBytesWhereverItIsWritten) {
 
 TEST(RunFolderFile, SaysWhatIsWrong) {
   const fs::path folder = fresh_folder();
-  EXPECT_NE(message([&] { read_run(folder); }).find("no such folder; a RUN is needed"),
+  EXPECT_NE(file_error([&] { read_run(folder); }).find("no such folder; a RUN is needed"),
             std::string::npos);
   write_run(folder, example());
-  EXPECT_NE(message([&] {
+  EXPECT_NE(file_error([&] {
               read_run_log(folder, "closedloop");
             }).find("no log 'closedloop' in this run; did you mean 'closed_loop'?"),
             std::string::npos);
   std::ofstream(folder / "log_open_loop.bin", std::ios::app) << "x";
-  EXPECT_NE(message([&] { read_run(folder); }).find("has changed since the run was written"),
+  EXPECT_NE(file_error([&] { read_run(folder); }).find("has changed since the run was written"),
             std::string::npos);
   fs::remove(folder / "log_open_loop.bin");
-  EXPECT_NE(message([&] { read_run(folder); }).find("log_open_loop.bin: no such file"),
+  EXPECT_NE(file_error([&] { read_run(folder); }).find("log_open_loop.bin: no such file"),
             std::string::npos);
   std::string text = read_file(folder / "run.json");
   text.replace(text.find("ayumi.run/1"), 11, "ayumi.run/7");
   write_file(folder / "run.json", text);
-  EXPECT_NE(message([&] { read_run(folder); }).find("/format: 'ayumi.run/7' is not readable here"),
-            std::string::npos);
+  EXPECT_NE(
+      file_error([&] { read_run(folder); }).find("/format: 'ayumi.run/7' is not readable here"),
+      std::string::npos);
   fs::remove(folder / "run.json");
-  EXPECT_NE(message([&] { read_run(folder); }).find("holds no run.json"), std::string::npos);
+  EXPECT_NE(file_error([&] { read_run(folder); }).find("holds no run.json"), std::string::npos);
   RunFolder run = example();
   run.files = {"absent.svg"};
-  EXPECT_NE(message([&] { write_run(folder, run); }).find("absent.svg: no such file"),
+  EXPECT_NE(file_error([&] { write_run(folder, run); }).find("absent.svg: no such file"),
             std::string::npos);
-  EXPECT_NE(message([&] { write_run(folder / "reference.csv", run); }).find("is not a folder"),
+  EXPECT_NE(file_error([&] { write_run(folder / "reference.csv", run); }).find("is not a folder"),
             std::string::npos);
 }
 

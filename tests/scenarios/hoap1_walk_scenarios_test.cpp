@@ -7,9 +7,12 @@
 #include "ayumi/math/random.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/expect_stands.hpp"
 
 namespace ayumi {
 namespace {
+
+using test::expect_stands;
 
 struct Walk {
   RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
@@ -38,12 +41,6 @@ SimulateOptions pushed(const std::string& controller) {
 
 SimulationResult run(const SimulateOptions& options) {
   return simulate(walk().model, walk().series, options).result;
-}
-
-void expect_stands(const SimulationResult& r, double final_error) {
-  EXPECT_EQ(r.outcome, Outcome::stands) << "fell at " << r.fell_at;
-  EXPECT_LE(r.final_cog_error, final_error);
-  EXPECT_LE(r.max_torque_ratio, 1 + 1e-9);
 }
 
 TEST(Hoap1Walk, StandsUnpushedWithAndWithoutControl) {

@@ -19,8 +19,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-constexpr double kStep = 1e-3;
+using test::kStep;
 
 GroundBlock step_at(const Vector2d& low, const Vector2d& high, double height) {
   GroundBlock block;

@@ -4,10 +4,9 @@
 #include <random>
 
 #include "ayumi/motion/pattern.hpp"
+#include "tests/support/degree.hpp"
 
 namespace ayumi::test {
-
-inline constexpr double kDegreeInRadians = EIGEN_PI / 180;
 
 class PatternDice {
  public:
@@ -19,7 +18,7 @@ class PatternDice {
   int pick(int count) { return static_cast<int>(engine_() % static_cast<unsigned>(count)); }
   // An angle the file's unit can hold: any double in rad, a rounded number in degrees.
   double angle(bool degrees) {
-    return degrees ? std::round(uniform(-180, 180) * 1e4) / 1e4 * kDegreeInRadians : uniform(-3, 3);
+    return degrees ? std::round(uniform(-180, 180) * 1e4) / 1e4 * kDegree : uniform(-3, 3);
   }
   Foothold foothold(bool degrees) {
     Foothold foot;
@@ -196,8 +195,7 @@ inline Pattern random_pattern(unsigned seed) {
   p.world = random_ground(random);
   p.world.friction = random.uniform(0, 2);
   if (random.coin()) p.world.slope.y() = random.angle(p.degrees) / 4;
-  if (p.degrees)
-    p.world.slope.y() = std::round(p.world.slope.y() / kDegreeInRadians) * kDegreeInRadians;
+  if (p.degrees) p.world.slope.y() = std::round(p.world.slope.y() / kDegree) * kDegree;
   if (random.coin()) p.controller.gains = {{"ka", random.uniform(0, 3)}, {"q", 0.25}};
   for (int i = 0; i < random.pick(5); ++i)
     p.scenario.push_back(random_disturbance(random, p.degrees));
