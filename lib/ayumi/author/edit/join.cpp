@@ -83,7 +83,7 @@ void move_plan(const Isometry3d& shift, double later, Pattern& pattern) {
     d.at += later;
     if (auto* push = std::get_if<Push>(&d.what); push && push->frame == PushFrame::world)
       push->direction = shift.linear() * push->direction;
-    if (auto* bump = std::get_if<Bump>(&d.what))
+    if (auto* bump = std::get_if<Bump>(&d.what); bump && !bump->foot)
       bump->place = (shift * Vector3d(bump->place.x(), bump->place.y(), 0)).head<2>();
   }
 }
