@@ -8,7 +8,7 @@
 namespace ayumi::app {
 
 /// "  error    support_margin  left  1.200-1.350 s, worst at 1.280 s: -9.8 mm, limit 0.0 mm" with
-/// its hint, one pair of lines per finding, and a line of the most telling figures.
+/// its hint, one pair of lines per finding, and a line with the most important figures.
 std::string check_table(const ConsistencyReport& report);
 
 /// Names, default tolerances, units and meanings of all kinds.

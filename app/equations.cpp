@@ -23,18 +23,18 @@ struct Delta {
 };
 
 /// (21): command - measured.
-Delta delta(const CollocationPoint& i) {
+Delta delta(const RunInstant& i) {
   return {i.now().command_cog - i.now().measured_cog,
           i.rate(&SimulationSample::command_cog) - i.rate(&SimulationSample::measured_cog)};
 }
 
-double K(const CollocationPoint& i) { return long_term_k(i.gains); }
-double D(const CollocationPoint& i) {
+double K(const RunInstant& i) { return long_term_k(i.gains); }
+double D(const RunInstant& i) {
   const double w = std::sqrt(kGravity / height(i.now()));
   return long_term_d(i.gains) / w;
 }
 
-Lines cog_numbers(const CollocationPoint& i) {
+Lines cog_numbers(const RunInstant& i) {
   const SimulationSample& s = i.now();
   Lines lines;
   for (int a = 0; a < 3; ++a)
@@ -44,7 +44,7 @@ Lines cog_numbers(const CollocationPoint& i) {
   return lines;
 }
 
-Lines pendulum_numbers(const CollocationPoint& i) {
+Lines pendulum_numbers(const RunInstant& i) {
   const SimulationSample& s = i.now();
   const double w2 = i.omega_squared();
   Lines lines;
@@ -61,7 +61,7 @@ Lines pendulum_numbers(const CollocationPoint& i) {
   return lines;
 }
 
-Lines vertical_numbers(const CollocationPoint& i) {
+Lines vertical_numbers(const RunInstant& i) {
   const SimulationSample& s = i.now();
   const double m = i.model.mass();
   return {"z: ref f_z / m - g = " + fixed(s.reference_fz, 1) + " N / " + fixed(m, 2) +
@@ -69,7 +69,7 @@ Lines vertical_numbers(const CollocationPoint& i) {
           fixed(s.measured_fz, 1) + " N gives " + fixed(s.measured_fz / m - kGravity, 3) + " m/s2"};
 }
 
-Lines omega_numbers(const CollocationPoint& i) {
+Lines omega_numbers(const RunInstant& i) {
   const SimulationSample& s = i.now();
   const double w2 = i.omega_squared();
   return {"w2 = " + fixed(s.reference_fz, 1) + " N / (" + fixed(i.model.mass(), 2) + " kg x " +
@@ -77,7 +77,7 @@ Lines omega_numbers(const CollocationPoint& i) {
           " /s: an error grows by the factor e in " + fixed(1e3 / std::sqrt(w2), 0) + " ms"};
 }
 
-Lines zmp_numbers(const CollocationPoint& i) {
+Lines zmp_numbers(const RunInstant& i) {
   const SimulationSample& s = i.now();
   const Delta d = delta(i);
   Lines lines = {"K = " + text::brief(K(i)) + ", D = " + fixed(1e3 * D(i), 0) + " ms"};
@@ -100,7 +100,7 @@ Lines zmp_numbers(const CollocationPoint& i) {
   return lines;
 }
 
-Lines force_numbers(const CollocationPoint& i) {
+Lines force_numbers(const RunInstant& i) {
   const SimulationSample& s = i.now();
   const Delta d = delta(i);
   const double m = i.model.mass(), w = std::sqrt(kGravity / height(s));
@@ -111,7 +111,7 @@ Lines force_numbers(const CollocationPoint& i) {
           " N; the log has " + fixed(s.reference_fz, 1) + " N"};
 }
 
-Lines delta_numbers(const CollocationPoint& i) {
+Lines delta_numbers(const RunInstant& i) {
   const Delta d = delta(i);
   Lines lines;
   for (int a = 0; a < 3; ++a)
@@ -121,7 +121,7 @@ Lines delta_numbers(const CollocationPoint& i) {
 }
 
 /// Joints that have met a limit by now, and the tasks that gave way to them.
-Lines limit_numbers(const CollocationPoint& i) {
+Lines limit_numbers(const RunInstant& i) {
   const double t = i.log.dt * (static_cast<double>(i.k) + 0.5);
   Lines lines;
   for (const SimulationEvent& event : i.log.events)
@@ -132,7 +132,7 @@ Lines limit_numbers(const CollocationPoint& i) {
   return lines;
 }
 
-Lines resolution_numbers(const CollocationPoint& i) {
+Lines resolution_numbers(const RunInstant& i) {
   const size_t n = i.log.samples.size();
   const size_t a = i.k > 0 ? i.k - 1 : 0, b = std::min(i.k + 1, n - 1);
   const double dt = i.log.dt * static_cast<double>(std::max<size_t>(1, b - a));
@@ -192,13 +192,13 @@ const char* kSynergy =
 
 }  // namespace
 
-Vector3d CollocationPoint::rate(Vector3d SimulationSample::*point) const {
+Vector3d RunInstant::rate(Vector3d SimulationSample::*point) const {
   const size_t a = k >= 2 ? k - 2 : 0, b = std::min(k + 2, log.samples.size() - 1);
   if (a == b) return Vector3d::Zero();
   return (log.samples[b].*point - log.samples[a].*point) / (log.dt * static_cast<double>(b - a));
 }
 
-double CollocationPoint::omega_squared() const {
+double RunInstant::omega_squared() const {
   return now().reference_fz / (model.mass() * height(now()));
 }
 
@@ -206,7 +206,7 @@ const std::vector<Equation>& equations() {
   static const std::vector<Equation> all = [] {
     std::vector<Equation> list;
     const auto add = [&](int first, int last, const char* formula, const char* words,
-                         Lines (*numbers)(const CollocationPoint&)) {
+                         Lines (*numbers)(const RunInstant&)) {
       for (int n = first; n <= last; ++n) list.push_back({n, formula, words, numbers});
     };
     add(1, 4, "0v_k = 0J_k dtheta,  0w_k = 0J_wk dtheta", kTree, nullptr);

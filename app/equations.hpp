@@ -10,7 +10,7 @@
 namespace ayumi::app {
 
 /// One instant of a run, as the equations need it.
-struct CollocationPoint {
+struct RunInstant {
   const SimulationLog& log;
   const RobotModel& model;
   DtadParams gains;
@@ -25,12 +25,12 @@ struct CollocationPoint {
 struct Equation {
   int number;
   std::string formula;  ///< in one line, corrected where the printed form cannot be followed
-  std::string words;    ///< what it says and what it is for
-  /// Lines with numbers; null where a run has none for it.
-  std::vector<std::string> (*numbers)(const CollocationPoint&);
+  std::string words;    ///< its meaning and its purpose
+  /// Lines with the numbers of a run; null where a log does not contain them.
+  std::vector<std::string> (*numbers)(const RunInstant&);
 };
 
-/// Equations of the paper that this program works with, by number.
+/// The equations of the paper that this program uses, by number.
 const std::vector<Equation>& equations();
 
 }  // namespace ayumi::app

@@ -11,8 +11,8 @@ namespace ayumi::app {
 
 namespace {
 
-constexpr size_t kJointsTold = 8, kJointsDrawn = 4, kSpeedsDrawn = 2;  // as many as fit a page
-constexpr double kTold = 0.005 * EIGEN_PI / 180;  // [rad] less would be written as 0.00 deg
+constexpr size_t kJointsListed = 8, kJointsDrawn = 4, kSpeedsDrawn = 2;  // as many as fit a page
+constexpr double kLeastMove = 0.005 * EIGEN_PI / 180;  // [rad] less would be written as 0.00 deg
 
 std::string millimetres(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 std::string seconds(double t) { return text::fixed(t, 3) + " s"; }
@@ -40,15 +40,15 @@ std::string margin_words(double margin) {
 std::string motion_words(const RobotModel& model, const MotionChange& change,
                          const ConsistencyReport& before, const ConsistencyReport& after) {
   std::string out;
-  size_t told = 0;
-  while (told < std::min(kJointsTold, change.joints.size()) &&
-         std::abs(change.joints[told].most) >= kTold)
-    ++told;
-  if (told == 0) out += "  no joint moved\n";
-  for (size_t i = 0; i < told; ++i)
+  size_t listed = 0;
+  while (listed < std::min(kJointsListed, change.joints.size()) &&
+         std::abs(change.joints[listed].most) >= kLeastMove)
+    ++listed;
+  if (listed == 0) out += "  no joint moved\n";
+  for (size_t i = 0; i < listed; ++i)
     out += (i == 0 ? "  moved " : "        ") + joint_words(model, change.joints[i]) + "\n";
-  const size_t rest = change.joints.size() - told;
-  if (told == kJointsTold && rest > 0)
+  const size_t rest = change.joints.size() - listed;
+  if (listed == kJointsListed && rest > 0)
     out += "        and " + std::to_string(rest) + " more joints by less\n";
   if (change.cog.size > 5e-5 || change.foot.size > 5e-5)
     out += "  " + largest("COG", change.cog, millimetres(change.cog.size)) + "; " +
@@ -64,8 +64,8 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
 }
 
 std::string cost_words(const WeightedChange& cost) {
-  constexpr double kTold = 1e-3;  // of the change; less does not show in three digits
-  const std::string missing = cost.safety > kTold * cost.change
+  constexpr double kLeastShare = 1e-3;  // of the change; less does not show in three digits
+  const std::string missing = cost.safety > kLeastShare * cost.change
                                   ? " and " + text::brief(cost.safety) + " for missing robustness"
                                   : "";
   return "  weighted change " + text::brief(cost.change) + missing;
@@ -116,7 +116,7 @@ void plot_motions(const RobotModel& model, const CommandSeries& before, const Co
   const Eigen::VectorXd& speed = model.limits(plot.profile).speed;
   double begin = change.compared, end = 0;
   for (const JointChange& joint : change.joints) {
-    if (std::abs(joint.most) < kTold) continue;
+    if (std::abs(joint.most) < kLeastMove) continue;
     begin = std::min(begin, joint.begin);
     end = std::max(end, joint.end);
     const int dof = model.find_dof(joint.joint);

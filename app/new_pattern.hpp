@@ -5,8 +5,8 @@
 
 namespace ayumi::app {
 
-/// Samples the motion, then writes it as `out`: a file that cannot be used is not made. Whether the
-/// check finds it consistent; what it finds is told.
+/// Samples the motion, then writes it as `out`: a file that cannot be used is not made. Returns
+/// whether the check finds the pattern consistent, and prints what it finds.
 bool write_new_pattern(const Context& context, const RobotModel& model, Pattern pattern,
                        const std::string& robot, const std::string& out,
                        const std::vector<std::string>& comments);

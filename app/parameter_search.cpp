@@ -93,8 +93,8 @@ class Search {
           const double middle = 0.5 * (good + bad);
           (passes(parameter, middle) ? good : bad) = middle;
         }
-        const double told = rounded_away(good, given);
-        passing = told != good && passes(parameter, told) ? told : good;
+        const double rounded = rounded_away(good, given);
+        passing = rounded != good && passes(parameter, rounded) ? rounded : good;
         return true;
       }
       tried = share;
@@ -138,8 +138,8 @@ class Search {
       for (const double share : {1.0, 0.5}) {
         back[name] = now[name] + share * (value - now[name]);
         if (whole(value)) back[name] = std::round(back[name]);
-        const double told = share < 1 ? rounded_away(back[name], value) : back[name];
-        back[name] = whole(value) ? back[name] : told;
+        const double rounded = share < 1 ? rounded_away(back[name], value) : back[name];
+        back[name] = whole(value) ? back[name] : rounded;
         if (back[name] == now[name] || excess(back) > 0) continue;
         now = back;
         break;
@@ -217,8 +217,9 @@ double passing_stretch(const Context& context, const Task& input, const CheckOpt
     const double middle = 0.5 * (low + high);
     (stretched_passes(context, input, check, windows, middle) ? high : low) = middle;
   }
-  const double told = std::ceil(100 * high - 1e-9) / 100;
-  return told == high || stretched_passes(context, input, check, windows, told) ? told : high;
+  const double rounded = std::ceil(100 * high - 1e-9) / 100;
+  return rounded == high || stretched_passes(context, input, check, windows, rounded) ? rounded
+                                                                                      : high;
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ struct PassingValue {
 /// Values that pass together, the other parameters as given.
 using PassingValues = std::vector<PassingValue>;
 
-/// Every value has been tried as it is told. First one parameter at a time: the nearest value, from
-/// nothing to four times the given one; whole numbers stay whole where one passes. Where no
+/// Every value has been tried as it is returned. First one parameter at a time: the nearest value,
+/// from nothing to four times the given one; whole numbers stay whole where one passes. Where no
 /// parameter does alone, several together, each step the one that leaves least wrong. Empty: none
 /// found. Values that do not even sample (a foot out of reach) do not pass. Parameters that are 0
 /// are left alone.
@@ -28,13 +28,13 @@ std::vector<PassingValues> passing_parameters(const Context& context, const std:
                                               const std::vector<std::string>& tolerances);
 
 struct PassingPace {
-  std::vector<std::pair<double, double>> windows;  ///< of the pattern as it is [s]
-  double factor = 0;  ///< these taking so much longer, it passes; 0: not found
-  double whole = 0;   ///< all of it taking so much longer; 0: not found
-  double tried = 0;   ///< up to this factor; 0: what is wrong is no matter of time
+  std::vector<std::pair<double, double>> windows;  ///< of the pattern before [s]
+  double factor = 0;  ///< on the time of the windows, with which the pattern passes; 0: not found
+  double whole = 0;   ///< on the time of the whole pattern; 0: not found
+  double tried = 0;   ///< largest factor tried; 0: more time does not help
 };
-/// Where what is wrong is a matter of time: the segments of the pattern around it, and all of it,
-/// taking longer, until the pattern passes as it is.
+/// How much slower the pattern passes without a repair, where its findings are a matter of time:
+/// the segments around the findings alone, and the whole pattern.
 PassingPace passing_pace(const Context& context, const Task& input, const ConsistencyReport& check,
                          const std::vector<std::string>& tolerances);
 

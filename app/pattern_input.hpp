@@ -32,8 +32,8 @@ Pattern read_given_pattern(const std::filesystem::path& file,
 Task load_pattern(const Context& context, const std::filesystem::path& file,
                   const PatternOptions& options, bool meshes = false);
 
-/// What a user calls a robot, for a pattern: a path in the working folder is told from a bundled
-/// name by its slash.
+/// The robot as a pattern names it. A path in the working folder gets a slash, which a bundled name
+/// does not have.
 std::string robot_as_written(const std::string& robot);
 
 /// Those of the task, with `overrides` ("kind=value") over the tolerances of its pattern.

@@ -8,7 +8,7 @@
 
 namespace ayumi::app {
 
-/// The way aside or the turn that the legs can do, where they cannot do what was asked for; ""
+/// The side step or the turn that the legs can do, where they cannot do what was asked for; ""
 /// where that is not what is wrong.
 std::string what_fits(const RobotModel& model, const WalkParameters& asked);
 

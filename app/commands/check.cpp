@@ -108,7 +108,8 @@ std::vector<fs::path> watched_files(const std::string& file, const Stamps& befor
   }
 }
 
-// A file that is being written may be half there: its mistake is told and the next change awaited.
+// A file that is being written may be incomplete: its error is printed, and the next change is
+// awaited.
 void check_once(Context& context, const CheckCommand& options, const std::string& file) {
   try {
     const Json json = check_one(context, options, file);

@@ -95,8 +95,8 @@ Numbers numbers_of(const Context& context, const Equation& e, const ExplainComma
   ControllerSpec spec;
   for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
     spec.gains.emplace_back(name, value);
-  const CollocationPoint instant{log, model, dtad_params(model, spec),
-                                 static_cast<size_t>(std::lround(place.t / log.dt))};
+  const RunInstant instant{log, model, dtad_params(model, spec),
+                           static_cast<size_t>(std::lround(place.t / log.dt))};
   Numbers result;
   if (e.numbers) result.lines = e.numbers(instant);
   result.where = place.run;

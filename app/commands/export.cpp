@@ -46,7 +46,7 @@ struct Source {
 
 // What the servos receive when a pattern is replayed as it is.
 ReferenceTrajectory open_loop_reference(const RobotModel& model, const CommandSeries& series) {
-  const Eigen::VectorXd lead = servo_lead(model);
+  const Eigen::VectorXd lead = velocity_lead(model);
   ReferenceTrajectory reference;
   reference.dt = series.dt;
   reference.joints = model.dof_names();

@@ -36,10 +36,10 @@ struct GainsCommand {
   std::optional<double> latency;
 };
 
-/// How far xi may be from the plan, and the impulse that brings it there, along one direction.
+/// How far the DCM may be from the plan, and the impulse that brings it there, along one direction.
 struct Reach {
   std::string support, direction;
-  double xi = 0, impulse = 0;  // [m], [N s]
+  double dcm = 0, impulse = 0;  // [m], [N s]
 };
 
 struct Design {
@@ -52,9 +52,9 @@ struct Design {
 };
 
 void read_wishes(GainsCommand& options) {
-  const int ways = !options.poles.empty() + !options.time_constants.empty() +
-                   (options.frequency != 0 || options.damping != 0);
-  if (ways > 1)
+  const int given = !options.poles.empty() + !options.time_constants.empty() +
+                    (options.frequency != 0 || options.damping != 0);
+  if (given > 1)
     fail(ErrorCode::usage,
          "the poles are given more than once; use only one of --poles, --time-constants, and "
          "--frequency with --damping");
@@ -175,7 +175,7 @@ std::string report(const RobotModel& model, const Design& d) {
     if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);
   out += "recoverable without a step (error of the DCM, and the impulse that causes it):\n";
   for (const Reach& r : d.reaches)
-    out += "  " + r.support + ", " + r.direction + ": " + text::fixed(1e3 * r.xi, 1) + " mm, " +
+    out += "  " + r.support + ", " + r.direction + ": " + text::fixed(1e3 * r.dcm, 1) + " mm, " +
            text::fixed(r.impulse, 2) + " N s\n";
   return out;
 }
@@ -187,7 +187,7 @@ Json json_of(const RobotModel& model, const Design& d) {
   for (const Reach& r : d.reaches)
     reach.push_back({{"support", r.support},
                      {"direction", r.direction},
-                     {"xi_m", r.xi},
+                     {"dcm_m", r.dcm},
                      {"impulse_Ns", r.impulse}});
   return {{"robot", model.name()},
           {"omega_1_s", d.omega},

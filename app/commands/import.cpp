@@ -31,8 +31,8 @@ Json json_of(const FootContact& contact) {
           {"yaw_rad", place.rpy.z()}};
 }
 
-void tell(const Context& context, const ImportCommand& options, const ImportedMotion& imported,
-          const GroundedMotion& motion) {
+void print_import(const Context& context, const ImportCommand& options,
+                  const ImportedMotion& imported, const GroundedMotion& motion) {
   const double duration = motion.pattern.duration();
   std::string words = options.out + ": " + text::fixed(duration, 3) + " s from " +
                       std::to_string(imported.rows) + " rows (" + imported.format + "), " +
@@ -66,7 +66,7 @@ void import_motion(const Context& context, const ImportCommand& options) {
   motion.pattern.robot = robot_as_written(options.robot);
   motion.pattern.file = "imported";  // relative names hold from the working folder
   write_pattern_and_table(options.out, motion.pattern, imported.filled, imported.caution);
-  tell(context, options, imported, motion);
+  print_import(context, options, imported, motion);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ void settle(PreviewOptions& options, const Context& context) {
     fail(ErrorCode::usage, "give either --strip or --exposures, not both");
 }
 
-/// Snapshots between --from and --to; without either, those that tell most.
+/// Snapshots between --from and --to; without either, at the most informative times.
 StripOptions strip_options(const PreviewOptions& options, const SimulationLog& log) {
   StripOptions strip;
   strip.clip = options.clip;

@@ -179,7 +179,7 @@ Task load(const Context& context, const RepairCommand& options) {
       values = passing_parameters(context, options.pattern, options.input, options.tolerances);
     } catch (const Interrupted&) {
       throw;
-    } catch (const Error&) {  // the file itself is at fault, which the first error tells
+    } catch (const Error&) {  // the file itself is at fault, as the first error says
     }
     if (values.empty()) throw;
     fail(error.code(), std::string(error.what()) + "\n" + in_words(values));

@@ -74,7 +74,6 @@ class MainJob {
   void check(Task& input);
   void repair_pattern(Task& input, bool goals_reachable);
   void simulate(const Task& input);
-  void note_what_is_against_a_table();
   void export_tables(const Task& input);
   void write_hoap(const Task& input, const SimulationLog& log);
   void draw(const RobotModel& model, const std::string& title);
@@ -173,19 +172,6 @@ void MainJob::simulate(const Task& input) {
   folder_.sections.emplace_back("undisturbed", simulation_json(undisturbed));
 }
 
-void MainJob::note_what_is_against_a_table() {
-  if (!inconsistent_.empty()) folder_.unfit.push_back(inconsistent_);
-  const bool disturbed = &table_log() != &judged_log();
-  for (const SimulationLog* log : {&judged_log(), &table_log()}) {
-    const std::string words = unfit_words(*log);
-    if (words.empty()) continue;
-    const std::string which =
-        log == &judged_log() ? "under its disturbances" : "without disturbances";
-    folder_.unfit.push_back(disturbed ? which + " " + words : words);
-    if (!disturbed) return;
-  }
-}
-
 void MainJob::export_tables(const Task& input) {
   folder_.reference = extract_reference(input.robot, table_log());
   folder_.reference_caution = table_caution(input, table_log(), folder_.unfit);
@@ -282,7 +268,8 @@ bool MainJob::run(const std::string& file) {
   output_.emplace(target_, context_.force);
   check(input);
   simulate(input);
-  note_what_is_against_a_table();
+  const bool disturbed = &table_log() != &judged_log();
+  folder_.unfit = unfit_reasons(inconsistent_, judged_log(), disturbed ? &table_log() : nullptr);
   export_tables(input);
   if (options_.pictures) {
     draw(input.robot, input.pattern.name);

@@ -29,8 +29,7 @@ RunFolder run_of(const Task& input, const SimulationLog& log) {
   run.sections.emplace_back("sampled_from", nlohmann::ordered_json(input.series.origin).dump());
   run.sections.emplace_back("check", check_json(judged.report));
   run.sections.emplace_back("simulate", simulation_json(log));
-  for (const std::string& reason : {judged.reason(), unfit_words(log)})
-    if (!reason.empty()) run.unfit.push_back(reason);
+  run.unfit = unfit_reasons(judged, log);
   const bool pushed = !log.scenario.empty();
   (pushed ? run.pushed : run.reference) = extract_reference(input.robot, log);
   (pushed ? run.pushed_caution : run.reference_caution) = table_caution(input, log, run.unfit);

@@ -76,7 +76,8 @@ struct RobotMeshes {
   Materials materials;
 };
 
-/// One OBJ per link and one shared MTL; tells the triangles of each on stdout. The exit status.
+/// Writes one OBJ per link and one shared MTL, and prints the number of triangles of each. Returns
+/// the exit status.
 int write_meshes(int argc, char** argv, const RobotMeshes& robot);
 
 }  // namespace ayumi::tools

@@ -10,7 +10,7 @@ int main(int argc, char** argv) try {
             << (judgement.good() ? "consistent" : judgement.reason()) << "\n";
 
   ayumi::SimulateOptions options = ayumi::simulate_options(task);
-  options.scenario = {{.at = 2.0, .duration = 0.02, .magnitude = 0.8}};
+  options.scenario = {{.at = 2.0, .duration = 0.02, .what = ayumi::Push{.magnitude = 0.8}}};
   const ayumi::SimulationLog pushed = ayumi::simulate(task, options);
   std::cout << "pushed forwards with 0.8 N s: " << ayumi::name_of(pushed.result.outcome) << "\n";
   if (!ayumi::unfit_reasons(judgement, pushed).empty()) return 1;

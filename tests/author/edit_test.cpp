@@ -7,6 +7,7 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
 
 namespace ayumi::test {
@@ -22,16 +23,12 @@ Pattern rich() {
   key.joints = {{"l_elbow", -0.4}, {"r_shoulder_twist", 0.2}};
   key.torso = Eigen::Vector3d(0.02, 0.03, -0.01);
   key.weights = {{"l_knee", 2.0}};
-  Disturbance push;
-  push.at = 1.0;
-  push.duration = 0.02;
-  push.direction = Eigen::Vector3d(0.6, 0.8, 0);
-  push.magnitude = 0.5;
-  p.scenario.push_back(push);
-  push.type = DisturbanceType::torque;
+  Push push{.magnitude = 0.5, .direction = {0.6, 0.8, 0}};
+  p.scenario.push_back({.at = 1.0, .duration = 0.02, .what = push});
+  push.kind = PushKind::torque;
   push.on = hoap1().links().back().name;
   push.point = Eigen::Vector3d(0.01, 0.02, 0.03);
-  p.scenario.push_back(push);
+  p.scenario.push_back({.at = 1.0, .duration = 0.02, .what = push});
   p.world.slope = Eigen::Vector2d(0.02, 0.01);
   CorrectionTrack track;
   track.spacing = 0.5;
@@ -86,6 +83,45 @@ TEST(Mirror, MotionIsTheMirrorImage) {
     for (int dof = 0; dof < hoap1().dof_count(); ++dof)
       EXPECT_NEAR(map.sign[dof] * s.state.theta[dof], m.state.theta[map.dof[dof]], 1e-3);
   }
+}
+
+// The mirrored pattern under its mirrored ground and disturbances runs as the mirror shows the run.
+TEST(Mirror, TheRunIsTheMirrorImage) {
+  Pattern p = stand_pattern(hoap1(), 1.5);
+  p.robot = "hoap1";
+  p.world.motions = {{0.2, 0.6, {.tilt = {0.01, 0.005}, .shift = {0, 0.004, 0}}}};
+  p.world.patches = {{{-0.2, 0}, {0.2, 0.2}, 0.4}};
+  p.world.blocks = {{.low = {-0.06, 0.02}, .high = {-0.02, 0.08}, .height = 0.0005}};
+  const auto lasting = [&](const auto& what) { p.scenario.push_back({0.1, 1.0, what}); };
+  lasting(Push{.kind = PushKind::force,
+               .magnitude = 0.5,
+               .on = "l_forearm",
+               .point = {0, 0.01, -0.03},
+               .direction = {0.6, 0.8, 0}});
+  lasting(Payload{.on = "r_forearm", .point = {0, 0.01, 0}, .mass = 0.1});
+  lasting(FloorPath{.tilt = {0.01, 0}, .shift = {0.002, -0.003, 0}});
+  lasting(Bump{.foot = Side::left, .place = {0.02, 0.01}, .height = 0.001});
+  lasting(SensorBias{.tilt = {0.01, 0}, .gyro = {0.02, 0, 0.01}, .load = 0.1});
+  lasting(EncoderOffset{.joint = "l_ankle_roll", .offset = 0.01});
+  lasting(JointFriction{.joint = "l_knee", .coulomb = 0.1, .viscous = 0.01});
+  lasting(GainLoss{.joint = "r_hip_roll", .share = 0.3});
+  const auto run = [](const Pattern& pattern) {
+    SimulateOptions options;
+    options.controller.type = ControllerKind::dtad;
+    options.world = pattern.world;
+    options.scenario = pattern.scenario;
+    return simulate(hoap1(), sample(hoap1(), pattern), options);
+  };
+  const SimulationLog a = run(p), b = run(mirrored(hoap1(), p));
+  ASSERT_EQ(a.samples.size(), b.samples.size());
+  double aside = 0;
+  for (size_t k = 0; k < a.samples.size(); k += 10) {
+    const Eigen::Vector3d &here = a.samples[k].cog, &there = b.samples[k].cog;
+    aside = std::max(aside, std::abs(here.y() - a.samples[0].cog.y()));
+    ASSERT_LT((here - Eigen::Vector3d(there.x(), -there.y(), there.z())).norm(), 1e-4) << k;
+  }
+  EXPECT_GT(aside, 0.003) << "the disturbances move the COG aside";
+  EXPECT_EQ(pattern_text(mirrored(hoap1(), mirrored(hoap1(), p))), pattern_text(p));
 }
 
 TEST(Mirror, MapOfHoap1) {

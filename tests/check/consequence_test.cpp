@@ -29,8 +29,8 @@ TEST(Consequence, OfASlipThatBeginsAndEndsAtOnce) {
   for (const Vector3d& way :
        {Vector3d(0.005, 0, 0), Vector3d(0, 0.005, 0), Vector3d(0.0035, -0.0035, 0)}) {
     const Errors e = errors_of(slipping(way, [&](double t) { return t > from && t < to; }));
-    EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.told;
-    ASSERT_EQ(e.all.size(), 1u) << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.printed;
+    ASSERT_EQ(e.all.size(), 1u) << e.printed;
     EXPECT_EQ(e.all[0].where, "left");
     EXPECT_NEAR(e.all[0].worst, 0.005, 1e-4);
   }
@@ -47,8 +47,8 @@ TEST(Consequence, OfAnArmHeldInTheWayAreItsJumps) {
       p.table->theta(static_cast<Eigen::Index>(k), hoap1().find_dof(joint)) = degrees * kDegree;
   });
   Errors e = errors_of(p);
-  EXPECT_EQ(e.kinds, (Kinds{"self_collision"})) << e.told;
-  ASSERT_EQ(e.all.size(), 1u) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"self_collision"})) << e.printed;
+  ASSERT_EQ(e.all.size(), 1u) << e.printed;
   EXPECT_GT(e.all[0].begin, 3.29) << "the arm jumps at 3.25 s";
   // Of a jump of the other arm it is not the cause.
   for_rows(*p.table, [&](double t, size_t k) {
@@ -56,7 +56,7 @@ TEST(Consequence, OfAnArmHeldInTheWayAreItsJumps) {
       p.table->theta(static_cast<Eigen::Index>(k), hoap1().find_dof("r_elbow")) -= 0.5;
   });
   e = errors_of(p);
-  EXPECT_TRUE(e.kinds.count("self_collision") && e.kinds.count("joint_speed")) << e.told;
+  EXPECT_TRUE(e.kinds.count("self_collision") && e.kinds.count("joint_speed")) << e.printed;
   for (const Finding& f : e.all)
     EXPECT_TRUE(f.kind != FindingKind::joint_speed || f.where == "r_elbow");
 }
@@ -77,9 +77,9 @@ TEST(Consequence, OfASlipThatLastsLongerThanTheFootStands) {
       move_body(hoap1(), *p.table,
                 [&](double t, BasePose&, auto& feet) { feet[0].translation().x() += off(t); });
     const Errors e = errors_of(p);
-    EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.told;
-    EXPECT_EQ(e.all.size(), base ? 2u : 1u) << e.told;
-    for (const Finding& f : e.all) EXPECT_NEAR(f.begin, from, 0.002) << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.printed;
+    EXPECT_EQ(e.all.size(), base ? 2u : 1u) << e.printed;
+    for (const Finding& f : e.all) EXPECT_NEAR(f.begin, from, 0.002) << e.printed;
   }
 }
 
@@ -91,8 +91,8 @@ TEST(Consequence, OfASlipAreForcesAsLongAsTheSoleIsOff) {
     const double s = (t - at) / half;
     return std::abs(s) < 1 ? std::exp(-4.5 * s * s) : 0;
   }));
-  EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.told;
-  EXPECT_NEAR(e.all[0].at, at, 0.002) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.printed;
+  EXPECT_NEAR(e.all[0].at, at, 0.002) << e.printed;
 }
 
 // Feet that turn pass each other closely: what a slip closes of that gap is the slip's doing.
@@ -101,8 +101,9 @@ TEST(Consequence, OfASlipAreFeetThatTouch) {
       walk_pattern(hoap1(), {.steps = 3, .stride = 0.02, .period = 0.8, .turn = 15 * kDegree}));
   slip_foot(hoap1(), *p.table, Side::left, {0.004, -0.004, 0}, middle_of(p, 1) + 0.1, 0.4);
   const Errors e = errors_of(p);
-  EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.told;
-  EXPECT_NE(e.told.find("warning self_collision r_foot - l_foot"), std::string::npos) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.printed;
+  EXPECT_NE(e.printed.find("warning self_collision r_foot - l_foot"), std::string::npos)
+      << e.printed;
 }
 
 // A hip and an ankle that turn against each other put the sole 5 mm aside and lift it on the way:
@@ -113,9 +114,9 @@ TEST(Consequence, OfASlipIsThatTheSoleRises) {
   move_joint(hoap1(), *p.table, "l_hip_pitch", 0.03, at, width);
   move_joint(hoap1(), *p.table, "l_ankle_pitch", -0.03, at, width);
   const Errors e = errors_of(p);
-  EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.told;
-  ASSERT_EQ(e.all.size(), 1u) << e.told;
-  EXPECT_NEAR(e.all[0].at, at, 0.02) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"foot_slip"})) << e.printed;
+  ASSERT_EQ(e.all.size(), 1u) << e.printed;
+  EXPECT_NEAR(e.all[0].at, at, 0.02) << e.printed;
   EXPECT_GT(e.all[0].worst, 0.005);
 }
 
@@ -127,23 +128,23 @@ TEST(Consequence, OfAnAngleThatIsWrongForAWhile) {
   const double now = legs.table->theta(std::lround(at / legs.table->dt), column);
   move_joint(hoap1(), *legs.table, "r_hip_roll", 25 * kDegree - now, at, 0.8);
   Errors e = errors_of(legs);
-  EXPECT_EQ(e.kinds, (Kinds{"joint_position"})) << e.told;
-  EXPECT_NE(e.told.find("warning self_collision"), std::string::npos) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"joint_position"})) << e.printed;
+  EXPECT_NE(e.printed.find("warning self_collision"), std::string::npos) << e.printed;
   // Offset at once while it swings: beyond the limit only for a part of that time.
   Pattern hard = walk();
   for_rows(*hard.table, [&](double t, size_t k) {
     if (std::abs(t - at) < 0.25) hard.table->theta(static_cast<Eigen::Index>(k), column) -= 0.50;
   });
   e = errors_of(hard);
-  EXPECT_EQ(e.kinds, (Kinds{"joint_position"})) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"joint_position"})) << e.printed;
   // What does not hang on that leg is a fact of its own.
   for (const auto& [joint, degrees] : std::vector<std::pair<std::string, double>>{
            {"l_shoulder_pitch", 42}, {"l_shoulder_twist", 85}, {"l_elbow", -64}})
     move_joint(hoap1(), *legs.table, joint, degrees * kDegree, at, 1.5);
   move_joint(hoap1(), *legs.table, "l_shoulder_roll", -10 * kDegree, at, 1.5);
   e = errors_of(legs);
-  EXPECT_TRUE(e.kinds.count("joint_position")) << e.told;
-  EXPECT_TRUE(e.kinds.count("self_collision")) << e.told;
+  EXPECT_TRUE(e.kinds.count("joint_position")) << e.printed;
+  EXPECT_TRUE(e.kinds.count("self_collision")) << e.printed;
 }
 
 // The trunk sways out, and the ZMP commanded for it stays where it was.
@@ -153,8 +154,8 @@ TEST(Consequence, OfAMotionWhoseZmpLeavesTheSupportIsItsDistance) {
   sway_base(hoap1(), *p.table, {0, 0.02, 0}, at, 0.5);
   p.table->cog.clear();
   const Errors e = errors_of(p);
-  EXPECT_EQ(e.kinds, (Kinds{"support_margin"})) << e.told;
-  EXPECT_NE(e.told.find("warning zmp_residual"), std::string::npos) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"support_margin"})) << e.printed;
+  EXPECT_NE(e.printed.find("warning zmp_residual"), std::string::npos) << e.printed;
 }
 
 // A COG key that is wrong while a foot slips: farther off than the sole, whichever way it slips.
@@ -168,10 +169,10 @@ TEST(Consequence, NeverOfAFaultThatIsLarger) {
       });
     else
       slip_foot(hoap1(), *p.table, Side::left, {0.005, 0, 0}, at, 0.4);
-    EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip"})) << errors_of(p).told;
+    EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip"})) << errors_of(p).printed;
     for_rows(*p.table,
              [&](double t, size_t k) { p.table->cog[k].x() += 0.015 * bump(t, at, 0.4); });
-    EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip", "cog_residual"})) << errors_of(p).told;
+    EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip", "cog_residual"})) << errors_of(p).printed;
   }
   // A trunk that turns about the ankle takes the COG farther than the sole: that is one fault.
   Pattern p = walk();
@@ -180,8 +181,8 @@ TEST(Consequence, NeverOfAFaultThatIsLarger) {
     base.attitude = Eigen::AngleAxisd(0.08 * bump(t, at, 0.4), Vector3d::UnitX()) * base.attitude;
   });
   const Errors e = errors_of(p);
-  EXPECT_FALSE(e.kinds.count("cog_residual")) << e.told;
-  EXPECT_NE(e.told.find("warning cog_residual"), std::string::npos) << e.told;
+  EXPECT_FALSE(e.kinds.count("cog_residual")) << e.printed;
+  EXPECT_NE(e.printed.find("warning cog_residual"), std::string::npos) << e.printed;
 }
 
 TEST(Consequence, NeverOfAFaultElsewhere) {
@@ -193,7 +194,7 @@ TEST(Consequence, NeverOfAFaultElsewhere) {
     p.table->fz[k] *= 1 + 0.1 * bump(t, 0.4, 0.4);
   });
   const Errors e = errors_of(p);
-  EXPECT_EQ(e.kinds, (Kinds{"foot_slip", "support_margin", "fz_residual"})) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"foot_slip", "support_margin", "fz_residual"})) << e.printed;
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/demand/contact_plan.hpp"
+#include "tests/support/check_report.hpp"
+#include "tests/support/faults.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/walk.hpp"
 
@@ -20,34 +22,12 @@ const CommandSeries& good_walk() {
   return series;
 }
 
-std::string print(const ConsistencyReport& r) {
-  std::ostringstream out;
-  for (const Finding& f : r.findings)
-    out << name_of(f.severity) << " " << name_of(f.kind) << " " << f.where << " " << f.begin << ".."
-        << f.end << " at " << f.at << " worst " << f.worst << " limit " << f.limit << " " << f.unit
-        << ": " << f.hint << "\n";
-  return out.str();
-}
-
-std::set<std::string> error_kinds(const ConsistencyReport& r) {
-  std::set<std::string> kinds;
-  for (const Finding& f : r.findings)
-    if (f.severity == Severity::error) kinds.insert(name_of(f.kind));
-  return kinds;
-}
-
 const Finding& find(const ConsistencyReport& r, const std::string& kind) {
   for (const Finding& f : r.findings)
     if (name_of(f.kind) == kind) return f;
   static const Finding none;
   ADD_FAILURE() << "no finding " << kind << "\n" << print(r);
   return none;
-}
-
-// One smooth hill of height 1 around `center`, `width` wide, at rest at its feet.
-double hill(double t, double center, double width) {
-  const double s = (t - center) / width;
-  return std::abs(s) < 0.5 ? std::pow(std::cos(M_PI * s), 4) : 0;
 }
 
 // The middle of the n-th single support of a walk.
@@ -58,7 +38,7 @@ double middle_of_step(int n, const WalkShape& w = {}) {
 void bend(CommandSeries& series, const char* joint, double center, double width, double height) {
   const int dof = limited_biped().find_dof(joint);
   for (size_t k = 0; k < series.samples.size(); ++k)
-    series.samples[k].state.theta[dof] += height * hill(k * series.dt, center, width);
+    series.samples[k].state.theta[dof] += height * bump(k * series.dt, center, width);
   complete_series(limited_biped(), series);
 }
 
@@ -78,7 +58,7 @@ TEST(Consistency, GoodMotionsHaveNoFindingAboveInfo) {
 TEST(Consistency, CogKeyMoved) {
   CommandSeries series = good_walk();
   for (size_t k = 0; k < series.samples.size(); ++k)
-    series.samples[k].cog.x() += 0.015 * hill(k * series.dt, 2.5, 0.6);
+    series.samples[k].cog.x() += 0.015 * bump(k * series.dt, 2.5, 0.6);
   const ConsistencyReport r = check_consistency(limited_biped(), series);
   EXPECT_EQ(error_kinds(r), std::set<std::string>{"cog_residual"}) << print(r);
   const Finding& f = find(r, "cog_residual");
@@ -92,7 +72,7 @@ TEST(Consistency, ZmpTrackOutside) {
   CommandSeries series = good_walk();
   const double at = middle_of_step(1);  // on the left foot; its outer edge is 30 mm away
   for (size_t k = 0; k < series.samples.size(); ++k)
-    series.samples[k].zmp.y() -= 0.050 * hill(k * series.dt, at, 0.3);
+    series.samples[k].zmp.y() -= 0.050 * bump(k * series.dt, at, 0.3);
   const ConsistencyReport r = check_consistency(limited_biped(), series);
   EXPECT_EQ(error_kinds(r), std::set<std::string>{"support_margin"}) << print(r);
   EXPECT_NEAR(find(r, "support_margin").at, at, 2 * series.dt);
@@ -163,7 +143,7 @@ TEST(Consistency, StanceFootSlips) {
   for (size_t k = 0; k < series.samples.size(); ++k) {
     CommandSample& s = series.samples[k];
     auto feet = s.feet;
-    feet[0].translation().x() += 0.005 * hill(k * series.dt, at, 0.4);
+    feet[0].translation().x() += 0.005 * bump(k * series.dt, at, 0.4);
     place_legs(limited_biped(), feet, s.state, data);
   }
   complete_series(limited_biped(), series);
@@ -216,7 +196,7 @@ TEST(Consistency, MotionZmpLeavesTheSupport) {
   RobotData data(limited_biped());
   for (size_t k = 0; k < series.samples.size(); ++k) {
     CommandSample& s = series.samples[k];
-    s.state.base.position.x() -= 0.012 * hill(k * series.dt, at, 0.5);
+    s.state.base.position.x() -= 0.012 * bump(k * series.dt, at, 0.5);
     place_legs(limited_biped(), s.feet, s.state, data);
   }
   complete_series(limited_biped(), series);

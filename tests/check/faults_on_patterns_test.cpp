@@ -10,6 +10,7 @@
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "tests/support/check_report.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
 
@@ -17,8 +18,6 @@ namespace ayumi::test {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kDegree = M_PI / 180;
 
 struct Motion {
   std::string name;
@@ -63,8 +62,6 @@ const std::vector<Motion>& motions() {
       motion_of("sway", sway_pattern(hoap1(), sway_defaults(hoap1())))};
   return all;
 }
-
-ConsistencyReport report_of(const Pattern& pattern) { return test::report_of(hoap1(), pattern); }
 
 // The errors, all of one kind of those named; the first at `at` where one is given.
 void expect_alone(const Motion& motion, const Pattern& pattern, const std::set<std::string>& kinds,

@@ -22,8 +22,8 @@ TEST(Consequence, OfAFlightThatIsNotFreeIsOneFinding) {
   Pattern leg = hops();
   move_joint(hoap1(), *leg.table, "r_hip_pitch", 0.15, at, to - from);
   Errors e = errors_of(leg);
-  EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << e.told;
-  EXPECT_NE(e.told.find("warning angular_momentum"), std::string::npos) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << e.printed;
+  EXPECT_NE(e.printed.find("warning angular_momentum"), std::string::npos) << e.printed;
   Pattern tilt = hops();
   for_rows(*tilt.table, [&](double t, size_t k) {
     BasePose& base = tilt.table->base[k];
@@ -34,8 +34,8 @@ TEST(Consequence, OfAFlightThatIsNotFreeIsOneFinding) {
     base.position = cog + turn * (base.position - cog);
   });
   e = errors_of(tilt);
-  EXPECT_EQ(e.kinds, (Kinds{"angular_momentum"})) << e.told;
-  EXPECT_NE(e.told.find("warning joint_torque"), std::string::npos) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"angular_momentum"})) << e.printed;
+  EXPECT_NE(e.printed.find("warning joint_torque"), std::string::npos) << e.printed;
 }
 
 // Without the force that no ground gives, the motors have nothing to do for it.
@@ -48,12 +48,12 @@ TEST(Consequence, OfAFlightThatIsNotFreeAreTorques) {
     Pattern p = hops();
     for_rows(*p.table, [&](double t, size_t k) { p.table->base[k].position += kink(t) * way; });
     Errors e = errors_of(p);
-    EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << e.told;
-    EXPECT_NEAR(e.all[0].at, at, 0.002) << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << e.printed;
+    EXPECT_NEAR(e.all[0].at, at, 0.002) << e.printed;
     // An arm that is thrown in the next flight is another fault.
     move_joint(hoap1(), *p.table, "l_shoulder_pitch", 0.6, middle_of(p, 3), 0.05);
     e = errors_of(p);
-    EXPECT_TRUE(e.kinds.count("ballistic") && e.all.size() > 1) << e.told;
+    EXPECT_TRUE(e.kinds.count("ballistic") && e.all.size() > 1) << e.printed;
   }
 }
 
@@ -87,7 +87,7 @@ TEST(Consequence, OfAFlightThatIsTooLowAreItsEdges) {
       if (t >= from && t < to) z = ground + scale * (z - ground);
     });
     const Errors e = errors_of(p);
-    EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << scale << "\n" << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << scale << "\n" << e.printed;
   }
 }
 
@@ -105,8 +105,8 @@ TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
           if (command) p.table->cog[k] += way;
         });
         const Errors e = errors_of(p);
-        EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << way.transpose() << "\n" << e.told;
-        ASSERT_EQ(e.all.size(), 1u) << e.told;
+        EXPECT_EQ(e.kinds, (Kinds{"ballistic"})) << way.transpose() << "\n" << e.printed;
+        ASSERT_EQ(e.all.size(), 1u) << e.printed;
         EXPECT_EQ(e.all[0].where, way.z() != 0 ? "z" : way.x() != 0 ? "x" : "y");
         EXPECT_TRUE(std::abs(e.all[0].at - from) < 0.0021 || std::abs(e.all[0].at - to) < 0.0021);
         EXPECT_NE(e.all[0].hint.find("leaps by"), std::string::npos) << e.all[0].hint;
@@ -121,7 +121,7 @@ TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
     p.table->base[k].position.x() += 0.005;
     p.table->cog[k].x() += 0.005;
   });
-  EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip"})) << errors_of(p).told;
+  EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip"})) << errors_of(p).printed;
 }
 
 // A commanded COG that is bent in the flight only is a flight that is not free; beyond it, a key.
@@ -133,7 +133,7 @@ TEST(Consequence, OfACommandedCogDependsOnWhereItEnds) {
       p.table->cog[k].x() += 0.015 * std::max(0.0, 1 - std::abs(t - at) / (0.5 * share * length));
     });
     const Errors e = errors_of(p);
-    EXPECT_EQ(e.kinds, (Kinds{share < 1 ? "ballistic" : "cog_residual"})) << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{share < 1 ? "ballistic" : "cog_residual"})) << e.printed;
   }
 }
 
@@ -144,8 +144,8 @@ TEST(Consequence, OfAPhaseThatHasMoved) {
     p.phases[phase - 1].until -= 0.060;
     p.phases[phase].until -= 0.060;
     const Errors e = errors_of(p);
-    EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << phase << "\n" << e.told;
-    EXPECT_EQ(e.all.size(), 2u) << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << phase << "\n" << e.printed;
+    EXPECT_EQ(e.all.size(), 2u) << e.printed;
   }
   // The next flight, not free.
   Pattern p = hops();
@@ -155,7 +155,7 @@ TEST(Consequence, OfAPhaseThatHasMoved) {
   p.phases[0].until -= 0.060;
   p.phases[1].until -= 0.060;
   const Errors e = errors_of(p);
-  EXPECT_EQ(e.kinds, (Kinds{"foot_float", "ballistic"})) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"foot_float", "ballistic"})) << e.printed;
 }
 
 // The foot that is let go stands still meanwhile: silent in forces where the ZMP is already over
@@ -166,9 +166,9 @@ TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
     ASSERT_EQ(p.phases[both].support, Support::both);
     const double lifts = p.phases[both].until -= 0.060;
     Errors e = errors_of(p);
-    EXPECT_EQ(e.kinds, (Kinds{"contact_ends_early"})) << both << "\n" << e.told;
-    ASSERT_EQ(e.all.size(), 1u) << e.told;
-    EXPECT_EQ(e.all[0].where, name_of(p.phases[both + 1].swing->foot)) << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{"contact_ends_early"})) << both << "\n" << e.printed;
+    ASSERT_EQ(e.all.size(), 1u) << e.printed;
+    EXPECT_EQ(e.all[0].where, name_of(p.phases[both + 1].swing->foot)) << e.printed;
     EXPECT_NEAR(e.all[0].at, lifts, 0.002);
     EXPECT_EQ(e.all[0].unit, "s");
     EXPECT_NEAR(e.all[0].worst, 0.060, 0.005);
@@ -176,21 +176,21 @@ TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
     // Its swing moved as a whole: told where the foot lands.
     p.phases[both + 1].until -= 0.060;
     e = errors_of(p);
-    EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << both << "\n" << e.told;
-    ASSERT_EQ(e.all.size(), 1u) << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << both << "\n" << e.printed;
+    ASSERT_EQ(e.all.size(), 1u) << e.printed;
     EXPECT_NEAR(e.all[0].at, p.phases[both + 1].until, 0.002);
     // Another fault at that time stays one.
     const double at = lifts + 0.03;
     for_rows(*p.table,
              [&](double t, size_t k) { p.table->cog[k].x() += 0.015 * bump(t, at, 0.3); });
-    EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_float", "cog_residual"})) << errors_of(p).told;
+    EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_float", "cog_residual"})) << errors_of(p).printed;
   }
   // Both feet, before a flight: what pushes there is no flight that is not free.
   Pattern p = hops();
   p.phases[0].until -= 0.060;
   const Errors e = errors_of(p);
-  EXPECT_EQ(e.kinds, (Kinds{"contact_ends_early"})) << e.told;
-  EXPECT_EQ(e.all.size(), 2u) << e.told;
+  EXPECT_EQ(e.kinds, (Kinds{"contact_ends_early"})) << e.printed;
+  EXPECT_EQ(e.all.size(), 2u) << e.printed;
 }
 
 // A foot that stays on the ground without bearing, the whole phase long, is no matter of timing.
@@ -207,7 +207,7 @@ TEST(Consequence, OfAFootThatOnlyBearsNothingIsNone) {
   ASSERT_GT(to, from + 0.1);
   const double end = p.phases.back().until;
   p.phases = {{from, Support::both, {}}, {to, Support::left, {}}, {end, Support::both, {}}};
-  EXPECT_TRUE(errors_of(p).kinds.empty()) << errors_of(p).told;
+  EXPECT_TRUE(errors_of(p).kinds.empty()) << errors_of(p).printed;
 }
 
 TEST(Consequence, OfAPhaseThatHasMovedOnStairs) {
@@ -223,7 +223,7 @@ TEST(Consequence, OfAPhaseThatHasMovedOnStairs) {
     p.phases[phase - 1].until -= 0.060;
     p.phases[phase].until -= 0.060;
     const Errors e = errors_of(p);
-    EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << phase << "\n" << e.told;
+    EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << phase << "\n" << e.printed;
   }
 }
 
@@ -243,9 +243,9 @@ TEST(Consequence, OfAFlightWithFootKeysThatEndsEarly) {
     p.keyframes.back().feet = key.feet;
   }
   ASSERT_FALSE(p.keyframes.empty());
-  ASSERT_TRUE(errors_of(p).kinds.empty()) << errors_of(p).told;
+  ASSERT_TRUE(errors_of(p).kinds.empty()) << errors_of(p).printed;
   p.phases[1].until -= 0.060;
-  EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_float"})) << errors_of(p).told;
+  EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_float"})) << errors_of(p).printed;
 }
 
 }  // namespace

@@ -2,17 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
+#include "tests/support/degree.hpp"
 
 namespace ayumi {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+using test::kDegree;
 
 class Hoap1Clearance : public testing::Test {
  protected:

@@ -13,6 +13,8 @@
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/check_report.hpp"
+#include "tests/support/degree.hpp"
+#include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -20,8 +22,6 @@ namespace ayumi::test {
 namespace {
 
 using Kinds = std::set<std::string>;
-
-constexpr double kDegree = M_PI / 180;
 
 // Through files, as a user would have it.
 Pattern bake(const Pattern& pattern) {
@@ -41,35 +41,12 @@ const Pattern& walk() {
   return pattern;
 }
 
-ConsistencyReport report_of(const Pattern& pattern) { return test::report_of(hoap1(), pattern); }
-
-std::string print(const ConsistencyReport& r) {
-  std::ostringstream out;
-  for (const Finding& f : r.findings)
-    out << name_of(f.severity) << " " << name_of(f.kind) << " " << f.where << " " << f.begin << ".."
-        << f.end << " at " << f.at << " worst " << f.worst << " <- " << f.follows_from << "\n";
-  return out.str();
-}
-
-Kinds error_kinds(const ConsistencyReport& r) {
-  Kinds kinds;
-  for (const Finding& f : r.findings)
-    if (f.severity == Severity::error) kinds.insert(name_of(f.kind));
-  return kinds;
-}
-
 const Finding& first(const ConsistencyReport& r, const std::string& kind) {
   for (const Finding& f : r.findings)
     if (name_of(f.kind) == kind && f.severity == Severity::error) return f;
   static const Finding none;
   ADD_FAILURE() << "no error " << kind << "\n" << print(r);
   return none;
-}
-
-// One smooth hill of height 1 around `center`, `width` wide.
-double hill(double t, double center, double width) {
-  const double s = (t - center) / width;
-  return std::abs(s) < 0.5 ? std::pow(std::cos(M_PI * s), 4) : 0;
 }
 
 // Begin and end of the n-th phase with this support.
@@ -93,7 +70,7 @@ void bend(Pattern& pattern, const std::string& joint, double center, double widt
   DenseTable& table = *pattern.table;
   const Eigen::Index column = joint_column(pattern, joint);
   for (Eigen::Index k = 0; k < table.theta.rows(); ++k)
-    table.theta(k, column) += height * hill(static_cast<double>(k) * table.dt, center, width);
+    table.theta(k, column) += height * bump(static_cast<double>(k) * table.dt, center, width);
 }
 
 double angle_at(const Pattern& pattern, const std::string& joint, double t) {
@@ -116,7 +93,7 @@ TEST(PlantedFault, CogMoved) {
   for (const int axis : {0, 1, 2}) {
     Pattern p = walk();
     for (size_t k = 0; k < p.table->cog.size(); ++k)
-      p.table->cog[k][axis] += 0.015 * hill(static_cast<double>(k) * p.table->dt, 2.0, 0.6);
+      p.table->cog[k][axis] += 0.015 * bump(static_cast<double>(k) * p.table->dt, 2.0, 0.6);
     const ConsistencyReport r = report_of(p);
     EXPECT_EQ(error_kinds(r), Kinds{"cog_residual"}) << print(r);
     const Finding& f = first(r, "cog_residual");
@@ -133,7 +110,7 @@ TEST(PlantedFault, ZmpOutside) {
     const double outwards = support == Support::left ? 1 : -1;
     for (size_t k = 0; k < p.table->zmp.size(); ++k)
       p.table->zmp[k].y() +=
-          outwards * (0.0315 + 0.020) * hill(static_cast<double>(k) * p.table->dt, at, 0.3);
+          outwards * (0.0315 + 0.020) * bump(static_cast<double>(k) * p.table->dt, at, 0.3);
     const ConsistencyReport r = report_of(p);
     EXPECT_EQ(error_kinds(r), Kinds{"support_margin"}) << print(r);
     EXPECT_NEAR(first(r, "support_margin").at, at, 0.002);
@@ -204,7 +181,7 @@ TEST(PlantedFault, StanceFootSlips) {
       const double at = middle(phase(p, support, 1));
       for (size_t k = 0; k < p.table->base.size(); ++k)
         p.table->base[k].position[axis] +=
-            0.005 * hill(static_cast<double>(k) * p.table->dt, at, 0.35);
+            0.005 * bump(static_cast<double>(k) * p.table->dt, at, 0.35);
       const ConsistencyReport r = report_of(p);
       EXPECT_EQ(error_kinds(r), Kinds{"foot_slip"}) << print(r);
       EXPECT_EQ(first(r, "foot_slip").where, name_of(support));
@@ -303,7 +280,7 @@ TEST(PlantedFault, FlightIsNotBallistic) {
   for (const std::string fault : {"base", "cog", "both", "arm"}) {
     Pattern p = jump();
     for (size_t k = 0; k < p.table->cog.size(); ++k) {
-      const double rise = 0.004 * hill(static_cast<double>(k) * p.table->dt, at, width);
+      const double rise = 0.004 * bump(static_cast<double>(k) * p.table->dt, at, width);
       if (fault == "base" || fault == "both") p.table->base[k].position.z() += rise;
       if (fault == "cog" || fault == "both") p.table->cog[k].z() += rise;
     }
@@ -320,7 +297,7 @@ TEST(PlantedFault, ForceInFlight) {
   const auto [begin, end] = phase(jump(), Support::none, 0);
   for (size_t k = 0; k < p.table->fz.size(); ++k)
     p.table->fz[k] +=
-        30 * hill(static_cast<double>(k) * p.table->dt, 0.5 * (begin + end), 0.8 * (end - begin));
+        30 * bump(static_cast<double>(k) * p.table->dt, 0.5 * (begin + end), 0.8 * (end - begin));
   const ConsistencyReport r = report_of(p);
   EXPECT_EQ(error_kinds(r), Kinds{"fz_residual"}) << print(r);
   EXPECT_NEAR(first(r, "fz_residual").at, 0.5 * (begin + end), 0.002);
@@ -381,7 +358,7 @@ TEST(PlantedFault, NoFaultHidesAnother) {
   Pattern p = walk();
   bend(p, "l_elbow", 1.2, 0.6, -95 * kDegree - angle_at(p, "l_elbow", 1.2));
   for (size_t k = 0; k < p.table->cog.size(); ++k)
-    p.table->cog[k].x() += 0.015 * hill(static_cast<double>(k) * p.table->dt, 2.4, 0.4);
+    p.table->cog[k].x() += 0.015 * bump(static_cast<double>(k) * p.table->dt, 2.4, 0.4);
   for (size_t k = 0; k < p.table->fz.size(); ++k)
     if (std::abs(static_cast<double>(k) * p.table->dt - 0.4) < 0.1) p.table->fz[k] *= 1.1;
   const ConsistencyReport r = report_of(p);

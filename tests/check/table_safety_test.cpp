@@ -4,11 +4,12 @@
 
 #include "ayumi/base/error.hpp"
 #include "tests/support/bus_robot.hpp"
+#include "tests/support/degree.hpp"
 
 namespace ayumi {
 namespace {
 
-constexpr double kDegree = EIGEN_PI / 180;
+using test::kDegree;
 
 ReferenceTrajectory still(size_t rows, const Eigen::Vector3d& degrees) {
   ReferenceTrajectory table;

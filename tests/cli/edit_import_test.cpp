@@ -13,8 +13,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::string kWalk = AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json";
-
 class Edit : public testing::Test {
  protected:
   Output ayumi(const std::vector<std::string>& arguments) {

@@ -29,7 +29,7 @@ TEST(GainsCommand, PolesGiveKAndD) {
   EXPECT_TRUE(json["stable"].get<bool>());
   EXPECT_GT(json["decay_1_s"].get<double>(), 0);
   // Standing: m omega times the way to the front edge, 49 mm.
-  EXPECT_NEAR(json["recoverable"][0]["xi_m"].get<double>(), 0.049, 2e-4);
+  EXPECT_NEAR(json["recoverable"][0]["dcm_m"].get<double>(), 0.049, 2e-4);
   EXPECT_NEAR(json["recoverable"][0]["impulse_Ns"].get<double>(), 6.5 * w * 0.049, 0.01);
 }
 

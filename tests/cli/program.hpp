@@ -17,6 +17,8 @@ namespace ayumi::test {
 
 namespace fs = std::filesystem;
 
+inline const std::string kWalk = AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json";
+
 struct Output {
   int exit_code = -1;  ///< 128 + signal when it was killed
   std::string out, err;

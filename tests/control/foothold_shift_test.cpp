@@ -146,12 +146,8 @@ Outcomes pushed(double at, const Vector3d& direction, double impulse, double ste
   SimulateOptions options;
   options.profile = "hoap1-strong";
   options.controller.gains = {{"step", step}};
-  Disturbance push;
-  push.at = at;
-  push.duration = 0.02;
-  push.direction = direction;
-  push.magnitude = impulse;
-  options.scenario = {push};
+  const Push push{.magnitude = impulse, .direction = direction};
+  options.scenario = {{.at = at, .duration = 0.02, .what = push}};
   Simulator run(walk().model, walk().series, options);
   run.keep_samples(false);
   Outcomes o;

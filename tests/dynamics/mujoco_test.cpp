@@ -12,19 +12,18 @@
 #include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/mujoco_model.hpp"
 #include "tests/support/random_robot.hpp"
+#include "tests/support/relative_error.hpp"
 
 namespace ayumi {
 namespace {
+
+using test::relative_error;
 
 constexpr int kStates = 100;
 // With one set of numbers the two differ by rounding alone.
 constexpr double kSameNumbers = 1e-10;
 // MuJoCo's reader turns inertias into principal axes and rounds on the way.
 constexpr double kOwnReader = 1e-6;
-
-double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).norm() / b.norm();
-}
 
 /// Mass, COG, mass matrix and bias forces in random states, relative to their norms.
 void expect_agreement(const RobotModel& model, test::MujocoRobot& other, unsigned seed,
@@ -39,9 +38,9 @@ void expect_agreement(const RobotModel& model, test::MujocoRobot& other, unsigne
     other.set_state(state);
     const Eigen::VectorXd bias = bias_force(model, state, data);
     mass_matrix(model, data, M);
-    const double cog = relative(other.cog(), data.cog);
-    const double mass = relative(other.mass_matrix(), M);
-    const double force = relative(other.bias_force(), bias);
+    const double cog = relative_error(other.cog(), data.cog);
+    const double mass = relative_error(other.mass_matrix(), M);
+    const double force = relative_error(other.bias_force(), bias);
     ASSERT_LT(cog, tolerance) << "COG, state " << i;
     ASSERT_LT(mass, tolerance) << "mass matrix, state " << i;
     ASSERT_LT(force, tolerance) << "bias force, state " << i;
@@ -78,17 +77,17 @@ TEST_P(MujocoRandomTrees, AgreeOnMotionUnderForces) {
     other.set_rotors(drive.rotor_inertia, drive.viscous);
     other.set_state(state);
     fast.forward(state, force, found, &drive);
-    EXPECT_LT(relative(other.acceleration(force), found), 1e-9) << "with drives, state " << i;
+    EXPECT_LT(relative_error(other.acceleration(force), found), 1e-9) << "with drives, state " << i;
     other.set_rotors(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n));
     found = forward_dynamics(model, state, force, data);
-    EXPECT_LT(relative(other.acceleration(force), found), 1e-9) << "state " << i;
+    EXPECT_LT(relative_error(other.acceleration(force), found), 1e-9) << "state " << i;
     fast.forward(state, force, found);
-    EXPECT_LT(relative(other.acceleration(force), found), 1e-9) << "link axes, state " << i;
-    EXPECT_LT(relative(other.cog_jacobian(), cog_jacobian_floating(model, data)), 1e-9);
+    EXPECT_LT(relative_error(other.acceleration(force), found), 1e-9) << "link axes, state " << i;
+    EXPECT_LT(relative_error(other.cog_jacobian(), cog_jacobian_floating(model, data)), 1e-9);
     const Momentum ours = centroidal_momentum(model, data);
     const auto [linear, angular] = other.momentum();
-    EXPECT_LT(relative(linear, ours.linear), 1e-9);
-    EXPECT_LT(relative(angular, ours.angular), 1e-9);
+    EXPECT_LT(relative_error(linear, ours.linear), 1e-9);
+    EXPECT_LT(relative_error(angular, ours.angular), 1e-9);
   }
 }
 
@@ -111,14 +110,14 @@ TEST_P(MujocoRandomTrees, AgreeOnTiedJoints) {
     mass_matrix(model, data, M);
     const Eigen::MatrixXd their_mass = T.transpose() * other.mass_matrix() * T;
     const Eigen::VectorXd their_bias = T.transpose() * other.bias_force();
-    EXPECT_LT(relative(other.cog(), data.cog), 1e-9);
-    EXPECT_LT(relative(their_mass, M), 1e-9) << "mass matrix, state " << i;
-    EXPECT_LT(relative(their_bias, bias), 1e-9) << "bias force, state " << i;
-    EXPECT_LT(relative(other.cog_jacobian() * T, cog_jacobian_floating(model, data)), 1e-9);
+    EXPECT_LT(relative_error(other.cog(), data.cog), 1e-9);
+    EXPECT_LT(relative_error(their_mass, M), 1e-9) << "mass matrix, state " << i;
+    EXPECT_LT(relative_error(their_bias, bias), 1e-9) << "bias force, state " << i;
+    EXPECT_LT(relative_error(other.cog_jacobian() * T, cog_jacobian_floating(model, data)), 1e-9);
     TreeDynamics(model).forward(state, force, found);
-    EXPECT_LT(relative(their_mass.llt().solve(force - their_bias), found), 1e-9);
+    EXPECT_LT(relative_error(their_mass.llt().solve(force - their_bias), found), 1e-9);
     const Momentum ours = centroidal_momentum(model, data);
-    EXPECT_LT(relative(other.momentum().second, ours.angular), 1e-9);
+    EXPECT_LT(relative_error(other.momentum().second, ours.angular), 1e-9);
   }
 }
 

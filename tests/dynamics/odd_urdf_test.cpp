@@ -14,6 +14,7 @@
 #include "ayumi/io/robot/urdf.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "tests/support/odd_urdf.hpp"
+#include "tests/support/relative_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace ayumi {
@@ -25,6 +26,7 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using test::relative_error;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The robot with every joint free, in MuJoCo, and what ties its joints.
@@ -111,8 +113,6 @@ class Judge {
   MatrixXd T;
 };
 
-double relative(const MatrixXd& a, const MatrixXd& b) { return (a - b).norm() / b.norm(); }
-
 class OddUrdf : public testing::TestWithParam<unsigned> {
  protected:
   OddUrdf()
@@ -141,25 +141,27 @@ TEST_P(OddUrdf, AgreesWithMujoco) {
       const Isometry3d pose = data.pose(link.body) * link.pose;
       ASSERT_LT((pose.matrix() - judge.pose(body).matrix()).norm(), 1e-11) << link.name;
       const Vector3d point = pose * random.vector(0.1);
-      ASSERT_LT(relative(body_jacobian(model, data, link.body, point), judge.jacobian(body, point)),
-                1e-11)
+      ASSERT_LT(
+          relative_error(body_jacobian(model, data, link.body, point), judge.jacobian(body, point)),
+          1e-11)
           << link.name;
     }
     mass_matrix(model, data, M);
     const VectorXd bias = bias_force(model, state, data);
     const VectorXd force = random.vector(model.velocity_count(), 3.0);
-    EXPECT_LT(relative(M, judge.mass_matrix()), 1e-9);
-    EXPECT_LT(relative(bias, judge.bias()), 1e-9);
+    EXPECT_LT(relative_error(M, judge.mass_matrix()), 1e-9);
+    EXPECT_LT(relative_error(bias, judge.bias()), 1e-9);
     fast.forward(state, force, found);
     // What an ill-conditioned mass matrix makes of rounding is nobody's error.
-    EXPECT_LT(relative(judge.mass_matrix() * found + judge.bias(), force), 1e-9);
+    EXPECT_LT(relative_error(judge.mass_matrix() * found + judge.bias(), force), 1e-9);
     EXPECT_LT((data.cog - Map<Vector3d>(judge.data->subtree_com)).norm(), 1e-12);
-    EXPECT_LT(relative(cog_jacobian_floating(model, data), judge.cog_jacobian()), 1e-9);
+    EXPECT_LT(relative_error(cog_jacobian_floating(model, data), judge.cog_jacobian()), 1e-9);
     const Momentum momentum = centroidal_momentum(model, data);
     mj_subtreeVel(judge.model.get(), judge.data.get());
-    EXPECT_LT(relative(momentum.angular, Map<Vector3d>(judge.data->subtree_angmom)), 1e-9);
-    EXPECT_LT(relative(momentum.linear, model.mass() * Map<Vector3d>(judge.data->subtree_linvel)),
-              1e-9);
+    EXPECT_LT(relative_error(momentum.angular, Map<Vector3d>(judge.data->subtree_angmom)), 1e-9);
+    EXPECT_LT(
+        relative_error(momentum.linear, model.mass() * Map<Vector3d>(judge.data->subtree_linvel)),
+        1e-9);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi {
 namespace {
@@ -11,13 +12,8 @@ double value(const std::string& text) {
   return evaluate_expression(text, {{"a", 3}, {"step length", 0.5}}, "f: /x");
 }
 
-std::string message(const std::string& text) {
-  try {
-    value(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+std::string value_error(const std::string& text) {
+  return test::error_message([&] { value(text); });
 }
 
 TEST(Expression, FollowsTheUsualRules) {
@@ -37,17 +33,17 @@ TEST(Expression, NamesWhatItUsed) {
 }
 
 TEST(Expression, SaysWhatIsWrong) {
-  EXPECT_NE(message("${b}").find("f: /x: expression \"${b}\": unknown parameter 'b'"),
+  EXPECT_NE(value_error("${b}").find("f: /x: expression \"${b}\": unknown parameter 'b'"),
             std::string::npos);
-  EXPECT_NE(message("${a} *").find("ends where a number is expected"), std::string::npos);
-  EXPECT_NE(message("${a} 2").find("unexpected '2'"), std::string::npos);
-  EXPECT_NE(message("(${a}").find("')' is missing"), std::string::npos);
-  EXPECT_NE(message("${a}/0").find("division by zero"), std::string::npos);
-  EXPECT_NE(message("${a}*inf").find("expected a number"), std::string::npos);
-  EXPECT_NE(message("${a}*1e300*1e300").find("not a finite number"), std::string::npos);
-  EXPECT_NE(message("$a").find("a parameter is written ${name}"), std::string::npos);
-  EXPECT_NE(message(std::string(100000, '(')).find("nested too deeply"), std::string::npos);
-  EXPECT_NE(message(std::string(100000, '-')).find("nested too deeply"), std::string::npos);
+  EXPECT_NE(value_error("${a} *").find("ends where a number is expected"), std::string::npos);
+  EXPECT_NE(value_error("${a} 2").find("unexpected '2'"), std::string::npos);
+  EXPECT_NE(value_error("(${a}").find("')' is missing"), std::string::npos);
+  EXPECT_NE(value_error("${a}/0").find("division by zero"), std::string::npos);
+  EXPECT_NE(value_error("${a}*inf").find("expected a number"), std::string::npos);
+  EXPECT_NE(value_error("${a}*1e300*1e300").find("not a finite number"), std::string::npos);
+  EXPECT_NE(value_error("$a").find("a parameter is written ${name}"), std::string::npos);
+  EXPECT_NE(value_error(std::string(100000, '(')).find("nested too deeply"), std::string::npos);
+  EXPECT_NE(value_error(std::string(100000, '-')).find("nested too deeply"), std::string::npos);
 }
 
 }  // namespace

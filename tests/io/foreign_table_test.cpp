@@ -5,12 +5,13 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/table/motion_import.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/hoap1.hpp"
 
 namespace ayumi::test {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
+using test::kDegree;
 
 ImportedMotion read(const std::string& text, ImportOptions options = {}) {
   return read_motion(text, "a.csv", hoap1(), options);

@@ -8,22 +8,19 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/bus_robot.hpp"
+#include "tests/support/degree.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDegree = EIGEN_PI / 180;
+using test::kDegree;
 const HoapLayout kThree = {.motors = 3};
 
-std::string message(const std::string& bytes, const HoapLayout& layout = kThree) {
-  try {
-    parse_hoap(bytes, "s.csv", layout);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+std::string hoap_error(const std::string& bytes, const HoapLayout& layout = kThree) {
+  return test::error_message([&] { parse_hoap(bytes, "s.csv", layout); });
 }
 
 ReferenceTrajectory sway() {
@@ -74,19 +71,19 @@ TEST(Hoap, BlanksAndLineEndsOfRealFiles) {
 }
 
 TEST(Hoap, SaysWhatIsWrong) {
-  EXPECT_EQ(message(""), "s.csv: the file has no row of a sequence");
+  EXPECT_EQ(hoap_error(""), "s.csv: the file has no row of a sequence");
   EXPECT_NE(
-      message("1,2,0,0,R,R,R\n").find("s.csv:1: 7 columns, but sequences of this robot have 8"),
+      hoap_error("1,2,0,0,R,R,R\n").find("s.csv:1: 7 columns, but sequences of this robot have 8"),
       std::string::npos);
-  EXPECT_NE(message("1,3,0,0,0,R,R,R\n").find("s.csv:1: command '3'"), std::string::npos);
-  EXPECT_NE(message("1,2,0,0,1.5,R,R,R\n").find("column 5: '1.5' is not a whole number"),
+  EXPECT_NE(hoap_error("1,3,0,0,0,R,R,R\n").find("s.csv:1: command '3'"), std::string::npos);
+  EXPECT_NE(hoap_error("1,2,0,0,1.5,R,R,R\n").find("column 5: '1.5' is not a whole number"),
             std::string::npos);
-  EXPECT_NE(message("1,2,0,0,nan,R,R,R\n").find("column 5: 'nan'"), std::string::npos);
-  EXPECT_NE(message("1,2,0,40000,0,R,R,R\n").find("column 4: 40000 does not fit into 16 bits"),
+  EXPECT_NE(hoap_error("1,2,0,0,nan,R,R,R\n").find("column 5: 'nan'"), std::string::npos);
+  EXPECT_NE(hoap_error("1,2,0,40000,0,R,R,R\n").find("column 4: 40000 does not fit into 16 bits"),
             std::string::npos);
-  EXPECT_NE(message("1,2,0,0,0,R,R,R\n2,2,0,0,0,R,R,R\n").find("s.csv:2: the interval changes"),
+  EXPECT_NE(hoap_error("1,2,0,0,0,R,R,R\n2,2,0,0,0,R,R,R\n").find("s.csv:2: the interval changes"),
             std::string::npos);
-  EXPECT_NE(message("0,2,0,0,0,R,R,R\n").find("an interval of 0 ms"), std::string::npos);
+  EXPECT_NE(hoap_error("0,2,0,0,0,R,R,R\n").find("an interval of 0 ms"), std::string::npos);
 }
 
 TEST(Hoap, NeedsEncodersAndWholeMilliseconds) {

@@ -2,21 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/error_message.hpp"
+
 namespace ayumi {
 namespace {
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_pattern);
-    return error.what();
-  }
-  return "no error";
+std::string reader_error(const std::function<void()>& action) {
+  return test::error_message(action, ErrorCode::bad_pattern);
 }
 
 std::string parse_error(const std::string& bytes) {
-  return message_of([&] { parse_json(bytes, "f.json", ErrorCode::bad_pattern); });
+  return reader_error([&] { parse_json(bytes, "f.json", ErrorCode::bad_pattern); });
 }
 
 TEST(JsonReader, NamesLineAndColumnOfASyntaxError) {
@@ -39,22 +35,22 @@ TEST(JsonReader, NamesThePointerOfAWrongValue) {
       parse_json(R"({"keys": [{"time": "x", "n": 1.5, "v": [1, 2], "w": [1, null, 3], "a/b": 1}]})",
                  "f.json", ErrorCode::bad_pattern);
   const JsonNode key = root_of(document, "f.json", ErrorCode::bad_pattern).at("keys").items()[0];
-  EXPECT_EQ(message_of([&] { key.at("time").number(); }),
+  EXPECT_EQ(reader_error([&] { key.at("time").number(); }),
             "f.json: /keys/0/time: expected a number, found a string");
-  EXPECT_EQ(message_of([&] { key.at("n").integer(); }),
+  EXPECT_EQ(reader_error([&] { key.at("n").integer(); }),
             "f.json: /keys/0/n: expected a whole number, found 1.5");
-  EXPECT_EQ(message_of([&] { key.at("v").vector3(); }),
+  EXPECT_EQ(reader_error([&] { key.at("v").vector3(); }),
             "f.json: /keys/0/v: expected 3 numbers, found an array of length 2");
-  EXPECT_EQ(message_of([&] { key.at("w").vector3(); }),
+  EXPECT_EQ(reader_error([&] { key.at("w").vector3(); }),
             "f.json: /keys/0/w/1: expected a number, found null");
-  EXPECT_EQ(message_of([&] { key.at("tume"); }), "f.json: /keys/0: the key 'tume' is missing");
-  EXPECT_EQ(message_of([&] { key.at("a/b").string(); }),
+  EXPECT_EQ(reader_error([&] { key.at("tume"); }), "f.json: /keys/0: the key 'tume' is missing");
+  EXPECT_EQ(reader_error([&] { key.at("a/b").string(); }),
             "f.json: /keys/0/a~1b: expected a string, found the number 1");
-  EXPECT_EQ(message_of([&] {
+  EXPECT_EQ(reader_error([&] {
               key.only_keys({"tine", "n", "v", "w", "a/b"});
             }),
             "f.json: /keys/0/time: unknown key; did you mean 'tine'?");
-  EXPECT_EQ(message_of([&] { key.at("n").number_within(0, 1); }),
+  EXPECT_EQ(reader_error([&] { key.at("n").number_within(0, 1); }),
             "f.json: /keys/0/n: 1.5 is too large; the largest allowed value is 1");
 }
 

@@ -34,8 +34,8 @@ TEST_F(PatternFile, SaysWhatTheAuthorWrote) {
   EXPECT_EQ(p.world.friction, 0.7);
   EXPECT_DOUBLE_EQ(p.world.slope.y(), 2 * kDegree);
   EXPECT_EQ(p.controller.gains.at(0).first, "q");
-  EXPECT_EQ(p.scenario.at(0).direction, -Eigen::Vector3d::UnitY());
-  EXPECT_EQ(p.scenario.at(0).magnitude, 1.1);
+  EXPECT_EQ(std::get<Push>(p.scenario.at(0).what).direction, -Eigen::Vector3d::UnitY());
+  EXPECT_EQ(std::get<Push>(p.scenario.at(0).what).magnitude, 1.1);
   EXPECT_EQ(p.duration(), 3.0);
   EXPECT_EQ(p.sha256.size(), 64u);
 }

@@ -9,12 +9,11 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "tests/support/degree.hpp"
 
 namespace ayumi::test {
 
 namespace fs = std::filesystem;
-
-inline constexpr double kDegree = EIGEN_PI / 180;
 
 class PatternFolder : public ::testing::Test {
  protected:

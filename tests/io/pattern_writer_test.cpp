@@ -33,32 +33,77 @@ void expect_same(const Keyframe& a, const Keyframe& b) {
   EXPECT_EQ(a.weights, b.weights);
 }
 
-void expect_same(const FloorMotion& a, const FloorMotion& b) {
+void expect_same(const FloorPath& a, const FloorPath& b) {
   EXPECT_EQ(a.shape, b.shape);
-  EXPECT_EQ(a.at, b.at);
-  EXPECT_EQ(a.duration, b.duration);
   EXPECT_EQ(a.frequency, b.frequency);
   EXPECT_EQ(a.tilt, b.tilt);
   EXPECT_EQ(a.shift, b.shift);
 }
 
-void expect_same(const Disturbance& a, const Disturbance& b) {
-  EXPECT_EQ(a.type, b.type);
+void expect_same(const FloorMotion& a, const FloorMotion& b) {
   EXPECT_EQ(a.at, b.at);
   EXPECT_EQ(a.duration, b.duration);
+  expect_same(a.path, b.path);
+}
+
+void expect_same(const Push& a, const Push& b) {
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.magnitude, b.magnitude);
   EXPECT_EQ(a.on, b.on);
   EXPECT_EQ(a.point, b.point);
   EXPECT_EQ(a.frame, b.frame);
   EXPECT_EQ(a.direction, b.direction);
-  EXPECT_EQ(a.magnitude, b.magnitude);
   EXPECT_EQ(a.shape, b.shape);
-  expect_same(a.floor, b.floor);
-  EXPECT_EQ(a.joint, b.joint);
-  EXPECT_EQ(a.viscous, b.viscous);
+}
+
+void expect_same(const Payload& a, const Payload& b) {
+  EXPECT_EQ(a.on, b.on);
+  EXPECT_EQ(a.point, b.point);
+  EXPECT_EQ(a.mass, b.mass);
+}
+
+void expect_same(const FrictionChange& a, const FrictionChange& b) {
+  EXPECT_EQ(a.friction, b.friction);
+}
+
+void expect_same(const Bump& a, const Bump& b) {
   EXPECT_EQ(a.foot, b.foot);
   EXPECT_EQ(a.place, b.place);
   EXPECT_EQ(a.radius, b.radius);
-  EXPECT_EQ(a.force_bias, b.force_bias);
+  EXPECT_EQ(a.height, b.height);
+}
+
+void expect_same(const Latency& a, const Latency& b) { EXPECT_EQ(a.latency, b.latency); }
+
+void expect_same(const SensorBias& a, const SensorBias& b) {
+  EXPECT_EQ(a.tilt, b.tilt);
+  EXPECT_EQ(a.gyro, b.gyro);
+  EXPECT_EQ(a.load, b.load);
+}
+
+void expect_same(const EncoderOffset& a, const EncoderOffset& b) {
+  EXPECT_EQ(a.joint, b.joint);
+  EXPECT_EQ(a.offset, b.offset);
+}
+
+void expect_same(const JointFriction& a, const JointFriction& b) {
+  EXPECT_EQ(a.joint, b.joint);
+  EXPECT_EQ(a.coulomb, b.coulomb);
+  EXPECT_EQ(a.viscous, b.viscous);
+}
+
+void expect_same(const GainLoss& a, const GainLoss& b) {
+  EXPECT_EQ(a.joint, b.joint);
+  EXPECT_EQ(a.share, b.share);
+}
+
+void expect_same(const Disturbance& a, const Disturbance& b) {
+  EXPECT_EQ(a.at, b.at);
+  EXPECT_EQ(a.duration, b.duration);
+  ASSERT_EQ(a.what.index(), b.what.index());
+  std::visit(
+      [&](const auto& what) { expect_same(what, std::get<std::decay_t<decltype(what)>>(b.what)); },
+      a.what);
 }
 
 void expect_same(const World& a, const World& b) {

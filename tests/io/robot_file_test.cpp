@@ -9,6 +9,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/urdf.hpp"
 #include "ayumi/io/run/sha256.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-constexpr double kDegree = std::numbers::pi / 180;
+using test::kDegree;
 const std::string kRobots = AYUMI_SOURCE_DIR "/robots";
 
 TEST(Hoap1, HasTheFiguresOfItsReadme) {

@@ -13,6 +13,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {
@@ -48,12 +49,10 @@ SimulationLog random_log(unsigned seed) {
   log.controller = ControllerKind::dtad;
   log.provenance = {"hoap1", "ab", "walk", "cd", "hoap1", "dtad", "ayumi run walk.json"};
   log.world.slope = {0.01, 1.0 / 3};
-  Disturbance push;
-  push.at = 0.1;
-  push.magnitude = 1.1;
-  push.shape = DisturbanceShape::half_sine;
-  push.direction = Eigen::Vector3d(1, 2, 3).normalized();
-  log.scenario = {push};
+  const Push push{.magnitude = 1.1,
+                  .direction = Eigen::Vector3d(1, 2, 3).normalized(),
+                  .shape = PushShape::half_sine};
+  log.scenario = {{.at = 0.1, .what = push}};
   log.joints = {"a", "b", "c"};
   log.events = {{0.1, "push", "1.1 N s on the \"COG\""}};
   log.result = {.outcome = Outcome::stands, .max_tilt = 0.1 + 0.2, .steps = 9};
@@ -70,17 +69,11 @@ fs::path fresh_folder() {
 }
 
 template <typename Do>
-std::string message(const Do& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_file);
-    return error.what();
-  }
-  return "no error";
+std::string file_error(const Do& work) {
+  return test::error_message(work, ErrorCode::bad_file);
 }
 std::string parse_message(const std::string& bytes) {
-  return message([&] { parse_log(bytes, "x.bin"); });
+  return file_error([&] { parse_log(bytes, "x.bin"); });
 }
 
 TEST(SimulationLogFile, EveryFieldSurvives) {
@@ -97,8 +90,10 @@ TEST(SimulationLogFile, EveryFieldSurvives) {
   EXPECT_EQ(back.samples[7].planned_contact, log.samples[7].planned_contact);
   EXPECT_EQ(back.samples[7].contact_iterations, log.samples[7].contact_iterations);
   EXPECT_EQ(back.samples[19].push_point, log.samples[19].push_point);
-  EXPECT_EQ(back.scenario.at(0).direction, log.scenario[0].direction);
-  EXPECT_EQ(back.scenario.at(0).shape, DisturbanceShape::half_sine);
+  const Push &a = std::get<Push>(back.scenario.at(0).what),
+             &b = std::get<Push>(log.scenario[0].what);
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.shape, PushShape::half_sine);
   EXPECT_EQ(back.events.at(0).text, log.events[0].text);
   EXPECT_EQ(back.world.slope, log.world.slope);
   EXPECT_EQ(back.result.outcome, Outcome::stands);
@@ -220,33 +215,33 @@ TEST(RunFolderFile, SameRunSameBytesWhereverItIsWritten) {
 
 TEST(RunFolderFile, SaysWhatIsWrong) {
   const fs::path folder = fresh_folder();
-  EXPECT_NE(message([&] { read_run(folder); }).find("no such folder; a RUN is needed"),
+  EXPECT_NE(file_error([&] { read_run(folder); }).find("no such folder; a RUN is needed"),
             std::string::npos);
   write_run(folder, example());
-  EXPECT_NE(message([&] {
+  EXPECT_NE(file_error([&] {
               read_run_log(folder, "closedloop");
             }).find("no log 'closedloop' in this run; did you mean 'closed_loop'?"),
             std::string::npos);
   std::ofstream(folder / "log_open_loop.bin", std::ios::app) << "x";
   EXPECT_NE(
-      message([&] { read_run(folder); }).find("the file has changed since the run was written"),
+      file_error([&] { read_run(folder); }).find("the file has changed since the run was written"),
       std::string::npos);
   fs::remove(folder / "log_open_loop.bin");
-  EXPECT_NE(message([&] { read_run(folder); }).find("log_open_loop.bin: no such file"),
+  EXPECT_NE(file_error([&] { read_run(folder); }).find("log_open_loop.bin: no such file"),
             std::string::npos);
   std::string text = read_file(folder / "run.json");
   text.replace(text.find("ayumi.run/1"), 11, "ayumi.run/7");
   write_file(folder / "run.json", text);
-  EXPECT_NE(message([&] { read_run(folder); }).find("/format: 'ayumi.run/7' cannot be read"),
+  EXPECT_NE(file_error([&] { read_run(folder); }).find("/format: 'ayumi.run/7' cannot be read"),
             std::string::npos);
   fs::remove(folder / "run.json");
-  EXPECT_NE(message([&] { read_run(folder); }).find("the folder has no run.json"),
+  EXPECT_NE(file_error([&] { read_run(folder); }).find("the folder has no run.json"),
             std::string::npos);
   RunFolder run = example();
   run.files = {"absent.svg"};
-  EXPECT_NE(message([&] { write_run(folder, run); }).find("absent.svg: no such file"),
+  EXPECT_NE(file_error([&] { write_run(folder, run); }).find("absent.svg: no such file"),
             std::string::npos);
-  EXPECT_NE(message([&] { write_run(folder / "reference.csv", run); }).find("is not a folder"),
+  EXPECT_NE(file_error([&] { write_run(folder / "reference.csv", run); }).find("is not a folder"),
             std::string::npos);
 }
 

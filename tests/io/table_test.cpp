@@ -11,6 +11,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/table/number_table.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi {
 namespace {
@@ -26,18 +27,12 @@ fs::path put(const std::string& text) {
   return path;
 }
 
-template <typename Read>
-std::string message(const std::string& text, const Read& read) {
-  try {
-    read(put(text));
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_file);
-    return error.what();
-  }
-  return "no error";
+std::string dense_message(const std::string& text) {
+  return test::error_message([&] { read_dense_table(put(text)); }, ErrorCode::bad_file);
 }
-std::string dense_message(const std::string& text) { return message(text, read_dense_table); }
-std::string reference_message(const std::string& text) { return message(text, read_reference); }
+std::string reference_message(const std::string& text) {
+  return test::error_message([&] { read_reference(put(text)); }, ErrorCode::bad_file);
+}
 
 // Any finite double, with the awkward ones among them.
 class Random {

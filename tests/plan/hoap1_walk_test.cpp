@@ -20,8 +20,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using test::hoap1;
 
-constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
-
 struct Figures {
   double zmp_error = 0, margin = 1, landing_speed = 0;
   double position = 0, speed = 0, torque = 0, continuous = 0;  // shares of the limits
@@ -35,7 +33,7 @@ VectorXd joint_torques(const RobotModel& model, const CommandSample& now, RobotD
   double left = now.support == Support::right ? 0 : 1;
   if (now.support == Support::both) {
     Vector2d centers[2];
-    for (const Side side : kSides) {
+    for (const Side side : {Side::left, Side::right}) {
       const Vector2d& c = model.sole(side).center;
       const Vector3d world = now.feet[static_cast<int>(side)] * Vector3d(c.x(), c.y(), 0);
       centers[static_cast<int>(side)] = world.head<2>();
@@ -45,7 +43,7 @@ VectorXd joint_torques(const RobotModel& model, const CommandSample& now, RobotD
                       1.0);
   }
   VectorXd torque = force.tail(model.dof_count());
-  for (const Side side : kSides) {
+  for (const Side side : {Side::left, Side::right}) {
     const double share = side == Side::left ? left : 1 - left;
     const auto J = body_jacobian(model, data, model.sole(side).body, ground.zmp);
     Eigen::Matrix<double, 6, 1> wrench;
@@ -65,7 +63,7 @@ Figures measure(const RobotModel& model, const CommandSeries& series) {
     const Vector3d zmp = full_model_reaction(model, now, data).zmp;
     worst.zmp_error = std::max(worst.zmp_error, (zmp - now.zmp).norm());
     std::vector<Vector2d> points;
-    for (const Side side : kSides) {
+    for (const Side side : {Side::left, Side::right}) {
       if (!supports(now.support, side)) continue;
       for (const Vector2d& v : model.sole(side).polygon)
         points.push_back((now.feet[static_cast<int>(side)] * Vector3d(v.x(), v.y(), 0)).head<2>());

@@ -12,8 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
-
 CommandSeries walk(const RobotModel& model) {
   WalkParameters p;
   p.steps = 3;
@@ -56,7 +54,7 @@ TEST(JointDriven, ATableOfASolvedWalkGivesTheWalkBack) {
         EXPECT_LT((a.zmp - b.zmp).norm(), 5e-4);
         EXPECT_NEAR(a.fz, b.fz, 0.05);
       }
-      for (const Side side : kSides)
+      for (const Side side : {Side::left, Side::right})
         EXPECT_LT((a.feet[static_cast<int>(side)].translation() -
                    b.feet[static_cast<int>(side)].translation())
                       .norm(),
@@ -92,7 +90,7 @@ TEST(JointDriven, LegKeysKeepTheCarryingSoleAndCommandsStand) {
   RobotData data(model);
   for (const CommandSample& now : series.samples) {
     update_positions(model, now.state, data);
-    for (const Side side : kSides)
+    for (const Side side : {Side::left, Side::right})
       EXPECT_LT((sole_pose(model, data, side).matrix() -
                  series.samples[0].feet[static_cast<int>(side)].matrix())
                     .norm(),

@@ -21,8 +21,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
-
 WalkParameters short_walk() {
   WalkParameters p;
   p.steps = 3;
@@ -46,7 +44,7 @@ double least_margin(const RobotModel& model, const CommandSeries& series) {
   double least = 1;
   for (const CommandSample& sample : series.samples) {
     std::vector<Eigen::Vector2d> points;
-    for (const Side side : kSides)
+    for (const Side side : {Side::left, Side::right})
       if (supports(sample.support, side))
         for (const Eigen::Vector2d& v : model.sole(side).polygon)
           points.push_back(
@@ -85,7 +83,7 @@ TEST(Sample, SolesStandStillAndThePostureMeetsTheCommand) {
     const CommandSample& now = series.samples[k];
     update_positions(model, now.state, data);
     EXPECT_LT((data.cog - now.cog).norm(), 1e-10);
-    for (const Side side : kSides) {
+    for (const Side side : {Side::left, Side::right}) {
       const int s = static_cast<int>(side);
       const Eigen::Isometry3d sole = sole_pose(model, data, side);
       EXPECT_LT((sole.matrix() - now.feet[s].matrix()).cwiseAbs().maxCoeff(), 1e-9);
@@ -132,7 +130,7 @@ Pattern moved(const RobotModel& model, Pattern pattern, double yaw, const Vector
   };
   RobotData data(model);
   const CommandSeries series = sample(model, pattern, {.dt = 0.1});
-  for (const Side side : kSides) {
+  for (const Side side : {Side::left, Side::right}) {
     Foothold foot;
     const Eigen::Isometry3d& start = series.samples.front().feet[static_cast<int>(side)];
     foot.position = start.translation();

@@ -12,7 +12,7 @@
 namespace ayumi {
 namespace {
 
-WalkParameters short_walk() {
+WalkParameters single_step_walk() {
   WalkParameters p;
   p.steps = 1;
   p.stride = 0.03;
@@ -30,7 +30,7 @@ Pattern after_goal(Pattern walk, double wait) {
 
 TEST(ViipPhases, GoalBeforeAWalkLeavesTheWalkAsItIs) {
   const RobotModel model = test::biped();
-  const Pattern walk = walk_pattern(model, short_walk());
+  const Pattern walk = walk_pattern(model, single_step_walk());
   const CommandSeries alone = sample(model, walk);
   const CommandSeries both = sample(model, after_goal(walk, 0.5));
   ASSERT_EQ(both.samples.size(), alone.samples.size() + 500);
@@ -73,7 +73,7 @@ std::string complaint(const Pattern& pattern) {
 
 TEST(ViipPhases, ComplaintsNameThePlace) {
   const RobotModel model = test::biped();
-  const Pattern walk = walk_pattern(model, short_walk());
+  const Pattern walk = walk_pattern(model, single_step_walk());
   Pattern keyed = after_goal(walk, 0.5);
   Keyframe key;
   key.t = 0.2;

@@ -110,41 +110,28 @@ TEST(MujocoGround, AMovingFloorCarriesABlockAsFarAsFrictionHolds) {
   }
 }
 
-Disturbance lasting(DisturbanceType type, double magnitude) {
-  Disturbance d;
-  d.type = type;
-  d.at = 0.3;
-  d.duration = 0.7;
-  d.magnitude = magnitude;
-  return d;
-}
-
+/// One of each kind, from 0.3 s for 0.7 s.
 std::vector<Disturbance> disturbances() {
   std::vector<Disturbance> all;
-  const auto add = [&](DisturbanceType type, double magnitude) -> Disturbance& {
-    all.push_back(lasting(type, magnitude));
-    return all.back();
+  const auto add = [&](const auto& what, double duration = 0.7) {
+    all.push_back({.at = 0.3, .duration = duration, .what = what});
   };
-  add(DisturbanceType::impulse, 0.4).duration = 0.02;
-  Disturbance& force = add(DisturbanceType::force, 4);
-  force.on = "r_forearm";
-  force.direction = Vector3d::UnitY();
-  add(DisturbanceType::torque, 0.6);
-  Disturbance& payload = add(DisturbanceType::payload, 0.3);
-  payload.on = "r_forearm";
-  payload.point = Vector3d(0, 0, -0.05);
-  Disturbance& floor = add(DisturbanceType::floor, 0);
-  floor.floor = {MotionShape::half_sine, 0.3, 0.7, 0, {0.03, 0.02}, {0.01, 0.02, 0.005}};
-  add(DisturbanceType::friction, 0.3);
-  Disturbance& bump = add(DisturbanceType::bump, 0.003);
-  bump.foot = Side::left;
-  bump.radius = 0.015;
-  bump.place = hoap1().sole(Side::left).center;
-  add(DisturbanceType::latency, 0.004);
-  add(DisturbanceType::sensor_bias, 0).tilt_bias = {0.01, 0.01};
-  add(DisturbanceType::encoder_offset, 0.02).joint = "l_ankle_pitch";
-  add(DisturbanceType::joint_friction, 0.3).viscous = 0.1;
-  add(DisturbanceType::gain_loss, 0.4).joint = "l_knee";
+  add(Push{.kind = PushKind::impulse, .magnitude = 0.4}, 0.02);
+  add(Push{
+      .kind = PushKind::force, .magnitude = 4, .on = "r_forearm", .direction = Vector3d::UnitY()});
+  add(Push{.kind = PushKind::torque, .magnitude = 0.6});
+  add(Payload{.on = "r_forearm", .point = {0, 0, -0.05}, .mass = 0.3});
+  add(FloorPath{MotionShape::half_sine, 0, {0.03, 0.02}, {0.01, 0.02, 0.005}});
+  add(FrictionChange{0.3});
+  add(Bump{.foot = Side::left,
+           .place = hoap1().sole(Side::left).center,
+           .radius = 0.015,
+           .height = 0.003});
+  add(Latency{0.004});
+  add(SensorBias{.tilt = {0.01, 0.01}});
+  add(EncoderOffset{.joint = "l_ankle_pitch", .offset = 0.02});
+  add(JointFriction{.coulomb = 0.3, .viscous = 0.1});
+  add(GainLoss{.joint = "l_knee", .share = 0.4});
   return all;
 }
 
@@ -167,7 +154,7 @@ TEST_P(MujocoDisturbance, DoesTheSameInBothPlants) {
     moved = std::max(moved, (ours.samples[k].cog - ours.samples[250].cog).norm());
     if (k > 1000) force += (ours.samples[k].fz - theirs.samples[k].fz) / 300;
   }
-  std::cout << name_of(GetParam().type) << ": COG moves " << 1e3 * moved << " mm, differs by "
+  std::cout << name_of(GetParam()) << ": COG moves " << 1e3 * moved << " mm, differs by "
             << 1e3 * largest << " mm, f_z by " << force << " N\n";
   EXPECT_NE(ours.result.outcome, Outcome::fell);
   EXPECT_NE(theirs.result.outcome, Outcome::fell);
@@ -176,7 +163,7 @@ TEST_P(MujocoDisturbance, DoesTheSameInBothPlants) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MujocoDisturbance, testing::ValuesIn(disturbances()),
-                         [](const auto& info) { return std::string(name_of(info.param.type)); });
+                         [](const auto& info) { return std::string(name_of(info.param)); });
 
 TEST(MujocoGround, TooManyBumpsAreRefused) {
   Block block(World{}, {0, 0, 0.0205});

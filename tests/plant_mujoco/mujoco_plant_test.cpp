@@ -12,6 +12,7 @@
 #include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "tests/support/hoap1.hpp"
+#include "tests/support/hoap1_walk.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi {
@@ -20,12 +21,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using test::hoap1;
-
-const CommandSeries& walk() {
-  static const CommandSeries series =
-      sample(hoap1(), read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json"));
-  return series;
-}
+using test::hoap1_walk;
 
 TEST(MujocoPlant, StandingCarriesTheWeight) {
   const CommandSample s = test::standing(hoap1(), 0).samples[0];
@@ -90,7 +86,7 @@ TEST(MujocoPlant, AgreesInFlightAsTheStepShrinks) {
 SimulationLog run(const SimulateOptions& wanted, const PlantKind& kind) {
   SimulateOptions options = wanted;
   options.plant = kind;
-  return simulate(hoap1(), walk(), options);
+  return simulate(hoap1(), hoap1_walk(), options);
 }
 
 class MujocoWalk : public testing::TestWithParam<std::string> {};
@@ -121,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Controllers, MujocoWalk, testing::Values("none", "dtad"
 TEST(MujocoPlant, CopiesAreBranches) {
   SimulateOptions options;
   options.plant = mujoco_plant_kind();
-  Simulator trunk(hoap1(), walk(), options);
+  Simulator trunk(hoap1(), hoap1_walk(), options);
   trunk.advance(700);
   Simulator branch = trunk;
   trunk.advance(300);

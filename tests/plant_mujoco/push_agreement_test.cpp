@@ -9,17 +9,13 @@
 #include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "tests/support/hoap1.hpp"
+#include "tests/support/hoap1_walk.hpp"
 
 namespace ayumi {
 namespace {
 
 using test::hoap1;
-
-const CommandSeries& walk() {
-  static const CommandSeries series =
-      sample(hoap1(), read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json"));
-  return series;
-}
+using test::hoap1_walk;
 
 /// Up to the push once, then a copy per push.
 class Runs {
@@ -28,18 +24,15 @@ class Runs {
     SimulateOptions options;
     options.plant = kind;
     options.substeps = substeps;
-    trunk_.emplace(hoap1(), walk(), options);
+    trunk_.emplace(hoap1(), hoap1_walk(), options);
     trunk_->keep_samples(false);
-    trunk_->advance(std::lround(at / walk().dt));
+    trunk_->advance(std::lround(at / hoap1_walk().dt));
   }
   bool stands(double direction, double impulse) const {
-    Disturbance push;
-    push.at = at_;
-    push.duration = 0.02;
-    push.direction = {std::cos(direction), std::sin(direction), 0};
-    push.magnitude = impulse;
+    const Push push{.magnitude = impulse,
+                    .direction = {std::cos(direction), std::sin(direction), 0}};
     Simulator run = *trunk_;
-    run.set_scenario({push});
+    run.set_scenario({{.at = at_, .duration = 0.02, .what = push}});
     while (run.advance(100) && !run.fell()) {
     }
     return !run.fell() && run.result().outcome == Outcome::stands;

@@ -100,6 +100,36 @@ TEST_F(Clip, AFolderOfFramesHoldsExactTimes) {
             std::string::npos);
 }
 
+TEST_F(Clip, AFolderOfFramesReplacesFramesAlone) {
+  options.fps = 4;
+  options.overwrite = true;
+  const fs::path frames = folder / "frames";
+  write_clip(model, log, frames, options);
+  options.end = 0.5;
+  EXPECT_EQ(write_clip(model, log, frames, options).frames, 3);
+  EXPECT_EQ(std::distance(fs::directory_iterator(frames), fs::directory_iterator()), 3);
+  // A file of the user stays, and the frames beside it, even where it has nearly the name of one.
+  for (const char* name : {"notes.txt", "frame_title.png", "frame_00001.jpg", "frame_00001b.png"}) {
+    const std::string before = read_file(frames / "frame_00000.png");
+    write_file(frames / name, "mine");
+    options.begin = 0.25;
+    EXPECT_NE(message_of(frames, ErrorCode::bad_file).find("exists already"), std::string::npos)
+        << name;
+    EXPECT_EQ(read_file(frames / name), "mine");
+    EXPECT_EQ(read_file(frames / "frame_00000.png"), before);
+    fs::remove(frames / name);
+  }
+}
+
+TEST_F(Clip, AFolderOfFramesLeavesItsNeighboursAlone) {
+  options.fps = 2;
+  fs::create_directory(folder / "frames.part");
+  write_file(folder / "frames.part" / "mine", "text");
+  write_clip(model, log, folder / "frames", options);
+  EXPECT_EQ(read_file(folder / "frames.part" / "mine"), "text");
+  EXPECT_EQ(files(), 2u) << "no temporary folder stays";
+}
+
 TEST_F(Clip, SlowMotionHasMoreFrames) {
   options.fps = 10;
   options.speed = 0.25;

@@ -91,10 +91,8 @@ TEST(LogReading, TheGroundIsTheSlopeWithEveryMotionOfTheFloor) {
   EXPECT_TRUE(ground_at(log, 0.4).translation().isApprox(-0.02 * n, 1e-12));
   // A shift by the world, there and back, and a tilt by the scenario, which stays.
   log.world.motions = {
-      {.shape = MotionShape::half_sine, .at = 0, .duration = 0.8, .shift = {0, 0.05, 0}}};
-  Disturbance tilt{.type = DisturbanceType::floor, .at = 0.2, .duration = 0.2};
-  tilt.floor.tilt = {0.05, 0};
-  log.scenario = {tilt};
+      {.at = 0, .duration = 0.8, .path = {.shape = MotionShape::half_sine, .shift = {0, 0.05, 0}}}};
+  log.scenario = {{.at = 0.2, .duration = 0.2, .what = FloorPath{.tilt = {0.05, 0}}}};
   EXPECT_TRUE(floor_moves(log));
   EXPECT_NEAR(floor_at(log, 0.4).translation().y(), 0.05, 1e-12);
   EXPECT_NEAR(floor_at(log, 0.9).translation().y(), 0, 1e-12);

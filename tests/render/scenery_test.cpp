@@ -38,10 +38,8 @@ TEST(Scenery, ABumpComesUpWhereTheFootIsAndGoes) {
   const RobotModel model = test::box_robot();
   SimulationLog log = test::box_run(model);
   log.world.height = -0.01;
-  Disturbance bump{.type = DisturbanceType::bump, .at = 0.5, .duration = 0.2, .magnitude = 0.004};
-  bump.foot = Side::left;
-  bump.place = {0.02, 0};
-  log.scenario = {bump};
+  const Bump bump{.foot = Side::left, .place = {0.02, 0}, .height = 0.004};
+  log.scenario = {{.at = 0.5, .duration = 0.2, .what = bump}};
   const std::vector<RisingBump> bumps = rising_bumps(model, log);
   ASSERT_EQ(bumps.size(), 1u);
   // Trunk at (0.05, 0.02 sin 3), the left sole's frame at (0.01, 0.04) from it.
@@ -75,9 +73,8 @@ TEST(Scenery, AMovingFloorMovesInThePicture) {
   SimulationLog log = test::box_run(model);
   for (SimulationSample& sample : log.samples) sample = log.samples.front();
   for (const bool moving : {false, true}) {
-    Disturbance tilt{.type = DisturbanceType::floor, .at = 0.2, .duration = 0.2};
-    tilt.floor.tilt = {0.1, 0.05};
-    if (moving) log.scenario = {tilt};
+    if (moving)
+      log.scenario = {{.at = 0.2, .duration = 0.2, .what = FloorPath{.tilt = {0.1, 0.05}}}};
     const double share = changed(model, log, 0.1, 0.9);
     if (moving)
       EXPECT_GT(share, 0.05) << "grid, shadow and horizon";

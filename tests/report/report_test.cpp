@@ -20,11 +20,9 @@ struct Made {
     open.result.outcome = Outcome::fell;
     open.result.fell_at = 0.8;
     open.samples.resize(450);
-    Disturbance tilt{.type = DisturbanceType::floor, .at = 0.1, .duration = 0.3};
-    tilt.floor.tilt = {0.1, 0};
-    tilt.floor.shift = {0, 0, 0.02};
-    Disturbance bump{.type = DisturbanceType::bump, .at = 0.2, .duration = 9, .magnitude = 0.01};
-    closed.scenario = {tilt, bump};
+    closed.scenario = {
+        {.at = 0.1, .duration = 0.3, .what = FloorPath{.tilt = {0.1, 0}, .shift = {0, 0, 0.02}}},
+        {.at = 0.2, .duration = 9, .what = Bump{.height = 0.01}}};
     closed.world.blocks = {{.low = {0.2, 0.2}, .high = {0.3, 0.4}, .height = 0.03}};
     closed.provenance.command_line = "ayumi run a<b>.json";
     closed.events.push_back({0.3, "push", "0.4 N s on cog"});

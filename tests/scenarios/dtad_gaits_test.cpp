@@ -10,21 +10,20 @@
 #include "ayumi/io/table/table.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/expect_stands.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace ayumi {
 namespace {
 
+using test::expect_stands;
 using test::hoap1;
 
 Disturbance push(double at, double angle, double impulse) {
-  Disturbance d;
-  d.at = at;
-  d.duration = 0.02;
-  d.direction = {std::cos(angle), std::sin(angle), 0};
-  d.magnitude = impulse;
-  return d;
+  return {.at = at,
+          .duration = 0.02,
+          .what = Push{.magnitude = impulse, .direction = {std::cos(angle), std::sin(angle), 0}}};
 }
 
 /// Runs the pattern under DTAD.
@@ -35,12 +34,6 @@ SimulationResult run(const RobotModel& model, const Pattern& pattern,
   options.scenario = scenario;
   options.settle = 2;
   return simulate(model, sample(model, pattern), options).result;
-}
-
-void expect_stands(const SimulationResult& r, double final_error) {
-  EXPECT_EQ(r.outcome, Outcome::stands) << "fell at " << r.fell_at;
-  EXPECT_LE(r.final_cog_error, final_error);
-  EXPECT_LE(r.max_torque_ratio, 1 + 1e-9);
 }
 
 /// In the middle of the fourth step: left foot down.

@@ -22,7 +22,7 @@ Pattern pattern_of(const std::string& name) {
   return read_pattern(AYUMI_SOURCE_DIR "/patterns/" + name + ".json");
 }
 
-SimulationLog run(const Pattern& pattern, bool noise = false) {
+SimulationLog run_jump(const Pattern& pattern, bool noise = false) {
   SimulateOptions options;
   options.controller = pattern.controller;
   options.profile = pattern.profile;
@@ -66,7 +66,8 @@ TEST(Hoap1Jump, RisesAsPlannedLandsAndSettles) {
   for (const double height : {0.02, 0.033, 0.05})
     for (const double stoop : {0.03, 0.035, 0.04}) {
       SCOPED_TRACE(testing::Message() << height << " " << stoop);
-      expect_jump(run(with_goal(height, stoop, JumpGoal::Release::ref_z)), height, 0.01, stoop);
+      expect_jump(run_jump(with_goal(height, stoop, JumpGoal::Release::ref_z)), height, 0.01,
+                  stoop);
     }
 }
 
@@ -74,18 +75,19 @@ TEST(Hoap1Jump, SpringHeldToItsEndRisesHigher) {
   for (const auto& [height, stoop] :
        {std::pair{0.024, 0.03}, {0.03, 0.04}, {0.04, 0.035}, {0.05, 0.03}, {0.05, 0.04}}) {
     SCOPED_TRACE(testing::Message() << height << " " << stoop);
-    expect_jump(run(with_goal(height, stoop, JumpGoal::Release::spring)),
+    expect_jump(run_jump(with_goal(height, stoop, JumpGoal::Release::spring)),
                 height + stoop * stoop / (4 * height), 0.05, stoop);
   }
 }
 
 TEST(Hoap1Jump, WithNoiseAndLatencyOfTheSensors) {
   for (const double height : {0.03, 0.05})
-    expect_jump(run(with_goal(height, 0.04, JumpGoal::Release::ref_z), true), height, 0.02, 0.04);
+    expect_jump(run_jump(with_goal(height, 0.04, JumpGoal::Release::ref_z), true), height, 0.02,
+                0.04);
 }
 
 TEST(Hoap1Jump, HopsThreeTimesInPlace) {
-  const SimulationLog log = run(pattern_of("hoap1_hop3"));
+  const SimulationLog log = run_jump(pattern_of("hoap1_hop3"));
   const auto jumps = test::jumps_of(hoap1(), log, kRef);
   ASSERT_EQ(jumps.size(), 3u);
   for (const test::JumpMeasured& j : jumps) EXPECT_NEAR(j.apex, 0.03, 0.02 * 0.03);
@@ -93,7 +95,7 @@ TEST(Hoap1Jump, HopsThreeTimesInPlace) {
 }
 
 TEST(Hoap1Jump, JumpsForward) {
-  const SimulationLog log = run(pattern_of("hoap1_jump_forward"));
+  const SimulationLog log = run_jump(pattern_of("hoap1_jump_forward"));
   ASSERT_EQ(test::jumps_of(hoap1(), log, kRef).size(), 1u);
   expect_landing(log, 0.005, {0.02, 0});
 }

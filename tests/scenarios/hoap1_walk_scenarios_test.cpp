@@ -7,9 +7,12 @@
 #include "ayumi/math/random.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/expect_stands.hpp"
 
 namespace ayumi {
 namespace {
+
+using test::expect_stands;
 
 struct Walk {
   RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
@@ -38,12 +41,6 @@ SimulateOptions pushed(const std::string& controller) {
 
 SimulationResult run(const SimulateOptions& options) {
   return simulate(walk().model, walk().series, options).result;
-}
-
-void expect_stands(const SimulationResult& r, double final_error) {
-  EXPECT_EQ(r.outcome, Outcome::stands) << "fell at " << r.fell_at;
-  EXPECT_LE(r.final_cog_error, final_error);
-  EXPECT_LE(r.max_torque_ratio, 1 + 1e-9);
 }
 
 TEST(Hoap1Walk, StandsUnpushedWithAndWithoutControl) {
@@ -81,8 +78,7 @@ TEST(Hoap1Walk, PushWithNoisyLateSensors) {
 
 TEST(Hoap1Walk, PushWithSensorsThreeMillisecondsLate) {
   SimulateOptions options = pushed("dtad");
-  options.scenario.push_back({.type = DisturbanceType::latency, .duration = 100});
-  options.scenario.back().magnitude = 0.003;
+  options.scenario.push_back({.duration = 100, .what = Latency{0.003}});
   expect_stands(run(options), 0.002);
 }
 
@@ -90,8 +86,7 @@ TEST(Hoap1Walk, PushWithAWeightInOneHand) {
   for (const char* hand : {"l_forearm", "r_forearm"}) {
     SCOPED_TRACE(hand);
     SimulateOptions options = pushed("dtad");
-    options.scenario.push_back({.type = DisturbanceType::payload, .duration = 100, .on = hand});
-    options.scenario.back().magnitude = 0.3;
+    options.scenario.push_back({.duration = 100, .what = Payload{.on = hand, .mass = 0.3}});
     expect_stands(run(options), 0.002);
   }
 }

@@ -1,4 +1,4 @@
-// A walk played without anything measured: the servos are told what lag and sag take from them, so
+// A walk played without anything measured: the servo targets make up for lag and sag, so
 // that an integrator which knows nothing of the plan moves as planned.
 #include <gtest/gtest.h>
 
@@ -6,15 +6,13 @@
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
+#include "tests/support/hoap1_walk.hpp"
 
 namespace ayumi {
 namespace {
 
 using test::hoap1;
-
-CommandSeries walk() {
-  return sample(hoap1(), read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json"));
-}
+using test::hoap1_walk;
 
 SimulationLog played(const CommandSeries& series) {
   SimulateOptions options;
@@ -31,7 +29,7 @@ double cog_off(const SimulationLog& log) {
 }
 
 TEST(OpenLoop, TheRobotMovesAsCommanded) {
-  const SimulationLog log = played(walk());
+  const SimulationLog log = played(hoap1_walk());
   ASSERT_EQ(log.result.outcome, Outcome::stands);
   EXPECT_EQ(log.result.steps, 10);  // no foot bounces
   EXPECT_LT(cog_off(log), 0.001);
@@ -39,11 +37,11 @@ TEST(OpenLoop, TheRobotMovesAsCommanded) {
 
 // The same angles taken for what servos received are sent as they are, and the robot gives way.
 TEST(OpenLoop, SentAsTheyAreTheSameAnglesSag) {
-  CommandSeries series = walk();
+  CommandSeries series = hoap1_walk();
   series.servo_commands = true;
   const SimulationLog log = played(series);
   EXPECT_GT(log.result.steps, 10);
-  EXPECT_GT(cog_off(log), 4 * cog_off(played(walk())));
+  EXPECT_GT(cog_off(log), 4 * cog_off(played(hoap1_walk())));
 }
 
 }  // namespace

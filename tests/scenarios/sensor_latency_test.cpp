@@ -23,16 +23,9 @@ SimulationLog stands_pushed(const RobotModel& model, double latency,
   }
   SimulateOptions options;
   options.controller.type = controller_type(controller);
-  Disturbance push;
-  push.at = 1.0;
-  push.duration = 0.02;
-  push.direction = {0, 1, 0};
-  push.magnitude = 0.3;
-  Disturbance late;
-  late.type = DisturbanceType::latency;
-  late.duration = 100;
-  late.magnitude = latency;
-  options.scenario = {push, late};
+  options.scenario = {
+      {.at = 1.0, .duration = 0.02, .what = Push{.magnitude = 0.3, .direction = {0, 1, 0}}},
+      {.duration = 100, .what = Latency{latency}}};
   return simulate(model, sample(model, pattern), options);
 }
 

@@ -20,7 +20,7 @@ struct Goal {
   ViipGoal goal;
 };
 
-// Legs bent enough for long steps, unless told otherwise.
+// Legs bent enough for long steps, unless another depth is given.
 Pattern goals(const std::vector<Goal>& list, double height = 0.225) {
   Pattern pattern;
   pattern.robot = "hoap1";
@@ -37,7 +37,7 @@ struct Conditions {
   std::vector<std::pair<std::string, double>> gains = {};
 };
 
-SimulationLog run(const Pattern& pattern, const Conditions& conditions = {}) {
+SimulationLog run_viip(const Pattern& pattern, const Conditions& conditions = {}) {
   SimulateOptions options;
   options.controller.type = controller_type(conditions.controller);
   options.controller.gains = conditions.gains;
@@ -56,19 +56,16 @@ StepGoal walk(int steps, double velocity, double turn = 0) {
 }
 
 Disturbance push(double at, const Vector3d& direction, double impulse) {
-  Disturbance d;
-  d.at = at;
-  d.duration = 0.02;
-  d.direction = direction.normalized();
-  d.magnitude = impulse;
-  return d;
+  return {.at = at,
+          .duration = 0.02,
+          .what = Push{.magnitude = impulse, .direction = direction.normalized()}};
 }
 
 TEST(ViipHoap1, CogGoesToADisplacementOnBothFeet) {
   for (const Vector3d& way : {Vector3d(0.02, 0, 0), Vector3d(0.04, 0, 0), Vector3d(0, 0.05, 0),
                               Vector3d(0, 0, -0.015), Vector3d(0.025, 0.025, -0.015)}) {
     SCOPED_TRACE(way.transpose());
-    const SimulationLog log = run(goals({{0.5, CogGoal{}}, {3.5, CogGoal{way}}}, 0));
+    const SimulationLog log = run_viip(goals({{0.5, CogGoal{}}, {3.5, CogGoal{way}}}, 0));
     EXPECT_EQ(log.result.outcome, Outcome::stands);
     const Vector3d from = log.samples[499].cog;
     double settled = 0, squares = 0;
@@ -86,7 +83,7 @@ TEST(ViipHoap1, CogGoesToADisplacementOnBothFeet) {
 }
 
 TEST(ViipHoap1, StepsInPlaceAndStandsWhereItStood) {
-  const SimulationLog log = run(goals({{0.3, CogGoal{}}, {5.8, walk(8, 0)}}));
+  const SimulationLog log = run_viip(goals({{0.3, CogGoal{}}, {5.8, walk(8, 0)}}));
   EXPECT_EQ(log.result.outcome, Outcome::stands);
   EXPECT_EQ(log.result.steps, 8);
   EXPECT_LE(log.result.final_cog_error, 0.002);
@@ -96,7 +93,7 @@ TEST(ViipHoap1, StepsInPlaceAndStandsWhereItStood) {
 TEST(ViipHoap1, WalksAtTheCommandedVelocity) {
   for (const double velocity : {0.05, 0.15, 0.25}) {
     SCOPED_TRACE(velocity);
-    const SimulationLog log = run(goals({{0.3, CogGoal{}}, {8.6, walk(14, velocity)}}));
+    const SimulationLog log = run_viip(goals({{0.3, CogGoal{}}, {8.6, walk(14, velocity)}}));
     EXPECT_EQ(log.result.outcome, Outcome::stands);
     // Thirteen steps of v T, T = 2.1 / omega.
     const double way = 13 * velocity * 2.1 / std::sqrt(9.80665 / log.samples[0].cog.z());
@@ -112,14 +109,15 @@ TEST(ViipHoap1, RealActuatorsStandStepAndWalkToATenthOfAMetrePerSecond) {
   for (const ViipGoal& goal :
        {ViipGoal(CogGoal{{0.02, 0, 0}}), ViipGoal(walk(8, 0)), ViipGoal(walk(2, 0.1)),
         ViipGoal(walk(14, 0.05)), ViipGoal(walk(14, 0.10))})
-    EXPECT_EQ(run(goals({{0.3, CogGoal{}}, {8.6, goal}}), real).result.outcome, Outcome::stands);
+    EXPECT_EQ(run_viip(goals({{0.3, CogGoal{}}, {8.6, goal}}), real).result.outcome,
+              Outcome::stands);
 }
 
 TEST(ViipHoap1, StepsWithNoisyLateSensors) {
   Conditions noisy;
   noisy.noise = true;
   for (const double velocity : {0.0, 0.1})
-    EXPECT_EQ(run(goals({{0.3, CogGoal{}}, {8.6, walk(14, velocity)}}), noisy).result.outcome,
+    EXPECT_EQ(run_viip(goals({{0.3, CogGoal{}}, {8.6, walk(14, velocity)}}), noisy).result.outcome,
               Outcome::stands);
 }
 
@@ -128,7 +126,7 @@ TEST(ViipHoap1, APushWhileSteppingMovesTheFeet) {
   const Pattern steps = goals({{0.3, CogGoal{}}, {7.0, walk(10, 0)}});
   Conditions pushed;
   pushed.pushes = {push(2.5, {1, 0, 0}, 3.4)};
-  const SimulationLog log = run(steps, pushed);
+  const SimulationLog log = run_viip(steps, pushed);
   EXPECT_EQ(log.result.outcome, Outcome::stands);
   double ahead = 0;
   for (const SimulationSample& s : log.samples) ahead = std::max(ahead, s.reference_zmp.x());
@@ -140,18 +138,18 @@ TEST(ViipHoap1, AStepThatComesSoonerStopsALargerPush) {
   const Pattern steps = goals({{0.5, CogGoal{}}, {5.5, walk(12, 0)}});
   Conditions pushed;
   pushed.pushes = {push(2.572, {1, 0, 0}, 1.92 * 2.103)};
-  EXPECT_EQ(run(steps, pushed).result.outcome, Outcome::stands);
+  EXPECT_EQ(run_viip(steps, pushed).result.outcome, Outcome::stands);
   pushed.gains = {{"hurry", 100}};
-  EXPECT_EQ(run(steps, pushed).result.outcome, Outcome::fell);
+  EXPECT_EQ(run_viip(steps, pushed).result.outcome, Outcome::fell);
 }
 
 TEST(ViipHoap1, WithNothingMeasuredItFallsWhereNoticedLandingsAreEnough) {
   const Pattern pattern = goals({{0.5, CogGoal{}}, {6.5, walk(14, 0.1)}});
   Conditions conditions;
   conditions.controller = "viip-landings";
-  EXPECT_EQ(run(pattern, conditions).result.outcome, Outcome::stands);
+  EXPECT_EQ(run_viip(pattern, conditions).result.outcome, Outcome::stands);
   conditions.controller = "viip-nofeedback";
-  EXPECT_EQ(run(pattern, conditions).result.outcome, Outcome::fell);
+  EXPECT_EQ(run_viip(pattern, conditions).result.outcome, Outcome::fell);
 }
 
 // The hardest case: weight goes over to the left foot, the push to its outer side, where no foot
@@ -165,7 +163,7 @@ TEST(ViipHoap1, APushToTheOuterSideOfTheNextStanceFootIsTakenByTheSole) {
   ASSERT_EQ(phases[0].name, "mid double support");
   Conditions pushed;
   pushed.pushes = {push(phases[0].at, {0, 1, 0}, 2.1)};
-  EXPECT_EQ(run(steps, pushed).result.outcome, Outcome::stands);
+  EXPECT_EQ(run_viip(steps, pushed).result.outcome, Outcome::stands);
 }
 
 // DTAD -> VIIP walks ahead -> DTAD goes on with its keys where the feet are.
@@ -188,7 +186,7 @@ TEST(ViipHoap1, PhasesPassTheRobotBetweenDtadAndViip) {
     }
   Conditions dtad;
   dtad.controller = "dtad";
-  const SimulationLog log = run(pattern, dtad);
+  const SimulationLog log = run_viip(pattern, dtad);
   EXPECT_EQ(log.result.outcome, Outcome::stands);
   EXPECT_LE(log.result.final_cog_error, 0.003);
   const double period = 2.1 / std::sqrt(9.80665 / log.samples.front().cog.z());
@@ -207,7 +205,7 @@ TEST(ViipHoap1, ComplaintsOfPhasesThatCannotBeCarried) {
     Conditions conditions;
     conditions.controller = controller;
     try {
-      run(pattern, conditions);
+      run_viip(pattern, conditions);
     } catch (const Error& error) {
       return std::string(error.what());
     }

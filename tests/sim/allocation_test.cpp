@@ -113,11 +113,10 @@ TEST_F(Allocations, ATickThatMovesFootholdsHasNoneAfterTheFirstSteps) {
   options.controller = {ControllerKind::dtad, {{"step", 1}}};
   options.profile = "hoap1-strong";
   options.scenario = pattern.scenario;
-  options.scenario.front().direction = {1, 0, 0};
-  options.scenario.front().magnitude = 2.8;
+  options.scenario.front().what = Push{.magnitude = 2.8, .direction = {1, 0, 0}};
   Simulator simulator(model, series, options);
   simulator.keep_samples(false);
-  simulator.advance(3700);  // joints at their limits have been told
+  simulator.advance(3700);  // joints at their limits have been logged
   EXPECT_EQ(allocations_of([&] { simulator.advance(900); }), 0);
   EXPECT_FALSE(simulator.fell());
   EXPECT_GT((simulator.plan().feet[0].translation() - simulator.command(4600).feet[0].translation())

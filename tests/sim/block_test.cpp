@@ -14,6 +14,8 @@
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/plant/plant.hpp"
+#include "tests/support/error_message.hpp"
+#include "tests/support/mechanical_energy.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {
@@ -21,24 +23,11 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using test::error_message;
 
 constexpr double kHigh = 5.0;  // friction that holds every edge
 
-double kinetic_energy(const RobotModel& model, const RobotState& state) {
-  RobotData data(model);
-  update_velocities(model, state, data);
-  Eigen::MatrixXd M;
-  mass_matrix(model, data, M);
-  return 0.5 * state.velocity().dot(M * state.velocity());
-}
-
-double energy(const RobotModel& model, const RobotState& state) {
-  RobotData data(model);
-  update_positions(model, state, data);
-  return kinetic_energy(model, state) + model.mass() * kGravity * data.cog.z();
-}
-
-// Energy lost by a block that rocks about its edges, as shares left after each impact, told by the
+// Energy lost by a block that rocks about its edges, as shares left after each impact, from the
 // turning points (energy above rest).
 std::vector<double> rocking_ratios(const Vector3d& size, double lean, int impacts, double h) {
   const double alpha = std::atan2(size.x(), size.z());
@@ -183,24 +172,15 @@ TEST(PassiveFlight, EnergyErrorFallsWithFirstOrder) {
   for (const double h : {1e-3, 5e-4, 2.5e-4, 1.25e-4}) {
     Plant plant(model, model.limits(), World{});
     plant.set_state(start);
-    const double before = energy(model, start);
+    const double before = test::mechanical_energy(model, start);
     for (int i = 0; i < std::lround(0.4 / h); ++i)
       plant.step(VectorXd::Zero(model.dof_count()), {}, h);
-    error.push_back(std::abs(energy(model, plant.state()) - before));
+    error.push_back(std::abs(test::mechanical_energy(model, plant.state()) - before));
   }
   for (size_t i = 1; i < error.size(); ++i) {
     EXPECT_LT(error[i], error[i - 1] / 1.7);
     EXPECT_GT(error[i], error[i - 1] / 2.4);
   }
-}
-
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Plant, RefusesNumbersThatAreNoneWithPlaceAndTime) {
@@ -214,21 +194,22 @@ TEST(Plant, RefusesNumbersThatAreNoneWithPlaceAndTime) {
   for (int i = 0; i < 20; ++i) plant.step(target, {}, 1e-3);
   for (const double bad : {nan, 1e9, -std::numeric_limits<double>::infinity()}) {
     target[0] = bad;
-    const std::string text = refusal([&] { plant.step(target, {}, 1e-3); });
+    const std::string text = error_message([&] { plant.step(target, {}, 1e-3); });
     EXPECT_NE(text.find("block: servo target of ankle"), std::string::npos) << text;
     EXPECT_NE(text.find("0.020 s"), std::string::npos) << text;
   }
   target[0] = 0;
   ExternalWrench push;
   push.force.y() = nan;
-  EXPECT_NE(refusal([&] { plant.step(target, {push}, 1e-3); }).find("external force"),
+  EXPECT_NE(error_message([&] { plant.step(target, {push}, 1e-3); }).find("external force"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { plant.step(VectorXd::Zero(2), {}, 1e-3); }).find("2 servo targets"),
+  EXPECT_NE(error_message([&] { plant.step(VectorXd::Zero(2), {}, 1e-3); }).find("2 servo targets"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { plant.step(target, {}, 0); }).find("step length"), std::string::npos);
+  EXPECT_NE(error_message([&] { plant.step(target, {}, 0); }).find("step length"),
+            std::string::npos);
   plant.step(target, {}, 1e-3);  // still usable
   s.base.position.x() = nan;
-  EXPECT_NE(refusal([&] { plant.set_state(s); }).find("base position"), std::string::npos);
+  EXPECT_NE(error_message([&] { plant.set_state(s); }).find("base position"), std::string::npos);
 }
 
 }  // namespace

@@ -28,13 +28,9 @@ int dof(const std::string& name) {
 }
 
 /// From 0.5 s for 1 s.
-Disturbance lasting(DisturbanceType type, double magnitude) {
-  Disturbance d;
-  d.type = type;
-  d.at = 0.5;
-  d.duration = 1.0;
-  d.magnitude = magnitude;
-  return d;
+template <typename What>
+Disturbance lasting(const What& what) {
+  return {.at = 0.5, .duration = 1.0, .what = what};
 }
 
 SimulationLog run(const std::vector<Disturbance>& scenario, double friction = 0.8,
@@ -52,10 +48,8 @@ const SimulationSample& at(const SimulationLog& log, double t) {
 }
 
 TEST(Payload, WeighsWhileItIsCarried) {
-  Disturbance d = lasting(DisturbanceType::payload, 0.3);
-  d.on = "r_forearm";
-  d.point = Vector3d(0, 0, -0.05);
-  const SimulationLog log = run({d});
+  const Payload load{.on = "r_forearm", .point = {0, 0, -0.05}, .mass = 0.3};
+  const SimulationLog log = run({lasting(load)});
   const double weight = hoap1().mass() * kGravity;
   EXPECT_NEAR(at(log, 0.499).fz, weight, 1e-3);
   EXPECT_GT(std::abs(at(log, 0.501).fz - weight), 1e-3);  // felt in the first step
@@ -68,7 +62,7 @@ TEST(Payload, WeighsWhileItIsCarried) {
   update_positions(model, s.state, data);
   const Eigen::Isometry3d hand = link_pose(model, data, model.find_link("r_forearm"));
   const Vector3d together =
-      (model.mass() * data.cog + 0.3 * (hand * d.point)) / (model.mass() + 0.3);
+      (model.mass() * data.cog + 0.3 * (hand * load.point)) / (model.mass() + 0.3);
   EXPECT_NEAR(s.zmp.y(), together.y(), 2e-4);
   EXPECT_NEAR(s.cog.y(), together.y(), 1e-9);
   ASSERT_EQ(log.events.size(), 2u);
@@ -80,21 +74,19 @@ TEST(Payload, WeighsWhileItIsCarried) {
 
 // What is there from the start has settled when the run begins.
 TEST(Payload, FromTheStartIsThereWhileTheRobotSettles) {
-  Disturbance d = lasting(DisturbanceType::payload, 0.3);
+  Disturbance d = lasting(Payload{.on = "r_forearm", .mass = 0.3});
   d.at = 0;
-  d.on = "r_forearm";
   const SimulationLog log = run({d});
   EXPECT_NEAR(at(log, 0).fz, (hoap1().mass() + 0.3) * kGravity, 0.2);
 }
 
 // A pull that ground of 0.8 holds and ground of 0.1 does not.
 TEST(Friction, LetsTheRobotSlideOnce) {
-  Disturbance pull = lasting(DisturbanceType::force, 0.2 * hoap1().mass() * kGravity);
-  pull.on = "l_foot";
-  pull.direction = Vector3d::UnitY();
-  Disturbance slippery = lasting(DisturbanceType::friction, 0.1);
-  slippery.at = 0.8;
-  slippery.duration = 0.2;
+  const Disturbance pull = lasting(Push{.kind = PushKind::force,
+                                        .magnitude = 0.2 * hoap1().mass() * kGravity,
+                                        .on = "l_foot",
+                                        .direction = Vector3d::UnitY()});
+  const Disturbance slippery{.at = 0.8, .duration = 0.2, .what = FrictionChange{0.1}};
   const SimulationLog log = run({pull, slippery});
   EXPECT_LT(std::abs(at(log, 0.79).cog.y() - at(log, 0.49).cog.y()), 0.005);
   const double slid = at(log, 1.0).cog.y() - at(log, 0.79).cog.y();
@@ -105,9 +97,7 @@ TEST(Friction, LetsTheRobotSlideOnce) {
 
 // A servo holds a torque with a sag of torque / kp; with half the gain, twice that.
 TEST(GainLoss, SagsByTorqueOverGain) {
-  Disturbance d = lasting(DisturbanceType::gain_loss, 0.5);
-  d.joint = "l_knee";
-  const SimulationLog log = run({d});
+  const SimulationLog log = run({lasting(GainLoss{.joint = "l_knee", .share = 0.5})});
   const int knee = dof("l_knee");
   const double kp = hoap1().dofs()[static_cast<size_t>(knee)].servo.kp;
   for (const auto& [t, gain] : {std::pair{0.49, kp}, {1.45, 0.5 * kp}, {1.95, kp}}) {
@@ -121,12 +111,11 @@ TEST(GainLoss, SagsByTorqueOverGain) {
 // Servo and controller read the same wrong angle: the joint is off by the offset, and neither
 // knows.
 TEST(EncoderOffset, MovesTheJointUnseen) {
-  Disturbance d = lasting(DisturbanceType::encoder_offset, 0.02);
-  d.joint = hoap1().dof_names().back();
+  const std::string joint = hoap1().dof_names().back();
   SimulateOptions options;
   options.controller.type = ControllerKind::none;
-  options.scenario = {d};
-  const int j = dof(d.joint);
+  options.scenario = {lasting(EncoderOffset{.joint = joint, .offset = 0.02})};
+  const int j = dof(joint);
   Simulator simulator(hoap1(), stand(), options);
   simulator.advance(490);
   const double before = simulator.state().theta[j];
@@ -158,10 +147,8 @@ TEST(JointFriction, HoldsWhatTheServoCannotMove) {
 
 // Every reading is three ticks older than without; the motion (open loop) is the same.
 TEST(Latency, DelaysEveryReading) {
-  Disturbance push = lasting(DisturbanceType::impulse, 0.2);
-  push.at = 0.6;
-  push.duration = 0.02;
-  const Disturbance latency = lasting(DisturbanceType::latency, 0.003);
+  const Disturbance push{.at = 0.6, .duration = 0.02, .what = Push{.magnitude = 0.2}};
+  const Disturbance latency = lasting(Latency{0.003});
   const SimulationLog late = run({push, latency}), now = run({push});
   for (const size_t k : {700u, 900u, 1400u}) {
     EXPECT_EQ(late.samples[k].cog, now.samples[k].cog);
@@ -172,12 +159,9 @@ TEST(Latency, DelaysEveryReading) {
 }
 
 TEST(SensorBias, TurnsTheAttitudeAndLoadsTheCells) {
-  Disturbance d = lasting(DisturbanceType::sensor_bias, 0);
-  d.tilt_bias = Eigen::Vector2d(0, 0.02);
-  d.force_bias = 0.5;
   SimulateOptions options;
   options.controller.type = ControllerKind::none;
-  options.scenario = {d};
+  options.scenario = {lasting(SensorBias{.tilt = {0, 0.02}, .load = 0.5})};
   Simulator simulator(hoap1(), stand(), options);
   simulator.advance(490);
   const Estimate before = simulator.last_estimate();
@@ -195,10 +179,7 @@ TEST(SensorBias, TurnsTheAttitudeAndLoadsTheCells) {
 }
 
 TEST(Floor, CarriesAndTiltsTheRobot) {
-  Disturbance d = lasting(DisturbanceType::floor, 0);
-  d.floor.tilt = Eigen::Vector2d(0, 0.03);
-  d.floor.shift = Vector3d(0, 0.02, 0.01);
-  const SimulationLog log = run({d});
+  const SimulationLog log = run({lasting(FloorPath{.tilt = {0, 0.03}, .shift = {0, 0.02, 0.01}})});
   const auto sole = [&](double t) {
     RobotData data(hoap1());
     update_positions(hoap1(), at(log, t).state, data);
@@ -213,16 +194,20 @@ TEST(Floor, CarriesAndTiltsTheRobot) {
   EXPECT_LT(log.result.max_slip, 5e-4) << "the feet go with the floor";
 }
 
+Bump bump_under_the_left_foot() {
+  return {.foot = Side::left,
+          .place = hoap1().sole(Side::left).center,
+          .radius = 0.015,
+          .height = 0.003};
+}
+
 TEST(Bump, LiftsTheFootItRisesUnder) {
-  Disturbance d = lasting(DisturbanceType::bump, 0.003);
-  d.foot = Side::left;
-  d.place = hoap1().sole(Side::left).center;
-  d.radius = 0.015;
-  const SimulationLog log = run({d});
+  const Eigen::Vector2d place = hoap1().sole(Side::left).center;
+  const SimulationLog log = run({lasting(bump_under_the_left_foot())});
   RobotData data(hoap1());
   const auto height = [&](double t) {  // of the sole over the bump's middle
     update_positions(hoap1(), at(log, t).state, data);
-    return (sole_pose(hoap1(), data, Side::left) * Vector3d(d.place.x(), d.place.y(), 0)).z();
+    return (sole_pose(hoap1(), data, Side::left) * Vector3d(place.x(), place.y(), 0)).z();
   };
   EXPECT_NEAR(height(0.49), 0, 1e-4);
   EXPECT_NEAR(height(1.4), 0.003, 4e-4);
@@ -231,16 +216,14 @@ TEST(Bump, LiftsTheFootItRisesUnder) {
 }
 
 TEST(Bump, FromTheStartHasBeenThereBefore) {
-  Disturbance d = lasting(DisturbanceType::bump, 0.003);
+  const Eigen::Vector2d place = hoap1().sole(Side::left).center;
+  Disturbance d = lasting(bump_under_the_left_foot());
   d.at = 0;
-  d.foot = Side::left;
-  d.place = hoap1().sole(Side::left).center;
-  d.radius = 0.015;
   const SimulationLog log = run({d}, 0.8, 1.5);
   RobotData data(hoap1());
   const auto height = [&](double t) {
     update_positions(hoap1(), at(log, t).state, data);
-    return (sole_pose(hoap1(), data, Side::left) * Vector3d(d.place.x(), d.place.y(), 0)).z();
+    return (sole_pose(hoap1(), data, Side::left) * Vector3d(place.x(), place.y(), 0)).z();
   };
   EXPECT_NEAR(height(0), 0.003, 4e-4);
   for (double t = 0; t < 0.1; t += 0.002)
@@ -249,10 +232,8 @@ TEST(Bump, FromTheStartHasBeenThereBefore) {
 }
 
 TEST(Scenario, UnknownJointsAreNamed) {
-  Disturbance d = lasting(DisturbanceType::gain_loss, 0.5);
-  d.joint = "l_kneee";
   try {
-    run({d});
+    run({lasting(GainLoss{.joint = "l_kneee", .share = 0.5})});
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("no joint 'l_kneee'; did you mean 'l_knee'"),

@@ -9,6 +9,7 @@
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/plant/plant.hpp"
 #include "tests/support/block.hpp"
+#include "tests/support/mechanical_energy.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi {
@@ -16,17 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-/// Kinetic, rotors included, and potential over z = 0 [J].
-double energy(const RobotModel& model, const RobotState& state) {
-  RobotData data(model);
-  update_velocities(model, state, data);
-  Eigen::MatrixXd M;
-  mass_matrix(model, data, M);
-  for (int j = 0; j < model.dof_count(); ++j)
-    M(6 + j, 6 + j) += model.dofs()[j].servo.rotor_inertia;
-  return 0.5 * state.velocity().dot(M * state.velocity()) + model.mass() * kGravity * data.cog.z();
-}
 
 double sum(const EnergyBalance& w) { return w.servos + w.contacts + w.outside + w.joints; }
 
@@ -65,7 +55,7 @@ double imbalance(const RobotModel& model, double h) {
   const CommandSample start = test::standing(model, 0).samples[0];
   Plant plant(model, model.limits(), World{});
   plant.set_state(start.state);
-  const double before = energy(model, start.state);
+  const double before = test::mechanical_energy(model, start.state);
   StepInput input;
   input.joints.resize(static_cast<size_t>(model.dof_count()), {.coulomb = 0.05, .viscous = 0.02});
   double worst = 0, done = 0;
@@ -85,7 +75,8 @@ double imbalance(const RobotModel& model, double h) {
       input.wrenches.push_back(push);
     }
     done += sum(plant.step(target, input, h).work);
-    worst = std::max(worst, std::abs(energy(model, plant.state()) - before - done));
+    worst =
+        std::max(worst, std::abs(test::mechanical_energy(model, plant.state()) - before - done));
   }
   return worst;
 }

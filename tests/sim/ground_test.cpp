@@ -19,8 +19,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-constexpr double kStep = 1e-3;
+using test::kStep;
 
 GroundBlock step_at(const Vector2d& low, const Vector2d& high, double height) {
   GroundBlock block;
@@ -126,7 +125,7 @@ TEST(MovingFloor, CarriesABlockAsFarAsFrictionHolds) {
 TEST(MovingFloor, TipsABlockAtTheRightEdgeAndAngle) {
   const Vector3d size(0.06, 0.2, 0.2);
   const double expected = std::atan2(size.x(), size.z());
-  const std::vector<FloorMotion> motions = {{MotionShape::ramp, 0.1, 20, 0, {0, 0.6}, {0, 0, 0}}};
+  const std::vector<FloorMotion> motions = {{0.1, 20, {.tilt = {0, 0.6}}}};
   BlockIn block(World{.friction = 3}, {0, 0, 0.5 * size.z()}, size);
   double tipped_at = 0;
   for (long k = 0; k < 20000 && tipped_at == 0; ++k) {

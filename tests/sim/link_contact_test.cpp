@@ -17,8 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-constexpr double kStep = 1e-3;
+using test::kStep;
 
 /// Adds a box that is free to go anywhere: three slides and three turns without motors, on links
 /// that weigh next to nothing.

@@ -10,6 +10,7 @@
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/plant/plant.hpp"
 #include "tests/support/block.hpp"
+#include "tests/support/mechanical_energy.hpp"
 #include "tests/support/odd_urdf.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -54,27 +55,19 @@ TEST_P(OddFlight, KeepsMomentumWhileServosSwingTheLimbs) {
   EXPECT_LT((after.angular - before.angular).norm(), 1e-9 * before.angular.norm());
 }
 
-double energy(const RobotModel& model, const RobotState& state) {
-  RobotData data(model);
-  Eigen::MatrixXd M;
-  update_velocities(model, state, data);
-  mass_matrix(model, data, M);
-  return 0.5 * state.velocity().dot(M * state.velocity()) + model.mass() * kGravity * data.cog.z();
-}
-
 TEST_P(OddFlight, LosesEnergyOfTheFirstOrderWithoutMotors) {
   for (JointDescription& joint : d.joints) joint.has_limits = false;
   const RobotModel model = with_servos({});
   RobotState start = test::random_state(model, random);
   start.base.position.z() = 100;
-  const double before = energy(model, start);
+  const double before = test::mechanical_energy(model, start);
   std::vector<double> error;
   for (const double h : {4e-5, 2e-5, 1e-5}) {
     Plant plant(model, model.limits(), World{});
     plant.set_state(start);
     for (int i = 0; i < std::lround(0.04 / h); ++i)
       plant.step(VectorXd::Zero(model.dof_count()), {}, h);
-    error.push_back(std::abs(energy(model, plant.state()) - before));
+    error.push_back(std::abs(test::mechanical_energy(model, plant.state()) - before));
   }
   for (size_t i = 1; i < error.size(); ++i) {
     EXPECT_LT(error[i], 0.62 * error[i - 1]);
@@ -103,7 +96,7 @@ std::string box_mesh(const Vector3d& size, bool stl) {
   return text + (stl ? "endsolid box\n" : "");
 }
 
-// A mesh in millimetres, told smaller by its scale and turned against its link, lands on a slope
+// A mesh in millimetres, made smaller by its scale and turned against its link, lands on a slope
 // and stays; its weight is on the ground and it lies as the box it is.
 TEST(MeshOnTheGround, LiesWhereItsShapeIs) {
   for (const std::string name : {"box.stl", "box.obj"}) {

@@ -26,11 +26,7 @@ struct Stand {
     options.scenario = {push(0.3)};
   }
   static Disturbance push(double impulse, double at = 0.3) {
-    Disturbance d;
-    d.at = at;
-    d.duration = 0.02;
-    d.magnitude = impulse;
-    return d;
+    return {.at = at, .duration = 0.02, .what = Push{.magnitude = impulse}};
   }
 };
 
@@ -80,10 +76,8 @@ TEST(Simulator, WithoutSamplesTheVerdictIsTheSame) {
 TEST(Simulator, RefusesAnUnknownLinkWhenTheScenarioIsReplaced) {
   const Stand stand;
   Simulator simulator(stand.model, stand.series, stand.options);
-  Disturbance push = Stand::push(1);
-  push.on = "trunkk";
   try {
-    simulator.set_scenario({push});
+    simulator.set_scenario({{.what = Push{.magnitude = 1, .on = "trunkk"}}});
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("no link 'trunkk'"), std::string::npos);

@@ -142,16 +142,15 @@ TEST_P(Walking, IsTheSameInAMirror) {
   for (const auto& [walk, push] : cases) {
     SimulateOptions options;
     options.controller.type = controller_type(GetParam());
-    if (push > 0) {
-      Disturbance d;
-      d.at = 1.9;
-      d.duration = 0.02;
-      d.magnitude = push;
-      d.direction = Vector3d(0.6, 0.8, 0);
-      options.scenario = {d};
-    }
+    const auto pushed = [&](const Vector3d& direction) -> std::vector<Disturbance> {
+      if (push == 0) return {};
+      return {
+          {.at = 1.9, .duration = 0.02, .what = Push{.magnitude = push, .direction = direction}}};
+    };
+    const Vector3d direction(0.6, 0.8, 0);
+    options.scenario = pushed(direction);
     const SimulationLog here = simulate(hoap1(), *walk, options);
-    for (Disturbance& d : options.scenario) d.direction = test::mirrored(d.direction);
+    options.scenario = pushed(test::mirrored(direction));
     const CommandSeries plan = test::mirrored(hoap1(), image, *walk);
     SimulationLog there = simulate(image, plan, options);
     ASSERT_EQ(there.result.outcome, here.result.outcome);

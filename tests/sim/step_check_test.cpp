@@ -11,6 +11,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/sim/plant/plant.hpp"
 #include "tests/support/block.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {
@@ -18,15 +19,6 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "taken";
-}
 
 const double kBad[] = {std::numeric_limits<double>::quiet_NaN(),
                        -std::numeric_limits<double>::infinity(), 1e9};
@@ -51,7 +43,7 @@ TEST(StepCheck, RefusesWhatIsNoNumberWithPlaceAndTime) {
       input.joints.resize(n);
       input.floor.emplace();
       spoil(input);
-      const std::string text = refusal([&] { plant.step(targets, input, 1e-3); });
+      const std::string text = test::error_message([&] { plant.step(targets, input, 1e-3); });
       EXPECT_NE(text.find(place), std::string::npos) << text;
       EXPECT_NE(text.find("0.030 s after"), std::string::npos) << text;
     };
@@ -79,11 +71,13 @@ TEST(StepCheck, RefusesWhatIsNoNumberWithPlaceAndTime) {
     });
     RobotState s = start;
     s.dtheta[1] = bad;
-    EXPECT_NE(refusal([&] { plant.set_state(s); }).find("a joint rate"), std::string::npos);
+    EXPECT_NE(test::error_message([&] { plant.set_state(s); }).find("a joint rate"),
+              std::string::npos);
   }
   RobotState s = start;
   s.base.attitude.coeffs() *= 0.5;
-  EXPECT_NE(refusal([&] { plant.set_state(s); }).find("unit quaternion"), std::string::npos);
+  EXPECT_NE(test::error_message([&] { plant.set_state(s); }).find("unit quaternion"),
+            std::string::npos);
   EXPECT_EQ(plant.state().base.position, before.base.position);
   EXPECT_EQ(plant.state().theta, before.theta);
   plant.step(targets, {}, 1e-3);
@@ -92,7 +86,7 @@ TEST(StepCheck, RefusesWhatIsNoNumberWithPlaceAndTime) {
 TEST(StepCheck, RefusesAWorldThatIsNone) {
   const RobotModel model(test::block_description({0.1, 0.1, 0.1}, 1.0));
   const auto expect = [&](const std::string& place, const World& world) {
-    const std::string text = refusal([&] { Plant(model, model.limits(), world); });
+    const std::string text = test::error_message([&] { Plant(model, model.limits(), world); });
     EXPECT_NE(text.find(place), std::string::npos) << text;
   };
   for (const double bad : kBad) {

@@ -5,6 +5,8 @@
 
 namespace ayumi::test {
 
+inline constexpr double kStep = 1e-3;  ///< of the integrator [s]
+
 /// A homogeneous box of edges `size` [m] and `mass` [kg], its collision shape itself.
 inline RobotDescription block_description(const Eigen::Vector3d& size, double mass) {
   RobotDescription d;

@@ -36,7 +36,7 @@ inline StepInput floor_input(const std::vector<FloorMotion>& motions, long k, do
 
 /// A floor shaken along x, 2 Hz.
 inline std::vector<FloorMotion> shaking(double amplitude) {
-  return {{MotionShape::sine, 0.2, 10, 2, {0, 0}, {amplitude, 0, 0}}};
+  return {{0.2, 10, {MotionShape::sine, 2, {0, 0}, {amplitude, 0, 0}}}};
 }
 
 /// How far a block moves on that floor, once it has caught up: the sine begins at full speed [m].

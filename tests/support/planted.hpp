@@ -6,6 +6,7 @@
 
 #include "ayumi/author/generate/generate.hpp"
 #include "tests/support/check_report.hpp"
+#include "tests/support/degree.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
 
@@ -14,8 +15,6 @@ namespace ayumi::test {
 namespace planted {
 
 using Kinds = std::set<std::string>;
-
-inline constexpr double kDegree = M_PI / 180;
 
 inline Pattern table_of(Pattern pattern, const std::string& profile = "") {
   pattern.robot = "hoap1";
@@ -48,20 +47,20 @@ inline double middle_of(const Pattern& pattern, size_t phase) {
 struct Errors {
   Kinds kinds;
   std::vector<Finding> all;
-  std::string told;
+  std::string printed;
 };
 
 inline Errors errors_of(const Pattern& pattern) {
   Errors errors;
-  std::ostringstream told;
+  std::ostringstream printed;
   for (const Finding& f : report_of(hoap1(), pattern).findings) {
-    told << name_of(f.severity) << " " << name_of(f.kind) << " " << f.where << " at " << f.at
-         << " worst " << f.worst << " <- " << f.follows_from << "\n";
+    printed << name_of(f.severity) << " " << name_of(f.kind) << " " << f.where << " at " << f.at
+            << " worst " << f.worst << " <- " << f.follows_from << "\n";
     if (f.severity != Severity::error) continue;
     errors.kinds.insert(name_of(f.kind));
     errors.all.push_back(f);
   }
-  errors.told = told.str();
+  errors.printed = printed.str();
   return errors;
 }
 

@@ -4,10 +4,9 @@
 #include <random>
 
 #include "ayumi/motion/pattern.hpp"
+#include "tests/support/degree.hpp"
 
 namespace ayumi::test {
-
-inline constexpr double kDegreeInRadians = EIGEN_PI / 180;
 
 class PatternDice {
  public:
@@ -19,7 +18,7 @@ class PatternDice {
   int pick(int count) { return static_cast<int>(engine_() % static_cast<unsigned>(count)); }
   // An angle the file's unit can hold: any double in rad, a rounded number in degrees.
   double angle(bool degrees) {
-    return degrees ? std::round(uniform(-180, 180) * 1e4) / 1e4 * kDegreeInRadians : uniform(-3, 3);
+    return degrees ? std::round(uniform(-180, 180) * 1e4) / 1e4 * kDegree : uniform(-3, 3);
   }
   Foothold foothold(bool degrees) {
     Foothold foot;
@@ -54,17 +53,13 @@ inline Keyframe random_keyframe(PatternDice& random, bool degrees, double t) {
   return key;
 }
 
-inline Disturbance random_push(PatternDice& random) {
-  Disturbance push;
-  push.type = static_cast<DisturbanceType>(random.pick(3));
-  push.at = random.uniform(0, 3);
-  push.duration = random.uniform(0, 1);
+inline Push random_push(PatternDice& random) {
+  Push push{.kind = static_cast<PushKind>(random.pick(3)), .magnitude = random.uniform(0, 10)};
   push.direction = Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0.1).normalized();
-  push.magnitude = random.uniform(0, 10);
-  push.shape = static_cast<DisturbanceShape>(random.pick(2));
+  push.shape = static_cast<PushShape>(random.pick(2));
   if (random.coin()) {
     push.on = "torso";
-    push.frame = DisturbanceFrame::link;
+    push.frame = PushFrame::link;
     push.point.setConstant(random.uniform(-1, 1));
   }
   return push;
@@ -90,30 +85,56 @@ inline ViipGoal random_goal(PatternDice& random, bool degrees) {
   }
 }
 
-/// A disturbance of any type but a push, with what its type has.
-inline Disturbance random_disturbance(PatternDice& random) {
-  Disturbance d;
-  d.type = static_cast<DisturbanceType>(3 + random.pick(9));
-  d.at = random.uniform(0, 3);
-  d.duration = random.uniform(0.1, 1);
-  d.magnitude = random.uniform(0, 1);
-  const bool joint = d.type >= DisturbanceType::encoder_offset;
-  if (joint && random.coin()) d.joint = "l_knee";
-  if (d.type == DisturbanceType::encoder_offset) d.magnitude = 0;
-  if (d.type == DisturbanceType::joint_friction) d.viscous = random.uniform(0, 1);
-  if (d.type == DisturbanceType::payload) d.on = "torso";
-  if (d.type == DisturbanceType::payload) d.point.setConstant(random.uniform(-1, 1));
-  if (d.type == DisturbanceType::sensor_bias) d.force_bias = d.magnitude;
-  if (d.type == DisturbanceType::sensor_bias || d.type == DisturbanceType::floor) d.magnitude = 0;
-  if (d.type == DisturbanceType::bump) {
-    if (random.coin()) d.foot = Side::right;
-    d.place = Eigen::Vector2d(random.uniform(-1, 1), random.uniform(-1, 1));
-    d.radius = random.uniform(0.01, 0.1);
-  }
-  if (d.type == DisturbanceType::floor) {
-    d.floor.shape = static_cast<MotionShape>(random.pick(3));
-    if (d.floor.shape == MotionShape::sine) d.floor.frequency = random.uniform(0.1, 2);
-    d.floor.shift = Eigen::Vector3d(random.uniform(-1, 1), 0, random.uniform(-1, 1));
+inline Bump random_bump(PatternDice& random) {
+  Bump bump{.radius = random.uniform(0.01, 0.1), .height = random.uniform(0, 1)};
+  if (random.coin()) bump.foot = Side::right;
+  bump.place = {random.uniform(-1, 1), random.uniform(-1, 1)};
+  return bump;
+}
+
+inline FloorPath random_floor(PatternDice& random, bool degrees) {
+  FloorPath path{.shape = static_cast<MotionShape>(random.pick(3))};
+  if (path.shape == MotionShape::sine) path.frequency = random.uniform(0.1, 2);
+  if (random.coin()) path.tilt.y() = random.angle(degrees) / 4;
+  path.shift = {random.uniform(-1, 1), 0, random.uniform(-1, 1)};
+  return path;
+}
+
+inline Disturbance random_disturbance(PatternDice& random, bool degrees) {
+  Disturbance d{.at = random.uniform(0, 3), .duration = random.uniform(0.1, 1)};
+  const std::string joint = random.coin() ? "l_knee" : "";
+  switch (random.pick(10)) {
+    case 0:
+      d.what = random_push(random);
+      break;
+    case 1:
+      d.what =
+          Payload{"torso", Eigen::Vector3d::Constant(random.uniform(-1, 1)), random.uniform(0, 1)};
+      break;
+    case 2:
+      d.what = random_floor(random, degrees);
+      break;
+    case 3:
+      d.what = FrictionChange{random.uniform(0, 1)};
+      break;
+    case 4:
+      d.what = random_bump(random);
+      break;
+    case 5:
+      d.what = Latency{random.uniform(0, 1)};
+      break;
+    case 6:
+      d.what = SensorBias{
+          {random.angle(degrees) / 4, 0}, {0, random.angle(degrees), 0}, random.uniform(0, 1)};
+      break;
+    case 7:
+      d.what = EncoderOffset{joint, random.angle(degrees)};
+      break;
+    case 8:
+      d.what = JointFriction{joint, random.uniform(0, 1), random.uniform(0, 1)};
+      break;
+    default:
+      d.what = GainLoss{joint, random.uniform(0, 1)};
   }
   return d;
 }
@@ -137,7 +158,8 @@ inline World random_ground(PatternDice& random) {
   if (random.coin()) {
     world.patches.push_back({{0, random.uniform(-1, 0)}, {1, 2}, random.uniform(0, 1)});
     world.fields.push_back({{0.1, random.uniform(-1, 1)}, 0.02, Eigen::MatrixXd::Random(3, 2)});
-    world.motions.push_back({MotionShape::sine, 0.5, 2, random.uniform(0.1, 1), {0, 0}, {0, 1, 0}});
+    world.motions.push_back(
+        {0.5, 2, {MotionShape::sine, random.uniform(0.1, 1), {0, 0}, {0, 1, 0}}});
   }
   return world;
 }
@@ -173,11 +195,10 @@ inline Pattern random_pattern(unsigned seed) {
   p.world = random_ground(random);
   p.world.friction = random.uniform(0, 2);
   if (random.coin()) p.world.slope.y() = random.angle(p.degrees) / 4;
-  if (p.degrees)
-    p.world.slope.y() = std::round(p.world.slope.y() / kDegreeInRadians) * kDegreeInRadians;
+  if (p.degrees) p.world.slope.y() = std::round(p.world.slope.y() / kDegree) * kDegree;
   if (random.coin()) p.controller.gains = {{"ka", random.uniform(0, 3)}, {"q", 0.25}};
-  for (int i = 0; i < random.pick(3); ++i) p.scenario.push_back(random_push(random));
-  for (int i = 0; i < random.pick(3); ++i) p.scenario.push_back(random_disturbance(random));
+  for (int i = 0; i < random.pick(5); ++i)
+    p.scenario.push_back(random_disturbance(random, p.degrees));
   if (random.coin()) p.tolerances["foot_slip"] = random.uniform(0, 1);
   if (random.coin()) {
     p.repair.joints = {"l_knee", "b \"c\""};

@@ -49,7 +49,7 @@ void judge_servo_steps(JudgedMotion& motion) {
 void judge_servo_targets(JudgedMotion& motion) {
   const double dt = motion.series.dt;
   const int ticks = servo_ticks(motion);
-  const Eigen::VectorXd lead = servo_lead(motion.model);
+  const Eigen::VectorXd lead = velocity_lead(motion.model);
   const double most = motion.tolerance(FindingKind::servo_step);
   const auto target = [&](int k, int i) {
     const RobotState& s = motion.series.samples[k].state;

@@ -16,14 +16,14 @@ namespace {
 double share_of(const FloorMotion& motion, double t) {
   const double since = t - motion.at;
   if (since < 0) return 0;
-  if (motion.shape == MotionShape::ramp) {
+  if (motion.path.shape == MotionShape::ramp) {
     if (since >= motion.duration) return 1;
     const double s = since / motion.duration;
     return s * s * s * (10 - 15 * s + 6 * s * s);
   }
   if (since >= motion.duration) return 0;
-  return motion.shape == MotionShape::sine ? std::sin(2 * M_PI * motion.frequency * since)
-                                           : std::sin(M_PI * since / motion.duration);
+  return motion.path.shape == MotionShape::sine ? std::sin(2 * M_PI * motion.path.frequency * since)
+                                                : std::sin(M_PI * since / motion.duration);
 }
 
 }  // namespace
@@ -50,8 +50,8 @@ Eigen::Isometry3d floor_pose(const World& world, const std::vector<FloorMotion>&
   for (const std::vector<FloorMotion>* list : {&world.motions, &further})
     for (const FloorMotion& motion : *list) {
       const double share = share_of(motion, std::max(t, 0.0));
-      tilt.head<2>() += share * motion.tilt;
-      shift += share * motion.shift;
+      tilt.head<2>() += share * motion.path.tilt;
+      shift += share * motion.path.shift;
     }
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = exp_rotation(tilt).toRotationMatrix();

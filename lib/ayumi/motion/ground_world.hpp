@@ -35,16 +35,21 @@ struct HeightField {
 
 enum class MotionShape { ramp, half_sine, sine };
 
-/// A declared motion of the whole floor; several motions add up.
-///   ramp: smoothly (minimum jerk) to the full value within `duration`, where it stays;
-///   half_sine: to the full value and back within `duration`;
-///   sine: sin(2 pi frequency (t - at)) for `duration`, then zero.
-struct FloorMotion {
+/// Where a motion takes the whole floor, and how.
+///   ramp: smoothly (minimum jerk) to the full value within the duration, where it stays;
+///   half_sine: to the full value and back within the duration;
+///   sine: sin(2 pi frequency (t - at)) for the duration, then zero.
+struct FloorPath {
   MotionShape shape = MotionShape::ramp;
-  double at = 0, duration = 0;                      ///< [s]
   double frequency = 0;                             ///< of a sine [Hz]
   Eigen::Vector2d tilt = Eigen::Vector2d::Zero();   ///< about the world's x and y axis [rad]
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< along the world's axes [m]
+};
+
+/// A declared motion of the whole floor; several motions add up.
+struct FloorMotion {
+  double at = 0, duration = 0;  ///< [s]
+  FloorPath path{};
 };
 
 struct World {

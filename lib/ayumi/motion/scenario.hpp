@@ -1,9 +1,10 @@
 #pragma once
-// The disturbances of a scenario.
+// The disturbances of a scenario: when each acts, and what it is. Every kind has its own struct.
 
 #include <Eigen/Geometry>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "ayumi/model/robot_model.hpp"
@@ -11,52 +12,91 @@
 
 namespace ayumi {
 
-enum class DisturbanceType {
-  impulse,         ///< [N s], spread over the duration
-  force,           ///< [N]
-  torque,          ///< [N m]
-  payload,         ///< a mass [kg] at a point of a link
-  floor,           ///< the floor tilts or shifts
-  friction,        ///< the whole ground, patches included, has this coefficient
-  bump,            ///< a disc rises from the ground
-  latency,         ///< additional age of every reading [s]
-  sensor_bias,     ///< of attitude, gyro and load cells
-  encoder_offset,  ///< error of an encoder, for servo and controller [rad, m]
-  joint_friction,  ///< additional Coulomb [N m, N] and viscous friction
-  gain_loss,       ///< missing fraction of the servo's kp and kd
+enum class PushKind { impulse, force, torque };
+enum class PushShape { rectangle, half_sine };  ///< of the force over the duration
+enum class PushFrame { world, link };
+
+/// A force or a torque on the robot.
+struct Push {
+  PushKind kind = PushKind::impulse;
+  double magnitude = 0;    ///< impulse [N s]; largest force [N] or torque [N m]
+  std::string on = "cog";  ///< "cog" or a link name
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< on that link, link frame [m]
+  PushFrame frame = PushFrame::world;                    ///< of `direction`
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< unit vector
+  PushShape shape = PushShape::rectangle;
 };
-enum class DisturbanceShape { rectangle, half_sine };
-enum class DisturbanceFrame { world, link };
+
+/// A point mass that a link carries.
+struct Payload {
+  std::string on{};                                 ///< link name
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< link frame [m]
+  double mass = 0;                                  ///< [kg]
+};
+
+/// The whole ground, its patches included, has this coefficient of friction.
+struct FrictionChange {
+  double friction = 0;
+};
+
+/// A disc that rises from the ground: under a foot, where the foot is then, or at a place.
+struct Bump {
+  std::optional<Side> foot{};
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< sole's frame, or the ground's [m]
+  double radius = 0.01;                             ///< [m]
+  double height = 0;                                ///< over the plane of the ground [m]
+};
+
+/// Every reading of the sensors is older by this.
+struct Latency {
+  double latency = 0;  ///< [s]
+};
+
+/// Constant errors of the sensors.
+struct SensorBias {
+  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();  ///< of the attitude about x and y [rad]
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< frame of the IMU [rad/s]
+  double load = 0;                                 ///< of every load cell [N]
+};
+
+/// What an encoder reads in excess, for servo and controller alike.
+struct EncoderOffset {
+  std::string joint{};  ///< "": all joints
+  double offset = 0;    ///< [rad, m]
+};
+
+/// Friction of a joint in addition to its own.
+struct JointFriction {
+  std::string joint{};  ///< "": all joints
+  double coulomb = 0;   ///< [N m, N]
+  double viscous = 0;   ///< [N m s/rad, N s/m]
+};
+
+/// A servo that has lost a fraction of kp and kd.
+struct GainLoss {
+  std::string joint{};  ///< "": all joints
+  double share = 0;     ///< 0 to 1
+};
 
 /// A scripted disturbance. It acts during whole integrator steps: from step round(at/dt) on for
 /// round(duration/dt) steps, at least one; the time integral of an impulse is exact. Lasting
-/// disturbances (all but impulse, force, torque and floor) that begin at 0 are already active while
+/// disturbances (all but pushes and motions of the floor) that begin at 0 are already active while
 /// the robot settles before the start.
 struct Disturbance {
-  DisturbanceType type = DisturbanceType::impulse;
-  double at = 0;                                         ///< start [s]
-  double duration = 0;                                   ///< [s]
-  std::string on = "cog";                                ///< "cog" or a link name
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< on that link, link frame [m]
-  DisturbanceFrame frame = DisturbanceFrame::world;      ///< of `direction`
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< normalised on loading
-  double magnitude = 0;  ///< in the unit of the type; height of a bump [m]
-  DisturbanceShape shape = DisturbanceShape::rectangle;
-  FloorMotion floor{};                                  ///< of a floor; times are at, duration
-  std::string joint{};                                  ///< of the last three types; "": all
-  double viscous = 0;                                   ///< of joint_friction [N m s/rad, N s/m]
-  std::optional<Side> foot{};                           ///< of a bump: under this foot's sole
-  Eigen::Vector2d place = Eigen::Vector2d::Zero();      ///< of a bump: on the sole or ground [m]
-  double radius = 0.01;                                 ///< of a bump [m]
-  Eigen::Vector2d tilt_bias = Eigen::Vector2d::Zero();  ///< of the attitude about x and y [rad]
-  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< [rad/s]
-  double force_bias = 0;                                ///< of every load cell [N]
+  double at = 0;        ///< start [s]
+  double duration = 0;  ///< [s]
+  std::variant<Push, Payload, FloorPath, FrictionChange, Bump, Latency, SensorBias, EncoderOffset,
+               JointFriction, GainLoss>
+      what{};
 };
 
-/// "impulse", "joint_friction", ...
-const char* name_of(DisturbanceType type);
+/// "impulse", "force", "torque": the name of a push in pattern files.
+const char* name_of(PushKind kind);
 
-/// The motion of the floor in a disturbance of type floor.
-FloorMotion floor_motion(const Disturbance& disturbance);
+/// The name of a disturbance in pattern files: "impulse", "payload", "joint_friction", ...
+const char* name_of(const Disturbance& disturbance);
+
+/// The motions of the floor among the disturbances.
+std::vector<FloorMotion> floor_motions(const std::vector<Disturbance>& scenario);
 
 }  // namespace ayumi

@@ -6,7 +6,7 @@
 
 namespace ayumi {
 
-Eigen::VectorXd servo_lead(const RobotModel& model) {
+Eigen::VectorXd velocity_lead(const RobotModel& model) {
   Eigen::VectorXd lead(model.dof_count());
   for (int j = 0; j < model.dof_count(); ++j) {
     const ServoDescription& servo = model.dofs()[j].servo;
@@ -17,7 +17,7 @@ Eigen::VectorXd servo_lead(const RobotModel& model) {
 
 DenseTable postures_of(const RobotModel& model, DenseTable table) {
   if (!table.commands) return table;
-  const Eigen::VectorXd lead = servo_lead(model);
+  const Eigen::VectorXd lead = velocity_lead(model);
   for (size_t i = 0; i < table.joints.size(); ++i) {
     const int dof = model.find_dof(table.joints[i]);
     if (dof < 0 || !(lead[dof] > 0)) continue;

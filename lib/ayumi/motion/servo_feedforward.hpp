@@ -9,7 +9,7 @@ namespace ayumi {
 
 /// Time by which a servo target has to lead so that the joint does not lag: kd / kp of each joint
 /// [s].
-Eigen::VectorXd servo_lead(const RobotModel& model);
+Eigen::VectorXd velocity_lead(const RobotModel& model);
 
 /// The table with postures as theta. Where they are servo targets (`table.commands`), the lead is
 /// removed, exactly for targets that are linear between rows and rest at the first row. Joints that

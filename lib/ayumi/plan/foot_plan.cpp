@@ -135,11 +135,12 @@ void FootPlan::read_phases(const Pattern& pattern) {
 
 void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
   std::array<std::vector<TrackKey>, 6> keys;
-  const auto add = [&](double t, const Vector3d& position, const Vector3d& rpy, Interpolation way) {
+  const auto add = [&](double t, const Vector3d& position, const Vector3d& rpy,
+                       Interpolation interpolation) {
     for (int i = 0; i < 3; ++i) {
-      keys[i].push_back({t, position[i], way});
+      keys[i].push_back({t, position[i], interpolation});
       const double last = keys[3 + i].empty() ? rpy[i] : keys[3 + i].back().value;
-      keys[3 + i].push_back({t, last + std::remainder(rpy[i] - last, 2 * M_PI), way});
+      keys[3 + i].push_back({t, last + std::remainder(rpy[i] - last, 2 * M_PI), interpolation});
     }
   };
   const Isometry3d& start = start_[index(side)];

@@ -37,8 +37,9 @@ struct KeyReader {
   std::string first_leg_key;
 
   void read(const Keyframe& key);
-  void read_joints(const Keyframe& key, Interpolation way);
-  void add(Keys& keys, const Keyframe& key, double value, double start, Interpolation way);
+  void read_joints(const Keyframe& key, Interpolation interpolation);
+  void add(Keys& keys, const Keyframe& key, double value, double start,
+           Interpolation interpolation);
   Vector3d zmp_point(const ZmpKey& key, const Keyframe& at) const;
 };
 
@@ -47,10 +48,10 @@ struct KeyReader {
 }
 
 void KeyReader::add(Keys& keys, const Keyframe& key, double value, double start,
-                    Interpolation way) {
+                    Interpolation interpolation) {
   if (!std::isfinite(value)) complain(key, "a value is not a finite number");
   if (keys.empty() && key.t > 0) keys.push_back({0, start, Interpolation::hold});
-  keys.push_back({key.t, value, way});
+  keys.push_back({key.t, value, interpolation});
 }
 
 Vector3d KeyReader::zmp_point(const ZmpKey& key, const Keyframe& at) const {
@@ -67,7 +68,7 @@ Vector3d KeyReader::zmp_point(const ZmpKey& key, const Keyframe& at) const {
   return {key.point.x(), key.point.y(), feet.support_center(at.t).z()};
 }
 
-void KeyReader::read_joints(const Keyframe& key, Interpolation way) {
+void KeyReader::read_joints(const Keyframe& key, Interpolation interpolation) {
   const Eigen::VectorXd start = default_posture(model, pattern);
   std::map<int, double> values;
   if (key.posture)
@@ -84,28 +85,28 @@ void KeyReader::read_joints(const Keyframe& key, Interpolation way) {
       first_leg_key = "keys of " + joint;
     }
   }
-  for (const auto& [dof, angle] : values) add(joints[dof], key, angle, start[dof], way);
+  for (const auto& [dof, angle] : values) add(joints[dof], key, angle, start[dof], interpolation);
 }
 
 void KeyReader::read(const Keyframe& key) {
-  const Interpolation way = key.interpolation.value_or(pattern.interpolation);
+  const Interpolation interpolation = key.interpolation.value_or(pattern.interpolation);
   if (!std::isfinite(key.t) || key.t < 0)
     complain(key, "time " + text::exact(key.t) + " s; key times are 0 or later");
   if (key.t > feet.duration() + kSameTime)
     complain(key, "time " + text::exact(key.t) + " s lies beyond the end of the last phase, " +
                       text::exact(feet.duration()) + " s; move the key or add a phase");
-  read_joints(key, way);
+  read_joints(key, interpolation);
   const Vector3d middle = feet.support_center(0);
   if (key.zmp) {
     const Vector3d point = zmp_point(*key.zmp, key);
-    for (int i = 0; i < 3; ++i) add(zmp[i], key, point[i], middle[i], way);
+    for (int i = 0; i < 3; ++i) add(zmp[i], key, point[i], middle[i], interpolation);
   }
-  if (key.cog_x) add(cog[0], key, *key.cog_x, middle.x(), way);
-  if (key.cog_y) add(cog[1], key, *key.cog_y, middle.y(), way);
-  if (key.cog_height) add(cog[2], key, *key.cog_height, height, way);
-  if (key.fz) add(fz, key, *key.fz, model.mass() * kGravity, way);
+  if (key.cog_x) add(cog[0], key, *key.cog_x, middle.x(), interpolation);
+  if (key.cog_y) add(cog[1], key, *key.cog_y, middle.y(), interpolation);
+  if (key.cog_height) add(cog[2], key, *key.cog_height, height, interpolation);
+  if (key.fz) add(fz, key, *key.fz, model.mass() * kGravity, interpolation);
   if (key.torso)
-    for (int i = 0; i < 3; ++i) add(torso[i], key, (*key.torso)[i], 0, way);
+    for (int i = 0; i < 3; ++i) add(torso[i], key, (*key.torso)[i], 0, interpolation);
 }
 
 bool same(double a, double b) { return std::abs(a - b) < kSameTime; }

@@ -35,7 +35,7 @@ struct PanelPlan {
 
 constexpr double kDegree = M_PI / 180;
 
-/// Angle or way of a joint, with its limits.
+/// Angle or displacement of a joint, with its limits.
 PanelPlan joint_panel(const RobotModel& model, int dof) {
   const Dof& d = model.dofs()[static_cast<size_t>(dof)];
   const double unit = d.prismatic ? 1e-3 : kDegree;
@@ -276,8 +276,8 @@ double largest_difference(const PanelPlan& panel, const std::vector<LociRun>& ru
   return most;
 }
 
-/// Keeps the panels that tell something; a sentence with the names of the others. All are kept
-/// where none would be left.
+/// Removes the panels in which all runs are equal and returns a sentence with their names. All
+/// panels are kept where none would be left.
 std::string leave_out_equal(std::vector<PanelPlan>& panels, const std::vector<LociRun>& runs,
                             const Interval& time) {
   std::vector<PanelPlan> kept;

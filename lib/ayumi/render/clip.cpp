@@ -1,7 +1,10 @@
 #include "ayumi/render/clip.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <condition_variable>
 #include <functional>
@@ -190,10 +193,15 @@ std::string with_name(std::string message, const std::string& temporary, const s
   return message;
 }
 
+/// Whether a clip wrote this file: frame_name() of some number.
 bool is_frame(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
-  return fs::is_regular_file(entry.symlink_status()) && name.starts_with("frame_") &&
-         name.ends_with(".png");
+  const size_t begin = name.find_first_of("0123456789");
+  const size_t end = name.find_first_not_of("0123456789", begin);
+  if (!fs::is_regular_file(entry.symlink_status()) || end == std::string::npos) return false;
+  int number = 0;
+  const auto read = std::from_chars(name.data() + begin, name.data() + end, number);
+  return read.ec == std::errc() && name == frame_name(number);
 }
 
 /// Throws unless frames may be written to a folder of that name: nothing is there, an empty folder,
@@ -217,11 +225,14 @@ void write_folder(const fs::path& path, bool overwrite,
   if (!fs::is_directory(parent))
     fail(ErrorCode::bad_file,
          path.string() + ": the folder " + parent.string() + " does not exist; create it first");
-  const fs::path temporary = parent / (path.filename().string() + ".part");
-  std::error_code ignored;
+  const fs::path temporary =
+      parent / (path.filename().string() + ".part" + std::to_string(::getpid()));
+  std::error_code error, ignored;
+  if (!fs::create_directory(temporary, error))
+    fail(ErrorCode::bad_file, path.string() + ": cannot be written (" +
+                                  (error ? error.message() : temporary.string() + " is there") +
+                                  ")");
   try {
-    fs::remove_all(temporary);
-    fs::create_directory(temporary);
     produce(temporary);
     require_frame_folder(path, overwrite);
     if (fs::exists(path)) fs::remove_all(path);

@@ -154,7 +154,7 @@ struct Channel {
 };
 
 void add_rotation(std::vector<float>& values, Eigen::Quaternionf q) {
-  // The shorter way from the key before.
+  // The shorter rotation from the key before.
   const size_t n = values.size();
   if (n >= 4 && q.x() * values[n - 4] + q.y() * values[n - 3] + q.z() * values[n - 2] +
                         q.w() * values[n - 1] <

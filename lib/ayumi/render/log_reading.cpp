@@ -90,10 +90,7 @@ SimulationSample sample_at(const SimulationLog& log, double t) {
 }
 
 Eigen::Isometry3d floor_at(const SimulationLog& log, double t) {
-  std::vector<FloorMotion> motions;
-  for (const Disturbance& d : log.scenario)
-    if (d.type == DisturbanceType::floor) motions.push_back(floor_motion(d));
-  return floor_pose(log.world, motions, t);
+  return floor_pose(log.world, floor_motions(log.scenario), t);
 }
 
 Eigen::Isometry3d ground_at(const SimulationLog& log, double t) {
@@ -101,9 +98,7 @@ Eigen::Isometry3d ground_at(const SimulationLog& log, double t) {
 }
 
 bool floor_moves(const SimulationLog& log) {
-  return !log.world.motions.empty() ||
-         std::any_of(log.scenario.begin(), log.scenario.end(),
-                     [](const Disturbance& d) { return d.type == DisturbanceType::floor; });
+  return !log.world.motions.empty() || !floor_motions(log.scenario).empty();
 }
 
 Eigen::Isometry3d marked_ground(const SimulationLog& log, double t,

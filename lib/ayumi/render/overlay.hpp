@@ -1,6 +1,7 @@
 #pragma once
 // What a picture shows besides the robot: COG, ZMP, reference ZMP, support polygon, contact forces,
-// pushes, trails. One colour each, told apart also by the colour-blind and by shape.
+// pushes, trails. Each has its own colour and shape, so that they can be distinguished without
+// colours.
 
 #include <Eigen/Geometry>
 #include <string>

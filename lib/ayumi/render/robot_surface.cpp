@@ -40,16 +40,16 @@ void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isomet
 
 /// From the frame of each body without a shape to those of the bodies that hang on it.
 void add_sticks(const RobotModel& model, std::vector<BodySurface>& surface) {
-  const auto way = [](const Body& body) { return body.placement.translation().norm(); };
+  const auto length = [](const Body& body) { return body.placement.translation().norm(); };
   double longest = 0;
   std::vector<bool> bare;
   for (const BodySurface& body : surface)
     bare.push_back(body.closed.indices.empty() && body.open.indices.empty() &&
                    body.textured.empty());
   for (const Body& body : model.bodies())
-    if (body.parent >= 0) longest = std::max(longest, way(body));
+    if (body.parent >= 0) longest = std::max(longest, length(body));
   for (const Body& body : model.bodies())
-    if (body.parent >= 0 && bare[size_t(body.parent)] && way(body) > 1e-6)
+    if (body.parent >= 0 && bare[size_t(body.parent)] && length(body) > 1e-6)
       add_rod(surface[size_t(body.parent)].open, Eigen::Vector3d::Zero(),
               body.placement.translation(), kStick * longest, PlacedShape().color);
 }

@@ -91,18 +91,20 @@ Triangles make_scenery(const World& world, int max_nodes) {
 std::vector<RisingBump> rising_bumps(const RobotModel& model, const SimulationLog& log) {
   std::vector<RisingBump> bumps;
   for (const Disturbance& d : log.scenario) {
-    if (d.type != DisturbanceType::bump) continue;
+    const auto* source = std::get_if<Bump>(&d.what);
+    if (!source) continue;
+    const Vector2d& place = source->place;
     RisingBump bump = {{}, d.at, d.at + d.duration};
     bump.block.kind = GroundBlock::Kind::disc;
-    bump.block.center = d.place;
-    if (d.foot) {
+    bump.block.center = place;
+    if (source->foot) {
       RobotData data(model);
       update_positions(model, sample_at(log, d.at).state, data);
-      const Vector3d p = sole_pose(model, data, *d.foot) * Vector3d(d.place.x(), d.place.y(), 0);
+      const Vector3d p = sole_pose(model, data, *source->foot) * Vector3d(place.x(), place.y(), 0);
       bump.block.center = (floor_at(log, d.at).inverse() * p).head<2>();
     }
-    bump.block.radius = d.radius;
-    bump.block.height = log.world.height + d.magnitude;
+    bump.block.radius = source->radius;
+    bump.block.height = log.world.height + source->height;
     bumps.push_back(bump);
   }
   return bumps;

@@ -72,12 +72,12 @@ std::string margin(double metres) {
 }
 
 Table moved_table(const RepairNote& note) {
-  constexpr size_t kTold = 8;                    // rows, so that the table stays short
+  constexpr size_t kMostRows = 8;                // rows, so that the table stays short
   constexpr double kLeast = 0.005 * M_PI / 180;  // what would be 0.00 deg is no move
   Table table = {
       "What the repair moved", {"joint", "by [deg]", "at [s]", "from [s]", "to [s]"}, {}};
   for (const RepairNote::Moved& j : note.joints)
-    if (table.rows.size() < kTold && std::abs(j.most) >= kLeast)
+    if (table.rows.size() < kMostRows && std::abs(j.most) >= kLeast)
       table.rows.push_back({escaped(j.joint), text::fixed(j.most * 180 / M_PI, 2),
                             text::fixed(j.at, 3), text::fixed(j.begin, 2), text::fixed(j.end, 2)});
   return table;

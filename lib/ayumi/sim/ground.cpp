@@ -90,7 +90,7 @@ void Ground::set(const StepInput& input) {
   blocks_.resize(fixed_);
   solids_.erase(solids_.begin() + static_cast<std::ptrdiff_t>(fixed_), solids_.end());
   top_ = fixed_top_;
-  for (const Bump& bump : input.bumps) {
+  for (const RisingDisc& bump : input.bumps) {
     blocks_.push_back(prepared(bump.block, bump.rate));
     solids_.push_back(solid(bump.block, bump.rate));
     top_ = std::max(top_, bump.block.height);

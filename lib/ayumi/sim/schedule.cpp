@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/overloaded.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -45,60 +46,79 @@ int find_joint(const RobotModel& model, const std::string& name) {
 }
 
 /// Factor on the rectangle's value in step i of n; its mean over the steps is 1 for impulses.
-double shape_factor(const Disturbance& d, long i, long n) {
-  if (d.shape == DisturbanceShape::rectangle) return 1.0;
+double shape_factor(const Push& push, long i, long n) {
+  if (push.shape == PushShape::rectangle) return 1.0;
   const double phase = M_PI * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-  if (d.type != DisturbanceType::impulse) return std::sin(phase);
+  if (push.kind != PushKind::impulse) return std::sin(phase);
   // The sum of sin over midpoints is 1 / sin(pi / 2n).
   return static_cast<double>(n) * std::sin(M_PI / (2.0 * static_cast<double>(n))) * std::sin(phase);
 }
 
-bool is_push(DisturbanceType type) {
-  return type == DisturbanceType::impulse || type == DisturbanceType::force ||
-         type == DisturbanceType::torque;
+/// The force or torque of a push of rectangular shape over `time` [N] or [N m].
+double level(const Push& push, const Disturbance& d, double time) {
+  const double value = push.kind == PushKind::impulse ? push.magnitude / time : push.magnitude;
+  if (!(std::abs(value) < kLargestNumber))
+    fail(ErrorCode::bad_pattern, "scenario: the push at " + text::brief(d.at) + " s has " +
+                                     text::brief(value) +
+                                     " N (N m); give a smaller one than 1e6 or a longer duration");
+  return value;
 }
 
-std::string degrees(double angle) { return text::brief(angle * 180 / M_PI) + " deg"; }
+bool is_push(const Disturbance& d) { return std::holds_alternative<Push>(d.what); }
 
-std::string on_joint(const Disturbance& d) {
-  return d.joint.empty() ? " at all joints" : " at " + d.joint;
+void add_fault(const EncoderOffset& d, JointFault& joint) { joint.encoder += d.offset; }
+void add_fault(const GainLoss& d, JointFault& joint) { joint.gain *= 1 - d.share; }
+void add_fault(const JointFriction& d, JointFault& joint) {
+  joint.coulomb += d.coulomb;
+  joint.viscous += d.viscous;
 }
 
 /// A disturbance in words, for the log.
-std::string words(const Disturbance& d) {
-  const std::string size = text::brief(d.magnitude);
-  switch (d.type) {
-    case DisturbanceType::impulse:
-      return size + " N s on " + d.on;
-    case DisturbanceType::force:
-      return size + " N on " + d.on;
-    case DisturbanceType::torque:
-      return size + " N m on " + d.on;
-    case DisturbanceType::payload:
-      return "payload of " + size + " kg on " + d.on;
-    case DisturbanceType::floor:
-      return "floor tilts by " + degrees(d.floor.tilt.norm()) + " and shifts by " +
-             text::brief(d.floor.shift.norm()) + " m";
-    case DisturbanceType::friction:
-      return "friction " + size;
-    case DisturbanceType::bump:
-      return "bump of " + size + " m" +
-             (d.foot ? std::string(" under the ") + name_of(*d.foot) + " foot" : std::string());
-    case DisturbanceType::latency:
-      return "latency of " + size + " s";
-    case DisturbanceType::sensor_bias:
-      return "sensor bias: attitude " + degrees(d.tilt_bias.norm()) + ", gyro " +
-             text::brief(d.gyro_bias.norm()) + " rad/s, load cells " + text::brief(d.force_bias) +
-             " N";
-    case DisturbanceType::encoder_offset:
-      return "encoder offset of " + size + on_joint(d);
-    case DisturbanceType::joint_friction:
-      return "joint friction of " + size + ", viscous " + text::brief(d.viscous) + on_joint(d);
-    case DisturbanceType::gain_loss:
-      return "servo gain less by " + text::fixed(100 * d.magnitude, 0) + " %" + on_joint(d);
+struct Words {
+  std::string operator()(const Push& d) const {
+    static constexpr const char* units[] = {" N s on ", " N on ", " N m on "};
+    return text::brief(d.magnitude) + units[static_cast<int>(d.kind)] + d.on;
   }
-  return "";
-}
+  std::string operator()(const Payload& d) const {
+    return "payload of " + text::brief(d.mass) + " kg on " + d.on;
+  }
+  std::string operator()(const FloorPath& d) const {
+    return "floor tilts by " + degrees(d.tilt.norm()) + " and shifts by " +
+           text::brief(d.shift.norm()) + " m";
+  }
+  std::string operator()(const FrictionChange& d) const {
+    return "friction " + text::brief(d.friction);
+  }
+  std::string operator()(const Bump& d) const {
+    return "bump of " + text::brief(d.height) + " m" +
+           (d.foot ? std::string(" under the ") + name_of(*d.foot) + " foot" : std::string());
+  }
+  std::string operator()(const Latency& d) const {
+    return "latency of " + text::brief(d.latency) + " s";
+  }
+  std::string operator()(const SensorBias& d) const {
+    return "sensor bias: attitude " + degrees(d.tilt.norm()) + ", gyro " +
+           text::brief(d.gyro.norm()) + " rad/s, load cells " + text::brief(d.load) + " N";
+  }
+  std::string operator()(const EncoderOffset& d) const {
+    return "encoder offset of " + text::brief(d.offset) + on_joint(d.joint);
+  }
+  std::string operator()(const JointFriction& d) const {
+    return "joint friction of " + text::brief(d.coulomb) + ", viscous " + text::brief(d.viscous) +
+           on_joint(d.joint);
+  }
+  std::string operator()(const GainLoss& d) const {
+    return "servo gain less by " + text::fixed(100 * d.share, 0) + " %" + on_joint(d.joint);
+  }
+
+ private:
+  static std::string degrees(double angle) { return text::brief(angle * 180 / M_PI) + " deg"; }
+  static std::string on_joint(const std::string& joint) {
+    return joint.empty() ? " at all joints" : " at " + joint;
+  }
+};
+
+std::string words(const Disturbance& d) { return std::visit(Words(), d.what); }
 
 }  // namespace
 
@@ -124,87 +144,74 @@ Schedule::Schedule(const RobotModel& model, const World& world, double step)
 
 void Schedule::set(const std::vector<Disturbance>& scenario) {
   entries_.clear();
-  motions_.clear();
+  motions_ = floor_motions(scenario);
   for (const Disturbance& d : scenario) {
     Entry entry{.source = d};
     entry.first = std::lround(d.at / step_);
     entry.count = std::max(1l, std::lround(d.duration / step_));
-    entry.per_step = d.type == DisturbanceType::impulse
-                         ? d.magnitude / (static_cast<double>(entry.count) * step_)
-                         : d.magnitude;
-    if (is_push(d.type) && !(std::abs(entry.per_step) < kLargestNumber))
-      fail(ErrorCode::bad_pattern,
-           "scenario: the push at " + text::brief(d.at) + " s has " + text::brief(entry.per_step) +
-               " N (N m); give a smaller one than 1e6 or a longer duration");
-    entry.link = find_pushed_link(*model_, d.on);
-    entry.joint = find_joint(*model_, d.joint);
-    if (d.type == DisturbanceType::payload && entry.link < 0)
-      fail(ErrorCode::bad_pattern, "scenario: a payload needs a link that carries it");
-    if (d.type == DisturbanceType::floor) motions_.push_back(floor_motion(d));
+    if (const auto* push = std::get_if<Push>(&d.what)) {
+      entry.per_step = level(*push, d, static_cast<double>(entry.count) * step_);
+      entry.link = find_pushed_link(*model_, push->on);
+    } else if (const auto* payload = std::get_if<Payload>(&d.what)) {
+      if (payload->on.empty() || payload->on == "cog")
+        fail(ErrorCode::bad_pattern, "scenario: a payload needs a link that carries it");
+      entry.link = find_pushed_link(*model_, payload->on);
+    }
+    std::visit(
+        [&](const auto& what) {
+          if constexpr (requires { what.joint; }) entry.joint = find_joint(*model_, what.joint);
+        },
+        d.what);
     entries_.push_back(entry);
   }
 }
 
 bool Schedule::acts(const Entry& entry, long k) const {
-  const bool before = k < 0 && entry.first == 0 && !is_push(entry.source.type);
+  const bool before = k < 0 && entry.first == 0 && !is_push(entry.source);
   return before || (k >= entry.first && k < entry.first + entry.count);
 }
 
-ExternalWrench Schedule::wrench(const Entry& entry, long k, const RobotData& data) const {
-  const Disturbance& d = entry.source;
+ExternalWrench Schedule::wrench(const Entry& entry, const Push& push, long k,
+                                const RobotData& data) const {
   ExternalWrench w;
-  Vector3d direction = d.direction;
+  Vector3d direction = push.direction;
   if (entry.link >= 0) {
     const Isometry3d pose = link_pose(*model_, data, entry.link);
     w.body = model_->links()[entry.link].body;
-    w.point = pose * d.point;
-    if (d.frame == DisturbanceFrame::link) direction = pose.linear() * direction;
-  } else if (d.frame == DisturbanceFrame::link) {
+    w.point = pose * push.point;
+    if (push.frame == PushFrame::link) direction = pose.linear() * direction;
+  } else if (push.frame == PushFrame::link) {
     direction = data.rotation[model_->trunk_body()] * direction;
   }
-  const Vector3d value = entry.per_step * shape_factor(d, k - entry.first, entry.count) * direction;
-  (d.type == DisturbanceType::torque ? w.torque : w.force) = value;
+  const Vector3d value =
+      entry.per_step * shape_factor(push, k - entry.first, entry.count) * direction;
+  (push.kind == PushKind::torque ? w.torque : w.force) = value;
   return w;
 }
 
-Bump Schedule::bump(Entry& entry, long k, const RobotData& data) const {
-  const Disturbance& d = entry.source;
-  if (!entry.placed) {
-    entry.placed = true;
-    entry.place = d.place;
-    if (d.foot) {
-      const Vector3d p = sole_pose(*model_, data, *d.foot) * Vector3d(d.place.x(), d.place.y(), 0);
+RisingDisc Schedule::disc(Entry& entry, const Bump& bump, long k, const RobotData& data) const {
+  if (!entry.place) {
+    entry.place = bump.place;
+    if (bump.foot) {
+      const Vector3d p =
+          sole_pose(*model_, data, *bump.foot) * Vector3d(bump.place.x(), bump.place.y(), 0);
       const double t = static_cast<double>(k) * step_;
       entry.place = (floor_pose(world_, motions_, t).inverse() * p).head<2>();
     }
   }
   const auto height = [&](long i) {
     const double s = std::clamp(static_cast<double>(i) * step_ / kBumpRise, 0.0, 1.0);
-    return d.magnitude * s * s * s * (10 - 15 * s + 6 * s * s);
+    return bump.height * s * s * s * (10 - 15 * s + 6 * s * s);
   };
   // A bump that begins at 0 was there before the start and does not rise.
   const long since = entry.first == 0 ? 1l << 30 : k - entry.first;
-  Bump result;
+  RisingDisc result;
   result.block.kind = GroundBlock::Kind::disc;
-  result.block.center = entry.place;
-  result.block.radius = d.radius;
+  result.block.center = *entry.place;
+  result.block.radius = bump.radius;
   result.block.height = world_.height + height(since);
   result.rate = (height(since + 1) - height(since)) / step_;
   return result;
-}
-
-void Schedule::fault(const Entry& entry, std::vector<JointFault>& joints) const {
-  const Disturbance& d = entry.source;
-  const int n = model_->dof_count();
-  if (joints.empty()) joints.resize(static_cast<size_t>(n));
-  for (int j = std::max(entry.joint, 0); j < (entry.joint < 0 ? n : entry.joint + 1); ++j) {
-    JointFault& joint = joints[static_cast<size_t>(j)];
-    if (d.type == DisturbanceType::encoder_offset) joint.encoder += d.magnitude;
-    if (d.type == DisturbanceType::gain_loss) joint.gain *= 1 - d.magnitude;
-    if (d.type != DisturbanceType::joint_friction) continue;
-    joint.coulomb += d.magnitude;
-    joint.viscous += d.viscous;
-  }
 }
 
 void Schedule::fill(long k, const RobotData& data, StepInput& input) {
@@ -219,30 +226,26 @@ void Schedule::fill(long k, const RobotData& data, StepInput& input) {
   }
   for (Entry& entry : entries_) {
     if (!acts(entry, k)) continue;
-    const Disturbance& d = entry.source;
-    switch (d.type) {
-      case DisturbanceType::impulse:
-      case DisturbanceType::force:
-      case DisturbanceType::torque:
-        input.wrenches.push_back(wrench(entry, k, data));
-        break;
-      case DisturbanceType::payload:
-        input.payloads.push_back({entry.link, d.point, d.magnitude});
-        break;
-      case DisturbanceType::friction:
-        input.friction = d.magnitude;
-        break;
-      case DisturbanceType::bump:
-        input.bumps.push_back(bump(entry, k, data));
-        break;
-      case DisturbanceType::encoder_offset:
-      case DisturbanceType::joint_friction:
-      case DisturbanceType::gain_loss:
-        fault(entry, input.joints);
-        break;
-      default:
-        break;
-    }
+    const auto fault = [&](const auto& d) {
+      const int n = model_->dof_count();
+      if (input.joints.empty()) input.joints.resize(static_cast<size_t>(n));
+      for (int j = std::max(entry.joint, 0); j < (entry.joint < 0 ? n : entry.joint + 1); ++j)
+        add_fault(d, input.joints[static_cast<size_t>(j)]);
+    };
+    std::visit(
+        Overloaded{
+            [&](const Push& d) { input.wrenches.push_back(wrench(entry, d, k, data)); },
+            [&](const Payload& d) {
+              input.payloads.push_back({entry.link, d.point, d.mass});
+            },
+            [&](const FrictionChange& d) { input.friction = d.friction; },
+            [&](const Bump& d) { input.bumps.push_back(disc(entry, d, k, data)); },
+            [&](const EncoderOffset& d) { fault(d); }, [&](const JointFriction& d) { fault(d); },
+            [&](const GainLoss& d) { fault(d); }, [](const FloorPath&) {},  // input.floor
+            [](const Latency&) {},                                          // sensor_fault()
+            [](const SensorBias&) {},                                       // sensor_fault()
+        },
+        entry.source.what);
   }
 }
 
@@ -250,12 +253,12 @@ SensorFault Schedule::sensor_fault(long k) const {
   SensorFault fault;
   for (const Entry& entry : entries_) {
     if (!acts(entry, k)) continue;
-    const Disturbance& d = entry.source;
-    if (d.type == DisturbanceType::latency) fault.latency += d.magnitude;
-    if (d.type != DisturbanceType::sensor_bias) continue;
-    fault.tilt += d.tilt_bias;
-    fault.gyro += d.gyro_bias;
-    fault.force += d.force_bias;
+    if (const auto* late = std::get_if<Latency>(&entry.source.what)) fault.latency += late->latency;
+    if (const auto* bias = std::get_if<SensorBias>(&entry.source.what)) {
+      fault.tilt += bias->tilt;
+      fault.gyro += bias->gyro;
+      fault.force += bias->load;
+    }
   }
   return fault;
 }
@@ -263,21 +266,21 @@ SensorFault Schedule::sensor_fault(long k) const {
 double Schedule::largest_latency() const {
   double sum = 0;
   for (const Entry& entry : entries_)
-    if (entry.source.type == DisturbanceType::latency) sum += entry.source.magnitude;
+    if (const auto* late = std::get_if<Latency>(&entry.source.what)) sum += late->latency;
   return sum;
 }
 
 std::vector<SimulationEvent> Schedule::events() const {
   std::vector<SimulationEvent> events;
   for (const Entry& entry : entries_) {
-    const bool push = is_push(entry.source.type);
+    const bool push = is_push(entry.source);
+    const bool floor = std::holds_alternative<FloorPath>(entry.source.what);
     const std::string text = words(entry.source);
     events.push_back(
         {static_cast<double>(entry.first) * step_, push ? "push" : "disturbance", text});
     if (!push)
-      events.push_back(
-          {static_cast<double>(entry.first + entry.count) * step_, "disturbance",
-           text + (entry.source.type == DisturbanceType::floor ? ": done" : ": over")});
+      events.push_back({static_cast<double>(entry.first + entry.count) * step_, "disturbance",
+                        text + (floor ? ": done" : ": over")});
   }
   return events;
 }

@@ -2,6 +2,7 @@
 // A scenario in integrator steps: the disturbances of robot, ground and sensors in each step.
 
 #include <Eigen/Dense>
+#include <optional>
 #include <vector>
 
 #include "ayumi/dynamics/robot_data.hpp"
@@ -45,15 +46,13 @@ class Schedule {
   struct Entry {
     Disturbance source;
     long first = 0, count = 1;
-    int link = -1, joint = -1;  ///< -1: the COG, all joints
-    double per_step = 0;        ///< force or torque of a rectangle [N] or [N m]
-    bool placed = false;        ///< for a bump: `place` is known
-    Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< ground's frame [m]
+    int link = -1, joint = -1;               ///< -1: the COG, all joints
+    double per_step = 0;                     ///< force or torque of a rectangle [N] or [N m]
+    std::optional<Eigen::Vector2d> place{};  ///< of a bump that has risen, ground's frame [m]
   };
   bool acts(const Entry& entry, long k) const;
-  ExternalWrench wrench(const Entry& entry, long k, const RobotData& data) const;
-  Bump bump(Entry& entry, long k, const RobotData& data) const;
-  void fault(const Entry& entry, std::vector<JointFault>& joints) const;
+  ExternalWrench wrench(const Entry& entry, const Push& push, long k, const RobotData& data) const;
+  RisingDisc disc(Entry& entry, const Bump& bump, long k, const RobotData& data) const;
 
   const RobotModel* model_;
   World world_;

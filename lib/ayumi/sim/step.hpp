@@ -28,7 +28,7 @@ struct CarriedMass {
 };
 
 /// A disc that rises from the ground.
-struct Bump {
+struct RisingDisc {
   GroundBlock block;
   double rate = 0;  ///< of its height [m/s]
 };
@@ -54,7 +54,7 @@ struct StepInput {
   std::vector<JointFault> joints;  ///< by dof; empty: no faults
   std::optional<FloorPose> floor;  ///< empty: the world's slope at rest
   std::optional<double> friction;  ///< of the whole ground, in place of the world's
-  std::vector<Bump> bumps;         ///< in addition to the world's blocks
+  std::vector<RisingDisc> bumps;   ///< in addition to the world's blocks
 
   StepInput() = default;
   StepInput(std::vector<ExternalWrench> w) : wrenches(std::move(w)) {}

@@ -116,7 +116,7 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
   if (input.floor && !sound(*input.floor)) complain("the floor's motion is not made of numbers");
   if (input.friction && !sound_friction(*input.friction))
     complain("the floor's friction is " + text::brief(*input.friction));
-  for (const Bump& bump : input.bumps)
+  for (const RisingDisc& bump : input.bumps)
     if (!sound(bump.block) || !sound(bump.rate)) complain("a bump is not made of numbers");
 }
 

@@ -105,13 +105,10 @@ class Search {
 
 Simulator Search::pushed(double impulse, const Variation& variation) const {
   Simulator run = *baseline_.simulator;
-  Disturbance d;
-  d.at = case_.phase.at + variation.time;
-  d.duration = options_.duration;
   const double angle = case_.direction + variation.angle;
-  d.direction = Vector3d(std::cos(angle), std::sin(angle), 0);
-  d.magnitude = impulse;
-  run.set_scenario({d});
+  const Push push{.magnitude = impulse, .direction = {std::cos(angle), std::sin(angle), 0}};
+  run.set_scenario(
+      {{.at = case_.phase.at + variation.time, .duration = options_.duration, .what = push}});
   return run;
 }
 

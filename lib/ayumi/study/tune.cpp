@@ -94,12 +94,8 @@ double Tuner::push(const Simulator& baseline, const PushPhase& phase, int direct
   const double bound = capture_bound(capture_region(model, plan, k), u);
   if (!(bound > 0)) return 0;
   Simulator run = baseline;
-  Disturbance d;
-  d.at = phase.at;
-  d.duration = options.duration;
-  d.direction = Vector3d(u.x(), u.y(), 0);
-  d.magnitude = options.level * bound;
-  run.set_scenario({d});
+  const Push push{.magnitude = options.level * bound, .direction = {u.x(), u.y(), 0}};
+  run.set_scenario({{.at = phase.at, .duration = options.duration, .what = push}});
   double sum = 0;
   const double end = phase.at + options.duration + options.watched;
   while (run.time() < end && run.advance(1) && !run.fell()) {

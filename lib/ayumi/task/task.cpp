@@ -21,13 +21,23 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
   for (size_t i = 0; i < pattern.scenario.size(); ++i) {
     const Disturbance& d = pattern.scenario[i];
     const std::string place = pattern.file + ": /scenario/" + std::to_string(i);
-    if (std::find(links.begin(), links.end(), d.on) == links.end())
-      fail(ErrorCode::bad_pattern, place + "/on: " + robot.name() + " has no link '" + d.on + "'" +
-                                       text::suggestion(d.on, links) +
-                                       "; 'cog' pushes through the centre of gravity");
-    if (!d.joint.empty() && std::find(joints.begin(), joints.end(), d.joint) == joints.end())
-      fail(ErrorCode::bad_pattern, place + "/joint: " + robot.name() + " has no joint '" + d.joint +
-                                       "'" + text::suggestion(d.joint, joints));
+    const auto refuse_link = [&](const std::string& name) {
+      if (std::find(links.begin(), links.end(), name) == links.end())
+        fail(ErrorCode::bad_pattern, place + "/on: " + robot.name() + " has no link '" + name +
+                                         "'" + text::suggestion(name, links) +
+                                         "; 'cog' pushes through the centre of gravity");
+    };
+    const auto refuse_joint = [&](const std::string& name) {
+      if (!name.empty() && std::find(joints.begin(), joints.end(), name) == joints.end())
+        fail(ErrorCode::bad_pattern, place + "/joint: " + robot.name() + " has no joint '" + name +
+                                         "'" + text::suggestion(name, joints));
+    };
+    std::visit(
+        [&](const auto& what) {
+          if constexpr (requires { what.on; }) refuse_link(what.on);
+          if constexpr (requires { what.joint; }) refuse_joint(what.joint);
+        },
+        d.what);
   }
 }
 
@@ -123,11 +133,20 @@ SimulationLog simulate(const Task& task, const SimulateOptions& options, const P
   return log;
 }
 
-std::vector<std::string> unfit_reasons(const Judgement& judgement, const SimulationLog& log) {
+std::vector<std::string> unfit_reasons(const std::string& inconsistent, const SimulationLog& log,
+                                       const SimulationLog* undisturbed) {
   std::vector<std::string> reasons;
-  for (const std::string& reason : {judgement.reason(), unfit_words(log)})
-    if (!reason.empty()) reasons.push_back(reason);
+  const auto add = [&](const std::string& run, const std::string& reason) {
+    if (!reason.empty()) reasons.push_back(run + reason);
+  };
+  add("", inconsistent);
+  add(undisturbed ? "under its disturbances " : "", unfit_words(log));
+  if (undisturbed) add("without disturbances ", unfit_words(*undisturbed));
   return reasons;
+}
+
+std::vector<std::string> unfit_reasons(const Judgement& judgement, const SimulationLog& log) {
+  return unfit_reasons(judgement.reason(), log);
 }
 
 }  // namespace ayumi

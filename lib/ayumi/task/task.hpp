@@ -61,8 +61,12 @@ Judgement judge(const Task& task);
 SimulationLog simulate(const Task& task, const SimulateOptions& options,
                        const Progress& progress = {}, const std::string& command_line = "");
 
-/// Why a table of this task and run is not for a robot: the pattern is inconsistent, the run fell
-/// or did not settle. Empty where nothing is known against it.
+/// Why a table of a run is not for a robot: the pattern is inconsistent (`inconsistent` says why
+/// and is empty otherwise), or the run fell or did not settle. Where the run was disturbed,
+/// `undisturbed` may be the same run without disturbances; the reasons then name the run that they
+/// are from. Empty where nothing is known against the table.
+std::vector<std::string> unfit_reasons(const std::string& inconsistent, const SimulationLog& log,
+                                       const SimulationLog* undisturbed = nullptr);
 std::vector<std::string> unfit_reasons(const Judgement& judgement, const SimulationLog& log);
 
 }  // namespace ayumi

@@ -79,10 +79,12 @@ void move_plan(const Isometry3d& shift, double later, Pattern& pattern) {
     for (auto& foot : key.feet)
       if (foot) move_foothold(shift, *foot);
   }
-  for (Disturbance& push : pattern.scenario) {
-    push.at += later;
-    if (push.frame == DisturbanceFrame::world) push.direction = shift.linear() * push.direction;
-    push.place = (shift * Vector3d(push.place.x(), push.place.y(), 0)).head<2>();
+  for (Disturbance& d : pattern.scenario) {
+    d.at += later;
+    if (auto* push = std::get_if<Push>(&d.what); push && push->frame == PushFrame::world)
+      push->direction = shift.linear() * push->direction;
+    if (auto* bump = std::get_if<Bump>(&d.what); bump && !bump->foot)
+      bump->place = (shift * Vector3d(bump->place.x(), bump->place.y(), 0)).head<2>();
   }
 }
 

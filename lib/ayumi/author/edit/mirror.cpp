@@ -114,8 +114,9 @@ class Mirror {
     if (result.table) mirror(*result.table);
     if (result.correction) mirror(*result.correction);
     result.repair = of(pattern_.repair);
-    result.world.slope.x() *= -1;
-    for (Disturbance& push : result.scenario) mirror(push);
+    mirror(result.world);
+    for (Disturbance& disturbance : result.scenario)
+      std::visit([&](auto& what) { mirror(what); }, disturbance.what);
     return result;
   }
 
@@ -237,13 +238,69 @@ class Mirror {
     }
   }
 
-  void mirror(Disturbance& push) const {
-    const bool axial = push.type == DisturbanceType::torque;
-    push.direction = axial ? axial_image(push.direction) : image(push.direction);
-    push.point = image(push.point);
-    const int link = model_.find_link(push.on);
-    if (link >= 0) push.on = model_.links()[map_.link[link]].name;
+  static void mirror_rectangle(Eigen::Vector2d& low, Eigen::Vector2d& high) {
+    low.y() *= -1;
+    high.y() *= -1;
+    std::swap(low.y(), high.y());
   }
+
+  static void mirror(World& world) {
+    world.slope.x() *= -1;
+    for (GroundBlock& block : world.blocks) {
+      mirror_rectangle(block.low, block.high);
+      block.center.y() *= -1;
+    }
+    for (FrictionPatch& patch : world.patches) mirror_rectangle(patch.low, patch.high);
+    for (HeightField& field : world.fields) {
+      field.origin.y() =
+          -field.origin.y() - field.spacing * static_cast<double>(field.heights.cols() - 1);
+      field.heights = field.heights.rowwise().reverse().eval();
+    }
+    for (FloorMotion& motion : world.motions) mirror(motion.path);
+  }
+
+  void mirror_link(std::string& name) const {
+    const int link = model_.find_link(name);
+    if (link >= 0) name = model_.links()[map_.link[link]].name;
+  }
+
+  void mirror_joint(std::string& name) const {
+    const int dof = model_.find_dof(name);
+    if (dof >= 0) name = model_.dofs()[map_.dof[dof]].name;
+  }
+
+  void mirror(Push& push) const {
+    push.direction =
+        push.kind == PushKind::torque ? axial_image(push.direction) : image(push.direction);
+    push.point = image(push.point);
+    mirror_link(push.on);
+  }
+  void mirror(Payload& payload) const {
+    payload.point = image(payload.point);
+    mirror_link(payload.on);
+  }
+  static void mirror(FloorPath& path) {
+    path.tilt.x() *= -1;
+    path.shift = image(path.shift);
+  }
+  static void mirror(FrictionChange&) {}
+  static void mirror(Bump& bump) {
+    if (bump.foot) bump.foot = *bump.foot == Side::left ? Side::right : Side::left;
+    bump.place.y() *= -1;
+  }
+  static void mirror(Latency&) {}
+  static void mirror(SensorBias& bias) {
+    bias.tilt.x() *= -1;
+    bias.gyro = axial_image(bias.gyro);
+  }
+  /// An offset of all joints keeps its sign: it is one number for joints of both signs.
+  void mirror(EncoderOffset& fault) const {
+    const int dof = model_.find_dof(fault.joint);
+    if (dof >= 0) fault.offset *= map_.sign[dof];
+    mirror_joint(fault.joint);
+  }
+  void mirror(JointFriction& fault) const { mirror_joint(fault.joint); }
+  void mirror(GainLoss& fault) const { mirror_joint(fault.joint); }
 
   const RobotModel& model_;
   const Pattern& pattern_;

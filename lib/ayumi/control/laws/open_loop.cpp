@@ -12,7 +12,7 @@ OpenLoop::OpenLoop(const RobotModel& model, CommandPlan command,
                    const Eigen::VectorXd& target)
     : command_(std::move(command)),
       torque_lead_(std::move(torque_lead)),
-      velocity_lead_(servo_lead(model)),
+      velocity_lead_(velocity_lead(model)),
       target_(target) {}
 
 void OpenLoop::update(const Estimate& estimate, ControlOutput& out) {

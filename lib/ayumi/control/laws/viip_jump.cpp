@@ -167,7 +167,7 @@ ViipJump::ViipJump(const RobotModel& model, const ActuatorLimits& limits, const 
       plan_(held),
       data_(model),
       weight_(model.joint_weight()),
-      lead_(servo_lead(model)),
+      lead_(velocity_lead(model)),
       target_(start.target),
       reference_(start.reference),
       dcog_(start.dcog),

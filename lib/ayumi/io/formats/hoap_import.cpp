@@ -233,19 +233,19 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
   }
   const Eigen::Index count = (rows.back().at - rows.front().at) / tick + 1;
   result.motion.theta = home.transpose().replicate(count, 1);
-  std::vector<char> told(static_cast<size_t>(model.dof_count()), 0);
+  std::vector<char> in_file(static_cast<size_t>(model.dof_count()), 0);
   for (size_t device = 0; device < motors; ++device) {
     const int dof = dof_of_device[device];
     if (dof < 0) {
       refuse_lost_motion(rows, device, model, file, result.filled);
       continue;
     }
-    told[static_cast<size_t>(dof)] = 1;
+    in_file[static_cast<size_t>(dof)] = 1;
     const double per_degree = model.dofs()[dof].encoder.counts_per_degree;
     result.motion.theta.col(dof) = on_ticks(rows, device, tick) * (kRadiansPerDegree / per_degree);
   }
   for (int dof = 0; dof < model.dof_count(); ++dof)
-    if (!told[static_cast<size_t>(dof)])
+    if (!in_file[static_cast<size_t>(dof)])
       result.filled.push_back(
           model.dofs()[dof].name +
           ": the file does not have this joint; it keeps its angle of the home posture");

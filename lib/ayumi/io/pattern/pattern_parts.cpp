@@ -108,7 +108,8 @@ Keyframe read_keyframe(const JsonNode& node, PatternScope& scope) {
   Keyframe key;
   key.place = node.file() + ": " + node.pointer();
   key.t = read_time(node.at("t"), scope);
-  if (const auto way = node.find("interpolation")) key.interpolation = read_interpolation(*way);
+  if (const auto interpolation = node.find("interpolation"))
+    key.interpolation = read_interpolation(*interpolation);
   read_posture(node, key, scope);
   if (const auto zmp = node.find("zmp")) key.zmp = read_zmp(*zmp, scope);
   if (const auto cog = node.find("cog")) read_cog(*cog, key, scope);

@@ -84,8 +84,8 @@ void read_defaults(const JsonNode& root, PatternScope& scope, Pattern& pattern) 
   const auto defaults = root.find("defaults");
   if (!defaults) return;
   only_pattern_keys(*defaults, "defaults");
-  if (const auto way = defaults->find("interpolation"))
-    pattern.interpolation = read_interpolation(*way);
+  if (const auto interpolation = defaults->find("interpolation"))
+    pattern.interpolation = read_interpolation(*interpolation);
   if (const auto posture = defaults->find("posture")) pattern.default_posture = posture->string();
   if (const auto height = defaults->find("cog_height")) {
     pattern.cog_height = read_number(*height, scope);

@@ -35,7 +35,7 @@ double read_number(const JsonNode& node, PatternScope& scope, double lower, doub
 /// As read_number, in the file's angle unit; result in rad.
 double read_angle(const JsonNode& node, PatternScope& scope);
 double read_time(const JsonNode& node, PatternScope& scope);
-/// `least` to `most` numbers of an array, `form` telling how it is written.
+/// `least` to `most` numbers of an array, `form` says how the array is written.
 std::vector<double> read_numbers(const JsonNode& node, PatternScope& scope, size_t least,
                                  size_t most, const std::string& form);
 Eigen::Vector3d read_vector3(const JsonNode& node, PatternScope& scope);

@@ -1,7 +1,7 @@
 // World and disturbances of a pattern file.
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
@@ -96,60 +96,33 @@ HeightField read_field(const JsonNode& node, PatternScope& scope) {
 
 FloorMotion read_motion(const JsonNode& node, PatternScope& scope) {
   FloorMotion motion;
+  FloorPath& path = motion.path;
   const std::string shape =
       node.has("shape") ? node.at("shape").one_of({"ramp", "half_sine", "sine"}) : "ramp";
-  motion.shape = shape == "ramp"   ? MotionShape::ramp
-                 : shape == "sine" ? MotionShape::sine
-                                   : MotionShape::half_sine;
+  path.shape = shape == "ramp"   ? MotionShape::ramp
+               : shape == "sine" ? MotionShape::sine
+                                 : MotionShape::half_sine;
   motion.at = read_time(node.at("at"), scope);
   motion.duration = read_time(node.at("duration"), scope);
   if (!(motion.duration > 0)) node.at("duration").complain("a motion of the floor takes time");
-  if (motion.shape == MotionShape::sine)
-    motion.frequency = read_positive(node.at("frequency"), scope, 100);
+  if (path.shape == MotionShape::sine)
+    path.frequency = read_positive(node.at("frequency"), scope, 100);
   else if (const auto frequency = node.find("frequency"))
     frequency->complain("only a sine has a frequency");
-  read_tilts(node, scope, motion.tilt);
-  if (const auto shift = node.find("shift")) motion.shift = read_vector3(*shift, scope);
-  if (motion.shift.norm() > kHighest) node.at("shift").complain("a shift beyond 10 m");
-  if (motion.tilt.isZero(0) && motion.shift.isZero(0))
+  read_tilts(node, scope, path.tilt);
+  if (const auto shift = node.find("shift")) path.shift = read_vector3(*shift, scope);
+  if (path.shift.norm() > kHighest) node.at("shift").complain("a shift beyond 10 m");
+  if (path.tilt.isZero(0) && path.shift.isZero(0))
     node.complain("the floor does not move: give roll, pitch or shift");
   return motion;
 }
 
-/// Keys of each type besides type, at, duration; the first ones are required up to the "|".
-const std::map<std::string, std::vector<std::string>>& keys_of_types() {
-  static const std::map<std::string, std::vector<std::string>> keys = {
-      {"impulse", {"on", "point", "frame", "direction", "shape", "impulse"}},
-      {"force", {"on", "point", "frame", "direction", "shape", "force"}},
-      {"torque", {"on", "point", "frame", "direction", "shape", "torque"}},
-      {"payload", {"on", "point", "mass"}},
-      {"floor", {"shape", "frequency", "roll", "pitch", "shift"}},
-      {"friction", {"friction"}},
-      {"bump", {"foot", "position", "radius", "height"}},
-      {"latency", {"latency"}},
-      {"sensor_bias", {"roll", "pitch", "gyro", "load"}},
-      {"encoder_offset", {"joint", "offset"}},
-      {"joint_friction", {"joint", "coulomb", "viscous"}},
-      {"gain_loss", {"joint", "share"}}};
-  return keys;
-}
+using What = decltype(Disturbance::what);
 
-DisturbanceType read_type(const JsonNode& node) {
-  std::vector<std::string> names;
-  for (int i = 0; i <= static_cast<int>(DisturbanceType::gain_loss); ++i)
-    names.emplace_back(name_of(static_cast<DisturbanceType>(i)));
-  const std::string type = node.at("type").one_of(names);
-  const std::vector<std::string>& keys = keys_of_types().at(type);
-  for (const auto& [key, value] : node.members())
-    if (key != "type" && key != "at" && key != "duration" &&
-        std::find(keys.begin(), keys.end(), key) == keys.end())
-      value.complain("the type is \"" + type + "\", which takes " + text::join(keys, ", ") +
-                     " only");
-  return static_cast<DisturbanceType>(std::find(names.begin(), names.end(), type) - names.begin());
-}
-
-void read_push(const JsonNode& node, PatternScope& scope, Disturbance& push) {
-  push.magnitude = read_number(node.at(name_of(push.type)), scope, 0, kLargestNumber);
+template <PushKind kind>
+What read_push(const JsonNode& node, PatternScope& scope) {
+  Push push{.kind = kind};
+  push.magnitude = read_number(node.at(name_of(kind)), scope, 0, kLargestNumber);
   if (const auto on = node.find("on")) push.on = on->string();
   if (const auto point = node.find("point")) {
     if (push.on == "cog")
@@ -157,9 +130,8 @@ void read_push(const JsonNode& node, PatternScope& scope, Disturbance& push) {
     push.point = read_vector3(*point, scope);
   }
   if (const auto frame = node.find("frame"))
-    push.frame = frame->one_of({"world", "link"}) == "world" ? DisturbanceFrame::world
-                                                             : DisturbanceFrame::link;
-  if (push.frame == DisturbanceFrame::link && push.on == "cog")
+    push.frame = frame->one_of({"world", "link"}) == "world" ? PushFrame::world : PushFrame::link;
+  if (push.frame == PushFrame::link && push.on == "cog")
     node.at("frame").complain("\"link\" needs a link: set \"on\" to a link name");
   push.direction = read_vector3(node.at("direction"), scope);
   const double length = push.direction.norm();
@@ -167,51 +139,129 @@ void read_push(const JsonNode& node, PatternScope& scope, Disturbance& push) {
   // A unit vector stays as it is, so that writing and reading is the identity.
   if (std::abs(length - 1) > 1e-15) push.direction /= length;
   if (const auto shape = node.find("shape"))
-    push.shape = shape->one_of({"rectangle", "half_sine"}) == "rectangle"
-                     ? DisturbanceShape::rectangle
-                     : DisturbanceShape::half_sine;
+    push.shape = shape->one_of({"rectangle", "half_sine"}) == "rectangle" ? PushShape::rectangle
+                                                                          : PushShape::half_sine;
+  return push;
 }
 
-void read_payload(const JsonNode& node, PatternScope& scope, Disturbance& d) {
-  d.on = node.at("on").string();
-  if (d.on == "cog") node.at("on").complain("a payload needs a link: set \"on\" to a link name");
-  if (const auto point = node.find("point")) d.point = read_vector3(*point, scope);
-  d.magnitude = read_number(node.at("mass"), scope, 0, 1000);
+What read_payload(const JsonNode& node, PatternScope& scope) {
+  Payload payload{.on = node.at("on").string()};
+  if (payload.on == "cog")
+    node.at("on").complain("a payload needs a link: set \"on\" to a link name");
+  if (const auto point = node.find("point")) payload.point = read_vector3(*point, scope);
+  payload.mass = read_number(node.at("mass"), scope, 0, 1000);
+  return payload;
 }
 
-void read_bump(const JsonNode& node, PatternScope& scope, Disturbance& d) {
+What read_floor(const JsonNode& node, PatternScope& scope) {
+  return read_motion(node, scope).path;  // its times are those of the disturbance
+}
+
+What read_friction(const JsonNode& node, PatternScope& scope) {
+  return FrictionChange{read_number(node.at("friction"), scope, 0, 100)};
+}
+
+What read_bump(const JsonNode& node, PatternScope& scope) {
+  Bump bump;
   if (const auto foot = node.find("foot"))
-    d.foot = foot->one_of({"left", "right"}) == "left" ? Side::left : Side::right;
+    bump.foot = foot->one_of({"left", "right"}) == "left" ? Side::left : Side::right;
   if (const auto place = node.find("position"))
-    d.place = read_vector2(*place, scope);
-  else if (!d.foot)
+    bump.place = read_vector2(*place, scope);
+  else if (!bump.foot)
     node.complain("a bump needs a foot, or a position on the ground");
-  if (const auto radius = node.find("radius")) d.radius = read_positive(*radius, scope, 100);
-  d.magnitude = read_number(node.at("height"), scope, 0, 1);
+  if (const auto radius = node.find("radius")) bump.radius = read_positive(*radius, scope, 100);
+  bump.height = read_number(node.at("height"), scope, 0, 1);
+  return bump;
 }
 
-void read_bias(const JsonNode& node, PatternScope& scope, Disturbance& d) {
-  read_tilts(node, scope, d.tilt_bias);
+What read_latency(const JsonNode& node, PatternScope& scope) {
+  return Latency{read_number(node.at("latency"), scope, 0, 1)};
+}
+
+What read_bias(const JsonNode& node, PatternScope& scope) {
+  SensorBias bias;
+  read_tilts(node, scope, bias.tilt);
   if (const auto gyro = node.find("gyro")) {
     read_numbers(*gyro, scope, 3, 3, "[x, y, z]");
     for (int i = 0; i < 3; ++i)
-      d.gyro_bias[i] = read_angle(gyro->items()[static_cast<size_t>(i)], scope);
+      bias.gyro[i] = read_angle(gyro->items()[static_cast<size_t>(i)], scope);
   }
-  if (const auto load = node.find("load")) d.force_bias = read_number(*load, scope);
+  if (const auto load = node.find("load")) bias.load = read_number(*load, scope);
+  return bias;
 }
 
-void read_joint_fault(const JsonNode& node, PatternScope& scope, Disturbance& d) {
-  if (const auto joint = node.find("joint")) d.joint = joint->string();
-  if (d.type == DisturbanceType::gain_loss)
-    d.magnitude = read_number(node.at("share"), scope, 0, 1);
-  else if (d.type == DisturbanceType::encoder_offset)
-    d.magnitude = read_angle(node.at("offset"), scope);
-  else if (!node.has("coulomb") && !node.has("viscous"))
+/// "": all joints.
+std::string read_joint(const JsonNode& node) {
+  const auto joint = node.find("joint");
+  return joint ? joint->string() : "";
+}
+
+What read_encoder(const JsonNode& node, PatternScope& scope) {
+  return EncoderOffset{.joint = read_joint(node), .offset = read_angle(node.at("offset"), scope)};
+}
+
+What read_joint_friction(const JsonNode& node, PatternScope& scope) {
+  JointFriction friction{.joint = read_joint(node)};
+  if (!node.has("coulomb") && !node.has("viscous"))
     node.complain("joint friction needs coulomb or viscous");
   if (const auto coulomb = node.find("coulomb"))
-    d.magnitude = read_number(*coulomb, scope, 0, kLargestNumber);
+    friction.coulomb = read_number(*coulomb, scope, 0, kLargestNumber);
   if (const auto viscous = node.find("viscous"))
-    d.viscous = read_number(*viscous, scope, 0, kLargestNumber);
+    friction.viscous = read_number(*viscous, scope, 0, kLargestNumber);
+  return friction;
+}
+
+What read_gain_loss(const JsonNode& node, PatternScope& scope) {
+  return GainLoss{.joint = read_joint(node), .share = read_number(node.at("share"), scope, 0, 1)};
+}
+
+/// How the disturbances of one type are read.
+struct DisturbanceFormat {
+  std::string type;
+  bool ends;                      ///< it needs a duration; the others may last
+  std::vector<std::string> keys;  ///< besides type, at and duration
+  What (*read)(const JsonNode&, PatternScope&);
+};
+
+const std::vector<DisturbanceFormat>& disturbance_formats() {
+  static const std::vector<DisturbanceFormat> formats = {
+      {"impulse",
+       true,
+       {"on", "point", "frame", "direction", "shape", "impulse"},
+       read_push<PushKind::impulse>},
+      {"force",
+       true,
+       {"on", "point", "frame", "direction", "shape", "force"},
+       read_push<PushKind::force>},
+      {"torque",
+       true,
+       {"on", "point", "frame", "direction", "shape", "torque"},
+       read_push<PushKind::torque>},
+      {"payload", false, {"on", "point", "mass"}, read_payload},
+      {"floor", true, {"shape", "frequency", "roll", "pitch", "shift"}, read_floor},
+      {"friction", false, {"friction"}, read_friction},
+      {"bump", false, {"foot", "position", "radius", "height"}, read_bump},
+      {"latency", false, {"latency"}, read_latency},
+      {"sensor_bias", false, {"roll", "pitch", "gyro", "load"}, read_bias},
+      {"encoder_offset", false, {"joint", "offset"}, read_encoder},
+      {"joint_friction", false, {"joint", "coulomb", "viscous"}, read_joint_friction},
+      {"gain_loss", false, {"joint", "share"}, read_gain_loss}};
+  return formats;
+}
+
+const DisturbanceFormat& read_format(const JsonNode& node) {
+  const std::vector<DisturbanceFormat>& formats = disturbance_formats();
+  std::vector<std::string> types;
+  for (const DisturbanceFormat& format : formats) types.push_back(format.type);
+  const std::string type = node.at("type").one_of(types);
+  const DisturbanceFormat& format =
+      formats[static_cast<size_t>(std::find(types.begin(), types.end(), type) - types.begin())];
+  for (const auto& [key, value] : node.members())
+    if (key != "type" && key != "at" && key != "duration" &&
+        std::find(format.keys.begin(), format.keys.end(), key) == format.keys.end())
+      value.complain("the type is \"" + type + "\", which takes " + text::join(format.keys, ", ") +
+                     " only");
+  return format;
 }
 
 }  // namespace
@@ -251,44 +301,12 @@ World read_world(const JsonNode& node, PatternScope& scope) {
 
 Disturbance read_disturbance(const JsonNode& node, PatternScope& scope) {
   only_pattern_keys(node, "disturbance");
+  const DisturbanceFormat& format = read_format(node);
   Disturbance d;
-  d.type = read_type(node);
-  const bool push = d.type <= DisturbanceType::torque;
   d.at = read_time(node.at("at"), scope);
-  d.duration = push || d.type == DisturbanceType::floor || node.has("duration")
-                   ? read_time(node.at("duration"), scope)
-                   : kLongestPattern;
-  switch (d.type) {
-    case DisturbanceType::impulse:
-    case DisturbanceType::force:
-    case DisturbanceType::torque:
-      read_push(node, scope, d);
-      break;
-    case DisturbanceType::payload:
-      read_payload(node, scope, d);
-      break;
-    case DisturbanceType::floor:
-      d.floor = read_motion(node, scope);
-      d.floor.at = d.floor.duration = 0;  // they are the disturbance's own
-      break;
-    case DisturbanceType::friction:
-      d.magnitude = read_number(node.at("friction"), scope, 0, 100);
-      break;
-    case DisturbanceType::bump:
-      read_bump(node, scope, d);
-      break;
-    case DisturbanceType::latency:
-      d.magnitude = read_number(node.at("latency"), scope, 0, 1);
-      break;
-    case DisturbanceType::sensor_bias:
-      read_bias(node, scope, d);
-      break;
-    case DisturbanceType::encoder_offset:
-    case DisturbanceType::joint_friction:
-    case DisturbanceType::gain_loss:
-      read_joint_fault(node, scope, d);
-      break;
-  }
+  d.duration =
+      format.ends || node.has("duration") ? read_time(node.at("duration"), scope) : kLongestPattern;
+  d.what = format.read(node, scope);
   return d;
 }
 

@@ -11,14 +11,14 @@ void add_rectangle(Members& members, const Vector2d& low, const Vector2d& high) 
   members.add("y", vector_text(Vector2d(low.y(), high.y())));
 }
 
-void add_motion(Members& members, const FloorMotion& motion, bool in_degrees) {
+void add_path(Members& members, const FloorPath& path, bool in_degrees) {
   static constexpr const char* kShapes[] = {"ramp", "half_sine", "sine"};
-  members.add("shape", quoted(kShapes[static_cast<int>(motion.shape)]));
-  if (motion.shape == MotionShape::sine) members.add("frequency", number(motion.frequency));
-  if (!motion.tilt.isZero(0))
-    members.add("roll", angle_text(motion.tilt.x(), in_degrees))
-        .add("pitch", angle_text(motion.tilt.y(), in_degrees));
-  if (!motion.shift.isZero(0)) members.add("shift", vector_text(motion.shift));
+  members.add("shape", quoted(kShapes[static_cast<int>(path.shape)]));
+  if (path.shape == MotionShape::sine) members.add("frequency", number(path.frequency));
+  if (!path.tilt.isZero(0))
+    members.add("roll", angle_text(path.tilt.x(), in_degrees))
+        .add("pitch", angle_text(path.tilt.y(), in_degrees));
+  if (!path.shift.isZero(0)) members.add("shift", vector_text(path.shift));
 }
 
 template <typename Item, typename Text>
@@ -40,17 +40,54 @@ std::string field_text(const HeightField& field) {
       .object();
 }
 
-void add_push(Members& members, const Disturbance& d) {
-  members.add("on", quoted(d.on));
-  if (d.on != "cog" && !d.point.isZero(0)) members.add("point", vector_text(d.point));
-  if (d.frame == DisturbanceFrame::link) members.add("frame", quoted("link"));
-  members.add("direction", vector_text(d.direction)).add(name_of(d.type), number(d.magnitude));
-  if (d.shape == DisturbanceShape::half_sine) members.add("shape", quoted("half_sine"));
-}
+/// Adds the members that a kind of disturbance has beside type, at and duration.
+struct WhatText {
+  Members& members;
+  bool in_degrees;
 
-void add_joint(Members& members, const Disturbance& d) {
-  if (!d.joint.empty()) members.add("joint", quoted(d.joint));
-}
+  void operator()(const Push& d) {
+    members.add("on", quoted(d.on));
+    if (d.on != "cog" && !d.point.isZero(0)) members.add("point", vector_text(d.point));
+    if (d.frame == PushFrame::link) members.add("frame", quoted("link"));
+    members.add("direction", vector_text(d.direction)).add(name_of(d.kind), number(d.magnitude));
+    if (d.shape == PushShape::half_sine) members.add("shape", quoted("half_sine"));
+  }
+  void operator()(const Payload& d) {
+    members.add("on", quoted(d.on));
+    if (!d.point.isZero(0)) members.add("point", vector_text(d.point));
+    members.add("mass", number(d.mass));
+  }
+  void operator()(const FloorPath& d) { add_path(members, d, in_degrees); }
+  void operator()(const FrictionChange& d) { members.add("friction", number(d.friction)); }
+  void operator()(const Bump& d) {
+    if (d.foot) members.add("foot", quoted(name_of(*d.foot)));
+    members.add("position", vector_text(d.place));
+    members.add("radius", number(d.radius)).add("height", number(d.height));
+  }
+  void operator()(const Latency& d) { members.add("latency", number(d.latency)); }
+  void operator()(const SensorBias& d) {
+    members.add("roll", angle_text(d.tilt.x(), in_degrees));
+    members.add("pitch", angle_text(d.tilt.y(), in_degrees));
+    Members gyro;
+    for (const double rate : d.gyro) gyro.item(angle_text(rate, in_degrees));
+    members.add("gyro", gyro.array()).add("load", number(d.load));
+  }
+  void operator()(const EncoderOffset& d) {
+    add_joint(d.joint);
+    members.add("offset", angle_text(d.offset, in_degrees));
+  }
+  void operator()(const JointFriction& d) {
+    add_joint(d.joint);
+    members.add("coulomb", number(d.coulomb)).add("viscous", number(d.viscous));
+  }
+  void operator()(const GainLoss& d) {
+    add_joint(d.joint);
+    members.add("share", number(d.share));
+  }
+  void add_joint(const std::string& joint) {
+    if (!joint.empty()) members.add("joint", quoted(joint));
+  }
+};
 
 }  // namespace
 
@@ -82,7 +119,7 @@ std::string world_text(const World& world, bool in_degrees) {
   add_list(members, "motion", world.motions, [&](const FloorMotion& motion) {
     Members item;
     item.add("at", number(motion.at)).add("duration", number(motion.duration));
-    add_motion(item, motion, in_degrees);
+    add_path(item, motion.path, in_degrees);
     return item;
   });
   return members.object();
@@ -90,54 +127,9 @@ std::string world_text(const World& world, bool in_degrees) {
 
 std::string disturbance_text(const Disturbance& d, bool in_degrees) {
   Members members;
-  members.add("type", quoted(name_of(d.type))).add("at", number(d.at));
+  members.add("type", quoted(name_of(d))).add("at", number(d.at));
   members.add("duration", number(d.duration));
-  switch (d.type) {
-    case DisturbanceType::impulse:
-    case DisturbanceType::force:
-    case DisturbanceType::torque:
-      add_push(members, d);
-      break;
-    case DisturbanceType::payload:
-      members.add("on", quoted(d.on));
-      if (!d.point.isZero(0)) members.add("point", vector_text(d.point));
-      members.add("mass", number(d.magnitude));
-      break;
-    case DisturbanceType::floor:
-      add_motion(members, d.floor, in_degrees);
-      break;
-    case DisturbanceType::friction:
-      members.add("friction", number(d.magnitude));
-      break;
-    case DisturbanceType::bump:
-      if (d.foot) members.add("foot", quoted(name_of(*d.foot)));
-      members.add("position", vector_text(d.place));
-      members.add("radius", number(d.radius)).add("height", number(d.magnitude));
-      break;
-    case DisturbanceType::latency:
-      members.add("latency", number(d.magnitude));
-      break;
-    case DisturbanceType::sensor_bias: {
-      members.add("roll", angle_text(d.tilt_bias.x(), in_degrees));
-      members.add("pitch", angle_text(d.tilt_bias.y(), in_degrees));
-      Members gyro;
-      for (const double rate : d.gyro_bias) gyro.item(angle_text(rate, in_degrees));
-      members.add("gyro", gyro.array()).add("load", number(d.force_bias));
-      break;
-    }
-    case DisturbanceType::encoder_offset:
-      add_joint(members, d);
-      members.add("offset", angle_text(d.magnitude, in_degrees));
-      break;
-    case DisturbanceType::joint_friction:
-      add_joint(members, d);
-      members.add("coulomb", number(d.magnitude)).add("viscous", number(d.viscous));
-      break;
-    case DisturbanceType::gain_loss:
-      add_joint(members, d);
-      members.add("share", number(d.magnitude));
-      break;
-  }
+  std::visit(WhatText{members, in_degrees}, d.what);
   return members.object();
 }
 

@@ -7,7 +7,7 @@
 
 namespace ayumi {
 
-/// What the check found that urdfdom does not tell.
+/// What the check found and urdfdom does not report.
 struct UrdfText {
   std::string xml;                         ///< repaired for urdfdom: unstated limits filled in
   std::map<std::string, int> link_place;   ///< of each <link> in the file's order, by name

@@ -10,7 +10,7 @@ namespace ayumi {
 namespace {
 
 /// null is a figure that does not exist.
-double figure(const JsonNode& node) {
+double read_figure(const JsonNode& node) {
   return node.value().is_null() ? std::numeric_limits<double>::quiet_NaN() : node.number();
 }
 
@@ -26,8 +26,8 @@ Finding finding_of(const JsonNode& node) {
   f.begin = node.at("begin_s").number();
   f.end = node.at("end_s").number();
   f.at = node.at("at_s").number();
-  f.worst = figure(node.at("worst"));
-  f.limit = figure(node.at("limit"));
+  f.worst = read_figure(node.at("worst"));
+  f.limit = read_figure(node.at("limit"));
   f.unit = node.at("unit").string();
   f.where = node.at("where").string();
   f.hint = node.at("hint").string();
@@ -41,7 +41,7 @@ CheckSummary summary_of(const JsonNode& node) {
   CheckSummary summary;
   for (const FindingSpec* spec : summary_figures()) {
     const auto value = node.find(spec->figure.key);
-    summary[spec->kind] = value ? figure(*value) : std::numeric_limits<double>::quiet_NaN();
+    summary[spec->kind] = value ? read_figure(*value) : std::numeric_limits<double>::quiet_NaN();
   }
   return summary;
 }
@@ -60,29 +60,31 @@ RepairNote repair_of(const JsonNode& node) {
   const JsonNode moved = node.at("moved");
   std::vector<RepairNote::Moved> joints;
   for (const JsonNode& j : moved.at("joints").items())
-    joints.push_back({j.at("joint").string(), figure(j.at("most_rad")), figure(j.at("at_s")),
-                      figure(j.at("begin_s")), figure(j.at("end_s"))});
+    joints.push_back({j.at("joint").string(), read_figure(j.at("most_rad")),
+                      read_figure(j.at("at_s")), read_figure(j.at("begin_s")),
+                      read_figure(j.at("end_s"))});
   return {.status = node.at("status").string(),
-          .max_joint_change = figure(moved.at("max_joint_rad")),
-          .max_cog_change = figure(moved.at("max_cog_m")),
+          .max_joint_change = read_figure(moved.at("max_joint_rad")),
+          .max_cog_change = read_figure(moved.at("max_cog_m")),
           .iterations = node.at("iterations").integer(),
           .reasons = node.at("reasons").strings(),
           .joints = joints,
-          .margin_before = figure(node.at("zmp_margin").at("before_m")),
-          .margin_after = figure(node.at("zmp_margin").at("after_m"))};
+          .margin_before = read_figure(node.at("zmp_margin").at("before_m")),
+          .margin_after = read_figure(node.at("zmp_margin").at("after_m"))};
 }
 
 ExportNote export_of(const JsonNode& node) {
   ExportNote note;
   note.safe = node.at("safe").boolean();
-  note.max_step_ratio = figure(node.at("max_step_ratio"));
+  note.max_step_ratio = read_figure(node.at("max_step_ratio"));
   note.worst_joint = node.at("worst_joint").string();
   for (const JsonNode& violation : node.at("violations").items())
-    note.violations.push_back(
-        violation.at("kind").string() + " of " + violation.at("joint").string() + " at " +
-        text::fixed(violation.at("at_s").number(), 3) +
-        " s: " + text::brief(figure(violation.at("value"))) + " " + violation.at("unit").string() +
-        ", limit " + text::brief(figure(violation.at("limit"))));
+    note.violations.push_back(violation.at("kind").string() + " of " +
+                              violation.at("joint").string() + " at " +
+                              text::fixed(violation.at("at_s").number(), 3) +
+                              " s: " + text::brief(read_figure(violation.at("value"))) + " " +
+                              violation.at("unit").string() + ", limit " +
+                              text::brief(read_figure(violation.at("limit"))));
   return note;
 }
 

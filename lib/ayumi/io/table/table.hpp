@@ -24,7 +24,7 @@ std::string reference_json(const ReferenceTrajectory& reference, const TableCaut
 /// is no table.
 TableCaution read_table_caution(const std::filesystem::path& path);
 
-/// Reads what reference_csv or reference_json wrote, told apart by the first character. Throws
+/// Reads what reference_csv or reference_json wrote; the first character says which of them. Throws
 /// Error(bad_file) naming file and line or pointer: another format, missing or unknown columns,
 /// ragged rows, times that are not k dt, quaternions that are not unit (1e-6), no rows.
 ReferenceTrajectory read_reference(const std::filesystem::path& path);

@@ -187,17 +187,17 @@ void fill_theta(const NumberTable& table, const TableLayout& layout, const Robot
                 const std::string& file, ImportedMotion& result) {
   if (layout.joints.empty()) refuse_table(file, "no column is a joint of '" + model.name() + "'");
   result.motion.theta = model.posture().transpose().replicate(table.values.rows(), 1);
-  std::vector<char> told(static_cast<size_t>(model.dof_count()), 0);
+  std::vector<char> in_file(static_cast<size_t>(model.dof_count()), 0);
   for (size_t j = 0; j < layout.joints.size(); ++j) {
     const int dof = model.find_dof(layout.joints[j]);
     if (dof < 0)
       refuse_table(file, "'" + model.name() + "' has no joint '" + layout.joints[j] + "'" +
                              text::suggestion(layout.joints[j], model.dof_names()));
     result.motion.theta.col(dof) = table.values.col(layout.theta[j]);
-    told[static_cast<size_t>(dof)] = 1;
+    in_file[static_cast<size_t>(dof)] = 1;
   }
   for (int dof = 0; dof < model.dof_count(); ++dof)
-    if (!told[static_cast<size_t>(dof)])
+    if (!in_file[static_cast<size_t>(dof)])
       result.filled.push_back(
           model.dofs()[dof].name +
           ": the file does not have this joint; it keeps its angle of the home posture");
@@ -214,7 +214,7 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
   imported.filled.push_back("angles are servo targets: the velocity lead kd/kp was subtracted");
 }
 
-// A motion begins and ends at rest: as if it came back the way it went.
+// A motion begins and ends at rest: as if it returned along its own path.
 Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, double cutoff) {
   const Eigen::Index n = raw.size();
   const auto more = std::min<Eigen::Index>(n - 1, static_cast<Eigen::Index>(2 / cutoff));

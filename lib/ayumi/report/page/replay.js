@@ -305,7 +305,7 @@ class Replay {
       new Vector3(0.8, -0.9, 2.2).multiplyScalar(config.height));
     this.placeFloor(row);
     this.place(row);
-    tell(this.time, row);
+    showValues(this.time, row);
     this.draw();
   }
 
@@ -415,7 +415,7 @@ function drawCursors() {
 const cursors = drawCursors();
 const millimetres = (value) => (1000 * value).toFixed(1);
 
-function tell(t, row) {
+function showValues(t, row) {
   for (const { line, xOf } of cursors) {
     line.setAttribute("x1", xOf(t).toFixed(2));
     line.setAttribute("x2", xOf(t).toFixed(2));

@@ -60,7 +60,7 @@ struct MujocoPlant::Impl {
   void take_input(const StepInput& input);
   void load(const std::vector<CarriedMass>& payloads);
   void take_joints(const StepInput& input);
-  void take_bumps(const std::vector<Bump>& now);
+  void take_bumps(const std::vector<RisingDisc>& now);
   void place_floor();
   void set_friction();
   void move_ground(double dt);

@@ -269,7 +269,7 @@ int bump_geom(const mjModel* m, int i, int part) {
   return mujoco_id(m, mjOBJ_GEOM, bump_name(i, part));
 }
 
-void set_bump(const Bump* bump, int i, mjModel* m) {
+void set_bump(const RisingDisc* bump, int i, mjModel* m) {
   std::array<Vector2d, 8> corner;
   if (bump) block_corners(bump->block, corner);
   for (int k = 0; k < 9; ++k) {

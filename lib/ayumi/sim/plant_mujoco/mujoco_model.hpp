@@ -37,6 +37,6 @@ void set_inertia(const Inertia& inertia, int body, mjModel* m);
 /// Geom of a part of bump `i`: 0..7 are the rods of its edges, 8 is its cylinder.
 int bump_geom(const mjModel* m, int i, int part);
 /// Places bump `i`; removes it when `bump` is null.
-void set_bump(const Bump* bump, int i, mjModel* m);
+void set_bump(const RisingDisc* bump, int i, mjModel* m);
 
 }  // namespace ayumi

@@ -31,7 +31,7 @@ StepInput later(StepInput input, double t) {
     floor.pose.linear() =
         exp_rotation(t * floor.angular_velocity).toRotationMatrix() * floor.pose.linear();
   }
-  for (Bump& bump : input.bumps) bump.block.height += t * bump.rate;
+  for (RisingDisc& bump : input.bumps) bump.block.height += t * bump.rate;
   return input;
 }
 
@@ -207,13 +207,13 @@ void MujocoPlant::Impl::take_joints(const StepInput& input) {
   }
 }
 
-void MujocoPlant::Impl::take_bumps(const std::vector<Bump>& now) {
+void MujocoPlant::Impl::take_bumps(const std::vector<RisingDisc>& now) {
   if (!now.empty() && !bumps) build(true);
   if (!bumps) return;
   rates.assign(static_cast<size_t>(m->ngeom), 0.0);
   for (int i = 0; i < kMujocoBumps; ++i) {
     const bool there = i < static_cast<int>(now.size());
-    const Bump* bump = there ? &now[static_cast<size_t>(i)] : nullptr;
+    const RisingDisc* bump = there ? &now[static_cast<size_t>(i)] : nullptr;
     set_bump(bump, i, m.get());
     for (int part = 0; there && part < 9; ++part)
       rates[static_cast<size_t>(bump_geom(m.get(), i, part))] = bump->rate;

@@ -1,0 +1,123 @@
+#include "ayumi/io/run/run_output.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "ayumi/io/run/run_folder.hpp"
+#include "tests/support/error_message.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace ayumi {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunOutputTest : public testing::Test {
+ protected:
+  /// Delivers a run with these files.
+  void deliver(const std::vector<std::string>& files, bool replace = false) const {
+    RunOutput output(target, replace);
+    RunFolder run;
+    for (const std::string& name : files) write_file(output.file(name), "of the run");
+    run.files = files;
+    write_run(output.folder(), run);
+    output.deliver();
+  }
+  std::string refusal(const std::vector<std::string>& files, bool replace = false) const {
+    return test::error_message([&] { deliver(files, replace); }, ErrorCode::bad_file);
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const auto& entry : fs::directory_iterator(target))
+      found.push_back(entry.path().filename().string());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+  using Names = std::vector<std::string>;
+
+  test::TemporaryFolder folder;
+  fs::path target = folder.path() / "out";
+};
+
+TEST_F(RunOutputTest, ShowsNothingBeforeItDelivers) {
+  {
+    const RunOutput output(target, false);
+    write_file(output.file("a.csv"), "half");
+    EXPECT_FALSE(fs::exists(target / "a.csv"));
+    EXPECT_FALSE(is_run_folder(target));
+  }
+  EXPECT_FALSE(fs::exists(target)) << "an interrupted run leaves nothing";
+  deliver({"a.csv"});
+  EXPECT_EQ(names(), (Names{"a.csv", "run.json"}));
+  verify_run(target);
+}
+
+TEST_F(RunOutputTest, IsRefusedWhileAnotherRunIsWrittenThere) {
+  const RunOutput first(target, false);
+  EXPECT_NE(refusal({}).find("out: another run is being written there"), std::string::npos);
+  EXPECT_TRUE(fs::is_directory(first.folder())) << "the refused one removes nothing";
+}
+
+TEST_F(RunOutputTest, TakesOverWhatAnInterruptedProcessLeft) {
+  folder.write("out/.ayumi_part/half.csv", "x");
+  folder.write("out/.ayumi_lock", "");
+  deliver({"a.csv"});
+  EXPECT_EQ(names(), (Names{"a.csv", "run.json"}));
+}
+
+TEST_F(RunOutputTest, ReplacesTheFilesOfTheRunBeforeAndNoOthers) {
+  deliver({"a.csv", "b.csv"});
+  folder.write("out/notes.txt", "mine");
+  EXPECT_NE(refusal({"a.csv"}).find("out: exists already"), std::string::npos);
+  EXPECT_EQ(names(), (Names{"a.csv", "b.csv", "notes.txt", "run.json"}));
+  deliver({"a.csv"}, true);
+  EXPECT_EQ(names(), (Names{"a.csv", "notes.txt", "run.json"}));
+  EXPECT_EQ(read_file(target / "notes.txt"), "mine");
+}
+
+TEST_F(RunOutputTest, LeavesAFileOfTheUserAndTheRunBefore) {
+  deliver({"a.csv"});
+  const std::string before = read_file(target / "run.json");
+  folder.write("out/b.csv", "mine");
+  EXPECT_NE(refusal({"b.csv"}, true).find("b.csv: exists already and is not a file of a run"),
+            std::string::npos);
+  EXPECT_EQ(read_file(target / "b.csv"), "mine");
+  EXPECT_EQ(read_file(target / "run.json"), before);
+  EXPECT_EQ(names(), (Names{"a.csv", "b.csv", "run.json"}));
+}
+
+TEST_F(RunOutputTest, LeavesALinkOrAFolderInPlaceOfAFileOfTheRun) {
+  const fs::path mine = folder.write("mine", "text");
+  deliver({"a.csv"});
+  fs::remove(target / "a.csv");
+  fs::create_symlink(mine, target / "a.csv");
+  EXPECT_NE(refusal({"a.csv"}, true).find("a.csv: is a symbolic link"), std::string::npos);
+  EXPECT_EQ(read_file(mine), "text");
+  fs::remove(target / "a.csv");
+  folder.write("out/a.csv/inside", "mine");
+  EXPECT_NE(refusal({"a.csv"}, true).find("a.csv: is a directory"), std::string::npos);
+  EXPECT_EQ(read_file(target / "a.csv" / "inside"), "mine");
+}
+
+// A run.json from elsewhere may name any file. Only those in the folder itself are of the run.
+TEST_F(RunOutputTest, RemovesNothingOutsideItsFolder) {
+  folder.write("mine", "text");
+  folder.write("out/deeper/mine", "text");
+  folder.write("out/run.json",
+               R"({"format": "ayumi.run/1", "files": {"../mine": "0", "deeper/mine": "0",
+                   "..": "0", "/etc/hostname": "0"}})");
+  EXPECT_EQ(run_file_names(target), Names{"run.json"});
+  deliver({}, true);
+  EXPECT_EQ(read_file(folder.path() / "mine"), "text");
+  EXPECT_EQ(read_file(target / "deeper" / "mine"), "text");
+}
+
+TEST_F(RunOutputTest, KeepsAFolderWhoseRunCannotBeRead) {
+  folder.write("out/run.json", "{ not JSON");
+  EXPECT_NE(refusal({}, true), "no error");
+  EXPECT_EQ(read_file(target / "run.json"), "{ not JSON");
+}
+
+}  // namespace
+}  // namespace ayumi

@@ -1,0 +1,9 @@
+#pragma once
+
+#include <cmath>
+
+namespace ayumi::test {
+
+inline constexpr double kDegree = M_PI / 180;  ///< [rad]
+
+}  // namespace ayumi::test
