@@ -291,10 +291,11 @@ Interval held_around(const Scene& scene, const FindingWindow& w, int dof) {
 
 const Condition kAlways = {"always", [](Scene&, int, int, const Interval&) { return true; }};
 
-const Condition kNotAskedFor = {"it is not a ZMP outside the support that the command asks for",
-                                [](Scene& scene, int, int j, const Interval&) {
-                                  return !is_asked_for(scene.motion, scene.of(j));
-                                }};
+const Condition kNotAskedFor = {
+    "the effect is not a ZMP that the command itself puts outside the support",
+    [](Scene& scene, int, int j, const Interval&) {
+      return !is_asked_for(scene.motion, scene.of(j));
+    }};
 
 const Condition kLargerOfOneFoot = {
     "the foot is the same, and the cause is its largest displacement",
@@ -309,9 +310,9 @@ const Condition kJointOfLeg = {"the joint is one of a leg",
                                }};
 
 const Condition kTouchesByAngle = {
-    "the bodies overlap by at most 15 mm, and would not if all joints kept their limits; or the "
-    "joint sets their distance and is not between an arm and the trunk, and the bodies overlap "
-    "only in its excursion",
+    "the bodies overlap by at most 15 mm, and they would not overlap if all joints kept their "
+    "limits; or the bodies overlap only in the excursion of the joint, which sets their "
+    "distance and is not between an arm and the trunk",
     [](Scene& scene, int i, int j, const Interval&) {
       return touches_by_limits(scene.motion, scene.of(j)) ||
              (hangs_on(scene.motion, scene.of(j), scene.of(i).item) &&
@@ -339,8 +340,8 @@ const Condition kInsideInterval = {"the effect begins and ends there",
                                    }};
 
 const Condition kJumpThereAndBack = {
-    "the joint jumps, and jumps back at the other end; or the joint is one of the leg, and the "
-    "foot is in its place before and after",
+    "the joint jumps there, and it jumps back at the other end; or the joint jumps there and "
+    "is one of that leg, and the foot is in its place before and after the cause",
     [](Scene& scene, int i, int j, const Interval& interval) {
       const FindingWindow& w = scene.window(i);
       const Violation& v = scene.of(j);
@@ -351,8 +352,8 @@ const Condition kJumpThereAndBack = {
     }};
 
 const Condition kHeldJoint = {
-    "the joint is between the two bodies; its jump is the last one before or the first one after "
-    "the overlap, and another jump undoes it",
+    "the joint is between the two bodies, and its jump is undone by another jump; one of them "
+    "is the last jump before the overlap or the first jump after it",
     [](Scene& scene, int i, int j, const Interval&) {
       const int dof = scene.of(j).item;
       if (!sets_distance(scene.motion, scene.of(i), dof)) return false;
@@ -371,8 +372,8 @@ const Condition kNearDisplacement = {
     }};
 
 const Condition kMovesCog = {
-    "the COG error is not larger than the displacement of the sole, or vanishes when the robot is "
-    "moved so that the sole is in its place",
+    "the COG error is at most the displacement of the sole; or it vanishes if the whole robot "
+    "is moved so that the sole is in its place",
     [](Scene& scene, int i, int j, const Interval&) {
       return moves_cog(scene.motion, scene.of(i), scene.of(j));
     }};
@@ -406,14 +407,15 @@ const Condition kOfFlight = {
              around(scene.window(i), kDifferenceReach).touches(scene.window(j));
     }};
 
-const Condition kUncountedFoot = {"the contact plan misses a foot that still stands",
-                                  [](Scene& scene, int, int j, const Interval&) {
-                                    return uncounted_foot_stands(scene.motion, scene.of(j).sample);
-                                  }};
+const Condition kUncountedFoot = {
+    "a foot stands on the ground at a time at which the plan has no contact of this foot",
+    [](Scene& scene, int, int j, const Interval&) {
+      return uncounted_foot_stands(scene.motion, scene.of(j).sample);
+    }};
 
 const Condition kSlowerPace = {
-    "one slower pace removes both; or the effect is not a jump, but the differences over a jump "
-    "spoil it",
+    "one slower pace removes both; or a jump spoils the differences from which the effect is "
+    "computed, and the effect is not one of the rates",
     [](Scene& scene, int i, int j, const Interval&) {
       return slower_pace_removes(scene.motion, scene.of(i), scene.of(j));
     }};
@@ -424,7 +426,8 @@ const Condition kTorqueOfLeg = {"the joint is one of a leg",
                                 }};
 
 const Condition kHeldByFriction = {
-    "the yaw moment is at most twice the moment that the missing friction would hold",
+    "the yaw moment is at most twice the limit that the friction coefficient needed by the "
+    "motion would give",
     [](Scene& scene, int i, int j, const Interval&) {
       const double more = scene.of(i).value / scene.of(i).limit;
       return scene.of(j).value <= kArmFactor * more * scene.of(j).limit;
