@@ -273,8 +273,8 @@ void add_push(CLI::App& app, Context& context) {
       "Examples:\n  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n"
       "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
       "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
-      "Run again with the same -o to resume a study. Pushes in the pattern's scenario are "
-      "ignored.");
+      "Run again with the same -o to resume a study. The pattern's scenario is ignored, "
+      "its lasting disturbances (payload, friction, latency, ...) included.");
   auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();

@@ -25,8 +25,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-// The figures behind the values below are in docs/theory.md, "Moving footholds": 32 walking pushes
-// of HOAP-1. Lengths are times the COG height z, times are times 1 / omega.
+// Derivation: docs/theory.md, "Moving footholds". What the footholds are worth in 32 walking pushes
+// of HOAP-1: docs/measurements/pushes.md. Lengths are times the COG height z, times are times
+// 1 / omega.
 
 // Share of each support that is kept in reserve. Chosen for what the point mass does not know.
 // Half: hurried walk, slip 5.22 to 8.86 mm; twice: pushed walk, slip 1.45 to 0.875 mm.

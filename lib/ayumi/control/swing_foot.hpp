@@ -12,7 +12,7 @@
 namespace ayumi {
 
 /// Least distance between the inner sides of two soles beside each other [m]. Chosen: a few times
-/// the error with which a foot lands (1.5 mm on HOAP-1, docs/theory.md, "Footholds"). Half:
+/// the error with which a foot lands, 1.5 mm on HOAP-1. Half:
 /// crossing walk, tilt 0.2 to 0.216 rad; twice: pushed steps, ZMP error 9.6 to 10.5 mm.
 inline constexpr double kSoleClearance = 0.008;
 

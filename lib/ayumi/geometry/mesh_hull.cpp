@@ -16,7 +16,7 @@ constexpr size_t kMeshPoints = 32;
 /// costs more than it saves; the hull is the same.
 constexpr size_t kManyVertices = 4096;
 /// Directions in which the vertices of a larger mesh are chosen. Chosen: about 21 deg apart, so
-/// that the hull is at most 4 % of its radius inside a sphere (docs/theory_plant.md).
+/// that the hull is at most 4 % of its radius inside a sphere (1 - cos 16 deg).
 constexpr int kDirections = 90;
 /// Distance of points from a plane below which they are in it, relative to the points' extent.
 /// Chosen: above the rounding of single precision, in which mesh files store vertices.

@@ -1,6 +1,6 @@
 #pragma once
-// DTAD: dual-term absorption of disturbance, section 3 of the paper. The law, its derivation and
-// what each term is worth: docs/theory.md.
+// DTAD: dual-term absorption of disturbance, section 3 of the paper. The law and its derivation:
+// docs/theory.md, "DTAD". What each term is worth: docs/measurements/law.md.
 
 #include <memory>
 #include <optional>

@@ -46,8 +46,8 @@ constexpr double kStoopTime = 5;
 // changes from half to twice (constants.md).
 constexpr double kStoopReached = 0.01;
 
-// Lean of the trunk when stooped, times z_d / ref z_G [rad]. Measured: docs/theory.md, "Lean"; 0
-// leaves the apex of springs 8 to 10 % low.
+// Lean of the trunk when stooped, times z_d / ref z_G [rad]. Derivation: docs/theory.md, "Lean".
+// Measured with version 0.1: 0 leaves the apex of springs 8 to 10 % low.
 constexpr double kStoopLean = 1.2;
 
 // sqrt(K_Pz / m) after the landing, times omega. Chosen: back at ref z_G within the 0.6 s that the
