@@ -74,7 +74,7 @@ bool angular_momentum_holds(JudgedMotion& motion, const Violation& v, double pac
 }
 
 Advice angular_momentum_advice(const JudgedMotion&, const FindingWindow&) {
-  return "nothing can turn the robot in flight: keep its angular momentum, let arms and legs move "
+  return "the angular momentum cannot change in flight: let arms and legs move "
          "against each other";
 }
 

@@ -92,7 +92,7 @@ Place body_pair_place(const JudgedMotion& motion, const Violation& v) {
 
 Advice clearance_advice(const JudgedMotion&, const FindingWindow& window) {
   const double clearance = window.worst.value;
-  return clearance < 0 ? "these bodies overlap by " + in_mm(clearance) + ": keep them apart"
+  return clearance < 0 ? "these bodies overlap by " + in_mm(clearance) + ": move them apart"
                        : "only " + in_mm(clearance) + " between these bodies";
 }
 

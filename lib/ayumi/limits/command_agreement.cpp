@@ -114,15 +114,17 @@ Place vertical_place(const JudgedMotion&, const Violation&) { return AxisPlace{2
 
 Advice cog_advice(const JudgedMotion&, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return {"the posture's COG is " + in_mm(v.value) + " from the commanded one, most along " +
-              axis_name(v.detail) + ": change the COG key or the posture",
+  return {"the COG of the posture is " + in_mm(v.value) +
+              " away from the commanded COG, mostly along " + axis_name(v.detail) +
+              ": change the COG key or the posture",
           std::string(kOrRepair) + " (which keeps the posture)"};
 }
 
 Advice zmp_advice(const JudgedMotion&, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return {"the motion's own ZMP is " + in_mm(v.value) + " from the commanded one, most along " +
-              axis_name(v.detail) + ": change the ZMP key or the motion",
+  return {"the ZMP of the motion is " + in_mm(v.value) +
+              " away from the commanded ZMP, mostly along " + axis_name(v.detail) +
+              ": change the ZMP key or the motion",
           std::string(kOrRepair) + " (which keeps the motion)"};
 }
 
@@ -134,8 +136,8 @@ Advice vertical_force_advice(const JudgedMotion&, const FindingWindow& window) {
 }
 
 Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
-  return "the mass-concentrated model is " + in_mm(window.worst.value) +
-         " off here: judge by the full model";
+  return "the mass-concentrated model has a ZMP error of " + in_mm(window.worst.value) +
+         " here: use the full model";
 }
 
 std::string cog_infeasibility(const Finding& f, double) {
@@ -154,7 +156,7 @@ const Limit& command_agreement_limit() {
                     .limit_class = LimitClass::command,
                     .unit = "m",
                     .tolerance = kCogTolerance,
-                    .meaning = "COG of the posture from the commanded COG",
+                    .meaning = "distance between the COG of the posture and the commanded COG",
                     .figure = {.key = "max_cog_residual_m",
                                .label = "largest COG residual",
                                .unit = "mm",
@@ -168,7 +170,7 @@ const Limit& command_agreement_limit() {
                     .limit_class = LimitClass::command,
                     .unit = "m",
                     .tolerance = kZmpTolerance,
-                    .meaning = "ZMP of the full model from the commanded ZMP",
+                    .meaning = "distance between the ZMP of the full model and the commanded ZMP",
                     .figure = {.key = "max_zmp_residual_m",
                                .label = "largest ZMP residual",
                                .unit = "mm",
@@ -183,8 +185,9 @@ const Limit& command_agreement_limit() {
                     .limit_class = LimitClass::command,
                     .unit = "m g",
                     .tolerance = kForceTolerance,
-                    .meaning = "vertical force the motion needs from the commanded one, tolerance "
-                               "as a share of the weight",
+                    .meaning =
+                        "difference between the vertical force that the motion needs and the "
+                        "commanded one; the tolerance is a share of the weight",
                     .figure = {.key = "max_fz_residual_N",
                                .label = "largest vertical force residual",
                                .unit = "N",
@@ -197,8 +200,8 @@ const Limit& command_agreement_limit() {
                     .limit_class = LimitClass::command,
                     .unit = "m",
                     .tolerance = kPointMassTolerance,
-                    .meaning = "ZMP of the mass-concentrated model (14)(15) from the commanded "
-                               "ZMP: how good that model is here; never an error",
+                    .meaning = "distance between the ZMP of the mass-concentrated model (14)(15) "
+                               "and the commanded ZMP: how good that model is here; never an error",
                     .figure = {.key = "max_point_mass_gap_m",
                                .label = "largest gap of the point mass",
                                .unit = "mm",

@@ -45,14 +45,15 @@ std::string contact_end_infeasibility(const Finding& f, double) {
 
 const Limit& contact_timing_limit() {
   static const Limit limit = {
-      .findings = {{.kind = FindingKind::contact_ends_early,
-                    .unit = "s",
-                    .tolerance = kLateTolerance,
-                    .meaning =
-                        "time for which a foot stands on in its place after its contact has ended",
-                    .place = foot_place,
-                    .advice = contact_end_advice,
-                    .infeasibility = contact_end_infeasibility}},
+      .findings =
+          {{.kind = FindingKind::contact_ends_early,
+            .unit = "s",
+            .tolerance = kLateTolerance,
+            .meaning =
+                "time for which a foot still stands in its place after its contact has ended",
+            .place = foot_place,
+            .advice = contact_end_advice,
+            .infeasibility = contact_end_infeasibility}},
       .judge_motion = judge_contact_ends};
   return limit;
 }

@@ -103,7 +103,8 @@ Advice free_fall_advice(const JudgedMotion& motion, const FindingWindow& window)
   const double dt = motion.series.dt;
   if (window.worst.item == kMotionLeaps)
     return "the COG leaps by " + in_mm(window.worst.value * dt * dt) +
-           " where the flight begins or ends: nothing can throw it like that";
+           " where the flight begins or ends: no force can do this; make the COG keys continuous "
+           "there";
   return "the COG must fall freely for the " + text::fixed((window.last - window.first) * dt, 3) +
          " s of flight: leave the COG keys of the flight out";
 }
@@ -115,23 +116,24 @@ std::string free_fall_infeasibility(const Finding&, double) {
 }  // namespace
 
 const Limit& free_fall_limit() {
-  static const Limit limit = {.findings = {{.kind = FindingKind::ballistic,
-                                            .limit_class = LimitClass::force,
-                                            .unit = "m/s^2",
-                                            .tolerance = kFallTolerance,
-                                            .meaning = "COG acceleration in flight from free fall",
-                                            .figure = {.key = "max_ballistic_residual_m_s2",
-                                                       .label = "largest deviation from free fall",
-                                                       .unit = "m/s^2",
-                                                       .line = 18},
-                                            .repair = {.in_flight = true},
-                                            .place = axis_place,
-                                            .advice = free_fall_advice,
-                                            .infeasibility = free_fall_infeasibility,
-                                            .holds_at = free_fall_holds}},
-                              .judge_sample = judge_free_fall,
-                              .judge_motion = judge_leaps,
-                              .place_rows = place_flight_rows};
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::ballistic,
+                    .limit_class = LimitClass::force,
+                    .unit = "m/s^2",
+                    .tolerance = kFallTolerance,
+                    .meaning = "difference between the COG acceleration in flight and free fall",
+                    .figure = {.key = "max_ballistic_residual_m_s2",
+                               .label = "largest deviation from free fall",
+                               .unit = "m/s^2",
+                               .line = 18},
+                    .repair = {.in_flight = true},
+                    .place = axis_place,
+                    .advice = free_fall_advice,
+                    .infeasibility = free_fall_infeasibility,
+                    .holds_at = free_fall_holds}},
+      .judge_sample = judge_free_fall,
+      .judge_motion = judge_leaps,
+      .place_rows = place_flight_rows};
   return limit;
 }
 

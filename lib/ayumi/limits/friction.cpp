@@ -93,9 +93,9 @@ bool friction_holds(JudgedMotion& motion, const Violation& v, double pace) {
 
 Advice friction_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return "needs a friction coefficient of " + text::fixed(v.value * motion.friction, 2) + ", has " +
-         text::fixed(motion.friction, 2) + ": " + slow_down_text(std::sqrt(v.value)) +
-         " or take shorter steps";
+  return "the motion needs a friction coefficient of " + text::fixed(v.value * motion.friction, 2) +
+         ", but the ground has " + text::fixed(motion.friction, 2) + ": " +
+         slow_down_text(std::sqrt(v.value)) + " or take shorter steps";
 }
 
 std::string friction_infeasibility(const Finding& f, double violation) {
@@ -107,22 +107,23 @@ std::string friction_infeasibility(const Finding& f, double violation) {
 
 const Limit& friction_limit() {
   static const Limit limit = {
-      .findings = {{.kind = FindingKind::friction,
-                    .limit_class = LimitClass::force,
-                    .unit = "1",
-                    .tolerance = kWholeCone,
-                    .meaning =
-                        "tangential ground force over friction coefficient times normal force",
-                    .figure = {.key = "max_friction_ratio",
-                               .label = "largest friction use",
-                               .unit = "% of the cone",
-                               .scale = 100,
-                               .share_name = "friction",
-                               .line = 11},
-                    .place = support_place,
-                    .advice = friction_advice,
-                    .infeasibility = friction_infeasibility,
-                    .holds_at = friction_holds}},
+      .findings =
+          {{.kind = FindingKind::friction,
+            .limit_class = LimitClass::force,
+            .unit = "1",
+            .tolerance = kWholeCone,
+            .meaning =
+                "tangential ground force divided by (friction coefficient times normal force)",
+            .figure = {.key = "max_friction_ratio",
+                       .label = "largest friction use",
+                       .unit = "% of the cone",
+                       .scale = 100,
+                       .share_name = "friction",
+                       .line = 11},
+            .place = support_place,
+            .advice = friction_advice,
+            .infeasibility = friction_infeasibility,
+            .holds_at = friction_holds}},
       .judge_sample = judge_friction,
       .place_rows = place_friction_rows};
   return limit;

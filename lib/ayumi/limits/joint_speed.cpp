@@ -47,8 +47,8 @@ const char* speed_unit(const JudgedMotion& motion, const Violation& v) {
 
 Advice speed_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return slow_down_text(std::abs(v.value / v.limit)) + " or let " +
-         motion.model.dofs()[v.item].name + " swing through a smaller angle";
+  return slow_down_text(std::abs(v.value / v.limit)) + " or turn " +
+         motion.model.dofs()[v.item].name + " through a smaller angle";
 }
 
 std::string speed_infeasibility(const Finding& f, double violation) {

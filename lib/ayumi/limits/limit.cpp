@@ -79,7 +79,8 @@ Tolerances tolerances(const CheckOptions& options) {
   for (const auto& [name, value] : options.tolerances) {
     const std::optional<FindingKind> kind = finding_kind(name);
     if (!kind)
-      fail(ErrorCode::usage, "tolerance '" + name + "': no such kind of finding" +
+      fail(ErrorCode::usage, "there is no kind of finding '" + name +
+                                 "'; `ayumi check --tolerances` lists the kinds" +
                                  text::suggestion(name, finding_kind_names()));
     if (!std::isfinite(value))
       fail(ErrorCode::usage,

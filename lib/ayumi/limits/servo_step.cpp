@@ -86,7 +86,7 @@ Advice target_advice(const JudgedMotion& motion, const Violation& v) {
   const Dof& dof = motion.model.dofs()[v.item];
   return dof.name + "'s servo target, which leads the posture by kd/kp = " +
          text::brief(1e3 * dof.servo.kd / dof.servo.kp, 3) + " ms, moves " +
-         text::brief(100 * (std::abs(v.value / v.limit) - 1), 2) +
+         text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) +
          " % faster than the speed limit, so that `export` will refuse the table: accelerate " +
          dof.name + " more gently here";
 }

@@ -112,9 +112,9 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
   const std::string whose = v.item == kMotionZmp ? "the ZMP of the motion" : "the commanded ZMP";
   if (v.value < 0)
     return {whose + " is " + in_mm(v.value) +
-                " outside the support: move the COG that much less, give the step more time",
+                " outside the support: move the COG less by this distance, give the step more time",
             kOrRepair};
-  return whose + " is only " + in_mm(v.value) + " inside the support, the margin asked for is " +
+  return whose + " is only " + in_mm(v.value) + " inside the support; the wanted margin is " +
          in_mm(v.limit);
 }
 

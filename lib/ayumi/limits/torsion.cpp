@@ -114,8 +114,8 @@ const Limit& torsion_limit() {
                     .unit = "1",
                     .tolerance = kWholeMoment,
                     .meaning =
-                        "moment about the normal through the ZMP over what friction resists, "
-                        "evenly pressed soles",
+                        "moment about the normal through the ZMP, as a share of what friction "
+                        "resists when the soles press evenly",
                     .figure = {.key = "max_yaw_ratio",
                                .label = "largest yaw moment",
                                .unit = "% of what friction resists",

@@ -103,9 +103,9 @@ namespace {
 
 std::string remedy(const InfeasibilityCause& cause) {
   if (cause.time_factor > 1)
-    return "that window needs to be " +
-           text::fixed(std::ceil(10 * cause.time_factor - 1e-9) / 10, 1) + " times longer";
-  return (is_matter_of_time(cause.finding) ? "slowing that window down does not help: " : "") +
+    return "make this window " + text::fixed(std::ceil(10 * cause.time_factor - 1e-9) / 10, 1) +
+           " times longer";
+  return (is_matter_of_time(cause.finding) ? "a slower motion there does not help: " : "") +
          cause.finding.remedy;
 }
 
@@ -162,11 +162,11 @@ std::vector<InfeasibilityCause> infeasibility_report(const RobotModel& model,
     InfeasibilityCause& cause = entry.second;
     cause.time_factor = time_factor(model, series, cause.finding, options.check);
     cause.text =
-        violation_text(cause.finding, cause.violation) + " " + window_text(cause.finding) + ", ";
+        violation_text(cause.finding, cause.violation) + " " + window_text(cause.finding) + ": ";
     if (at_locked_joint(cause.finding, options))
-      cause.text += cause.finding.where + " is locked; unlock it, or else: ";
+      cause.text += cause.finding.where + " is locked; unlock it. Otherwise: ";
     else if (const std::string lock = time_lock(cause.finding, options); !lock.empty())
-      cause.text += lock + "; unlock it, or else: ";
+      cause.text += lock + "; unlock it. Otherwise: ";
     cause.text += remedy(cause);
     result.push_back(std::move(cause));
   }

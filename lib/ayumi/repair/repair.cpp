@@ -52,8 +52,8 @@ void give_reasons(RepairState& state) {
   if (count > named) result.reasons.push_back(std::to_string(count - named) + " more like these");
   if (state.relaxation_cut_short)
     result.reasons.push_back(
-        "the search for a nearer motion stopped at its limit of iterations: these are the "
-        "motion's own errors, no proof that nothing passes");
+        "the search for a nearer motion stopped at its limit of iterations: the "
+        "errors listed are those of the motion itself; a repair may still exist");
 }
 
 void measure_change(RepairState& state) {
