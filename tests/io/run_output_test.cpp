@@ -69,7 +69,7 @@ TEST_F(RunOutputTest, TakesOverWhatAnInterruptedProcessLeft) {
 TEST_F(RunOutputTest, ReplacesTheFilesOfTheRunBeforeAndNoOthers) {
   deliver({"a.csv", "b.csv"});
   folder.write("out/notes.txt", "mine");
-  EXPECT_NE(refusal({"a.csv"}).find("out: exists already"), std::string::npos);
+  EXPECT_NE(refusal({"a.csv"}).find("out: this already exists"), std::string::npos);
   EXPECT_EQ(names(), (Names{"a.csv", "b.csv", "notes.txt", "run.json"}));
   deliver({"a.csv"}, true);
   EXPECT_EQ(names(), (Names{"a.csv", "notes.txt", "run.json"}));
@@ -80,7 +80,7 @@ TEST_F(RunOutputTest, LeavesAFileOfTheUserAndTheRunBefore) {
   deliver({"a.csv"});
   const std::string before = read_file(target / "run.json");
   folder.write("out/b.csv", "mine");
-  EXPECT_NE(refusal({"b.csv"}, true).find("b.csv: exists already and is not a file of a run"),
+  EXPECT_NE(refusal({"b.csv"}, true).find("b.csv: this already exists and is not a file of a run"),
             std::string::npos);
   EXPECT_EQ(read_file(target / "b.csv"), "mine");
   EXPECT_EQ(read_file(target / "run.json"), before);
@@ -96,7 +96,7 @@ TEST_F(RunOutputTest, LeavesALinkOrAFolderInPlaceOfAFileOfTheRun) {
   EXPECT_EQ(read_file(mine), "text");
   fs::remove(target / "a.csv");
   folder.write("out/a.csv/inside", "mine");
-  EXPECT_NE(refusal({"a.csv"}, true).find("a.csv: is a directory"), std::string::npos);
+  EXPECT_NE(refusal({"a.csv"}, true).find("a.csv: is a folder"), std::string::npos);
   EXPECT_EQ(read_file(target / "a.csv" / "inside"), "mine");
 }
 

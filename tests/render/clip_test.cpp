@@ -113,7 +113,7 @@ TEST_F(Clip, AFolderOfFramesReplacesFramesAlone) {
     const std::string before = read_file(frames / "frame_00000.png");
     write_file(frames / name, "mine");
     options.begin = 0.25;
-    EXPECT_NE(message_of(frames, ErrorCode::bad_file).find("exists already"), std::string::npos)
+    EXPECT_NE(message_of(frames, ErrorCode::bad_file).find("already exists"), std::string::npos)
         << name;
     EXPECT_EQ(read_file(frames / name), "mine");
     EXPECT_EQ(read_file(frames / "frame_00000.png"), before);
