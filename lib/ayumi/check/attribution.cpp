@@ -311,8 +311,8 @@ const Condition kJointOfLeg = {"the joint is one of a leg",
 
 const Condition kTouchesByAngle = {
     "the bodies overlap by at most 15 mm, and they would not overlap if all joints kept their "
-    "limits; or the bodies overlap only in the excursion of the joint, which sets their "
-    "distance and is not between an arm and the trunk",
+    "limits; or the bodies overlap only in the excursion of the joint, the joint is between "
+    "them, and they are not an arm and the trunk",
     [](Scene& scene, int i, int j, const Interval&) {
       return touches_by_limits(scene.motion, scene.of(j)) ||
              (hangs_on(scene.motion, scene.of(j), scene.of(i).item) &&
@@ -352,8 +352,8 @@ const Condition kJumpThereAndBack = {
     }};
 
 const Condition kHeldJoint = {
-    "the joint is between the two bodies, and its jump is undone by another jump; one of them "
-    "is the last jump before the overlap or the first jump after it",
+    "the joint is between the two bodies, and its jump is undone by another jump; one of these "
+    "two jumps is the last one before the overlap or the first one after it",
     [](Scene& scene, int i, int j, const Interval&) {
       const int dof = scene.of(j).item;
       if (!sets_distance(scene.motion, scene.of(i), dof)) return false;
@@ -426,8 +426,8 @@ const Condition kTorqueOfLeg = {"the joint is one of a leg",
                                 }};
 
 const Condition kHeldByFriction = {
-    "the yaw moment is at most twice the limit that the friction coefficient needed by the "
-    "motion would give",
+    "the yaw moment is at most twice its limit, if this limit is computed with the friction "
+    "coefficient that the motion needs",
     [](Scene& scene, int i, int j, const Interval&) {
       const double more = scene.of(i).value / scene.of(i).limit;
       return scene.of(j).value <= kArmFactor * more * scene.of(j).limit;
