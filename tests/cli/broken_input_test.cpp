@@ -236,7 +236,7 @@ std::vector<Broken> broken_patterns() {
               "p.json: /controller: controller gains: dtad has no gain 'kq'"),
       pattern("unknown_tolerance", "\"controller\"",
               "\"tolerances\": { \"zmp\": 1 }, \"controller\"",
-              "p.json: /tolerances: tolerance 'zmp'"),
+              "p.json: /tolerances: there is no kind of finding 'zmp'"),
       pattern("direction_of_length_zero", "[0, -1, 0]", "[0, 0, 0]", "/scenario/0/direction"),
       pattern("negative_duration", "\"duration\": 0.02", "\"duration\": -0.02",
               "/scenario/0/duration"),
