@@ -40,7 +40,7 @@ SOURCES = ["repair/policy.hpp", "limits", "check", "demand", "control", "sim", "
 
 # Constants that have to be known to the compiler, or whose half and double have no meaning.
 LEFT_OUT = {
-    "kWhole": "a law: the whole of a limit",
+    "kWhole": "a law, namely the full value of a limit",
     "kFindingKindCount": "a count",
     "kServoTarget": "an identifier",
     "kRows": "the size of a matrix",
