@@ -43,9 +43,10 @@ std::string check_table(const ConsistencyReport& report) {
   const auto at = [&](FindingKind kind) { return report.summary[kind]; };
   const double margin = at(FindingKind::support_margin);
   out += "  ZMP " + mm(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
-         " the support; posture against the keys: COG " + mm(at(FindingKind::cog_residual)) +
-         ", ZMP " + mm(at(FindingKind::zmp_residual)) + ", force " +
-         text::fixed(at(FindingKind::fz_residual), 2) + " N off; point-mass model off by " +
+         " the support; the posture differs from the keys by " + mm(at(FindingKind::cog_residual)) +
+         " in COG, " + mm(at(FindingKind::zmp_residual)) + " in ZMP and " +
+         text::fixed(at(FindingKind::fz_residual), 2) +
+         " N in force; the ZMP of the point-mass model is off by " +
          mm(at(FindingKind::point_mass_gap)) + "\n";
   std::vector<std::string> shares;
   for (const FindingSpec* spec : summary_figures())
@@ -53,7 +54,7 @@ std::string check_table(const ConsistencyReport& report) {
       shares.push_back(std::string(spec->figure.share_name) + " " + percent(at(spec->kind)));
   out += "  share of the limits: " + text::join(shares, ", ") + "\n";
   out += "  feet: slip " + mm(at(FindingKind::foot_slip)) + ", sink " +
-         mm(at(FindingKind::foot_penetration)) + ", lift-off while standing " +
+         mm(at(FindingKind::foot_penetration)) + ", height while standing " +
          mm(at(FindingKind::foot_float)) + "; nearest bodies " +
          mm(at(FindingKind::self_collision)) + " apart\n";
   return out;

@@ -125,7 +125,7 @@ void add_diff(CLI::App& app, Context& context) {
   command->add_option("--plot", options.plot, "Draw both over time, .svg or .png.")->type_name("F");
   command
       ->add_option("--weight", options.weights,
-                   "Cost of moving this joint relative to the others, as for repair (default: the "
+                   "Factor on the cost of moving this joint, as for repair (default: the "
                    "pattern's, 1).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);

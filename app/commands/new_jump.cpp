@@ -186,7 +186,8 @@ void add_new_jump(CLI::App& parent, Context& context) {
       ->type_name("NAME");
   command->add_flag(
       "--highest", options.highest,
-      "Search height, ref z_G and stoop for the highest jump that the profile allows.");
+      "Search for the height, ref z_G and stoop that give the highest jump that the profile "
+      "allows.");
   command->callback([shared, &context] { new_jump(context, *shared); });
 }
 

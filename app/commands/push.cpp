@@ -273,8 +273,9 @@ void add_push(CLI::App& app, Context& context) {
       "Examples:\n  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n"
       "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
       "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
-      "Run again with the same -o to resume a study. The pattern's scenario is ignored, "
-      "its lasting disturbances (payload, friction, latency, ...) included.");
+      "Run again with the same -o to resume a study. The pattern's own scenario is ignored. This "
+      "holds "
+      "for its lasting disturbances (payload, friction, latency, ...) too.");
   auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();

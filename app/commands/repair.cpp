@@ -283,7 +283,8 @@ void add_repair(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--weight", options.weights,
-                   "Cost of moving this joint relative to the others (10 = avoid it).")
+                   "Factor on the cost of moving this joint; 10 avoids moving it (default: the "
+                   "pattern's, 1).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
@@ -301,10 +302,10 @@ void add_repair(CLI::App& app, Context& context) {
                    "Draw joints, COG and ZMP before and after, .svg or .png.")
       ->type_name("F");
   command
-      ->add_option(
-          "--margin", options.margin,
-          "Wanted ZMP distance from the support edge where the motion has less [m] (default: 0.9 x "
-          "inner radius of the sole).")
+      ->add_option("--margin", options.margin,
+                   "Wanted distance from the ZMP to the edge of the support [m]. It applies where "
+                   "the motion "
+                   "has less (default: 0.9 x inner radius of the sole).")
       ->check(number_within(0.0, 0.1))
       ->type_name("M");
   command

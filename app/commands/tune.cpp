@@ -90,12 +90,10 @@ void add_tune(CLI::App& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi tune patterns/hoap1_walk.json --profile hoap1-strong\n"
       "  ayumi tune walk.json --tune ka,tau_z --level 1.0 --directions 8 --json\n"
-      "The objective (smaller is better) is the mean over the pushes of omega times the integral "
-      "of\n"
-      "|DCM - commanded DCM| / z over 1.2 s, with 10 for each push after which the robot falls, "
-      "plus\n"
-      "the mean of |ZMP - reference ZMP| / z of the pattern without a push. Gains whose loop is\n"
-      "unstable are not tried.");
+      "The objective is the sum of two means; smaller is better. The first is a mean over the\n"
+      "pushes: omega times the integral of |DCM - commanded DCM| / z over 1.2 s, or 10 for a push\n"
+      "after which the robot falls. The second is the mean of |ZMP - reference ZMP| / z of the\n"
+      "pattern without a push. Gains whose loop is unstable are not tried.");
   auto options = std::make_shared<TuneCommand>();
   TuneOptions& t = options->tune;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();

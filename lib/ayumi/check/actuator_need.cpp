@@ -66,8 +66,9 @@ ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>
     ActuatorNeed need =
         need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
     if (need.text.empty()) continue;
-    need.text = goal.place + ": " + need.text +
-                " (times count from the start of the equivalent motion with keys)";
+    need.text =
+        goal.place + ": " + need.text +
+        " (the later time counts from the start of the motion with keys that stands for this goal)";
     return need;
   }
   return {};

@@ -179,11 +179,11 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
   const double period = (params.single_support + params.double_support) / std::sqrt(kGravity / z);
   const double length = period * goal.velocity.norm(), most = params.reach * z;
   if (!(length <= most))
-    fail(ErrorCode::bad_pattern, place + "a COG velocity of " + text::brief(goal.velocity.norm()) +
-                                     " m/s asks for steps of " + text::fixed(1e3 * length, 1) +
-                                     " mm every " + text::fixed(period, 3) +
-                                     " s; the largest step is " + text::fixed(1e3 * most, 1) +
-                                     " mm, " + text::fixed(most / period, 3) + " m/s");
+    fail(ErrorCode::bad_pattern,
+         place + "a COG velocity of " + text::brief(goal.velocity.norm()) +
+             " m/s asks for steps of " + text::fixed(1e3 * length, 1) + " mm every " +
+             text::fixed(period, 3) + " s; the largest step is " + text::fixed(1e3 * most, 1) +
+             " mm, which gives a velocity of " + text::fixed(most / period, 3) + " m/s");
   const double turn = std::abs(goal.turn) * period;
   if (!(turn <= kStepTurnLimit))
     fail(ErrorCode::bad_pattern,

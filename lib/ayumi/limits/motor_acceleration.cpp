@@ -86,8 +86,8 @@ const Limit& motor_acceleration_limit() {
                     .limit_class = LimitClass::rate,
                     .unit = "1",
                     .tolerance = kWholeMotorAcceleration,
-                    .meaning = "joint acceleration over peak torque / rotor inertia, which the "
-                               "motor reaches without a load",
+                    .meaning = "joint acceleration divided by the acceleration that the motor "
+                               "reaches without a load (peak torque / rotor inertia)",
                     .figure = {.key = "max_motor_acceleration_ratio",
                                .label = "largest motor acceleration",
                                .unit = "% of peak torque / rotor inertia",

@@ -114,10 +114,10 @@ const Limit& servo_step_limit() {
                     .limit_class = LimitClass::rate,
                     .unit = "1",
                     .tolerance = kWholeStep,
-                    .meaning = "change of the joint angle per servo period over what the speed "
-                               "limit allows, where the joint speed does not show it; a "
-                               "warning where only the servo target, which leads the angle, "
-                               "steps by more",
+                    .meaning = "change of the joint angle per servo period, divided by the change "
+                               "that the speed limit allows; reported where the joint speed does "
+                               "not show it; a warning where only the servo target changes by "
+                               "more",
                     .figure = {.key = "max_servo_step_ratio",
                                .label = "largest step in a servo period",
                                .unit = "% of what the speed limit allows",

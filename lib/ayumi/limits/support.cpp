@@ -112,7 +112,8 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
   const std::string whose = v.item == kMotionZmp ? "the ZMP of the motion" : "the commanded ZMP";
   if (v.value < 0)
     return {whose + " is " + in_mm(v.value) +
-                " outside the support: move the COG less by this distance, give the step more time",
+                " outside the support: reduce the displacement of the COG by this distance, give "
+                "the step more time",
             kOrRepair};
   return whose + " is only " + in_mm(v.value) + " inside the support; the wanted margin is " +
          in_mm(v.limit);
@@ -126,24 +127,25 @@ std::string support_infeasibility(const Finding& f, double violation) {
 
 const Limit& support_limit() {
   static const Limit limit = {
-      .findings = {{.kind = FindingKind::support_margin,
-                    .limit_class = LimitClass::force,
-                    .unit = "m",
-                    .tolerance = kLeastMargin,
-                    .meaning =
-                        "distance of the ZMP inside the support polygon: an error outside, a "
-                        "warning when less than the tolerance inside",
-                    .figure = {.key = "min_zmp_margin_m",
-                               .label = "least ZMP margin",
-                               .unit = "mm",
-                               .scale = 1e3,
-                               .least = true,
-                               .line = 1},
-                    .repair = {.is_of_plan = true, .warnings_too = true},
-                    .place = support_place,
-                    .advice = support_advice,
-                    .infeasibility = support_infeasibility,
-                    .holds_at = support_holds}},
+      .findings =
+          {{.kind = FindingKind::support_margin,
+            .limit_class = LimitClass::force,
+            .unit = "m",
+            .tolerance = kLeastMargin,
+            .meaning =
+                "distance from the ZMP to the edge of the support polygon: an error when the ZMP "
+                "is outside, a warning when it is inside by less than the tolerance",
+            .figure = {.key = "min_zmp_margin_m",
+                       .label = "least ZMP margin",
+                       .unit = "mm",
+                       .scale = 1e3,
+                       .least = true,
+                       .line = 1},
+            .repair = {.is_of_plan = true, .warnings_too = true},
+            .place = support_place,
+            .advice = support_advice,
+            .infeasibility = support_infeasibility,
+            .holds_at = support_holds}},
       .judge_sample = judge_support,
       .place_rows = place_support_rows};
   return limit;

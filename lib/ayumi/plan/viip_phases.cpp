@@ -170,7 +170,8 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
     series.samples.push_back(series.samples.back());
   else
     for (; done <= last; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
-  series.origin["viip"] = std::to_string(cuts.size()) + " phases carried by VIIP hold the posture";
+  series.origin["viip"] = "the posture is held during " + std::to_string(cuts.size()) +
+                          (cuts.size() == 1 ? " phase" : " phases") + " with VIIP goals";
   return series;
 }
 
