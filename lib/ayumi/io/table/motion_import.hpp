@@ -33,10 +33,10 @@ struct ImportedMotion {
 
 /// Layouts of HOAP sequences by columns: 25 (HOAP-1: 20 motors), 27 (HOAP-2: 21), 29 (HOAP-3: 21).
 /// Blanks, CR, `-0` and `R` anywhere behind the motors are fine. General commands (3) only take
-/// their time. Changing intervals become the smallest one, straight between rows. Bare rows of 23
-/// numbers are encoder answers (counts, 1 ms) or, with a fraction anywhere, radians of 21 motors
-/// (2 ms); `rate` [1/s] says otherwise. Throws
-/// Error(bad_file) "file:line:
+/// their time. Where intervals change, rows are interpolated linearly on their greatest common
+/// divisor. Bare rows of 23 numbers are encoder answers (counts, 1 ms) or, with a fraction
+/// anywhere, radians of 21 motors (2 ms); `rate` [1/s] says otherwise. Throws Error(bad_file)
+/// "file:line:
 /// ..." for another number of columns, a cell that is no count, and where a device moves that the
 /// robot does not have.
 ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
