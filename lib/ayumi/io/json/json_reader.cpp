@@ -28,12 +28,6 @@ std::string kind_of(const Json& value) {
   }
 }
 
-std::string escaped(const std::string& key) {
-  std::string text;
-  for (const char c : key) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
-  return text;
-}
-
 std::string line_and_column(const std::string& bytes, size_t offset) {
   size_t line = 1, column = 1;
   for (size_t i = 0; i < std::min(offset, bytes.size()); ++i) {
@@ -51,6 +45,12 @@ std::string reason_of(const std::string& message) {
 }
 
 }  // namespace
+
+std::string json_pointer_token(const std::string& key) {
+  std::string text;
+  for (const char c : key) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return text;
+}
 
 Json parse_json(const std::string& bytes, const std::string& file, ErrorCode code) {
   const bool blank =
@@ -80,12 +80,22 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
   return document;
 }
 
+JsonPlace JsonNode::place() const {
+  if (!places_) return {file_, pointer_};
+  std::string around = pointer_;
+  while (!places_->contains(around) && !around.empty()) around.erase(around.rfind('/'));
+  const auto found = places_->find(around);
+  if (found == places_->end()) return {file_, pointer_};
+  return {found->second.file, found->second.pointer + pointer_.substr(around.size())};
+}
+
 void JsonNode::complain(const std::string& message) const {
-  fail(code_, file_ + ": " + (pointer_.empty() ? "/" : pointer_) + ": " + message);
+  const JsonPlace at = place();
+  fail(code_, at.file + ": " + (at.pointer.empty() ? "/" : at.pointer) + ": " + message);
 }
 
 JsonNode JsonNode::child(const std::string& token, const Json& value) const {
-  return {value, file_, pointer_ + "/" + escaped(token), code_};
+  return {value, file_, pointer_ + "/" + json_pointer_token(token), code_, places_};
 }
 
 void JsonNode::expect_object() const {

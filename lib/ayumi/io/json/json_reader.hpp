@@ -4,6 +4,7 @@
 // allowed, duplicate keys, trailing text and non-finite numbers are not. Included by io/*.cpp only.
 
 #include <Eigen/Core>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -16,15 +17,33 @@ namespace ayumi {
 
 using Json = nlohmann::json;
 
+/// Where a value stands: a file and a JSON pointer in it.
+struct JsonPlace {
+  std::string file, pointer;
+};
+
+/// Places of the values of a document that was merged from several files, by pointer. A value that
+/// is not listed stands below the place of the nearest value around it.
+using JsonPlaces = std::map<std::string, JsonPlace>;
+
+/// A key as it stands in a JSON pointer.
+std::string json_pointer_token(const std::string& key);
+
 /// One value of a JSON document together with its place. Cheap to copy; the document outlives it.
 class JsonNode {
  public:
-  JsonNode(const Json& value, std::string file, std::string pointer, ErrorCode code)
-      : value_(&value), file_(std::move(file)), pointer_(std::move(pointer)), code_(code) {}
+  JsonNode(const Json& value, std::string file, std::string pointer, ErrorCode code,
+           const JsonPlaces* places = nullptr)
+      : value_(&value),
+        file_(std::move(file)),
+        pointer_(std::move(pointer)),
+        code_(code),
+        places_(places) {}
 
   const Json& value() const { return *value_; }
-  const std::string& file() const { return file_; }
-  const std::string& pointer() const { return pointer_; }
+  JsonPlace place() const;
+  std::string file() const { return place().file; }
+  std::string pointer() const { return place().pointer; }
 
   /// Throws Error "file: pointer: message".
   [[noreturn]] void complain(const std::string& message) const;
@@ -62,6 +81,7 @@ class JsonNode {
   const Json* value_;
   std::string file_, pointer_;
   ErrorCode code_;
+  const JsonPlaces* places_;
 };
 
 /// Parses `bytes`. Throws Error(code) "file:line:column: what" when it is not JSON.

@@ -95,7 +95,8 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
     fail(ErrorCode::bad_file, "robot '': a name, folder, sidecar or URDF is needed");
   const fs::path file = find_file(name_or_path, search);
   const bool sidecar = file.extension() != ".urdf";
-  RobotDescription robot = sidecar ? read_sidecar(file, search.folders) : read_urdf(file);
+  const auto find = [&](const std::string& name) { return find_file(name, search); };
+  RobotDescription robot = sidecar ? read_sidecar(file, search.folders, find) : read_urdf(file);
   fill_meshes(robot, options.meshes);
   std::error_code ignored;
   if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))

@@ -261,6 +261,7 @@ void read_lists(const JsonNode& root, RobotDescription& robot) {
 const std::vector<std::string> kKeys = {"$schema",
                                         "format",
                                         "name",
+                                        "base",
                                         "urdf",
                                         "joint_order",
                                         "locked_joints",
@@ -310,9 +311,10 @@ void read_root(const JsonNode& root, RobotDescription& robot) {
 
 namespace {
 
-std::filesystem::path find_urdf(const JsonNode& node, const std::filesystem::path& file,
+std::filesystem::path find_urdf(const JsonNode& node,
                                 const std::vector<std::filesystem::path>& folders) {
-  const std::filesystem::path name = node.string(), beside = file.parent_path() / name;
+  const std::filesystem::path name = node.string(),
+                              beside = std::filesystem::path(node.file()).parent_path() / name;
   std::error_code ignored;
   if (std::filesystem::exists(beside, ignored)) return beside;
   for (const std::filesystem::path& folder : folders)
@@ -325,17 +327,17 @@ std::filesystem::path find_urdf(const JsonNode& node, const std::filesystem::pat
 }  // namespace
 
 RobotDescription read_sidecar(const std::filesystem::path& file,
-                              const std::vector<std::filesystem::path>& folders) {
-  const std::string bytes = read_file(file);
-  const Json document = parse_json(bytes, file.string(), ErrorCode::bad_file);
-  const JsonNode root = root_of(document, file.string(), ErrorCode::bad_file);
+                              const std::vector<std::filesystem::path>& folders,
+                              const FindRobot& find) {
+  const MergedSidecar sidecar = read_merged_sidecar(file, find);
+  const JsonNode root = sidecar.root();
   root.only_keys(kKeys);
   root.at("format").one_of({"ayumi.robot/1"});
-  const std::filesystem::path urdf = find_urdf(root.at("urdf"), file, folders);
+  const std::filesystem::path urdf = find_urdf(root.at("urdf"), folders);
   const std::string urdf_bytes = read_file(urdf);
   RobotDescription robot = parse_urdf(urdf_bytes, urdf);
   robot.sidecar_file = file.string();
-  robot.sha256 = sha256(urdf_bytes + bytes);
+  robot.sha256 = sha256(urdf_bytes + sidecar.bytes);
   read_root(root, robot);
   return robot;
 }

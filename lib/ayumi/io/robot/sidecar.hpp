@@ -5,14 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/io/robot/robot_inheritance.hpp"
 #include "ayumi/model/robot_description.hpp"
 
 namespace ayumi {
 
-/// The description of the robot whose sidecar is `file`: URDF first, then the sidecar over it.
-/// A URDF that is not where the sidecar says is looked for in `folders`, and in their urdf/. Throws
-/// Error(bad_file) "file: /pointer: what".
+/// The description of the robot whose sidecar is `file`: URDF first, then the bases of the sidecar,
+/// which `find` finds by name, then the sidecar over them. A URDF that is not where the sidecar
+/// says is looked for in `folders`, and in their urdf/. Throws Error(bad_file) "file: /pointer:
+/// what".
 RobotDescription read_sidecar(const std::filesystem::path& file,
-                              const std::vector<std::filesystem::path>& folders = {});
+                              const std::vector<std::filesystem::path>& folders,
+                              const FindRobot& find);
 
 }  // namespace ayumi

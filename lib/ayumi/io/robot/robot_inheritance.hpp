@@ -1,0 +1,31 @@
+#pragma once
+// A sidecar over another one: {"base": "hoap1", ...} holds only what differs. Objects are merged by
+// key, the lists of groups are appended so that the later group counts, profiles are merged by
+// name, everything else is replaced. Included by io/*.cpp only.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "ayumi/io/json/json_reader.hpp"
+
+namespace ayumi {
+
+/// A sidecar with all its bases under it.
+struct MergedSidecar {
+  Json document;      ///< without "base"
+  JsonPlaces places;  ///< where each value stands in the files
+  std::string bytes;  ///< of all files, the last base first
+
+  JsonNode root() const { return {document, "", "", ErrorCode::bad_file, &places}; }
+};
+
+/// The file of a robot by its name; throws Error when there is none.
+using FindRobot = std::function<std::filesystem::path(const std::string&)>;
+
+/// Reads `file` and its bases. A base is a path relative to the file that names it, or what `find`
+/// finds; a URDF is a sidecar without further keys. Throws Error(bad_file) for a file that is no
+/// sidecar, a base that does not exist, and bases in a circle.
+MergedSidecar read_merged_sidecar(const std::filesystem::path& file, const FindRobot& find);
+
+}  // namespace ayumi
