@@ -103,8 +103,9 @@ void plot_motions(const RobotModel& model, const CommandSeries& before, const Co
                   const MotionPlot& plot, const std::filesystem::path& path) {
   constexpr double kAround = 0.4;  // [s] of the motion drawn before and after the change
   constexpr double kSeen = 0.03;   // share of the largest move; below it two curves look like one
-  const SimulationLog a = plan_log(model, before, before);
-  const SimulationLog b = plan_log(model, after, before);
+  const ActuatorLimits& actuators = model.limits(plot.profile);
+  const SimulationLog a = plan_log(model, actuators, before, before);
+  const SimulationLog b = plan_log(model, actuators, after, before);
   const MotionChange change = motion_change(model, before, after);
   LociOptions options;
   options.title = plot.title;

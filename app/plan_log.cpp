@@ -35,13 +35,13 @@ void add_feet(const RobotModel& model, const CommandSample& planned, const Motio
 
 }  // namespace
 
-SimulationLog plan_log(const RobotModel& model, const CommandSeries& motion,
-                       const CommandSeries& command) {
+SimulationLog plan_log(const RobotModel& model, const ActuatorLimits& actuators,
+                       const CommandSeries& motion, const CommandSeries& command) {
   SimulationLog log;
   log.dt = motion.dt;
   log.joints = model.dof_names();
   const ContactPlan plan = contact_plan(motion);
-  MotionDynamics dynamics(model, motion, plan);
+  MotionDynamics dynamics(model, actuators, motion, plan);
   RobotData data(model);
   for (size_t k = 0; k < motion.samples.size(); ++k) {
     const CommandSample& s = motion.samples[k];
@@ -80,7 +80,8 @@ SimulationLog log_of(const Context& context, const std::string& run_or_pattern,
                      const std::string& log) {
   if (!names_pattern(run_or_pattern)) return read_run_log(run_or_pattern, log);
   const Task input = load_pattern(context, run_or_pattern, {});
-  SimulationLog plan = plan_log(input.robot, input.series, input.series);
+  SimulationLog plan =
+      plan_log(input.robot, input.robot.limits(input.profile), input.series, input.series);
   plan.provenance = provenance(input, "", context.command_line);
   plan.provenance.pattern = std::filesystem::path(run_or_pattern).stem().string();
   plan.world = input.pattern.world;

@@ -10,8 +10,8 @@ namespace ayumi::app {
 
 /// State, COG, ZMP, f_z, foot forces and motor torques that the full model needs for `motion`;
 /// beside it what `command` commands (the same series, or the one before a change).
-SimulationLog plan_log(const RobotModel& model, const CommandSeries& motion,
-                       const CommandSeries& command);
+SimulationLog plan_log(const RobotModel& model, const ActuatorLimits& actuators,
+                       const CommandSeries& motion, const CommandSeries& command);
 
 /// Whether a name is that of a pattern rather than of a RUN: a file that ends in .json or .jsonc.
 bool names_pattern(const std::string& file);

@@ -45,8 +45,8 @@ void add_unstable_flag(CLI::App& command, bool& allowed) {
 void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool allowed) {
   if (allowed) return;
   const CommandSample& first = input.series.samples.front();
-  const std::string reason =
-      instability(input.robot, spec, first.cog.z() - first.zmp.z(), input.series.dt);
+  const std::string reason = instability(input.robot, input.robot.limits(input.profile), spec,
+                                         first.cog.z() - first.zmp.z(), input.series.dt);
   if (!reason.empty())
     fail(ErrorCode::bad_pattern, reason + "; --allow-unstable runs these gains nevertheless");
 }

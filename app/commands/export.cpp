@@ -45,8 +45,9 @@ struct Source {
 };
 
 // What the servos receive when a pattern is replayed as it is.
-ReferenceTrajectory open_loop_reference(const RobotModel& model, const CommandSeries& series) {
-  const Eigen::VectorXd lead = velocity_lead(model);
+ReferenceTrajectory open_loop_reference(const RobotModel& model, const ActuatorLimits& actuators,
+                                        const CommandSeries& series) {
+  const Eigen::VectorXd lead = velocity_lead(actuators);
   ReferenceTrajectory reference;
   reference.dt = series.dt;
   reference.joints = model.dof_names();
@@ -81,7 +82,7 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
              ": phases: the pattern has VIIP goals, so its joint angles are "
              "known only after a simulation; run it (ayumi run), then export the RUN");
   Source source{input.robot,
-                open_loop_reference(input.robot, input.series),
+                open_loop_reference(input.robot, input.robot.limits(input.profile), input.series),
                 input.caution.disturbances,
                 {},
                 {},

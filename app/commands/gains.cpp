@@ -109,7 +109,7 @@ Design design(const RobotModel& model, GainsCommand options) {
   for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
     spec.gains.emplace_back(name, value);
   d.params = design_gains(d.omega, options.wishes, dtad_params(model, spec));
-  d.loop = single_support_loop(model, z, model.description().servo_period);
+  d.loop = single_support_loop(model, model.limits(), z, model.description().servo_period);
   if (options.latency) d.loop.delay = *options.latency;
   d.analysis = analyze_loop(d.loop, d.params);
   d.most_ka = largest_stable_ka(d.loop, d.params, kMostKa);

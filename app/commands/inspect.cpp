@@ -61,6 +61,40 @@ OrderedJson number(double value) {
   return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
 }
 
+// The five constants of every servo, and what else the files state.
+OrderedJson servo_json(const ServoDescription& servo) {
+  OrderedJson json = {{"kp", servo.kp},
+                      {"kd", servo.kd},
+                      {"rotor_inertia", servo.rotor_inertia},
+                      {"viscous", servo.viscous},
+                      {"coulomb", servo.coulomb},
+                      {"lag_s", servo.lag()}};
+  const std::pair<const char*, double> further[] = {
+      {"delay_s", servo.delay},
+      {"speed_command_limit", servo.speed_command_limit},
+      {"stribeck_torque", servo.stribeck_torque},
+      {"stribeck_rate", servo.stribeck_rate},
+      {"backlash_rad", servo.backlash},
+      {"gear_stiffness", servo.gear_stiffness},
+      {"gear_damping", servo.gear_damping},
+      {"stall_torque", servo.stall_torque},
+      {"back_emf", servo.back_emf},
+      {"dead_band_rad", servo.dead_band},
+      {"offset_rad", servo.offset}};
+  for (const auto& [key, value] : further)
+    if (value != 0) json[key] = value;
+  if (servo.stribeck_rate > 0) json["stribeck_exponent"] = servo.stribeck_exponent;
+  if (servo.quantized) json["quantized"] = true;
+  if (!(servo.load == LoadFriction{}))
+    json["load_friction"] = {{"motor", servo.load.motor},
+                             {"external", servo.load.external},
+                             {"motor_stribeck", servo.load.motor_stribeck},
+                             {"external_stribeck", servo.load.external_stribeck},
+                             {"motor_quadratic", servo.load.motor_quadratic},
+                             {"external_quadratic", servo.load.external_quadratic}};
+  return json;
+}
+
 OrderedJson joint_json(const RobotModel& model, int index) {
   const Dof& dof = model.dofs()[index];
   OrderedJson limits;
@@ -78,12 +112,7 @@ OrderedJson joint_json(const RobotModel& model, int index) {
           {"home", model.posture()[index]},
           {"weight", model.joint_weight()[index]},
           {"limits", limits},
-          {"servo",
-           {{"kp", dof.servo.kp},
-            {"kd", dof.servo.kd},
-            {"rotor_inertia", dof.servo.rotor_inertia},
-            {"viscous", dof.servo.viscous},
-            {"coulomb", dof.servo.coulomb}}},
+          {"servo", servo_json(model.limits().servo[index])},
           {"encoder",
            {{"device", dof.encoder.device}, {"counts_per_degree", dof.encoder.counts_per_degree}}}};
 }
@@ -157,9 +186,10 @@ std::string joint_lines(const RobotModel& model) {
     column(angle(dof, dof.lower), 8);
     column(angle(dof, dof.upper), 8);
     column(angle(dof, model.posture()[i]), 8);
-    column(text::brief(dof.servo.kp), 8);
-    column(text::brief(dof.servo.kd), 8);
-    column(text::brief(dof.servo.rotor_inertia), 9);
+    const ServoDescription& servo = model.limits().servo[i];
+    column(text::brief(servo.kp), 8);
+    column(text::brief(servo.kd), 8);
+    column(text::brief(servo.rotor_inertia), 9);
     column(text::brief(model.joint_weight()[i]), 8);
     column(dof.encoder.device ? std::to_string(dof.encoder.device) : "-", 8);
     column(dof.encoder.device ? text::brief(dof.encoder.counts_per_degree) : "-", 12);

@@ -239,7 +239,7 @@ TEST_P(SecondRoute, JointFiguresByDifferences) {
 // The work that all links, the ground and the motors do when one joint alone gives way a little is
 // zero: with one foot down for every joint, else for those that no foot on the ground hangs on.
 TEST_P(SecondRoute, TorquesByVirtualWork) {
-  MotionDynamics motion(model, series, plan);
+  MotionDynamics motion(model, model.limits(), series, plan);
   int told = 0;
   for (int k = 10; k + 10 < static_cast<int>(series.samples.size()); k += 37) {
     if (at_flight_edge(series, k)) continue;
@@ -286,7 +286,7 @@ TEST_P(SecondRoute, TorquesByVirtualWork) {
         work -=
             ground.force.dot(rate_of(body, Vector3d::Zero())) + ground.moment.dot(spin_of(body));
       }
-      const ServoDescription& servo = model.dofs()[static_cast<size_t>(i)].servo;
+      const ServoDescription& servo = model.limits().servo[static_cast<size_t>(i)];
       const double rate = s.state.dtheta[i];
       work += servo.rotor_inertia * s.acceleration[6 + i] + servo.viscous * rate +
               servo.coulomb * std::clamp(rate / kCoulombRate, -1.0, 1.0);
@@ -300,7 +300,7 @@ TEST_P(SecondRoute, TorquesByVirtualWork) {
 
 // RMS of the torques told above, sample by sample, and the largest of them.
 TEST_P(SecondRoute, TorqueFiguresByLoops) {
-  MotionDynamics motion(model, series, plan);
+  MotionDynamics motion(model, model.limits(), series, plan);
   const ActuatorLimits& limits = model.limits();
   const int count = static_cast<int>(series.samples.size());
   Eigen::MatrixXd torque = Eigen::MatrixXd::Zero(model.dof_count(), count);

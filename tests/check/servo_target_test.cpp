@@ -15,7 +15,7 @@ namespace {
 
 // The table as export makes it of a pattern, without rounding to counts.
 double largest_step_of_export(const CommandSeries& series) {
-  const Eigen::VectorXd lead = velocity_lead(hoap1()), limit = hoap1().limits().speed;
+  const Eigen::VectorXd lead = velocity_lead(hoap1().limits()), limit = hoap1().limits().speed;
   double ratio = 0;
   Eigen::VectorXd before;
   for (const CommandSample& s : series.samples) {
@@ -52,7 +52,7 @@ TEST(ServoTarget, StepsBeyondTheSpeedLimitAreToldAsExportTellsThem) {
     table.joints = hoap1().dof_names();
     for (const CommandSample& s : series.samples) {
       ReferenceRow row;
-      row.theta = s.state.theta + velocity_lead(hoap1()).cwiseProduct(s.state.dtheta);
+      row.theta = s.state.theta + velocity_lead(hoap1().limits()).cwiseProduct(s.state.dtheta);
       row.base = s.state.base;
       table.rows.push_back(row);
     }

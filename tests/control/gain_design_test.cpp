@@ -107,7 +107,7 @@ TEST(GainDesign, PolesGiveKAndD) {
 
 TEST(GainDesign, Hoap1DefaultsAreStableAndTooMuchIsRefused) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
-  const LoopModel loop = single_support_loop(model, 0.22, 0.001);
+  const LoopModel loop = single_support_loop(model, model.limits(), 0.22, 0.001);
   DtadParams p = dtad_params(model, {ControllerKind::dtad, {}});
   EXPECT_NO_THROW(refuse_unstable(loop, p));
   p.zmp_filter = 2;

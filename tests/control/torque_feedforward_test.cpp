@@ -35,7 +35,7 @@ TEST(TorqueFeedforward, WorksAsTheWeightDoes) {
   for (size_t k = 0; k < deepest; ++k)
     for (int j = 0; j < hoap1().dof_count(); ++j) {
       const auto column = static_cast<Eigen::Index>(k);
-      work += hoap1().dofs()[static_cast<size_t>(j)].servo.kp * 0.5 *
+      work += hoap1().limits().servo[static_cast<size_t>(j)].kp * 0.5 *
               (lead(j, column) + lead(j, column + 1)) *
               (samples[k + 1].state.theta[j] - samples[k].state.theta[j]);
     }
@@ -51,8 +51,8 @@ TEST(TorqueFeedforward, StaysWithinTheMotor) {
   const Eigen::MatrixXd lead = torque_feedforward(hoap1(), limits, squat());
   double most = 0;
   for (int j = 0; j < hoap1().dof_count(); ++j)
-    most = std::max(
-        most, hoap1().dofs()[static_cast<size_t>(j)].servo.kp * lead.row(j).cwiseAbs().maxCoeff());
+    most = std::max(most, hoap1().limits().servo[static_cast<size_t>(j)].kp *
+                              lead.row(j).cwiseAbs().maxCoeff());
   EXPECT_NEAR(most, 0.5, 1e-12);
 }
 

@@ -133,7 +133,8 @@ TEST(Residuals, FootWrenchesAndMotorsBalance) {
       const auto feet =
           foot_wrenches(model, support, soles, plane, use, state.base.position, wrench);
       VectorXd total = VectorXd::Zero(model.velocity_count());
-      total.tail(model.dof_count()) = motor_torques(model, state, acceleration, force, feet, data);
+      total.tail(model.dof_count()) =
+          motor_torques(model, model.limits(), state, acceleration, force, feet, data);
       for (Side side : {Side::left, Side::right})
         total +=
             body_jacobian(model, data, model.sole(side).body, state.base.position).transpose() *

@@ -35,8 +35,9 @@ TEST(Hoap1, HasTheFiguresOfItsReadme) {
   }
   const Dof& knee = model.dofs()[model.find_dof("l_knee")];
   EXPECT_NEAR(knee.upper, 120 * kDegree, 1e-12);
-  EXPECT_DOUBLE_EQ(knee.servo.kd, 0.020 * knee.servo.kp);
-  EXPECT_DOUBLE_EQ(model.dofs()[model.find_dof("l_elbow")].servo.kp, knee.servo.kp / 2);
+  const ServoDescription& servo = model.limits().servo[model.find_dof("l_knee")];
+  EXPECT_DOUBLE_EQ(servo.kd, 0.020 * servo.kp);
+  EXPECT_DOUBLE_EQ(model.limits().servo[model.find_dof("l_elbow")].kp, servo.kp / 2);
   EXPECT_EQ(model.limits().peak_torque[model.find_dof("l_knee")], 4.5);
   EXPECT_EQ(model.limits().peak_torque[model.find_dof("l_hip_pitch")], 3);
   EXPECT_EQ(model.limits("hoap1-strong").speed[0], 25);
@@ -77,8 +78,8 @@ TEST(Hoap1, BareUrdfIsInferred) {
     for (int i = 0; i < 4; ++i)
       EXPECT_LT((model.sole(side).polygon[i] - full.sole(side).polygon[i]).norm(), 1e-4);
   }
-  EXPECT_NEAR(model.dofs()[0].servo.kp / full.dofs()[0].servo.kp, 1, 0.2);
-  EXPECT_NEAR(model.dofs()[0].servo.rotor_inertia, 0.003, 0.0015);
+  EXPECT_NEAR(model.limits().servo[0].kp / full.limits().servo[0].kp, 1, 0.2);
+  EXPECT_NEAR(model.limits().servo[0].rotor_inertia, 0.003, 0.0015);
   EXPECT_GE(model.description().assumptions.size(), 4u);
 }
 

@@ -46,7 +46,7 @@ TEST(RobotInheritance, WithoutADifferenceTheRobotIsItsBase) {
     EXPECT_EQ(unit.posture(), base.posture());
     EXPECT_EQ(unit.mass(), base.mass());
     EXPECT_EQ(unit.limits().peak_torque, base.limits().peak_torque);
-    EXPECT_EQ(unit.dofs()[3].servo.kp, base.dofs()[3].servo.kp);
+    EXPECT_EQ(unit.limits().servo[3].kp, base.limits().servo[3].kp);
     EXPECT_EQ(unit.description().control.dtad, base.description().control.dtad);
     EXPECT_NE(unit.description().sha256, base.description().sha256);
   }
@@ -65,10 +65,10 @@ TEST(RobotInheritance, MergesObjectsByKeyAndAppendsGroups) {
                  {"name": "weak", "limits": [{"joints": ["*"], "peak_torque": 1}]}])"))));
   const int knee = base.find_dof("l_knee"), hip = base.find_dof("l_hip_roll");
   EXPECT_EQ(unit.name(), "unit 7");
-  EXPECT_EQ(unit.dofs()[knee].servo.kp, 4000);
-  EXPECT_EQ(unit.dofs()[knee].servo.kd, 9);
-  EXPECT_EQ(unit.dofs()[knee].servo.rotor_inertia, base.dofs()[knee].servo.rotor_inertia);
-  EXPECT_EQ(unit.dofs()[hip].servo.kp, base.dofs()[hip].servo.kp);
+  EXPECT_EQ(unit.limits().servo[knee].kp, 4000);
+  EXPECT_EQ(unit.limits().servo[knee].kd, 9);
+  EXPECT_EQ(unit.limits().servo[knee].rotor_inertia, base.limits().servo[knee].rotor_inertia);
+  EXPECT_EQ(unit.limits().servo[hip].kp, base.limits().servo[hip].kp);
   EXPECT_EQ(unit.dofs()[knee].encoder.counts_per_degree, -210);
   EXPECT_EQ(unit.dofs()[knee].encoder.device, base.dofs()[knee].encoder.device);
   EXPECT_NEAR(unit.posture()[base.find_dof("l_elbow")], -30 * EIGEN_PI / 180, 1e-12);

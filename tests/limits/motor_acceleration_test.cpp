@@ -31,7 +31,7 @@ CommandSeries swung(const std::string& joint, double acceleration, double period
 
 double peak_over_inertia(const RobotModel& model, const std::string& joint) {
   const int dof = model.find_dof(joint);
-  return model.limits("").peak_torque[dof] / model.dofs()[dof].servo.rotor_inertia;
+  return model.limits("").peak_torque[dof] / model.limits("").servo[dof].rotor_inertia;
 }
 
 TEST(MotorAcceleration, ItsFigureIsTheClosedForm) {

@@ -204,7 +204,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
     all.points_per_knot = 50;
     const CorrectionProblem problem(model, series, all);
     const VectorXd g = problem.constraints(VectorXd::Zero(problem.variable_count()));
-    MotionDynamics motion(model, series, plan);
+    MotionDynamics motion(model, model.limits(), series, plan);
     std::vector<Vector3d> turning(series.samples.size(), Vector3d::Constant(std::nan("")));
     for (const RowBlock& b : problem.blocks()) {
       const CollocationPoint& point = problem.points()[static_cast<size_t>(b.point)];

@@ -50,7 +50,7 @@ int motor_rows(const CommandSeries& series, double bound) {
 TEST(MotorAccelerationRows, ArePlacedWhereTheMotorComesNearItsLimit) {
   const int dof = hoap1().find_dof("l_elbow");
   const double bound =
-      hoap1().limits("").peak_torque[dof] / hoap1().dofs()[dof].servo.rotor_inertia;
+      hoap1().limits("").peak_torque[dof] / hoap1().limits("").servo[dof].rotor_inertia;
   EXPECT_EQ(motor_rows(swung(0.5 * bound), bound), 0);
   EXPECT_GE(motor_rows(swung(1.2 * bound), bound), 1);
 }

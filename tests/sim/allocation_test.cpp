@@ -71,7 +71,7 @@ TEST_F(Allocations, PlantSensorsAndEstimatorHaveNoneAfterTheFirstSteps) {
   series.samples.resize(3000);
   const CommandSample& first = series.samples.front();
   Plant plant(model, model.limits(), World{});
-  Sensors sensors(model, series.dt, true, 1);
+  Sensors sensors(model, model.limits(), series.dt, true, 1);
   Estimator estimator(model, series.dt);
   plant.set_state(first.state);
   const StepInput push = {{-1, {}, {1, 0, 0}, {}}};
@@ -148,7 +148,7 @@ TEST_F(Allocations, ForwardDynamicsAndDerivativesHaveNoneAfterTheFirstCall) {
     ASSERT_EQ(mimic, static_cast<int>(model.bodies().size()) != model.dof_count() + 1);
     RobotData data(model);
     const RobotState state = model.rest_state();
-    const JointDrive drive = joint_drive(model);
+    const JointDrive drive = joint_drive(model.limits());
     const VectorXd force = VectorXd::Ones(model.velocity_count());
     VectorXd acceleration;
     InverseDynamicsDerivatives inverse;

@@ -99,7 +99,7 @@ TEST(Friction, LetsTheRobotSlideOnce) {
 TEST(GainLoss, SagsByTorqueOverGain) {
   const SimulationLog log = run({lasting(GainLoss{.joint = "l_knee", .share = 0.5})});
   const int knee = dof("l_knee");
-  const double kp = hoap1().dofs()[static_cast<size_t>(knee)].servo.kp;
+  const double kp = hoap1().limits().servo[static_cast<size_t>(knee)].kp;
   for (const auto& [t, gain] : {std::pair{0.49, kp}, {1.45, 0.5 * kp}, {1.95, kp}}) {
     const SimulationSample& s = at(log, t);
     ASSERT_GT(std::abs(s.torque[knee]), 0.1);
@@ -128,7 +128,7 @@ TEST(EncoderOffset, MovesTheJointUnseen) {
 TEST(JointFriction, HoldsWhatTheServoCannotMove) {
   const RobotModel& model = hoap1();
   const int j = model.dof_count() - 1;
-  const double kp = model.dofs()[static_cast<size_t>(j)].servo.kp;
+  const double kp = model.limits().servo[static_cast<size_t>(j)].kp;
   StepInput input;
   input.joints.resize(static_cast<size_t>(model.dof_count()));
   for (const double coulomb : {0.0, 5.0}) {

@@ -98,7 +98,7 @@ TEST(TiltEstimate, SensorsGiveItTheForceWhereTheUnitIs) {
   s.imu_position = {0.02, 0.01, 0.1};
   s.accelerometer_noise = 1e-12;
   const RobotModel model(description);
-  Sensors sensors(model, kTick, true, 0);
+  Sensors sensors(model, model.limits(), kTick, true, 0);
   RobotData data(model);
   RobotState state = model.rest_state();
   StepReport report;

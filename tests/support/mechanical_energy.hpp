@@ -13,7 +13,7 @@ inline double mechanical_energy(const RobotModel& model, const RobotState& state
   Eigen::MatrixXd M;
   mass_matrix(model, data, M);
   for (int j = 0; j < model.dof_count(); ++j)
-    M(6 + j, 6 + j) += model.dofs()[j].servo.rotor_inertia;
+    M(6 + j, 6 + j) += model.limits().servo[static_cast<size_t>(j)].rotor_inertia;
   return 0.5 * state.velocity().dot(M * state.velocity()) + model.mass() * kGravity * data.cog.z();
 }
 

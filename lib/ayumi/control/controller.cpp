@@ -48,7 +48,7 @@ Controller::Law Controller::first_law() {
 // DTAD or open loop, going on at the handover's plan.
 Controller::Law Controller::law_of_command(Handover from) const {
   const bool dtad = spec_.type.kind == ControllerKind::dtad || spec_.type == ControllerKind::viip;
-  if (!dtad) return OpenLoop(*model_, from.command, torque_lead_, from.target);
+  if (!dtad) return OpenLoop(limits_, from.command, torque_lead_, from.target);
   const bool own_gains = spec_.type.kind == ControllerKind::dtad;
   const DtadParams params =
       dtad_params(*model_, own_gains ? spec_ : ControllerSpec{ControllerKind::dtad, {}});

@@ -68,13 +68,15 @@ MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
 
 }  // namespace
 
-LoopModel single_support_loop(const RobotModel& model, double height, double tick) {
+LoopModel single_support_loop(const RobotModel& model, const ActuatorLimits& actuators,
+                              double height, double tick) {
   LoopModel loop{.mass = model.mass(), .height = height, .tick = tick};
-  loop.delay = model.description().sensors.latency;
+  double servo_delay = 0;
   for (Side side : {Side::left, Side::right}) {
     const std::vector<int>& leg = model.leg(side);
     for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i) {
-      const ServoDescription& servo = model.dofs()[leg[i]].servo;
+      const ServoDescription& servo = actuators.servo[static_cast<size_t>(leg[i])];
+      servo_delay = std::max(servo_delay, servo.delay);
       if (servo.kp <= 0)
         fail(ErrorCode::bad_model, model.name() + ": joint " + model.dofs()[leg[i]].name +
                                        " has no servo (kp); give it one in the sidecar");
@@ -83,6 +85,7 @@ LoopModel single_support_loop(const RobotModel& model, double height, double tic
       loop.damping = servo.kd;
     }
   }
+  loop.delay = model.description().sensors.latency + servo_delay;
   return loop;
 }
 
@@ -187,15 +190,15 @@ void refuse_unstable(const LoopModel& loop, const DtadParams& params) {
   if (!reason.empty()) fail(ErrorCode::usage, reason);
 }
 
-std::string instability(const RobotModel& model, const ControllerSpec& spec, double height,
-                        double tick) {
+std::string instability(const RobotModel& model, const ActuatorLimits& actuators,
+                        const ControllerSpec& spec, double height, double tick) {
   if (spec.type != ControllerKind::dtad) return {};
   const DtadParams params = dtad_params(model, spec);
   if (params.as_printed != 0) return {};
   for (Side side : {Side::left, Side::right})
     for (const int joint : model.leg(side))
-      if (model.dofs()[joint].servo.kp <= 0) return {};
-  return growth(single_support_loop(model, height, tick), params);
+      if (actuators.servo[static_cast<size_t>(joint)].kp <= 0) return {};
+  return growth(single_support_loop(model, actuators, height, tick), params);
 }
 
 }  // namespace ayumi

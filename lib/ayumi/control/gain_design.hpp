@@ -20,12 +20,14 @@ struct LoopModel {
   double stiffness = 0;  ///< about the ankle that turns the body against the foot [N m/rad]
   double damping = 0;    ///< about the same ankle [N m s/rad]
   double tick = 0.001;   ///< of the controller [s]
-  double delay = 0;      ///< of the sensors [s]
+  double delay = 0;      ///< of the sensors and of the servos' targets [s]
 };
 
 /// The softest stance: the robot on one foot, the softer axis of that ankle alone giving way, the
-/// sidecar's sensor latency. Throws Error(bad_model) for a leg without servos.
-LoopModel single_support_loop(const RobotModel& model, double height, double tick);
+/// sidecar's sensor latency and the longest delay of an ankle's servo. Throws Error(bad_model) for
+/// a leg without servos.
+LoopModel single_support_loop(const RobotModel& model, const ActuatorLimits& actuators,
+                              double height, double tick);
 
 struct LoopAnalysis {
   std::vector<std::complex<double>> poles;  ///< continuous equivalents, slowest decay first [1/s]
@@ -66,7 +68,7 @@ void refuse_unstable(const LoopModel& loop, const DtadParams& params);
 /// Why a robot should not be run with a controller at this COG height, in the words of
 /// refuse_unstable(); empty when nothing speaks against it, for demonstrations (dtad-literal,
 /// as_printed), other controllers and legs without servos.
-std::string instability(const RobotModel& model, const ControllerSpec& spec, double height,
-                        double tick);
+std::string instability(const RobotModel& model, const ActuatorLimits& actuators,
+                        const ControllerSpec& spec, double height, double tick);
 
 }  // namespace ayumi

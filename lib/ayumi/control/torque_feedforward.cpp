@@ -11,11 +11,11 @@ Eigen::MatrixXd torque_feedforward(const RobotModel& model, const ActuatorLimits
   const auto samples = static_cast<Eigen::Index>(series.samples.size());
   Eigen::MatrixXd lead = Eigen::MatrixXd::Zero(model.dof_count(), samples);
   const ContactPlan contacts = contact_plan(series);
-  MotionDynamics dynamics(model, series, contacts);
+  MotionDynamics dynamics(model, limits, series, contacts);
   for (Eigen::Index k = 0; k < samples; ++k) {
     const Eigen::VectorXd& torque = dynamics.at(static_cast<int>(k)).torque;
     for (int j = 0; j < model.dof_count(); ++j) {
-      const double kp = model.dofs()[j].servo.kp, peak = limits.peak_torque[j];
+      const double kp = limits.servo[static_cast<size_t>(j)].kp, peak = limits.peak_torque[j];
       if (kp > 0) lead(j, k) = std::clamp(torque[j], -peak, peak) / kp;
     }
   }

@@ -285,7 +285,7 @@ ReferenceBody::ReferenceBody(const RobotModel& model, const ActuatorLimits& limi
       dt_(dt),
       data_(model),
       weight_(model.joint_weight()),
-      lead_(velocity_lead(model)),
+      lead_(velocity_lead(limits)),
       previous_target_(target),
       noted_(static_cast<size_t>(model.dof_count())),
       reference_(start) {}

@@ -245,8 +245,8 @@ std::array<Vector6d, 2> foot_wrenches(const RobotModel& model, Support support,
   return result;
 }
 
-VectorXd motor_torques(const RobotModel& model, const RobotState& state,
-                       const VectorXd& acceleration, const VectorXd& force,
+VectorXd motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
+                       const RobotState& state, const VectorXd& acceleration, const VectorXd& force,
                        const std::array<Vector6d, 2>& foot_wrench, const RobotData& data) {
   VectorXd torque = force.tail(model.dof_count());
   for (Side side : {Side::left, Side::right}) {
@@ -261,7 +261,7 @@ VectorXd motor_torques(const RobotModel& model, const RobotState& state,
     }
   }
   for (int i = 0; i < model.dof_count(); ++i) {
-    const ServoDescription& servo = model.dofs()[i].servo;
+    const ServoDescription& servo = actuators.servo[i];
     torque[i] += servo.rotor_inertia * acceleration[6 + i] + servo.viscous * state.dtheta[i] +
                  servo.coulomb * std::clamp(state.dtheta[i] / kCoulombRate, -1.0, 1.0);
   }

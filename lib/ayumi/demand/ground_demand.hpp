@@ -79,8 +79,9 @@ inline constexpr double kCoulombRate = 0.01;
 
 /// Motor torques [dof]: `force` of inverse_dynamics without what the ground gives at the feet, plus
 /// rotor inertia, viscous and Coulomb friction of the servo. `data` as inverse_dynamics left it.
-Eigen::VectorXd motor_torques(const RobotModel& model, const RobotState& state,
-                              const Eigen::VectorXd& acceleration, const Eigen::VectorXd& force,
+Eigen::VectorXd motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
+                              const RobotState& state, const Eigen::VectorXd& acceleration,
+                              const Eigen::VectorXd& force,
                               const std::array<Vector6d, 2>& foot_wrench, const RobotData& data);
 
 /// A sole against the pose it should keep.

@@ -8,9 +8,9 @@ namespace ayumi {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-MotionDynamics::MotionDynamics(const RobotModel& model, const CommandSeries& series,
-                               const ContactPlan& plan)
-    : model_(model), series_(series), plan_(plan), data_(model) {}
+MotionDynamics::MotionDynamics(const RobotModel& model, const ActuatorLimits& actuators,
+                               const CommandSeries& series, const ContactPlan& plan)
+    : model_(model), actuators_(actuators), series_(series), plan_(plan), data_(model) {}
 
 // The support changes only where a contact interval does.
 void MotionDynamics::update_plane(int k) {
@@ -62,7 +62,7 @@ void MotionDynamics::evaluate(int k) {
                             : ground_demand(plane_, plane_wrench(plane_, base, now_.wrench),
                                             contact_threshold(model_));
   const auto foot = foot_wrenches(model_, s.support, soles_, plane_, now_.use, base, now_.wrench);
-  now_.torque = motor_torques(model_, state_, acceleration_, force, foot, data_);
+  now_.torque = motor_torques(model_, actuators_, state_, acceleration_, force, foot, data_);
 }
 
 }  // namespace ayumi

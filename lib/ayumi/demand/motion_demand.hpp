@@ -19,7 +19,8 @@ struct SampleDynamics {
 class MotionDynamics {
  public:
   /// The arguments must outlive this.
-  MotionDynamics(const RobotModel& model, const CommandSeries& series, const ContactPlan& plan);
+  MotionDynamics(const RobotModel& model, const ActuatorLimits& actuators,
+                 const CommandSeries& series, const ContactPlan& plan);
 
   /// Inverse dynamics of sample k with its rates times `pace` and accelerations times its square:
   /// the same path, that much slower.
@@ -39,6 +40,7 @@ class MotionDynamics {
   void evaluate(int k);
 
   const RobotModel& model_;
+  const ActuatorLimits& actuators_;
   const CommandSeries& series_;
   const ContactPlan& plan_;
   RobotData data_;

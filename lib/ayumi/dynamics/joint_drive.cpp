@@ -7,11 +7,11 @@ namespace ayumi {
 
 using Eigen::VectorXd;
 
-JointDrive joint_drive(const RobotModel& model) {
-  const int n = model.dof_count();
+JointDrive joint_drive(const ActuatorLimits& actuators) {
+  const auto n = static_cast<int>(actuators.servo.size());
   JointDrive drive{VectorXd(n), VectorXd(n), VectorXd(n)};
   for (int j = 0; j < n; ++j) {
-    const ServoDescription& servo = model.dofs()[j].servo;
+    const ServoDescription& servo = actuators.servo[static_cast<size_t>(j)];
     drive.rotor_inertia[j] = servo.rotor_inertia;
     drive.viscous[j] = servo.viscous;
     drive.coulomb[j] = servo.coulomb;

@@ -14,8 +14,8 @@ struct JointDrive {
   double stick_rate = 1e-3;       ///< joint rate below which dry friction falls to zero [rad/s]
 };
 
-/// Of the robot's servos.
-JointDrive joint_drive(const RobotModel& model);
+/// Of these servos.
+JointDrive joint_drive(const ActuatorLimits& actuators);
 
 /// Torque that friction takes from each dof and its derivative by the rate:
 /// viscous dq + coulomb clamp(dq / stick_rate, -1, 1).

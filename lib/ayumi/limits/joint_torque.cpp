@@ -34,7 +34,8 @@ Eigen::VectorXd watched_torques(const RowSite& site, int point) {
     const auto feet =
         shared_load(site.model, site.points[point], s->state.base.position, force.head<6>());
     most = most.cwiseMax(
-        motor_torques(site.model, s->state, s->acceleration, force, feet, data).cwiseAbs());
+        motor_torques(site.model, site.actuators, s->state, s->acceleration, force, feet, data)
+            .cwiseAbs());
   }
   return most;
 }

@@ -20,7 +20,7 @@ constexpr double kWholeMotorAcceleration = 1;
 Eigen::VectorXd motor_acceleration(const RobotModel& model, const ActuatorLimits& actuators) {
   Eigen::VectorXd most(model.dof_count());
   for (int i = 0; i < model.dof_count(); ++i) {
-    const double inertia = model.dofs()[i].servo.rotor_inertia;
+    const double inertia = actuators.servo[i].rotor_inertia;
     most[i] =
         inertia > 0 ? actuators.peak_torque[i] / inertia : std::numeric_limits<double>::infinity();
   }

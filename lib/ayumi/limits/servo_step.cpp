@@ -49,7 +49,7 @@ void judge_servo_steps(JudgedMotion& motion) {
 void judge_servo_targets(JudgedMotion& motion) {
   const double dt = motion.series.dt;
   const int ticks = servo_ticks(motion);
-  const Eigen::VectorXd lead = velocity_lead(motion.model);
+  const Eigen::VectorXd lead = velocity_lead(motion.limits);
   const double most = motion.tolerance(FindingKind::servo_step);
   const auto target = [&](int k, int i) {
     const RobotState& s = motion.series.samples[k].state;
@@ -84,8 +84,8 @@ const char* step_unit(const JudgedMotion& motion, const Violation& v) {
 
 Advice target_advice(const JudgedMotion& motion, const Violation& v) {
   const Dof& dof = motion.model.dofs()[v.item];
-  return dof.name + "'s servo target, which leads the posture by kd/kp = " +
-         text::brief(1e3 * dof.servo.kd / dof.servo.kp, 3) + " ms, moves " +
+  return dof.name + "'s servo target, which leads the posture by the servo's lag of " +
+         text::brief(1e3 * motion.limits.servo[v.item].lag(), 3) + " ms, moves " +
          text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) +
          " % faster than the speed limit, so that `export` will refuse the table: accelerate " +
          dof.name + " more gently here";

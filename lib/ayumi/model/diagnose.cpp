@@ -189,9 +189,9 @@ class Doctor {
       warn(where, "speed limit " + text::brief(limits.speed[index]) +
                       " rad/s is faster than servos are; is this a placeholder?");
     if (std::isinf(limits.peak_torque[index])) warn(where, "no torque limit is stated");
-    if (!model_.description().servos.contains(dof.name))
+    if (!limits.has_servo[static_cast<size_t>(index)])
       warn(where, "has no servo constants; give it a kp and kd");
-    else if (dof.servo.kp <= 0)
+    else if (limits.servo[static_cast<size_t>(index)].kp <= 0)
       warn(where, "is passive: its servo's kp is 0");
     if (dof.encoder.device == 0 && !model_.description().encoders.empty())
       warn(where, "has no encoder entry although other joints have one");

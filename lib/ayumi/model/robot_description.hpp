@@ -45,23 +45,65 @@ struct JointDescription {
   double mimic_multiplier = 1, mimic_offset = 0;
 };
 
-/// Limits of the motors by joint name, under a profile name ("hoap1", "hoap1-strong").
-struct ActuatorProfile {
-  std::string name;
-  std::map<std::string, double> speed;              ///< [rad/s]
-  std::map<std::string, double> peak_torque;        ///< [N m]
-  std::map<std::string, double> continuous_torque;  ///< RMS over thermal_window [N m]
-  double thermal_window = 10.0;                     ///< [s]
+/// Share of the torques in a gear that adds to its dry friction, as in the friction models M3 to M6
+/// of M. Duclusaud, G. Passault et al., "Extended Friction Models for the Physics Simulation of
+/// Servo Actuators", 2024. With the motor's torque t_m and the torque t_e that everything else
+/// exerts on the joint, the friction grows by
+///   |external t_e - motor t_m| + s |external_stribeck t_e - motor_stribeck t_m|
+/// with the factor s of ServoDescription::stribeck_rate and, where t_e and t_m are opposed, by
+///   s external_quadratic t_e^2 where |t_m| > |t_e|, else s motor_quadratic t_m^2.
+struct LoadFriction {
+  double motor = 0, external = 0;                      ///< [1]
+  double motor_stribeck = 0, external_stribeck = 0;    ///< [1]
+  double motor_quadratic = 0, external_quadratic = 0;  ///< [1/(N m)]
+  bool operator==(const LoadFriction&) const = default;
 };
 
-/// The joint's position loop: torque = kp (target - theta) - kd dtheta. The robot receives
-/// positions only; a velocity feed-forward is a lead of kd/kp seconds of the target.
+/// A position servo. It receives positions only. With the target of `delay` seconds ago, the angle
+/// phi of the motor behind the gear (the joint's own where the gear has neither backlash nor
+/// stiffness), its reading theta = phi - offset and the error e = target - theta, which is zero
+/// within the dead band and reduced by it beyond,
+///   torque = kp e - kd dphi,   or with an inner speed loop   kd (clamp(kp / kd e) - dphi),
+/// bounded by the profile's peak torque and by the motor's voltage. A velocity feed-forward is a
+/// lead of delay + kd/kp seconds of the target. The unit of a sliding joint is m where rad stands.
 struct ServoDescription {
   double kp = 0;             ///< [N m/rad]
   double kd = 0;             ///< [N m s/rad]
   double rotor_inertia = 0;  ///< reflected through the gear [kg m^2]
   double viscous = 0;        ///< gear and bearing friction [N m s/rad]
   double coulomb = 0;        ///< dry friction [N m]
+  double delay = 0;          ///< transport delay of the target [s], any number of ticks
+  /// Largest speed that the position loop asks the inner speed loop for [rad/s]; 0: no bound.
+  double speed_command_limit = 0;
+  /// Dry friction at rest beyond `coulomb` [N m]; at the rate v it is s times as large, with
+  /// s = exp(-(|v| / stribeck_rate)^stribeck_exponent).
+  double stribeck_torque = 0;
+  double stribeck_rate = 0;      ///< [rad/s]; 0: no Stribeck effect
+  double stribeck_exponent = 2;  ///< [1]
+  LoadFriction load = {};
+  double backlash = 0;        ///< whole play of the joint on the motor [rad]
+  double gear_stiffness = 0;  ///< [N m/rad]; 0: stiff, and with backlash kGearStiffness kp
+  double gear_damping = 0;    ///< [N m s/rad]
+  double stall_torque = 0;    ///< torque constant times voltage / resistance [N m]; 0: no bound
+  double back_emf = 0;        ///< loss of torque with speed, constant^2 / resistance [N m s/rad]
+  double dead_band = 0;       ///< half width [rad]
+  bool quantized = false;     ///< target and reading are whole counts of the encoder
+  double offset = 0;          ///< of the encoder's zero of this robot unit [rad]
+  bool operator==(const ServoDescription&) const = default;
+
+  /// Time by which a slowly moving joint is behind its target [s].
+  double lag() const { return delay + (kp > 0 ? kd / kp : 0.0); }
+  bool has_gear() const { return backlash > 0 || gear_stiffness > 0; }
+};
+
+/// Limits and servos of the joints by name, under a profile name ("hoap1", "hoap1-strong").
+struct ActuatorProfile {
+  std::string name;
+  std::map<std::string, double> speed;              ///< [rad/s]
+  std::map<std::string, double> peak_torque;        ///< [N m]
+  std::map<std::string, double> continuous_torque;  ///< RMS over thermal_window [N m]
+  double thermal_window = 10.0;                     ///< [s]
+  std::map<std::string, ServoDescription> servos;   ///< in place of the robot's
 };
 
 /// A joint on the robot's bus and in its sequence files.

@@ -185,6 +185,13 @@ double value_or(const std::map<std::string, double>& map, const std::string& key
   return found == map.end() ? other : found->second;
 }
 
+const ServoDescription* find_servo(const RobotDescription& robot, const ActuatorProfile& profile,
+                                   const std::string& joint) {
+  if (const auto own = profile.servos.find(joint); own != profile.servos.end()) return &own->second;
+  const auto servo = robot.servos.find(joint);
+  return servo != robot.servos.end() ? &servo->second : nullptr;
+}
+
 ActuatorLimits limits_of(const ActuatorProfile& profile, const std::vector<Dof>& dofs,
                          const RobotDescription& robot, const std::vector<int>& dof_joints) {
   ActuatorLimits limits;
@@ -200,6 +207,9 @@ ActuatorLimits limits_of(const ActuatorProfile& profile, const std::vector<Dof>&
     limits.speed[i] = value_or(profile.speed, dofs[i].name, speed);
     limits.peak_torque[i] = value_or(profile.peak_torque, dofs[i].name, effort);
     limits.continuous_torque[i] = value_or(profile.continuous_torque, dofs[i].name, kInfinity);
+    const ServoDescription* servo = find_servo(robot, profile, dofs[i].name);
+    limits.servo.push_back(servo ? *servo : ServoDescription{});
+    limits.has_servo.push_back(servo != nullptr);
   }
   return limits;
 }
@@ -211,8 +221,6 @@ Dof dof_of(const JointDescription& joint, const RobotDescription& robot) {
   dof.limited = joint.has_limits && joint.type != JointType::continuous;
   dof.lower = dof.limited ? joint.lower : -kInfinity;
   dof.upper = dof.limited ? joint.upper : kInfinity;
-  const auto servo = robot.servos.find(joint.name);
-  if (servo != robot.servos.end()) dof.servo = servo->second;
   const auto encoder = robot.encoders.find(joint.name);
   if (encoder != robot.encoders.end()) dof.encoder = encoder->second;
   return dof;

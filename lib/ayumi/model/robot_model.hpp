@@ -36,17 +36,19 @@ struct Dof {
   bool prismatic = false;
   bool limited = false;         ///< position limits exist (not a continuous joint)
   double lower = 0, upper = 0;  ///< [rad] or [m]; +-infinity when not limited
-  ServoDescription servo;
-  EncoderDescription encoder;  ///< device 0 when the robot has none
+  EncoderDescription encoder;   ///< device 0 when the robot has none
 };
 
-/// Limits of one profile as vectors over the dofs; infinite where the files give none.
+/// Motors and servos of one profile over the dofs; limits are infinite where the files give none.
 struct ActuatorLimits {
   std::string name;
   Eigen::VectorXd speed;              ///< [rad/s]
   Eigen::VectorXd peak_torque;        ///< [N m]
   Eigen::VectorXd continuous_torque;  ///< [N m]
   double thermal_window = 10.0;       ///< [s]
+  std::vector<ServoDescription> servo;
+  std::vector<bool> has_servo;  ///< whether the files give the joint a servo; one with kp 0 is
+                                ///< passive
 };
 
 struct Link {

@@ -6,18 +6,18 @@
 
 namespace ayumi {
 
-Eigen::VectorXd velocity_lead(const RobotModel& model) {
-  Eigen::VectorXd lead(model.dof_count());
-  for (int j = 0; j < model.dof_count(); ++j) {
-    const ServoDescription& servo = model.dofs()[j].servo;
-    lead[j] = servo.kp > 0 ? servo.kd / servo.kp : 0.0;
+Eigen::VectorXd velocity_lead(const ActuatorLimits& actuators) {
+  Eigen::VectorXd lead(static_cast<Eigen::Index>(actuators.servo.size()));
+  for (Eigen::Index j = 0; j < lead.size(); ++j) {
+    const ServoDescription& servo = actuators.servo[static_cast<size_t>(j)];
+    lead[j] = servo.kp > 0 ? servo.lag() : 0.0;
   }
   return lead;
 }
 
-DenseTable postures_of(const RobotModel& model, DenseTable table) {
+DenseTable postures_of(const RobotModel& model, const ActuatorLimits& actuators, DenseTable table) {
   if (!table.commands) return table;
-  const Eigen::VectorXd lead = velocity_lead(model);
+  const Eigen::VectorXd lead = velocity_lead(actuators);
   for (size_t i = 0; i < table.joints.size(); ++i) {
     const int dof = model.find_dof(table.joints[i]);
     if (dof < 0 || !(lead[dof] > 0)) continue;

@@ -202,7 +202,7 @@ void check_table(const Pattern& pattern, const FootPlan& feet) {
 void read_table(const RobotModel& model, const Pattern& pattern, KeyReader& reader,
                 PatternTracks& tracks) {
   check_table(pattern, reader.feet);
-  const DenseTable table = postures_of(model, *pattern.table);
+  const DenseTable table = postures_of(model, model.limits(pattern.profile), *pattern.table);
   const auto rows = static_cast<size_t>(table.theta.rows());
   tracks.rest_ends = false;
   for (size_t j = 0; j < table.joints.size(); ++j) {

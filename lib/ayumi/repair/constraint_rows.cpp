@@ -45,9 +45,9 @@ std::array<MatrixXd, 3> force_derivatives(TreeDynamics& dynamics, const Correcte
 
 }  // namespace
 
-PointState point_state(const RobotModel& model, const CommandSample& sample,
-                       const CollocationPoint& point, const MatrixXd& coefficients,
-                       TreeDynamics* derivatives, RobotData& data) {
+PointState point_state(const RobotModel& model, const ActuatorLimits& actuators,
+                       const CommandSample& sample, const CollocationPoint& point,
+                       const MatrixXd& coefficients, TreeDynamics* derivatives, RobotData& data) {
   PointState state;
   const auto rows = coefficients.middleRows<4>(point.weights.first);
   state.change = rows.transpose() * point.weights.value;
@@ -65,7 +65,8 @@ PointState point_state(const RobotModel& model, const CommandSample& sample,
     state.cog_by.middleCols<3>(3) = (state.cog_by.middleCols<3>(3) * m.tangent).eval();
   }
   if (point.torques)
-    fill_motor_torques(model, point, force, derivatives ? &force_by : nullptr, data, state);
+    fill_motor_torques(model, actuators, point, force, derivatives ? &force_by : nullptr, data,
+                       state);
   for (Side side : {Side::left, Side::right}) {
     const int s = static_cast<int>(side);
     state.soles[s] = sole_pose(model, data, side);

@@ -27,9 +27,10 @@ struct PointState {
   RobotData* data = nullptr;
 };
 /// `derivatives`: what computes them; null: values alone.
-PointState point_state(const RobotModel& model, const CommandSample& sample,
-                       const CollocationPoint& point, const Eigen::MatrixXd& coefficients,
-                       TreeDynamics* derivatives, RobotData& data);
+PointState point_state(const RobotModel& model, const ActuatorLimits& actuators,
+                       const CommandSample& sample, const CollocationPoint& point,
+                       const Eigen::MatrixXd& coefficients, TreeDynamics* derivatives,
+                       RobotData& data);
 
 /// The ground wrench about the support plane of the point, in its axes.
 Vector6d plane_wrench(const CollocationPoint& point, const PointState& state);

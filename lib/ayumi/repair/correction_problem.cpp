@@ -35,7 +35,11 @@ SparsePattern jacobian_pattern(const PlacedRows& rows, const std::vector<Colloca
 
 CorrectionProblem::CorrectionProblem(const RobotModel& model, const CommandSeries& series,
                                      const CorrectionSpec& spec)
-    : model_(model), series_(series), spec_(spec), plan_(contact_plan(series)) {
+    : model_(model),
+      actuators_(model.limits(spec.profile)),
+      series_(series),
+      spec_(spec),
+      plan_(contact_plan(series)) {
   variables_ = correction_variables(model, series, spec_);
   points_ = collocation_points(model, series, plan_, spec_, variables_);
   rows_ = place_rows(model, series, spec_, plan_, points_);
@@ -60,7 +64,8 @@ VectorXd CorrectionProblem::values(const CommandSeries& motion, const MatrixXd& 
   for (const RowBlock& block : rows_.blocks) {
     const CollocationPoint& point = points_[block.point];
     if (block.point != at)
-      state = point_state(model_, motion.samples[point.sample], point, c, nullptr, data);
+      state =
+          point_state(model_, actuators_, motion.samples[point.sample], point, c, nullptr, data);
     at = block.point;
     g.segment(block.row, block.rows()) = block_values(model_, block, point, state);
   }
@@ -78,7 +83,8 @@ void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) con
     const RowBlock& block = rows_.blocks[b];
     const CollocationPoint& point = points_[block.point];
     if (block.point != at)
-      state = point_state(model_, series_.samples[point.sample], point, c, &dynamics, data);
+      state =
+          point_state(model_, actuators_, series_.samples[point.sample], point, c, &dynamics, data);
     at = block.point;
     const auto by = block_derivatives(model_, block, point, state);
     const SplineWeights& w = point.weights;
@@ -111,7 +117,7 @@ void CorrectionProblem::add_curvature(const VectorXd& x, const VectorXd& multipl
     first = end;
     const CollocationPoint& point = points_[at];
     const PointState state =
-        point_state(model_, series_.samples[point.sample], point, c, &dynamics, data);
+        point_state(model_, actuators_, series_.samples[point.sample], point, c, &dynamics, data);
     const Curvature curvature = curvature_of(model_, blocks, multipliers, point, state, dynamics);
     if (!is_flat(curvature)) spread_curvature(hessian_, point.weights, curvature, pairs);
   }

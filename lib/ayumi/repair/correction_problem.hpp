@@ -49,6 +49,7 @@ class CorrectionProblem {
                      Eigen::VectorXd& values) const;
 
   const RobotModel& model_;
+  const ActuatorLimits& actuators_;
   const CommandSeries& series_;
   CorrectionSpec spec_;
   ContactPlan plan_;

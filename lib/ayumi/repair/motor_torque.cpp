@@ -89,13 +89,14 @@ void add_foot(const RobotModel& model, Side side, const Vector6d& wrench, const 
 
 }  // namespace
 
-void fill_motor_torques(const RobotModel& model, const CollocationPoint& point,
-                        const VectorXd& force, const std::array<MatrixXd, 3>* force_by,
-                        const RobotData& data, PointState& state) {
+void fill_motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
+                        const CollocationPoint& point, const VectorXd& force,
+                        const std::array<MatrixXd, 3>* force_by, const RobotData& data,
+                        PointState& state) {
   const CorrectedMotion& m = state.motion;
   const Vector3d& base = m.state.base.position;
   const FootWrenches wrench = shared_load(model, point, base, state.wrench);
-  state.torque = motor_torques(model, m.state, m.acceleration, force, wrench, data);
+  state.torque = motor_torques(model, actuators, m.state, m.acceleration, force, wrench, data);
   if (!force_by) return;
   const int dof = model.dof_count();
   for (int k = 0; k < 3; ++k) state.torque_by[k] = (*force_by)[k].bottomRows(dof);
@@ -111,7 +112,7 @@ void fill_motor_torques(const RobotModel& model, const CollocationPoint& point,
   }
   // Rotor inertia, viscous friction, and Coulomb friction within the ramp of its sign.
   for (int i = 0; i < dof; ++i) {
-    const ServoDescription& servo = model.dofs()[i].servo;
+    const ServoDescription& servo = actuators.servo[static_cast<size_t>(i)];
     state.torque_by[2](i, 6 + i) += servo.rotor_inertia;
     state.torque_by[1](i, 6 + i) += servo.viscous;
     if (std::abs(m.state.dtheta[i]) < kCoulombRate)

@@ -9,8 +9,8 @@ namespace ayumi {
 /// Fills state.torque and, with `force_by`, state.torque_by. `force`: of inverse_dynamics(), which
 /// left `data`; `force_by`: all its rows by value, rate and acceleration, or null. The wrench of
 /// `state` must be set.
-void fill_motor_torques(const RobotModel& model, const CollocationPoint& point,
-                        const Eigen::VectorXd& force,
+void fill_motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
+                        const CollocationPoint& point, const Eigen::VectorXd& force,
                         const std::array<Eigen::MatrixXd, 3>* force_by, const RobotData& data,
                         PointState& state);
 

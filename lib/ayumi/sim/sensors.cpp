@@ -20,8 +20,10 @@ constexpr double kRestRoot = 20;
 
 }  // namespace
 
-Sensors::Sensors(const RobotModel& model, double dt, bool noise, std::uint64_t seed)
+Sensors::Sensors(const RobotModel& model, const ActuatorLimits& actuators, double dt, bool noise,
+                 std::uint64_t seed)
     : model_(&model),
+      offset_(Eigen::VectorXd::Zero(model.dof_count())),
       imu_(std::max(0, model.find_link(model.description().sensors.imu_link))),
       dt_(dt),
       noise_(noise),
@@ -29,6 +31,8 @@ Sensors::Sensors(const RobotModel& model, double dt, bool noise, std::uint64_t s
   const double latency = noise ? model.description().sensors.latency : 0.0;
   latency_ = static_cast<size_t>(std::lround(latency / dt));
   ring_.resize(latency_ + 1);
+  for (Eigen::Index j = 0; j < offset_.size(); ++j)
+    offset_[j] = actuators.servo[static_cast<size_t>(j)].offset;
 }
 
 void Sensors::reach_back(double latency) {
@@ -46,7 +50,8 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
                       const SensorFault& fault, const std::vector<JointFault>& faults,
                       Measurement& m) {
   const SensorDescription& s = model_->description().sensors;
-  m.theta = state.theta;
+  // Encoders are on the motors, in front of their gears.
+  m.theta = (report.motor.size() > 0 ? report.motor : state.theta) - offset_;
   for (size_t j = 0; j < faults.size(); ++j)
     m.theta[static_cast<Eigen::Index>(j)] += faults[j].encoder;
   if (noise_ && s.encoder_quantisation) {
@@ -60,7 +65,7 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
   if (previous_theta_.size())
     m.dtheta = (m.theta - previous_theta_) / dt_;
   else
-    m.dtheta = state.dtheta;
+    m.dtheta = report.motor_rate.size() > 0 ? report.motor_rate : state.dtheta;
   previous_theta_ = m.theta;
 
   measure_imu(truth, fault, m);

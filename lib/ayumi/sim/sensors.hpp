@@ -15,7 +15,8 @@ namespace ayumi {
 
 class Sensors {
  public:
-  Sensors(const RobotModel& model, double dt, bool noise, std::uint64_t seed);
+  Sensors(const RobotModel& model, const ActuatorLimits& actuators, double dt, bool noise,
+          std::uint64_t seed);
 
   /// The measurement after a plant step. `truth` holds positions and velocities of `state`, and the
   /// report has the forces of this step; `faults` is by dof, or empty. The measurement holds until
@@ -36,7 +37,8 @@ class Sensors {
   Eigen::Vector3d specific_force(const RobotData& truth, const Eigen::Quaterniond& attitude);
 
   const RobotModel* model_;
-  int imu_;  // link
+  Eigen::VectorXd offset_;  // of the encoders [rad, m]
+  int imu_;                 // link
   double dt_;
   bool noise_;
   Random random_;

@@ -1,13 +1,68 @@
 #pragma once
-// The torque that a joint's motor can give.
+// What every plant needs of a servo beside its linear law: the delay of its target, its error with
+// dead band and counts, its dry friction, and the torque that its motor can give.
+// docs/theory_plant.md, "Servos".
+
+#include <Eigen/Dense>
+#include <vector>
 
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
 
-/// Largest torque [N m, N] in `direction` (+1 or -1) at the given joint rate [rad/s, m/s]. A motor
-/// cannot push a joint beyond its speed limit: the torque falls linearly to 0 from the speed limit
-/// to 1.1 times the speed limit.
+/// Stiffness of a gear of which the files give only the backlash, in units of the servo's kp.
+/// Chosen: the gear then adds a tenth to the servo's own error under load.
+inline constexpr double kGearStiffness = 10;
+
+/// Stiffness [N m/rad] and damping [N m s/rad] of the gear of a servo that has one. A damping that
+/// the files do not give is critical for the rotor on the gear, so that the teeth do not bounce.
+double gear_stiffness(const ServoDescription& servo);
+double gear_damping(const ServoDescription& servo);
+
+/// Largest torque [N m, N] in `direction` (+1 or -1) at the given joint rate [rad/s, m/s] by peak
+/// torque and speed limit. A motor cannot push a joint beyond its speed limit: the torque falls
+/// linearly to 0 from the speed limit to 1.1 times the speed limit.
 double available_torque(const ActuatorLimits& limits, int dof, double rate, double direction);
+
+/// The motor's voltage bounds its torque in `direction` to stall_torque - back_emf rate direction;
+/// infinite where the files give no motor. Negative beyond the no-load speed: the motor brakes.
+double voltage_torque(const ServoDescription& servo, double rate, double direction);
+
+/// Dry friction [N m] of a servo whose motor turns at `rate` [rad/s] with the torque `motor`, while
+/// everything else exerts `external` on the joint [N m].
+double dry_friction(const ServoDescription& servo, double rate, double motor, double external);
+
+/// What the position loop does with its target during one step.
+struct ServoError {
+  double target = 0;    ///< with which kp (target - phi) is the torque of the position error
+  bool inside = false;  ///< within the dead band: the position error exerts no torque
+};
+/// Of the servo of `dof` whose motor is at `phi` at the start of the step; `target` as it receives
+/// it [rad].
+ServoError servo_error(const ServoDescription& servo, const Dof& dof, double target, double phi);
+
+/// The targets that servos act on: those they received their delay ago. A target holds from one
+/// step to the next; a delay that is not a whole number of steps gives the mean over the step.
+class TargetDelay {
+ public:
+  explicit TargetDelay(const std::vector<ServoDescription>& servos);
+
+  /// Forgets the targets: before the first step the servos have always had its targets.
+  void reset() { count_ = 0; }
+
+  /// `targets` [rad, m] hold during the coming step of `dt` [s]. The result holds until the next
+  /// call.
+  const Eigen::VectorXd& step(const Eigen::VectorXd& targets, double dt);
+
+ private:
+  double mean(Eigen::Index joint, double delay, double dt) const;
+
+  std::vector<double> delay_;  // by dof [s]
+  double longest_ = 0;         // [s]
+  Eigen::MatrixXd ring_;       // targets, dof x steps; the newest in column newest_
+  std::vector<double> dt_;     // of each column [s]
+  Eigen::Index newest_ = 0, count_ = 0;
+  Eigen::VectorXd now_;
+};
 
 }  // namespace ayumi

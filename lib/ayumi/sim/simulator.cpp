@@ -55,7 +55,8 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       limits_(model.limits(options.profile)),
       h_(series.dt / options.substeps),
       plant_(make_plant(model, limits_, options)),
-      sensors_(model, series.dt, options.sensor_noise && !options.true_state, options.seed),
+      sensors_(model, limits_, series.dt, options.sensor_noise && !options.true_state,
+               options.seed),
       estimator_(model, series.dt),
       monitor_(model, limits_, options.world),
       schedule_(model, options.world, h_),
@@ -99,8 +100,9 @@ double Simulator::energy() const {
              2 * inertia.mass * kGravity * (data.base_position.z() + data.position[b].z() + c.z());
   }
   for (int j = 0; j < model_->dof_count(); ++j) {
-    const double rate = plant_.state().dtheta[j];
-    twice += model_->dofs()[j].servo.rotor_inertia * rate * rate;
+    const double rate =
+        report_.motor_rate.size() > 0 ? report_.motor_rate[j] : plant_.state().dtheta[j];
+    twice += limits_.servo[static_cast<size_t>(j)].rotor_inertia * rate * rate;
   }
   return 0.5 * twice;
 }

@@ -71,7 +71,10 @@ struct SoleForce {
 
 /// Forces and events of a step; forces are means over its duration.
 struct StepReport {
-  Eigen::VectorXd torque;                       ///< of the servos [N m]
+  Eigen::VectorXd torque;  ///< of the servos [N m]
+  /// Angle and rate of the motors, where their encoders are [rad, rad/s]; those of the joints where
+  /// the gears have neither backlash nor stiffness. Empty before the first step.
+  Eigen::VectorXd motor, motor_rate;
   std::array<std::vector<SoleForce>, 2> soles;  ///< by Side, in the order of the sole's polygon
   bool body_contact = false;                    ///< a body that is no sole touches the ground
   std::vector<int> saturated;                   ///< dofs whose torque is at its limit

@@ -193,7 +193,8 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
               .options = options,
               .stand = standing_series(series),
               .phases = options.phases,
-              .loop = single_support_loop(model, height(series.samples.front()), series.dt)};
+              .loop = single_support_loop(model, model.limits(options.simulate.profile),
+                                          height(series.samples.front()), series.dt)};
   if (tuner.phases.empty()) tuner.phases = default_push_phases(model, series, options.simulate);
   TuneResult result;
   for (const std::string& name : options.gains) result.start[name] = known.at(name);

@@ -7,12 +7,12 @@
 
 namespace ayumi {
 
-OpenLoop::OpenLoop(const RobotModel& model, CommandPlan command,
+OpenLoop::OpenLoop(const ActuatorLimits& actuators, CommandPlan command,
                    std::shared_ptr<const Eigen::MatrixXd> torque_lead,
                    const Eigen::VectorXd& target)
     : command_(std::move(command)),
       torque_lead_(std::move(torque_lead)),
-      velocity_lead_(velocity_lead(model)),
+      velocity_lead_(velocity_lead(actuators)),
       target_(target) {}
 
 void OpenLoop::update(const Estimate& estimate, ControlOutput& out) {

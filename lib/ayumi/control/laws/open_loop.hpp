@@ -11,7 +11,7 @@ class OpenLoop {
  public:
   /// `torque_lead`: offsets of the servo targets by sample of the pattern [rad], one column:
   /// throughout (control/torque_feedforward). `target`: last servo targets [rad].
-  OpenLoop(const RobotModel& model, CommandPlan command,
+  OpenLoop(const ActuatorLimits& actuators, CommandPlan command,
            std::shared_ptr<const Eigen::MatrixXd> torque_lead, const Eigen::VectorXd& target);
 
   /// The command of the coming tick.

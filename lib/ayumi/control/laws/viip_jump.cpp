@@ -167,7 +167,7 @@ ViipJump::ViipJump(const RobotModel& model, const ActuatorLimits& limits, const 
       plan_(held),
       data_(model),
       weight_(model.joint_weight()),
-      lead_(velocity_lead(model)),
+      lead_(velocity_lead(limits)),
       target_(start.target),
       reference_(start.reference),
       dcog_(start.dcog),
@@ -340,7 +340,7 @@ VectorXd ViipJump::torque(const VectorXd& velocity) {
   const VectorXd force = inverse_dynamics(*model_, state, acceleration, data_);
   VectorXd torque = force.tail(model_->dof_count());
   for (int j = 0; j < model_->dof_count(); ++j)
-    torque[j] += model_->dofs()[j].servo.rotor_inertia * acceleration[6 + j];
+    torque[j] += limits_.servo[static_cast<size_t>(j)].rotor_inertia * acceleration[6 + j];
   if (stage_ == Stage::flight) return torque;
   const Vector3d f = 0.5 * force.head<3>(), n = 0.5 * force.segment<3>(3);
   for (const Side side : {Side::left, Side::right})
@@ -365,8 +365,8 @@ void ViipJump::move_joints(const VectorXd& velocity, ControlOutput& out) {
   for (int j = 0; j < out.target.size(); ++j) {
     const Dof& dof = model_->dofs()[j];
     const double most = limits_.peak_torque[j], step = kTargetRate * limits_.speed[j] * dt_;
-    if (dof.servo.kp > 0)
-      out.target[j] += smooth_rise(forward_) * std::clamp(tau[j], -most, most) / dof.servo.kp;
+    const double kp = limits_.servo[static_cast<size_t>(j)].kp;
+    if (kp > 0) out.target[j] += smooth_rise(forward_) * std::clamp(tau[j], -most, most) / kp;
     out.target[j] = std::clamp(out.target[j], target_[j] - step, target_[j] + step);
     if (dof.limited) out.target[j] = std::clamp(out.target[j], dof.lower, dof.upper);
   }

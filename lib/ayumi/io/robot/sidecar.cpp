@@ -9,6 +9,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/io/robot/servo_reader.hpp"
 #include "ayumi/io/robot/urdf.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/model/validate.hpp"
@@ -100,30 +101,32 @@ void read_postures(const JsonNode& node, double unit, RobotDescription& robot) {
   }
 }
 
-// A joint whose gain no group states has no servo; one whose gain is stated as 0 has no motor.
-void read_servos(const JsonNode& node, RobotDescription& robot) {
-  std::map<std::string, ServoDescription> all;
-  for (const JointDescription& joint : robot.joints)
-    if (contains(moving_joints(robot), joint.name))
-      all[joint.name] = {0, 0, 0, joint.damping, joint.friction};
-  for (const JsonNode& group : node.items()) {
-    group.only_keys({"joints", "kp", "kd", "rotor_inertia", "viscous", "coulomb"});
-    for (const std::string& joint : group_joints(group, robot)) {
-      ServoDescription& servo = all[joint];
-      if (group.has("kp")) robot.servos[joint];
-      read_not_negative(group, "kp", servo.kp);
-      read_not_negative(group, "kd", servo.kd);
-      read_not_negative(group, "rotor_inertia", servo.rotor_inertia);
-      read_not_negative(group, "viscous", servo.viscous);
-      read_not_negative(group, "coulomb", servo.coulomb);
-    }
+// A joint whose gain no group states has no servo; one whose gain is stated as 0 has no motor. The
+// bytes of parameter files are part of the robot's identity.
+std::map<std::string, ServoDescription> read_servos(
+    const JsonNode& node, const std::map<std::string, ServoDescription>& before,
+    RobotDescription& robot, std::string& files) {
+  ServoGroups groups;
+  for (const JointDescription& joint : robot.joints) {
+    if (!contains(moving_joints(robot), joint.name)) continue;
+    const auto known = before.find(joint.name);
+    if (known != before.end()) groups.stated[joint.name] = true;
+    groups.servos[joint.name] = known != before.end() ? known->second
+                                                      : ServoDescription{.viscous = joint.damping,
+                                                                         .coulomb = joint.friction};
   }
-  for (auto& [joint, servo] : robot.servos) servo = all[joint];
+  const std::filesystem::path folder = std::filesystem::path(node.file()).parent_path();
+  for (const JsonNode& group : node.items())
+    read_servo_group(group, group_joints(group, robot), folder, groups);
+  files += groups.files;
+  std::map<std::string, ServoDescription> servos;
+  for (const auto& [joint, stated] : groups.stated) servos[joint] = groups.servos[joint];
+  return servos;
 }
 
-void read_profiles(const JsonNode& node, RobotDescription& robot) {
+void read_profiles(const JsonNode& node, RobotDescription& robot, std::string& files) {
   for (const JsonNode& item : node.items()) {
-    item.only_keys({"name", "thermal_window", "limits"});
+    item.only_keys({"name", "thermal_window", "limits", "servos"});
     ActuatorProfile profile;
     profile.name = item.at("name").string();
     for (const ActuatorProfile& other : robot.profiles)
@@ -140,6 +143,8 @@ void read_profiles(const JsonNode& node, RobotDescription& robot) {
           if (const auto limit = group.find(key)) (*values)[joint] = limit->number();
       }
     }
+    if (const auto servos = item.find("servos"))
+      profile.servos = read_servos(*servos, robot.servos, robot, files);
     robot.profiles.push_back(profile);
   }
 }
@@ -282,7 +287,7 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "collision_ignore",
                                         "assumptions"};
 
-void read_root(const JsonNode& root, RobotDescription& robot) {
+void read_root(const JsonNode& root, RobotDescription& robot, std::string& files) {
   const std::vector<std::pair<const char*, std::function<void(const JsonNode&)>>> readers = {
       {"locked_joints", [&](const JsonNode& node) { lock_joints(node, robot); }},
       {"position_limits_deg", [&](const JsonNode& node) { read_position_limits(node, robot); }},
@@ -292,8 +297,8 @@ void read_root(const JsonNode& root, RobotDescription& robot) {
       {"soles", [&](const JsonNode& node) { read_soles(node, robot); }},
       {"postures", [&](const JsonNode& node) { read_postures(node, 1, robot); }},
       {"postures_deg", [&](const JsonNode& node) { read_postures(node, kDegree, robot); }},
-      {"servos", [&](const JsonNode& node) { read_servos(node, robot); }},
-      {"profiles", [&](const JsonNode& node) { read_profiles(node, robot); }},
+      {"servos", [&](const JsonNode& node) { robot.servos = read_servos(node, {}, robot, files); }},
+      {"profiles", [&](const JsonNode& node) { read_profiles(node, robot, files); }},
       {"encoders", [&](const JsonNode& node) { read_encoders(node, robot); }},
       {"sensors", [&](const JsonNode& node) { read_sensors(node, robot.sensors); }},
       {"control", [&](const JsonNode& node) { read_control(node, robot); }},
@@ -337,8 +342,9 @@ RobotDescription read_sidecar(const std::filesystem::path& file,
   const std::string urdf_bytes = read_file(urdf);
   RobotDescription robot = parse_urdf(urdf_bytes, urdf);
   robot.sidecar_file = file.string();
-  robot.sha256 = sha256(urdf_bytes + sidecar.bytes);
-  read_root(root, robot);
+  std::string files;
+  read_root(root, robot, files);
+  robot.sha256 = sha256(urdf_bytes + sidecar.bytes + files);
   return robot;
 }
 

@@ -209,7 +209,7 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
   table.joints = model.dof_names();
   table.theta = imported.motion.theta;
   table.commands = true;
-  imported.motion.theta = postures_of(model, table).theta;
+  imported.motion.theta = postures_of(model, model.limits(), table).theta;
   imported.commands = false;
   imported.filled.push_back("angles are servo targets: the velocity lead kd/kp was subtracted");
 }

@@ -36,19 +36,28 @@ constexpr double kStopDampingTime = 0.02;
 
 JointLaws::JointLaws(const RobotModel& model, const ActuatorLimits& limits)
     : limits_(limits),
+      model_(&model),
+      delay_(limits.servo),
       joints_(static_cast<size_t>(model.dof_count())),
       torque_(VectorXd::Zero(model.dof_count())) {
-  for (int j = 0; j < model.dof_count(); ++j) {
+  for (size_t j = 0; j < joints_.size(); ++j) {
     const Dof& dof = model.dofs()[j];
-    const ServoDescription& servo = dof.servo;
-    if (servo.kp <= 0 && !model.description().servos.contains(dof.name))
+    const ServoDescription& servo = limits.servo[j];
+    if (servo.kp <= 0 && !limits.has_servo[j])
       fail(ErrorCode::bad_model,
            model.name() + ": joint " + dof.name + " has no servo (kp); give it one in the sidecar");
-    Joint& joint = joints_[static_cast<size_t>(j)];
-    joint.own = {servo.kp, servo.kd, servo.viscous, servo.coulomb};
+    Joint& joint = joints_[j];
     joint.lower = dof.lower;
     joint.upper = dof.upper;
     joint.limited = dof.limited;
+    joint.has_gear = servo.has_gear() && servo.kp > 0;
+    if (joint.has_gear) {
+      joint.gear = gear_stiffness(servo);
+      joint.gear_damping = gear_damping(servo);
+      joint.rotor = servo.rotor_inertia;
+      joint.half_play = 0.5 * servo.backlash;
+    }
+    joint.needs_friction = servo.stribeck_rate > 0 || !(servo.load == LoadFriction{});
     // A joint without a motor has an end stop too; that of a hinge has 20 weights times 1 m/rad.
     const double weight = model.mass() * kGravity;
     const double passive = dof.prismatic ? weight / kStopSink : weight;
@@ -57,94 +66,221 @@ JointLaws::JointLaws(const RobotModel& model, const ActuatorLimits& limits)
   }
 }
 
-void JointLaws::set(const VectorXd& targets, const std::vector<JointFault>& faults) {
+void JointLaws::reset(const RobotState& state) {
+  delay_.reset();
   for (size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];
-    joint.now = joint.own;
-    joint.target = targets[static_cast<Eigen::Index>(j)];
-    if (faults.empty()) continue;
-    const JointFault& fault = faults[j];
-    joint.now.kp *= fault.gain;
-    joint.now.kd *= fault.gain;
-    joint.now.viscous += fault.viscous;
-    joint.now.coulomb += fault.coulomb;
-    joint.target -= fault.encoder;
+    const auto i = static_cast<Eigen::Index>(j);
+    joint.phi = state.theta[i];
+    joint.dphi = joint.last_rate = state.dtheta[i];
+    joint.external = joint.last_torque = 0;
   }
 }
 
-// Within a solve a joint that has left its servo's law, or its sticking friction, does not return.
-void JointLaws::start() {
-  for (Joint& joint : joints_) joint.saturated = joint.sliding = false;
+void JointLaws::set(const VectorXd& targets, const std::vector<JointFault>& faults,
+                    const VectorXd& theta, double dt) {
+  const VectorXd& delayed = delay_.step(targets, dt);
+  for (size_t j = 0; j < joints_.size(); ++j) {
+    Joint& joint = joints_[j];
+    const ServoDescription& servo = limits_.servo[j];
+    const auto i = static_cast<Eigen::Index>(j);
+    static const JointFault kNone;
+    const JointFault& fault = faults.empty() ? kNone : faults[j];
+    joint.kp = servo.kp * fault.gain;
+    joint.kd = servo.kd * fault.gain;
+    joint.viscous = servo.viscous + fault.viscous;
+    joint.coulomb = fault.coulomb +
+                    (joint.needs_friction
+                         ? dry_friction(servo, joint.last_rate, joint.last_torque, joint.external)
+                         : servo.coulomb);
+    const ServoError error = servo_error(servo, model_->dofs()[j], delayed[i] - fault.encoder,
+                                         joint.has_gear ? joint.phi : theta[i]);
+    joint.target = error.target;
+    joint.inside_band = error.inside;
+  }
+}
+
+// Within a solve a joint that has left its servo's law, its sticking friction or the flank of its
+// gear does not return.
+void JointLaws::start(const VectorXd& theta, const double* rate, double dt) {
+  for (size_t j = 0; j < joints_.size(); ++j) {
+    Joint& joint = joints_[j];
+    joint.saturated = joint.sliding = joint.speed_bound = joint.gear_changed = false;
+    if (!joint.has_gear) continue;
+    const double play =
+        joint.phi - theta[static_cast<Eigen::Index>(j)] + dt * (joint.dphi - rate[j]);
+    joint.flank = play >= joint.half_play    ? Flank::high
+                  : play <= -joint.half_play ? Flank::low
+                                             : Flank::none;
+  }
+}
+
+JointLaws::Impulse JointLaws::motor_impulse(const Joint& joint, double phi, double dt) const {
+  Impulse out{0, dt * joint.viscous};
+  if (joint.saturated) {
+    out.sum = dt * joint.limit_torque;
+    out.damping += dt * joint.limit_slope;
+  } else if (joint.speed_bound || joint.inside_band) {
+    out.sum = joint.speed_bound ? dt * joint.speed_torque : 0;
+    out.damping += dt * joint.kd;
+  } else {
+    out.sum = dt * joint.kp * (joint.target - phi);
+    out.damping += dt * joint.kd + dt * dt * joint.kp;
+  }
+  if (joint.coulomb > 0) {
+    if (joint.sliding)
+      out.sum += dt * joint.slip_torque;
+    else
+      out.damping += dt * joint.coulomb / kStickRate;
+  }
+  return out;
+}
+
+// The motor behind a gear obeys rotor (dphi+ - dphi) = motor's impulse - gear's impulse; solved for
+// dphi+, the gear's impulse on the joint depends on dtheta+ alone.
+void JointLaws::solve_motor(Joint& joint, double theta, double dt, Impulse& on_joint) const {
+  const Impulse motor = motor_impulse(joint, joint.phi, dt);
+  joint.mesh = joint.slope = 0;
+  if (joint.flank != Flank::none) {
+    const double edge = joint.flank == Flank::high ? joint.half_play : -joint.half_play;
+    joint.mesh = dt * joint.gear * (joint.phi - theta - edge);
+    joint.slope = dt * dt * joint.gear + dt * joint.gear_damping;
+  }
+  joint.momentum = joint.rotor * joint.dphi + motor.sum - joint.mesh;
+  joint.inertia = joint.rotor + motor.damping + joint.slope;
+  if (joint.slope <= 0) return;
+  const double share = joint.slope / joint.inertia;
+  on_joint.sum += joint.mesh + share * joint.momentum;
+  on_joint.damping += joint.slope * (1 - share);
+}
+
+double JointLaws::motor_rate(const Joint& joint, double rate) {
+  if (!joint.has_gear) return rate;
+  return joint.inertia > 0 ? (joint.momentum + joint.slope * rate) / joint.inertia : joint.dphi;
 }
 
 void JointLaws::add(const VectorXd& theta, const double* rate, double dt, double* impulse,
-                    std::vector<double>& diagonal) const {
+                    std::vector<double>& diagonal) {
   for (size_t j = 0; j < joints_.size(); ++j) {
-    const Joint& joint = joints_[j];
-    const Law& law = joint.now;
+    Joint& joint = joints_[j];
     const double angle = theta[static_cast<Eigen::Index>(j)];
-    double sum = impulse[j], D = dt * law.viscous;
-    if (joint.saturated) {
-      sum += dt * joint.limit_torque;
-    } else {
-      D += dt * law.kd + dt * dt * law.kp;
-      sum += dt * law.kp * (joint.target - angle);
-    }
-    if (law.coulomb > 0) {
-      if (joint.sliding)
-        sum += dt * joint.slip_torque;
-      else
-        D += dt * law.coulomb / kStickRate;
-    }
+    Impulse out;
+    if (joint.has_gear)
+      solve_motor(joint, angle, dt, out);
+    else
+      out = motor_impulse(joint, angle, dt);
     if (joint.beyond_range(angle)) {
-      D += dt * dt * joint.stop + dt * joint.stop_damping;
-      sum += dt * joint.stop * (std::clamp(angle, joint.lower, joint.upper) - angle);
+      out.damping += dt * dt * joint.stop + dt * joint.stop_damping;
+      out.sum += dt * joint.stop * (std::clamp(angle, joint.lower, joint.upper) - angle);
     }
-    impulse[j] = sum - D * rate[j];
-    diagonal[j] = D;
+    impulse[j] = impulse[j] + out.sum - out.damping * rate[j];
+    diagonal[j] = out.damping;
   }
+}
+
+bool JointLaws::check_servo(Joint& joint, size_t j, double phi, double dphi, double dt) {
+  const ServoDescription& servo = limits_.servo[j];
+  double& torque = torque_[static_cast<Eigen::Index>(j)];
+  if (joint.saturated) {
+    torque = joint.limit_torque - joint.limit_slope * dphi;
+    return false;
+  }
+  const double error = joint.target - phi - dt * dphi;
+  const double most = joint.kd * servo.speed_command_limit;
+  if (most > 0 && !joint.speed_bound && !joint.inside_band && std::abs(joint.kp * error) > most) {
+    joint.speed_bound = true;
+    joint.speed_torque = std::copysign(most, error);
+    return true;
+  }
+  torque = joint.speed_bound ? joint.speed_torque : joint.inside_band ? 0 : joint.kp * error;
+  torque -= joint.kd * dphi;
+  const double direction = torque > 0 ? 1.0 : -1.0;
+  const double peak = available_torque(limits_, static_cast<int>(j), dphi, direction);
+  const double voltage = voltage_torque(servo, dphi, direction);
+  if (direction * torque <= std::min(peak, voltage)) return false;
+  joint.saturated = true;
+  joint.limit_torque = direction * (voltage < peak ? servo.stall_torque : peak);
+  joint.limit_slope = voltage < peak ? servo.back_emf : 0;
+  torque = direction * std::min(peak, voltage);
+  return true;
+}
+
+bool JointLaws::check_gear(Joint& joint, double theta, double rate, double dphi, double dt) {
+  if (!joint.has_gear || joint.half_play <= 0 || joint.gear_changed) return false;
+  const Flank before = joint.flank;
+  const double impulse = joint.mesh + joint.slope * (dphi - rate);
+  const double play = joint.phi - theta + dt * (dphi - rate);
+  if (joint.flank == Flank::none)
+    joint.flank = play > joint.half_play    ? Flank::high
+                  : play < -joint.half_play ? Flank::low
+                                            : Flank::none;
+  else if (joint.flank == Flank::high ? impulse < 0 : impulse > 0)
+    joint.flank = Flank::none;  // teeth push and do not pull
+  return joint.gear_changed = joint.flank != before;
 }
 
 bool JointLaws::check(const VectorXd& theta, const double* rate, double dt) {
   bool changed = false;
   for (size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];
-    const Law& law = joint.now;
-    const auto i = static_cast<Eigen::Index>(j);
-    if (!joint.saturated) {
-      double& torque = torque_[i];
-      torque = law.kp * (joint.target - theta[i] - dt * rate[j]) - law.kd * rate[j];
-      const double limit =
-          available_torque(limits_, static_cast<int>(j), rate[j], torque > 0 ? 1.0 : -1.0);
-      if (std::abs(torque) > limit) {
-        joint.saturated = changed = true;
-        joint.limit_torque = torque = std::copysign(limit, torque);
-      }
-    }
-    if (law.coulomb > 0 && !joint.sliding && std::abs(rate[j]) > kStickRate) {
+    const double angle = theta[static_cast<Eigen::Index>(j)];
+    const double dphi = motor_rate(joint, rate[j]);
+    changed |= check_servo(joint, j, joint.has_gear ? joint.phi : angle, dphi, dt);
+    changed |= check_gear(joint, angle, rate[j], dphi, dt);
+    if (joint.coulomb > 0 && !joint.sliding && std::abs(dphi) > kStickRate) {
       joint.sliding = changed = true;
-      joint.slip_torque = -std::copysign(law.coulomb, rate[j]);
+      joint.slip_torque = -std::copysign(joint.coulomb, dphi);
     }
   }
   return changed;
 }
 
-void JointLaws::add_work(const VectorXd& theta, const double* before, const double* after,
-                         double dt, EnergyBalance& work) const {
+double JointLaws::friction(const Joint& joint, double dphi) {
+  double torque = -joint.viscous * dphi;
+  if (joint.coulomb > 0)
+    torque += joint.sliding ? joint.slip_torque : -joint.coulomb / kStickRate * dphi;
+  return torque;
+}
+
+void JointLaws::advance(const VectorXd& theta, const double* before, const double* after, double dt,
+                        EnergyBalance& work) {
   for (size_t j = 0; j < joints_.size(); ++j) {
-    const Joint& joint = joints_[j];
-    const Law& law = joint.now;
+    Joint& joint = joints_[j];
     const auto i = static_cast<Eigen::Index>(j);
     const double rate = after[j], mean = 0.5 * (before[j] + rate);
-    work.servos += dt * torque_[i] * mean;
-    double force = -law.viscous * rate;
-    if (law.coulomb > 0)
-      force += joint.sliding ? joint.slip_torque : -law.coulomb / kStickRate * rate;
+    const double dphi = motor_rate(joint, rate);
+    const double motor_mean = joint.has_gear ? 0.5 * (joint.dphi + dphi) : mean;
+    const double drag = friction(joint, dphi);
+    work.servos += dt * torque_[i] * motor_mean;
+    double force = 0;
     if (joint.beyond_range(theta[i]))
       force +=
           joint.stop * (std::clamp(theta[i], joint.lower, joint.upper) - theta[i] - dt * rate) -
           joint.stop_damping * rate;
-    work.joints += dt * force * mean;
+    work.joints += dt * (force * mean + drag * motor_mean);
+    joint.last_rate = dphi;
+    joint.last_torque = torque_[i];
+    if (joint.has_gear) {
+      const double mesh = joint.mesh + joint.slope * (dphi - rate);
+      work.joints += mesh * (mean - motor_mean);
+      joint.external = -mesh / dt;
+      joint.phi += dt * dphi;
+      joint.dphi = dphi;
+    } else {
+      const double rotor = limits_.servo[j].rotor_inertia;
+      joint.external = rotor * (rate - before[j]) / dt - torque_[i] - drag - force;
+    }
+  }
+}
+
+void JointLaws::motors(const VectorXd& theta, const VectorXd& rate, VectorXd& angle,
+                       VectorXd& motor_rate) const {
+  angle = theta;
+  motor_rate = rate;
+  for (size_t j = 0; j < joints_.size(); ++j) {
+    if (!joints_[j].has_gear) continue;
+    angle[static_cast<Eigen::Index>(j)] = joints_[j].phi;
+    motor_rate[static_cast<Eigen::Index>(j)] = joints_[j].dphi;
   }
 }
 

@@ -1,7 +1,8 @@
 #pragma once
-// What acts in the joints during one step: position servos with a torque limit, viscous and dry
-// friction, and end stops. All laws are taken at the end of the step, so that they add to the
-// diagonal of the step's equation and no gain makes a servo unstable.
+// What acts in the joints during one step: position servos, the gears between their motors and the
+// joints, friction, and end stops. All laws are taken at the end of the step, so that they add to
+// the diagonal of the step's equation and no gain makes a servo unstable. A motor behind a gear
+// with backlash or stiffness has an angle of its own, whose equation is eliminated joint by joint.
 // docs/theory_plant.md, (P1).
 
 #include <Eigen/Dense>
@@ -9,6 +10,7 @@
 
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/sim/energy_balance.hpp"
+#include "ayumi/sim/servo.hpp"
 #include "ayumi/sim/step.hpp"
 
 namespace ayumi {
@@ -18,22 +20,28 @@ class JointLaws {
   /// Throws Error(bad_model) when a joint has no servo. The model must outlive this object.
   JointLaws(const RobotModel& model, const ActuatorLimits& limits);
 
-  /// Servo targets [rad, m] and faults of the coming step.
-  void set(const Eigen::VectorXd& targets, const std::vector<JointFault>& faults);
+  /// The motors move with the joints of `state`; earlier targets are forgotten.
+  void reset(const RobotState& state);
 
-  /// Starts a solve: every servo obeys its law again and every dry friction sticks.
-  void start();
+  /// Servo targets [rad, m] and faults of the coming step of `dt` [s] from joint positions `theta`.
+  void set(const Eigen::VectorXd& targets, const std::vector<JointFault>& faults,
+           const Eigen::VectorXd& theta, double dt);
+
+  /// Starts a solve from these positions and rates: every servo obeys its law again and every dry
+  /// friction sticks.
+  void start(const Eigen::VectorXd& theta, const double* rate, double dt);
 
   /// Adds the impulses of the laws to `impulse`, the joints' part of the right side (dof), and
   /// fills `diagonal` (dof) so that the step's equation reads
   ///   (M + diagonal) (v+ - v) = impulse,
   /// with `theta` and `rate` the joint positions and rates before the step of `dt` [s].
   void add(const Eigen::VectorXd& theta, const double* rate, double dt, double* impulse,
-           std::vector<double>& diagonal) const;
+           std::vector<double>& diagonal);
 
   /// Compares the solved rates at the end of the step with the laws. Where a servo passes its
-  /// torque limit or dry friction slips, that joint gets a constant torque from now on; returns
-  /// true when this happened, and the step has to be solved again.
+  /// torque limit or the limit of its speed loop, dry friction slips, or a gear meets or leaves a
+  /// flank, that joint follows another law from now on; returns true when this happened, and the
+  /// step has to be solved again.
   bool check(const Eigen::VectorXd& theta, const double* rate, double dt);
 
   /// Torque of each servo by the last check() [N m, N].
@@ -41,29 +49,60 @@ class JointLaws {
   /// Whether servo j is at its torque limit.
   bool saturated(int j) const { return joints_[static_cast<size_t>(j)].saturated; }
 
-  /// Adds the work of servos, friction and end stops in the step, with the joint rates before and
-  /// after it.
-  void add_work(const Eigen::VectorXd& theta, const double* before, const double* after, double dt,
-                EnergyBalance& work) const;
+  /// Largest number of times that a solve can be repeated because of one joint.
+  static constexpr size_t kChangesPerJoint = 4;
+
+  /// Takes the solved step over: adds the work of servos, gears, friction and end stops, with the
+  /// joint rates before and after it, and moves the motors.
+  void advance(const Eigen::VectorXd& theta, const double* before, const double* after, double dt,
+               EnergyBalance& work);
+
+  /// Angles [rad, m] and rates of the motors, where joints without a gear have `theta` and `rate`.
+  void motors(const Eigen::VectorXd& theta, const Eigen::VectorXd& rate, Eigen::VectorXd& angle,
+              Eigen::VectorXd& motor_rate) const;
 
  private:
-  struct Law {
-    double kp = 0, kd = 0;            // servo [N m/rad, N m s/rad; N/m, N s/m]
-    double viscous = 0, coulomb = 0;  // friction [N m s/rad, N m; N s/m, N]
-  };
+  enum class Flank { low, none, high };
   struct Joint {
-    Law own, now;                       // of the sound joint; with the faults of the step
+    double kp = 0, kd = 0;            // with the faults of the step [N m/rad, N m s/rad]
+    double viscous = 0, coulomb = 0;  // [N m s/rad, N m]
+    bool has_gear = false, needs_friction = false;
+    double gear = 0, gear_damping = 0;  // [N m/rad, N m s/rad]
+    double rotor = 0, half_play = 0;    // of a motor behind a gear [kg m^2, rad]
     double stop = 0, stop_damping = 0;  // end stop, as kp and kd
     double lower = 0, upper = 0;        // range [rad, m]
     bool limited = false;
-    double target = 0;  // [rad, m]
-    bool saturated = false, sliding = false;
-    double limit_torque = 0;  // while saturated [N m, N]
-    double slip_torque = 0;   // of the dry friction while it slides [N m, N]
+    double target = 0;         // with which kp (target - phi) is the error's torque [rad, m]
+    bool inside_band = false;  // the position error exerts no torque
+    double phi = 0, dphi = 0;  // motor behind a gear [rad, rad/s]
+    double external = 0;       // on the joint from outside in the last step [N m]
+    double last_torque = 0, last_rate = 0;  // of the motor in the last step
+    // Of the solve.
+    bool saturated = false, sliding = false, speed_bound = false, gear_changed = false;
+    Flank flank = Flank::none;
+    double limit_torque = 0, limit_slope = 0;  // while saturated: limit_torque - limit_slope dphi
+    double speed_torque = 0;                   // while speed_bound: speed_torque - kd dphi [N m, N]
+    double slip_torque = 0;                    // of the dry friction while it slides [N m, N]
+    double momentum = 0, inertia = 0;  // of a motor: inertia dphi+ = momentum + slope dtheta+
+    double mesh = 0, slope = 0;        // impulse of a gear: mesh + slope (dphi+ - dtheta+)
     bool beyond_range(double theta) const { return limited && (theta < lower || theta > upper); }
   };
+  /// The impulse that acts on a motor or joint: sum - damping rate.
+  struct Impulse {
+    double sum = 0, damping = 0;
+  };
+
+  Impulse motor_impulse(const Joint& joint, double phi, double dt) const;
+  void solve_motor(Joint& joint, double theta, double dt, Impulse& on_joint) const;
+  bool check_servo(Joint& joint, size_t j, double phi, double dphi, double dt);
+  static bool check_gear(Joint& joint, double theta, double rate, double dphi, double dt);
+  /// Rate at the end of the step, with that of the joint.
+  static double motor_rate(const Joint& joint, double rate);
+  static double friction(const Joint& joint, double dphi);
 
   ActuatorLimits limits_;
+  const RobotModel* model_;
+  TargetDelay delay_;
   std::vector<Joint> joints_;
   Eigen::VectorXd torque_;
 };

@@ -17,7 +17,7 @@ Plant::Plant(const RobotModel& model, const ActuatorLimits& limits, const World&
     : model_(&model),
       joints_(model, limits),
       contacts_(model, world),
-      system_(model, contacts_.point_count()),
+      system_(model, limits, contacts_.point_count()),
       integrator_(model) {
   check_world(model, world);
   const auto n = static_cast<size_t>(model.dof_count());
@@ -34,6 +34,7 @@ void Plant::set_state(const RobotState& state) {
   time_ = 0;
   integrator_.set_state(robot(), state, system_);
   contacts_.reset();
+  joints_.reset(state);
 }
 
 // What is carried becomes part of the links: the dynamics know one robot only.
@@ -48,7 +49,7 @@ void Plant::load(const std::vector<CarriedMass>& payloads) {
 const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, double dt) {
   check_step(*model_, targets, input, dt, time_);
   load(input.payloads);
-  joints_.set(targets, input.joints);
+  joints_.set(targets, input.joints, state().theta, dt);
   contacts_.ground().set(input);
   clear_report();
   solve(input, dt);
@@ -113,10 +114,11 @@ void Plant::finish(double dt, double whole) {
   report_.contact_residual = std::max(report_.contact_residual, solution.residual);
   system_.take_impulses(contacts_.active(), data(), dt, report_.work.contacts);
   report_contacts(whole);
-  joints_.add_work(state().theta, system_.joint_rates_before(), system_.joint_rates(), dt,
-                   report_.work);
+  joints_.advance(state().theta, system_.joint_rates_before(), system_.joint_rates(), dt,
+                  report_.work);
   report_.work.outside += system_.work_from_outside();
   integrator_.advance(robot(), dt, system_, contacts_);
+  joints_.motors(state().theta, state().dtheta, report_.motor, report_.motor_rate);
   time_ += dt;
 }
 

@@ -19,7 +19,7 @@ Matrix3d parallel_axis(const Matrix3d& inertia, double mass, const Vector3d& r) 
   return inertia + mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
 }
 
-StepSystem::StepSystem(const RobotModel& model, size_t points)
+StepSystem::StepSystem(const RobotModel& model, const ActuatorLimits& actuators, size_t points)
     : factor_(model),
       mass_(factor_.row_doubles()),
       rotor_(model.dof_count()),
@@ -28,7 +28,8 @@ StepSystem::StepSystem(const RobotModel& model, size_t points)
   for (int j = 0; j < model.dof_count(); ++j) {
     const int place = factor_.place_of(6 + j);
     joint_diagonal_.push_back(static_cast<size_t>(factor_.row_begin(place) + factor_.depth(place)));
-    rotor_[j] = model.dofs()[j].servo.rotor_inertia;
+    const ServoDescription& servo = actuators.servo[static_cast<size_t>(j)];
+    rotor_[j] = servo.kp > 0 && servo.has_gear() ? 0.0 : servo.rotor_inertia;
   }
   zero_ = VectorXd::Zero(model.velocity_count());
   before_ = velocity_ = impulse_ = outside_ = bias_ = change_ = zero_;
@@ -106,9 +107,9 @@ void StepSystem::turn(const Matrix3d& half_turn, const RobotModel& robot, const 
 }
 
 bool StepSystem::solve(JointLaws& joints, const RobotData& data, const VectorXd& theta, double dt) {
-  joints.start();
-  // Each pass changes at least one joint's law, which can saturate once and slip once.
-  for (size_t pass = 0; pass <= 2 * joint_diagonal_.size(); ++pass) {
+  joints.start(theta, joint_rates_before(), dt);
+  // Each pass changes at least one joint's law.
+  for (size_t pass = 0; pass <= JointLaws::kChangesPerJoint * joint_diagonal_.size(); ++pass) {
     if (!solve_once(joints, data, theta, dt)) return false;
     if (!joints.check(theta, joint_rates(), dt)) break;
   }
@@ -116,7 +117,7 @@ bool StepSystem::solve(JointLaws& joints, const RobotData& data, const VectorXd&
 }
 
 // change_ holds L^-T times the right side, then also the impulses of the contacts, then v+ - v.
-bool StepSystem::solve_once(const JointLaws& joints, const RobotData& data, const VectorXd& theta,
+bool StepSystem::solve_once(JointLaws& joints, const RobotData& data, const VectorXd& theta,
                             double dt) {
   std::vector<double>& system = factor_.rows();
   system = mass_;

@@ -22,7 +22,7 @@ Eigen::Matrix3d parallel_axis(const Eigen::Matrix3d& inertia, double mass,
 class StepSystem {
  public:
   /// `points`: number of contact points of the robot, for which room is reserved.
-  StepSystem(const RobotModel& model, size_t points);
+  StepSystem(const RobotModel& model, const ActuatorLimits& actuators, size_t points);
 
   /// Fills the mass matrix, rotors included, of the posture in `data`.
   void set_posture(RobotData& data);
@@ -89,13 +89,13 @@ class StepSystem {
  private:
   void add_wrench(const RobotModel& model, const ExternalWrench& wrench, const RobotData& data,
                   double dt);
-  bool solve_once(const JointLaws& joints, const RobotData& data, const Eigen::VectorXd& theta,
+  bool solve_once(JointLaws& joints, const RobotData& data, const Eigen::VectorXd& theta,
                   double dt);
 
   TreeCholesky factor_;
   std::vector<double> mass_;            // rows of the mass matrix with rotors
   std::vector<size_t> joint_diagonal_;  // in these rows, by dof
-  Eigen::VectorXd rotor_;               // [kg m^2, kg]
+  Eigen::VectorXd rotor_;               // of motors without a gear of their own [kg m^2, kg]
   ContactRows rows_;
   size_t contact_count_ = 0;
   ContactSolution solution_;

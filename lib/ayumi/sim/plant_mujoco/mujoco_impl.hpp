@@ -7,6 +7,7 @@
 #include "ayumi/sim/ground.hpp"
 #include "ayumi/sim/plant_mujoco/mujoco_model.hpp"
 #include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
+#include "ayumi/sim/servo.hpp"
 
 namespace ayumi {
 
@@ -24,7 +25,10 @@ struct MujocoPlant::Impl {
         limits(actuators),
         world(ground_world),
         ground(ground_world),
-        points(contact_points(robot)) {
+        points(contact_points(robot)),
+        delay(actuators.servo),
+        motor_torque(Eigen::VectorXd::Zero(robot.dof_count())),
+        external(motor_torque) {
     // The points are small balls that are fixed to their bodies: a cylinder rolls on its eight
     // corners.
     std::erase_if(points, [](const ContactPoint& point) { return point.rim > 0; });
@@ -42,6 +46,7 @@ struct MujocoPlant::Impl {
         bumps(o.bumps),
         velocity(o.velocity),
         body(o.body),
+        gear(o.gear),
         point_of(o.point_of),
         plate(o.plate),
         floor_id(o.floor_id),
@@ -49,6 +54,9 @@ struct MujocoPlant::Impl {
         carried(o.carried),
         floor(o.floor),
         rates(o.rates),
+        delay(o.delay),
+        motor_torque(o.motor_torque),
+        external(o.external),
         state(o.state),
         data(o.data),
         report(o.report) {}
@@ -57,9 +65,12 @@ struct MujocoPlant::Impl {
   void set_inertias();
   void find_indices();
   void read_state();
-  void take_input(const StepInput& input);
+  void take_input(const Eigen::VectorXd& targets, const StepInput& input);
   void load(const std::vector<CarriedMass>& payloads);
-  void take_joints(const StepInput& input);
+  void take_joints(const Eigen::VectorXd& targets, const StepInput& input);
+  void take_servo(int j, double target, const JointFault& fault);
+  void find_loads(double h);
+  void report_motors();
   void take_bumps(const std::vector<RisingDisc>& now);
   void place_floor();
   void set_friction();
@@ -87,6 +98,7 @@ struct MujocoPlant::Impl {
   MujocoData d{nullptr, mj_deleteData};
   bool bumps = false;               // the model has geoms for bumps
   std::vector<int> velocity, body;  // MuJoCo's index of each dof and body
+  std::vector<int> gear;            // of the joint of each dof's gear; -1: none
   std::vector<int> point_of;        // by geom: point; -1: the ground; -2 - side: a plate
   std::array<int, 2> plate = {-1, -1};
   int floor_id = 0;
@@ -94,6 +106,8 @@ struct MujocoPlant::Impl {
   std::vector<CarriedMass> carried;
   FloorPose floor;            // of the last step
   std::vector<double> rates;  // by geom: rate at which a bump rises [m/s]
+  TargetDelay delay;
+  Eigen::VectorXd motor_torque, external;  // on each dof in MuJoCo's last step [N m]
   RobotState state;
   RobotData data{*model};
   StepReport report;

@@ -10,6 +10,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/servo.hpp"
 
 namespace ayumi {
 
@@ -159,23 +160,42 @@ std::string plate_text(const Sole& sole, int side) {
          quadruple(Quaterniond(sole.frame.linear())) + "' contype='4' conaffinity='8'/>";
 }
 
-std::string joint_text(const RobotModel& model, const Body& body) {
-  if (body.parent < 0) return "<freejoint/>";
-  const Dof& dof = model.dofs()[static_cast<size_t>(body.dof)];
-  std::string out = "<joint name='joint" + std::to_string(body.dof) + "' type='" +
-                    (body.prismatic ? "slide" : "hinge") + "' axis='" + triple(body.axis) +
-                    "' damping='" + text::exact(dof.servo.viscous) + "' armature='" +
-                    text::exact(dof.servo.rotor_inertia) + "' frictionloss='" +
-                    text::exact(dof.servo.coulomb) + "'";
-  if (dof.limited)
-    out += " limited='true' range='" + text::exact(dof.lower) + " " + text::exact(dof.upper) + "'";
-  return out + "/>";
+/// A gear with backlash or stiffness as a second joint behind the motor's. The flanks are the
+/// limits of its range, whose stiffness and damping MuJoCo takes per unit of inertia; the rotor's
+/// is by far the smaller of the two that meet there.
+std::string gear_text(const Body& body, const ServoDescription& servo) {
+  if (!mujoco_has_gear(servo)) return {};
+  std::string out = "<joint name='gear" + std::to_string(body.dof) + "' type='" +
+                    (body.prismatic ? "slide" : "hinge") + "' axis='" + triple(body.axis) + "'";
+  if (servo.backlash > 0) {
+    const std::string half = text::exact(0.5 * servo.backlash);
+    return out + " limited='true' range='-" + half + " " + half + "' solreflimit='-" +
+           text::exact(gear_stiffness(servo) / servo.rotor_inertia) + " -" +
+           text::exact(gear_damping(servo) / servo.rotor_inertia) +
+           "' solimplimit='0.9999 0.9999 0.001'/>";
+  }
+  return out + " stiffness='" + text::exact(gear_stiffness(servo)) + "' damping='" +
+         text::exact(gear_damping(servo)) + "'/>";
 }
 
-std::string body_text(const RobotModel& model, const std::vector<ContactPoint>& points, int index,
-                      bool plates) {
+std::string joint_text(const RobotModel& model, const ActuatorLimits& limits, const Body& body) {
+  if (body.parent < 0) return "<freejoint/>";
+  const Dof& dof = model.dofs()[static_cast<size_t>(body.dof)];
+  const ServoDescription& servo = limits.servo[static_cast<size_t>(body.dof)];
+  std::string out = "<joint name='joint" + std::to_string(body.dof) + "' type='" +
+                    (body.prismatic ? "slide" : "hinge") + "' axis='" + triple(body.axis) +
+                    "' damping='" + text::exact(servo.viscous) + "' armature='" +
+                    text::exact(servo.rotor_inertia) + "' frictionloss='" +
+                    text::exact(servo.coulomb) + "'";
+  if (dof.limited)
+    out += " limited='true' range='" + text::exact(dof.lower) + " " + text::exact(dof.upper) + "'";
+  return out + "/>" + gear_text(body, servo);
+}
+
+std::string body_text(const RobotModel& model, const ActuatorLimits& limits,
+                      const std::vector<ContactPoint>& points, int index, bool plates) {
   std::string out = "<body name='body" + std::to_string(index) + "'>" +
-                    joint_text(model, model.bodies()[static_cast<size_t>(index)]) +
+                    joint_text(model, limits, model.bodies()[static_cast<size_t>(index)]) +
                     "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
   for (size_t i = 0; i < points.size(); ++i)
     if (points[i].body == index) out += point_text(model, points[i], i);
@@ -184,18 +204,18 @@ std::string body_text(const RobotModel& model, const std::vector<ContactPoint>& 
       out += plate_text(model.sole(side), static_cast<int>(side));
   for (size_t i = 0; i < model.bodies().size(); ++i)
     if (model.bodies()[i].parent == index)
-      out += body_text(model, points, static_cast<int>(i), plates);
+      out += body_text(model, limits, points, static_cast<int>(i), plates);
   return out + "</body>";
 }
 
-std::string servo_text(const RobotModel& model, const ActuatorLimits& limits, int j) {
-  const ServoDescription& servo = model.dofs()[static_cast<size_t>(j)].servo;
+std::string servo_text(const ActuatorLimits& limits, int j) {
+  const ServoDescription& servo = limits.servo[static_cast<size_t>(j)];
   const std::string kp = text::exact(servo.kp);
   std::string out = "<general joint='joint" + std::to_string(j) + "' gainprm='" + kp +
                     "' biastype='affine' biasprm='0 -" + kp + " -" + text::exact(servo.kd) + "'";
-  if (std::isfinite(limits.peak_torque[j]))
-    out += " forcelimited='true' forcerange='" + text::exact(-limits.peak_torque[j]) + " " +
-           text::exact(limits.peak_torque[j]) + "'";
+  const double peak = std::min(limits.peak_torque[j], voltage_torque(servo, 0, 1));
+  if (std::isfinite(peak))
+    out += " forcelimited='true' forcerange='" + text::exact(-peak) + " " + text::exact(peak) + "'";
   return out + "/>";
 }
 
@@ -245,8 +265,9 @@ MujocoModel mujoco_model(const RobotModel& model, const std::vector<ContactPoint
       "<default><geom condim='3' solref='0.004 1' solimp='0.95 0.99 0.001' friction='0 0 0'/>"
       "</default>" +
       (world.fields.empty() ? std::string() : field_asset(world.fields[0])) + "<worldbody>" +
-      floor_text(world, bumps) + body_text(model, points, 0, plates) + "</worldbody><actuator>";
-  for (int j = 0; j < model.dof_count(); ++j) out += servo_text(model, limits, j);
+      floor_text(world, bumps) + body_text(model, limits, points, 0, plates) +
+      "</worldbody><actuator>";
+  for (int j = 0; j < model.dof_count(); ++j) out += servo_text(limits, j);
   MujocoModel m = compile(model.name(), out + "</actuator></mujoco>");
   if (!world.fields.empty()) fill_field(world.fields[0], m.get());
   for (int i = 0; bumps && i < kMujocoBumps; ++i) set_bump(nullptr, i, m.get());

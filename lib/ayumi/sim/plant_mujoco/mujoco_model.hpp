@@ -30,6 +30,11 @@ using MujocoModel = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 MujocoModel mujoco_model(const RobotModel& model, const std::vector<ContactPoint>& points,
                          const ActuatorLimits& limits, const World& world, bool bumps);
 
+/// Whether the model has a joint for the gear of this servo, behind that of its motor.
+inline bool mujoco_has_gear(const ServoDescription& servo) {
+  return servo.kp > 0 && servo.has_gear();
+}
+
 /// Index of a named object; -1 when there is none.
 int mujoco_id(const mjModel* m, mjtObj type, const std::string& name);
 

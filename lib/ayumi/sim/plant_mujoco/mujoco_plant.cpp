@@ -75,6 +75,11 @@ void MujocoPlant::Impl::find_indices() {
     body.push_back(mujoco_id(m.get(), mjOBJ_BODY, "body" + std::to_string(i)));
   for (int j = 0; j < model->dof_count(); ++j)
     velocity.push_back(m->jnt_dofadr[mujoco_id(m.get(), mjOBJ_JOINT, "joint" + std::to_string(j))]);
+  gear.clear();
+  for (int j = 0; j < model->dof_count(); ++j) {
+    const int id = mujoco_id(m.get(), mjOBJ_JOINT, "gear" + std::to_string(j));
+    gear.push_back(id < 0 ? -1 : m->jnt_dofadr[id]);
+  }
   floor_id = mujoco_id(m.get(), mjOBJ_BODY, "floor");
   point_of.assign(static_cast<size_t>(m->ngeom), -1);
   for (size_t i = 0; i < points.size(); ++i) {
@@ -98,6 +103,10 @@ void MujocoPlant::Impl::read_state() {
     const int column = velocity[static_cast<size_t>(j)];
     state.theta[j] = d->qpos[column + 1];  // positions have one number more: the quaternion
     state.dtheta[j] = d->qvel[column];
+    const int play = gear[static_cast<size_t>(j)];
+    if (play < 0) continue;
+    state.theta[j] += d->qpos[play + 1];
+    state.dtheta[j] += d->qvel[play];
   }
   update_velocities(moving(), state, data);
 }
@@ -110,15 +119,22 @@ void MujocoPlant::Impl::apply(const ExternalWrench& w) {
   Eigen::Map<Vector3d>(d->xfrc_applied + 6 * id + 3) += w.torque + (point - at).cross(w.force);
 }
 
-// As in Plant, a motor cannot push a joint beyond its speed limit.
+// As in Plant, a motor cannot push a joint beyond its speed limit, nor beyond what its voltage
+// gives.
 void MujocoPlant::Impl::limit_torques() {
   for (int j = 0; j < model->dof_count(); ++j) {
     if (!m->actuator_forcelimited[j]) continue;
+    const double rate = d->qvel[velocity[static_cast<size_t>(j)]];
     for (int end = 0; end < 2; ++end) {
       const double direction = end == 0 ? -1.0 : 1.0;
       m->actuator_forcerange[2 * j + end] =
-          direction * available_torque(limits, j, state.dtheta[j], direction);
+          direction *
+          std::min(available_torque(limits, j, rate, direction),
+                   voltage_torque(limits.servo[static_cast<size_t>(j)], rate, direction));
     }
+    // Beyond its no-load speed a motor brakes with more than its peak torque.
+    double* range = m->actuator_forcerange + 2 * j;
+    if (range[0] > range[1]) (rate > 0 ? range[0] : range[1]) = rate > 0 ? range[1] : range[0];
   }
 }
 
@@ -175,10 +191,10 @@ void MujocoPlant::Impl::check_input(const VectorXd& targets, const StepInput& in
 }
 
 // Ground, loads, joints and pushes of this step.
-void MujocoPlant::Impl::take_input(const StepInput& input) {
+void MujocoPlant::Impl::take_input(const VectorXd& targets, const StepInput& input) {
   ground.set(input);
   load(input.payloads);
-  take_joints(input);
+  take_joints(targets, input);
   for (const ExternalWrench& w : input.wrenches) apply(w);
 }
 
@@ -192,18 +208,55 @@ void MujocoPlant::Impl::load(const std::vector<CarriedMass>& payloads) {
   update_velocities(moving(), state, data);
 }
 
-void MujocoPlant::Impl::take_joints(const StepInput& input) {
+void MujocoPlant::Impl::take_joints(const VectorXd& targets, const StepInput& input) {
+  for (int j = 0; j < model->dof_count(); ++j)
+    take_servo(j, targets[j],
+               input.joints.empty() ? JointFault{} : input.joints[static_cast<size_t>(j)]);
+}
+
+// The law of this step of MuJoCo: what depends on the state is taken at its start.
+void MujocoPlant::Impl::take_servo(int j, double target, const JointFault& fault) {
+  const ServoDescription& servo = limits.servo[static_cast<size_t>(j)];
+  const int column = velocity[static_cast<size_t>(j)];
+  const double phi = d->qpos[column + 1], dphi = d->qvel[column];
+  const double kp = fault.gain * servo.kp, kd = fault.gain * servo.kd;
+  const ServoError error =
+      servo_error(servo, model->dofs()[static_cast<size_t>(j)], target - fault.encoder, phi);
+  const double wanted = kp * (error.target - phi), most = kd * servo.speed_command_limit;
+  const bool bound = most > 0 && std::abs(wanted) > most;
+  m->actuator_gainprm[mjNGAIN * j] = error.inside ? 0 : kp;
+  m->actuator_biasprm[mjNBIAS * j + 1] = error.inside || bound ? 0 : -kp;
+  m->actuator_biasprm[mjNBIAS * j + 2] = -kd;
+  d->ctrl[j] = bound ? std::copysign(most, wanted) / kp : error.target;
+  m->dof_frictionloss[column] =
+      dry_friction(servo, dphi, motor_torque[j], external[j]) + fault.coulomb;
+  m->dof_damping[column] = servo.viscous + fault.viscous;
+}
+
+// Torques on the rotors in the step of `h` [s] that has just ended: of the motors, and of all that
+// is neither motor nor friction.
+void MujocoPlant::Impl::find_loads(double h) {
   for (int j = 0; j < model->dof_count(); ++j) {
-    const ServoDescription& servo = model->dofs()[static_cast<size_t>(j)].servo;
-    const JointFault fault =
-        input.joints.empty() ? JointFault{} : input.joints[static_cast<size_t>(j)];
-    m->actuator_gainprm[mjNGAIN * j] = fault.gain * servo.kp;
-    m->actuator_biasprm[mjNBIAS * j + 1] = -fault.gain * servo.kp;
-    m->actuator_biasprm[mjNBIAS * j + 2] = -fault.gain * servo.kd;
     const int column = velocity[static_cast<size_t>(j)];
-    m->dof_frictionloss[column] = servo.coulomb + fault.coulomb;
-    m->dof_damping[column] = servo.viscous + fault.viscous;
-    d->ctrl[j] -= fault.encoder;
+    motor_torque[j] = d->actuator_force[j];
+    external[j] = m->dof_armature[column] * (d->qvel[column] - before[column]) / h -
+                  motor_torque[j] - d->qfrc_passive[column];
+  }
+  for (int i = 0; i < d->nefc; ++i) {
+    if (d->efc_type[i] != mjCNSTR_FRICTION_DOF) continue;
+    for (int j = 0; j < model->dof_count(); ++j)
+      if (velocity[static_cast<size_t>(j)] == d->efc_id[i]) external[j] -= d->efc_force[i];
+  }
+}
+
+void MujocoPlant::Impl::report_motors() {
+  report.motor = state.theta;
+  report.motor_rate = state.dtheta;
+  for (int j = 0; j < model->dof_count(); ++j) {
+    if (gear[static_cast<size_t>(j)] < 0) continue;
+    const int column = velocity[static_cast<size_t>(j)];
+    report.motor[j] = d->qpos[column + 1];
+    report.motor_rate[j] = d->qvel[column];
   }
 }
 
@@ -225,9 +278,17 @@ MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits, 
   if (static_cast<int>(model.bodies().size()) != model.dof_count() + 1)
     fail(ErrorCode::bad_model, model.name() + ": the MuJoCo plant does not support mimic joints");
   for (const Dof& dof : model.dofs())
-    if (dof.servo.kp <= 0 && !model.description().servos.contains(dof.name))
+    if (const auto j = static_cast<size_t>(&dof - model.dofs().data());
+        limits.servo[j].kp <= 0 && !limits.has_servo[j])
       fail(ErrorCode::bad_model,
            model.name() + ": joint " + dof.name + " has no servo (kp); give it one in the sidecar");
+  for (int j = 0; j < model.dof_count(); ++j)
+    if (const ServoDescription& servo = limits.servo[static_cast<size_t>(j)];
+        mujoco_has_gear(servo) && servo.rotor_inertia <= 0)
+      fail(ErrorCode::bad_model, model.name() + ": joint " +
+                                     model.dofs()[static_cast<size_t>(j)].name +
+                                     ": in the MuJoCo plant a motor behind a gear with backlash or "
+                                     "stiffness needs a rotor_inertia above 0");
   check_world(model, world);
   impl_ = std::make_unique<Impl>(model, limits, world, steps);
   impl_->report.torque = VectorXd::Zero(model.dof_count());
@@ -252,6 +313,9 @@ void MujocoPlant::set_state(const RobotState& s) {
   mj_resetData(impl_->m.get(), d);
   impl_->place_floor();
   impl_->floor = FloorPose{};
+  impl_->delay.reset();
+  impl_->motor_torque.setZero();
+  impl_->external.setZero();
   impl_->state = s;
   Eigen::Map<Vector3d>(d->qpos) = s.base.position;
   set_quaternion(d->qpos + 3, s.base.attitude);
@@ -271,12 +335,14 @@ const StepReport& MujocoPlant::step(const VectorXd& targets, const StepInput& in
   p.check_input(targets, input, dt);
   p.begin_report();
   const double h = dt / p.steps;
+  const VectorXd& delayed = p.delay.step(targets, dt);
   const bool moves = input.floor || !input.bumps.empty();
   for (int i = 0; i < p.steps; ++i)
-    p.step(targets, i > 0 && moves ? later(input, i * h) : input, h);
+    p.step(delayed, i > 0 && moves ? later(input, i * h) : input, h);
   if (!p.state.theta.allFinite() || !p.state.base.position.allFinite())
     fail(ErrorCode::internal, p.model->name() + ": MuJoCo's state is not finite " +
                                   text::fixed(p.d->time, 3) + " s after its start");
+  p.report_motors();
   p.finish_report();
   return p.report;
 }
@@ -285,15 +351,15 @@ void MujocoPlant::Impl::step(const VectorXd& targets, const StepInput& input, do
   take_bumps(input.bumps);
   m->opt.timestep = h;
   limit_torques();
-  Eigen::Map<VectorXd>(d->ctrl, m->nu) = targets;
   Eigen::Map<VectorXd>(d->xfrc_applied, 6 * m->nbody).setZero();
-  take_input(input);
+  take_input(targets, input);
   place_floor();
   set_friction();
   before = Eigen::Map<const VectorXd>(d->qvel, m->nv);
   mj_step1(m.get(), d.get());
   move_ground(h);
   mj_step2(m.get(), d.get());
+  find_loads(h);
   account(h);
   read_state();
   report.contact_iterations = std::max(report.contact_iterations, static_cast<int>(d->solver_iter));

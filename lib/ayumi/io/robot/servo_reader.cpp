@@ -1,0 +1,256 @@
+#include "ayumi/io/robot/servo_reader.hpp"
+
+#include <array>
+#include <numbers>
+
+#include "ayumi/base/file.hpp"
+
+namespace ayumi {
+
+namespace {
+
+/// A key of a group, the field it fills, and the values that a servo can have.
+struct Field {
+  const char* key;
+  double ServoDescription::*value;
+  double least, most;
+  double unit = 1;
+};
+
+constexpr double kRadPerDegree = std::numbers::pi / 180;
+
+/// Limits of servo constants, to catch a wrong unit. Chosen: stiffness, inertia, torque and
+/// friction a hundred times those of a humanoid of 50 kg; a delay of 0.1 s, where hobby servos have
+/// 0.01 to 0.03 s; a backlash or dead band of 0.2 rad, where they have 0.01 rad; a zero offset of
+/// 0.5 rad, beyond which a horn is on another tooth of its shaft.
+constexpr double kMostStiffness = 1e7;  // [N m/rad]
+constexpr double kMostDamping = 1e6;    // [N m s/rad]
+constexpr double kMostInertia = 1e3;    // [kg m^2]
+constexpr double kMostTorque = 1e5;     // [N m]
+constexpr double kMostDelay = 0.1;      // [s]
+constexpr double kMostPlay = 0.2;       // [rad]
+constexpr double kMostOffset = 0.5;     // [rad]
+constexpr double kMostRate = 1e4;       // [rad/s]
+/// Share of a gear's torque that its friction takes. Definition: at 1 the gear cannot turn.
+constexpr double kMostLoadFriction = 1;
+
+using S = ServoDescription;
+const std::vector<Field>& fields() {
+  static const std::vector<Field> all = {
+      {"kp", &S::kp, 0, kMostStiffness},
+      {"kd", &S::kd, 0, kMostDamping},
+      {"rotor_inertia", &S::rotor_inertia, 0, kMostInertia},
+      {"viscous", &S::viscous, 0, kMostDamping},
+      {"coulomb", &S::coulomb, 0, kMostTorque},
+      {"delay", &S::delay, 0, kMostDelay},
+      {"speed_command_limit", &S::speed_command_limit, 0, kMostRate},
+      {"stribeck_torque", &S::stribeck_torque, 0, kMostTorque},
+      {"stribeck_rate", &S::stribeck_rate, 0, kMostRate},
+      {"stribeck_exponent", &S::stribeck_exponent, 0.1, 10},
+      {"backlash", &S::backlash, 0, kMostPlay},
+      {"backlash_deg", &S::backlash, 0, kMostPlay / kRadPerDegree, kRadPerDegree},
+      {"gear_stiffness", &S::gear_stiffness, 0, kMostStiffness},
+      {"gear_damping", &S::gear_damping, 0, kMostDamping},
+      {"dead_band", &S::dead_band, 0, kMostPlay},
+      {"dead_band_deg", &S::dead_band, 0, kMostPlay / kRadPerDegree, kRadPerDegree},
+      {"offset", &S::offset, -kMostOffset, kMostOffset},
+      {"offset_deg", &S::offset, -kMostOffset / kRadPerDegree, kMostOffset / kRadPerDegree,
+       kRadPerDegree}};
+  return all;
+}
+
+struct LoadField {
+  const char *key, *bam;
+  double LoadFriction::*value;
+};
+constexpr std::array<LoadField, 6> kLoadFields = {{
+    {"motor", "load_friction_motor", &LoadFriction::motor},
+    {"external", "load_friction_external", &LoadFriction::external},
+    {"motor_stribeck", "load_friction_motor_stribeck", &LoadFriction::motor_stribeck},
+    {"external_stribeck", "load_friction_external_stribeck", &LoadFriction::external_stribeck},
+    {"motor_quadratic", "load_friction_motor_quad", &LoadFriction::motor_quadratic},
+    {"external_quadratic", "load_friction_external_quad", &LoadFriction::external_quadratic},
+}};
+
+/// A motor behind its gear.
+struct Motor {
+  double torque_constant = 0;  ///< [N m/A]
+  double resistance = 0;       ///< [ohm]
+};
+
+double positive(const JsonNode& node, double most) {
+  const double value = node.number_within(0, most);
+  if (value == 0) node.complain("it must be above 0");
+  return value;
+}
+
+/// Which parts of the file each of BAM's models has.
+struct BamModel {
+  const char* name;
+  bool stribeck, load, directional, quadratic;
+};
+constexpr std::array<BamModel, 6> kBamModels = {{{"m1", false, false, false, false},
+                                                 {"m2", true, false, false, false},
+                                                 {"m3", false, true, false, false},
+                                                 {"m4", true, true, false, false},
+                                                 {"m5", true, true, true, false},
+                                                 {"m6", true, true, true, true}}};
+
+const BamModel& bam_model(const JsonNode& root) {
+  std::vector<std::string> names;
+  for (const BamModel& model : kBamModels) names.emplace_back(model.name);
+  const std::string name = root.at("model").one_of(names);
+  for (const BamModel& model : kBamModels)
+    if (name == model.name) return model;
+  root.complain("unknown model");
+}
+
+LoadFriction bam_load(const JsonNode& root, const BamModel& model) {
+  LoadFriction load;
+  const auto share = [&](const char* key) {
+    return root.at(key).number_within(0, kMostLoadFriction);
+  };
+  if (!model.load) return load;
+  if (!model.directional) {
+    load.motor = load.external = share("load_friction_base");
+    if (model.stribeck)
+      load.motor_stribeck = load.external_stribeck = share("load_friction_stribeck");
+    return load;
+  }
+  for (const LoadField& field : kLoadFields)
+    if (model.quadratic || (field.value != &LoadFriction::motor_quadratic &&
+                            field.value != &LoadFriction::external_quadratic))
+      load.*field.value = share(field.bam);
+  return load;
+}
+
+// The zero offset of the file is that of the bench, so it stays there.
+Motor read_bam(const JsonNode& node, const std::filesystem::path& folder, ServoDescription& servo,
+               std::string& bytes) {
+  const std::filesystem::path path = folder / node.string();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored))
+    node.complain("there is no file " + path.string());
+  const std::string text = read_file(path);
+  bytes += text;
+  const Json document = parse_json(text, path.string(), ErrorCode::bad_file);
+  const JsonNode root = root_of(document, path.string(), ErrorCode::bad_file);
+  const BamModel& model = bam_model(root);
+  servo.rotor_inertia = root.at("armature").number_within(0, kMostInertia);
+  servo.coulomb = root.at("friction_base").number_within(0, kMostTorque);
+  servo.viscous = root.at("friction_viscous").number_within(0, kMostDamping);
+  servo.stribeck_torque = servo.stribeck_rate = 0;
+  if (model.stribeck) {
+    servo.stribeck_torque = root.at("friction_stribeck").number_within(0, kMostTorque);
+    servo.stribeck_rate = positive(root.at("dtheta_stribeck"), kMostRate);
+    servo.stribeck_exponent = root.at("alpha").number_within(0.1, 10);
+  }
+  servo.load = bam_load(root, model);
+  if (const auto delay = root.find("command_delay"))
+    servo.delay = delay->number_within(0, kMostDelay);
+  return {positive(root.at("kt"), kMostTorque), positive(root.at("R"), 1e6)};
+}
+
+// The voltage bounds the torque; with a gain in volts per radian it is also what the position loop
+// commands, and the motor's own back-EMF is its damping.
+void read_motor(const JsonNode& node, Motor motor, ServoDescription& servo) {
+  node.only_keys({"torque_constant", "resistance", "voltage", "gain"});
+  if (const auto constant = node.find("torque_constant"))
+    motor.torque_constant = positive(*constant, kMostTorque);
+  if (const auto resistance = node.find("resistance"))
+    motor.resistance = positive(*resistance, 1e6);
+  if (motor.torque_constant == 0) node.at("torque_constant");  // complains
+  if (motor.resistance == 0) node.at("resistance");
+  const double voltage = positive(node.at("voltage"), 1e4);
+  servo.stall_torque = motor.torque_constant * voltage / motor.resistance;
+  servo.back_emf = motor.torque_constant * motor.torque_constant / motor.resistance;
+  if (const auto gain = node.find("gain")) {
+    servo.kp = motor.torque_constant * gain->number_within(0, kMostStiffness) / motor.resistance;
+    servo.kd = servo.back_emf;
+    servo.speed_command_limit = 0;
+  }
+}
+
+void read_speed_loop(const JsonNode& group, ServoDescription& servo) {
+  if (!group.has("position_gain") && !group.has("speed_gain")) return;
+  const double position = positive(group.at("position_gain"), 1e5);
+  servo.kd = positive(group.at("speed_gain"), kMostDamping);
+  servo.kp = position * servo.kd;
+}
+
+/// Keys that state the same thing in two ways.
+void refuse_both(const JsonNode& group, const char* one, const char* other) {
+  if (group.has(one) && group.has(other))
+    group.complain("it has both '" + std::string(one) + "' and '" + other +
+                   "', which state the same thing; keep one");
+}
+
+bool has_gain(const JsonNode& group) {
+  const auto motor = group.find("motor");
+  return motor && motor->has("gain");
+}
+
+void check_group(const JsonNode& group) {
+  std::vector<std::string> keys = {"joints", "position_gain", "speed_gain", "motor",
+                                   "bam",    "load_friction", "quantized",  "comment"};
+  for (const Field& field : fields()) keys.emplace_back(field.key);
+  group.only_keys(keys);
+  for (const char* key : {"kp", "kd"})
+    for (const char* other : {"position_gain", "speed_gain"}) refuse_both(group, key, other);
+  for (const char* key : {"backlash", "dead_band", "offset"})
+    refuse_both(group, key, (std::string(key) + "_deg").c_str());
+  if (has_gain(group))
+    for (const char* key : {"kp", "kd", "position_gain", "speed_gain"})
+      if (group.has(key))
+        group.at("motor").at("gain").complain("the group states '" + std::string(key) +
+                                              "' too; keep one of them");
+}
+
+// What no field alone can show.
+void check_servo(const JsonNode& group, const std::string& joint, const ServoDescription& servo) {
+  if (servo.stribeck_torque > 0 && servo.stribeck_rate <= 0)
+    group.complain("joint " + joint +
+                   ": stribeck_torque needs a stribeck_rate above 0, the rate at which it fades");
+  if (servo.speed_command_limit > 0 && servo.kd <= 0)
+    group.complain("joint " + joint +
+                   ": speed_command_limit needs an inner speed loop; state position_gain and "
+                   "speed_gain");
+  if (servo.quantized && servo.kp <= 0)
+    group.complain("joint " + joint + ": a joint without a servo has no counts to round to");
+}
+
+}  // namespace
+
+void read_servo_group(const JsonNode& group, const std::vector<std::string>& joints,
+                      const std::filesystem::path& folder, ServoGroups& out) {
+  check_group(group);
+  std::string bytes;
+  for (const std::string& joint : joints) {
+    ServoDescription& servo = out.servos[joint];
+    Motor motor;
+    bytes.clear();
+    if (const auto bam = group.find("bam")) motor = read_bam(*bam, folder, servo, bytes);
+    for (const Field& field : fields())
+      if (const auto found = group.find(field.key))
+        servo.*field.value = field.unit * found->number_within(field.least, field.most);
+    read_speed_loop(group, servo);
+    if (const auto node = group.find("motor"))
+      read_motor(*node, motor, servo);
+    else if (group.has("bam"))
+      group.complain("a group with 'bam' needs 'motor' with the voltage [V] and the gain [V/rad]");
+    if (const auto load = group.find("load_friction")) {
+      std::vector<std::string> keys;
+      for (const LoadField& field : kLoadFields) keys.emplace_back(field.key);
+      load->only_keys(keys);
+      for (const LoadField& field : kLoadFields)
+        if (const auto share = load->find(field.key))
+          servo.load.*field.value = share->number_within(0, kMostLoadFriction);
+    }
+    if (const auto quantized = group.find("quantized")) servo.quantized = quantized->boolean();
+    check_servo(group, joint, servo);
+    if (group.has("kp") || group.has("position_gain") || has_gain(group)) out.stated[joint] = true;
+  }
+  out.files += bytes;
+}
+
+}  // namespace ayumi

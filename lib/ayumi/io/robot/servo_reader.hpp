@@ -1,0 +1,28 @@
+#pragma once
+// The "servos" groups of a sidecar, and the parameter files of BAM (Better Actuator Models of
+// Rhoban, friction models M1 to M6) that they may name. docs/formats.md, "Servos".
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/model/robot_description.hpp"
+
+namespace ayumi {
+
+/// Servos by joint name, and the joints to which a group has given a motor (or kp 0: none).
+struct ServoGroups {
+  std::map<std::string, ServoDescription> servos;
+  std::map<std::string, bool> stated;
+  std::string files;  ///< bytes of the parameter files that were read, in their order
+};
+
+/// Reads one group into the servos of `joints`; a later group changes what it names. Parameter
+/// files are looked for beside `folder`. Complains about constants that no servo can have, with
+/// the limit.
+void read_servo_group(const JsonNode& group, const std::vector<std::string>& joints,
+                      const std::filesystem::path& folder, ServoGroups& out);
+
+}  // namespace ayumi
