@@ -108,6 +108,8 @@ inline const std::vector<ThirdParty>& third_parties() {
       {"urdfdom", std::regex("(urdf|console_bridge|tinyxml).*"), {"io"}},
       {"assimp", std::regex("assimp/.*"), {"io"}},
       {"OpenSSL", std::regex("openssl/.*"), {"io"}},
+      {"zlib", std::regex("zlib\\.h"), {"io"}},
+      {"zstd", std::regex("zstd\\.h"), {"io"}},
       {"nlohmann-json", std::regex("nlohmann/.*"), {"io", "app"}},
       {"OpenGL", std::regex("E?GL/.*"), {"render"}},
       {"cairo", std::regex("cairo.*"), {"render", "plot"}},

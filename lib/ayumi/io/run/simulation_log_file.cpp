@@ -1,5 +1,7 @@
 #include "ayumi/io/run/simulation_log_file.hpp"
 
+#include <zlib.h>
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -10,6 +12,7 @@
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/pattern/scenario_text.hpp"
 #include "ayumi/io/run/provenance_fields.hpp"
+#include "ayumi/io/run/sample_compression.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -20,8 +23,12 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "logs are little-endian");
 
 constexpr char kMagic[] = "AYUMILOG";
-constexpr std::uint32_t kVersion = 1;  // Definition
-constexpr size_t kPrefix = 16;         // magic, version, header length
+constexpr std::uint32_t kPlain = 1;       // Definition: the version with rows as they are
+constexpr std::uint32_t kCompressed = 2;  // Definition: the version with compressed rows
+constexpr size_t kPrefix = 16;            // magic, version, header length
+constexpr size_t kChecksum = 4;           // of the header, where the rows are compressed
+// [bytes] Chosen: the samples of half an hour at 1 kHz have less.
+constexpr size_t kMostBytes = size_t{4} << 30;
 constexpr const char* kOutcomes[] = {"stands", "unsettled", "fell"};
 
 using OrderedJson = nlohmann::ordered_json;
@@ -217,8 +224,9 @@ SimulationResult result_of(const JsonNode& node) {
   return result;
 }
 
-std::string header_of(const SimulationLog& log, const std::string& command_line) {
-  OrderedJson header = {{"format", "ayumi.log/1"},
+std::string header_of(const SimulationLog& log, const std::string& command_line,
+                      std::uint32_t version_of_file) {
+  OrderedJson header = {{"format", "ayumi.log/" + std::to_string(version_of_file)},
                         {"tool", std::string("ayumi ") + version()},
                         {"gravity", kGravity},
                         {"frame", "world: x forward, y left, z up"},
@@ -276,22 +284,42 @@ void append_word(std::string& bytes, std::uint32_t word) {
   bytes.append(reinterpret_cast<const char*>(&word), sizeof word);
 }
 
-std::string bytes_of(const SimulationLog& log, const std::string& command_line) {
-  const std::string header = header_of(log, command_line);
-  std::string bytes = kMagic;
-  append_word(bytes, kVersion);
-  append_word(bytes, static_cast<std::uint32_t>(header.size()));
-  bytes += header;
-  bytes.reserve(bytes.size() + log.samples.size() * columns_of(log.joints).size() * sizeof(double));
+std::uint32_t checksum_of(std::string_view text) {
+  return static_cast<std::uint32_t>(
+      crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));
+}
+
+std::string rows_of(const SimulationLog& log) {
+  std::string rows;
+  rows.reserve(log.samples.size() * columns_of(log.joints).size() * sizeof(double));
   for (const SimulationSample& sample : log.samples)
-    for_each_field(sample, AppendValues(log.joints.size(), bytes));
+    for_each_field(sample, AppendValues(log.joints.size(), rows));
+  return rows;
+}
+
+std::string prefix_of(std::uint32_t version_of_file, const std::string& header) {
+  std::string bytes = kMagic;
+  append_word(bytes, version_of_file);
+  append_word(bytes, static_cast<std::uint32_t>(header.size()));
   return bytes;
+}
+
+std::string plain_bytes(const SimulationLog& log, const std::string& command_line) {
+  const std::string header = header_of(log, command_line, kPlain);
+  return prefix_of(kPlain, header) + header + rows_of(log);
 }
 
 }  // namespace
 
 std::string log_bytes(const SimulationLog& log) {
-  return bytes_of(log, log.provenance.command_line);
+  const std::string header = header_of(log, log.provenance.command_line, kCompressed);
+  std::string bytes = prefix_of(kCompressed, header);
+  append_word(bytes, checksum_of(header));
+  return bytes + header + compress_samples(rows_of(log), columns_of(log.joints).size());
+}
+
+std::string plain_log_bytes(const SimulationLog& log) {
+  return plain_bytes(log, log.provenance.command_line);
 }
 
 SimulationLog parse_log(const std::string& bytes, const std::string& file) {
@@ -301,13 +329,19 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   if (bytes.empty()) stop("the file is empty, a simulation log is needed");
   if (bytes.size() < kPrefix || bytes.compare(0, 8, kMagic) != 0)
     stop("this is not a simulation log (it does not begin with AYUMILOG)");
-  if (word_at(bytes, 8) != kVersion)
-    stop("log version " + std::to_string(word_at(bytes, 8)) + " is not readable here; this " +
-         "version reads " + std::to_string(kVersion));
+  const std::uint32_t version_of_file = word_at(bytes, 8);
+  if (version_of_file != kPlain && version_of_file != kCompressed)
+    stop("log version " + std::to_string(version_of_file) + " is not readable here; this " +
+         "version reads " + std::to_string(kPlain) + " and " + std::to_string(kCompressed));
+  const size_t begin = kPrefix + (version_of_file == kCompressed ? kChecksum : 0);
   const size_t length = word_at(bytes, 12);
-  if (length > bytes.size() - kPrefix) stop("truncated: the header is cut off");
+  if (bytes.size() < begin || length > bytes.size() - begin)
+    stop("truncated: the header is cut off");
+  const std::string text = bytes.substr(begin, length);
+  if (version_of_file == kCompressed && word_at(bytes, kPrefix) != checksum_of(text))
+    stop("damaged: the header has another checksum than the one that was written with it");
   const std::string place = file + " (header)";
-  const Json document = parse_json(bytes.substr(kPrefix, length), place, ErrorCode::bad_file);
+  const Json document = parse_json(text, place, ErrorCode::bad_file);
   const JsonNode header = root_of(document, place, ErrorCode::bad_file);
   SimulationLog log;
   read_header(header, log);
@@ -316,12 +350,20 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
     header.at("columns").complain("are not those of this version; simulate again");
   const auto rows = static_cast<size_t>(header.at("rows").unsigned_integer());
   const size_t row_bytes = columns.size() * sizeof(double);
-  const size_t found = bytes.size() - kPrefix - length;
-  if (rows > found / row_bytes || rows * row_bytes != found)
-    stop((rows > found / row_bytes ? "truncated: " : "damaged: ") + std::to_string(found) +
-         " bytes of samples where the header says " + std::to_string(rows) + " rows of " +
-         std::to_string(row_bytes));
-  const char* at = bytes.data() + kPrefix + length;
+  if (rows > kMostBytes / row_bytes)
+    header.at("rows").complain("are more than a log may have (" +
+                               std::to_string(kMostBytes / row_bytes) + ")");
+  std::string_view values = std::string_view(bytes).substr(begin + length);
+  std::string decompressed;
+  if (version_of_file == kCompressed) {
+    decompressed = decompress_samples(values, columns.size(), rows, file);
+    values = decompressed;
+  }
+  if (rows * row_bytes != values.size())
+    stop((rows * row_bytes > values.size() ? "truncated: " : "damaged: ") +
+         std::to_string(values.size()) + " bytes of samples where the header says " +
+         std::to_string(rows) + " rows of " + std::to_string(row_bytes));
+  const char* at = values.data();
   log.samples.resize(rows);
   for (SimulationSample& sample : log.samples)
     for_each_field(sample, TakeValues(log.joints.size(), at));
@@ -329,13 +371,13 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
 }
 
 SimulationLog read_log(const std::filesystem::path& path) {
-  return parse_log(read_file(path, size_t{4} << 30), path.string());
+  return parse_log(read_file(path, kMostBytes), path.string());
 }
 
 void write_log(const std::filesystem::path& path, const SimulationLog& log) {
   write_file(path, log_bytes(log));
 }
 
-std::string log_hash(const SimulationLog& log) { return sha256(bytes_of(log, "")); }
+std::string log_hash(const SimulationLog& log) { return sha256(plain_bytes(log, "")); }
 
 }  // namespace ayumi

@@ -1,0 +1,23 @@
+#pragma once
+// Rows of 64-bit floats, compressed without losing a bit. The values of a column are samples of a
+// smooth quantity, so each is predicted from the ones before it by the polynomial of order n - 1
+// through the last n of them:
+//   n = 0: 0;  1: a;  2: 2a - b;  3: 3(a - b) + c;  4: 4(a + c) - 6b - d   (a the last one)
+// Value and prediction, as integers in the order of the floats, differ by a small integer. Its
+// bytes are written plane by plane, the most significant byte of all values first, and compressed
+// by zstd. Each column has the n with the shortest differences.
+
+#include <string>
+#include <string_view>
+
+namespace ayumi {
+
+/// `rows` holds rows of `columns` floats, one after the other.
+std::string compress_samples(std::string_view rows, size_t columns);
+
+/// The rows again. Throws Error(bad_file), beginning with `file`, when `bytes` is not the whole
+/// result of compress_samples() for that many columns and rows.
+std::string decompress_samples(std::string_view bytes, size_t columns, size_t rows,
+                               const std::string& file);
+
+}  // namespace ayumi
