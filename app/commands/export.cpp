@@ -17,6 +17,7 @@
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "commands.hpp"
+#include "log_export.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "run_robot.hpp"
@@ -171,6 +172,7 @@ void verify_run_of(const fs::path& table) {
 
 Source source_of(const ExportOptions& options, const Context& context) {
   if (fs::is_directory(options.input)) return source_of_run(options, context);
+  refuse_log_file(options.input);
   if (!is_reference_table(options.input)) return source_of_pattern(options, context);
   verify_run_of(options.input);
   return source_of_table(options, context, read_reference(options.input),
@@ -372,9 +374,15 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("input", options->input, "Run folder, pattern or reference table.")
       ->required()
       ->type_name("RUN_OR_PATTERN");
-  command->add_option("--format", options->format, "Format of the file: csv, json, hoap or gltf.")
+  std::vector<std::string> formats = {"csv", "json", "hoap", "gltf"};
+  formats.insert(formats.end(), log_formats().begin(), log_formats().end());
+  command
+      ->add_option(
+          "--format", options->format,
+          "Format of the file. A joint table: csv, json, hoap or gltf. The log of a run: " +
+              text::join(log_formats(), ", ") + ".")
       ->required()
-      ->check(CLI::IsMember({"csv", "json", "hoap", "gltf"}));
+      ->check(CLI::IsMember(formats));
   command->add_option("-o,--out", options->output, "File to write.")->required()->type_name("FILE");
   command
       ->add_option("--ramp", options->safety.ramp, "Shortest approach ramp before the motion [s].")
@@ -406,8 +414,15 @@ void add_export(CLI::App& app, Context& context) {
       "  ayumi export out/ --format hoap -o walk_hoap.csv\n"
       "  ayumi export out/ --format csv --pushed -o pushed.csv\n"
       "  ayumi export out/ --format gltf -o walk.glb\n"
+      "  ayumi export out/ --format npz --log open_loop -o fall.npz\n"
       "  ayumi export patterns/hoap1_walk.json --format json --ramp 3 -o walk_table.json");
-  command->callback([options, &context] { export_table(*options, context); });
+  command->callback([options, command, &context] {
+    if (is_log_format(options->format))
+      export_log({options->input, options->format, options->output, options->log, options->robot},
+                 *command, context);
+    else
+      export_table(*options, context);
+  });
 }
 
 }  // namespace ayumi::app

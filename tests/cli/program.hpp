@@ -71,12 +71,10 @@ inline Output run_program(const std::vector<std::string>& arguments, const fs::p
 /// A scratch folder of one test, removed with what it holds.
 class Folder {
  public:
-  Folder() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string(test->test_suite_name()) + "_" + test->name();
-    for (char& c : name)
-      if (c == '/') c = '_';
-    path_ = fs::path(testing::TempDir()) / ("ayumi_" + std::to_string(::getpid()) + "_" + name);
+  Folder() : Folder(name_of_test()) {}
+  /// For the tests of a suite together, which have no test of their own to be named after.
+  explicit Folder(const std::string& name)
+      : path_(fs::path(testing::TempDir()) / ("ayumi_" + std::to_string(::getpid()) + "_" + name)) {
     fs::remove_all(path_);
     fs::create_directories(path_);
   }
@@ -97,6 +95,12 @@ class Folder {
   }
 
  private:
+  static std::string name_of_test() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = std::string(test->test_suite_name()) + "_" + test->name();
+    std::replace(name.begin(), name.end(), '/', '_');
+    return name;
+  }
   fs::path path_;
 };
 

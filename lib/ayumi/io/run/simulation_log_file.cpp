@@ -5,16 +5,17 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <type_traits>
 
 #include "ayumi/base/file.hpp"
-#include "ayumi/base/version.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/pattern/scenario_text.hpp"
+#include "ayumi/io/run/log_about.hpp"
+#include "ayumi/io/run/log_fields.hpp"
 #include "ayumi/io/run/provenance_fields.hpp"
 #include "ayumi/io/run/sample_compression.hpp"
 #include "ayumi/io/run/sha256.hpp"
-#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
@@ -32,110 +33,6 @@ constexpr size_t kMostBytes = size_t{4} << 30;
 constexpr const char* kOutcomes[] = {"stands", "unsettled", "fell"};
 
 using OrderedJson = nlohmann::ordered_json;
-
-// Calls visit(name, field) for every field of a sample, in file order. The one list behind column
-// names, writing and reading.
-template <typename Sample, typename Visit>
-void for_each_field(Sample& s, const Visit& visit) {
-  visit("base", "m", s.state.base);
-  visit("base.v", "m/s", s.state.base_velocity);
-  visit("base.w", "rad/s", s.state.base_angular_velocity);
-  visit("theta", "rad", s.state.theta);
-  visit("dtheta", "rad/s", s.state.dtheta);
-  visit("target", "rad", s.target);
-  visit("torque", "N m", s.torque);
-  visit("ref.base", "m", s.reference_base);
-  visit("ref.theta", "rad", s.reference_theta);
-  visit("cog", "m", s.cog);
-  visit("dcog", "m/s", s.dcog);
-  visit("zmp", "m", s.zmp);
-  visit("fz", "N", s.fz);
-  visit("measured.cog", "m", s.measured_cog);
-  visit("measured.zmp", "m", s.measured_zmp);
-  visit("measured.fz", "N", s.measured_fz);
-  visit("cmd.base", "m", s.command_base);
-  visit("cmd.theta", "rad", s.command_theta);
-  visit("cmd.cog", "m", s.command_cog);
-  visit("cmd.zmp", "m", s.command_zmp);
-  visit("cmd.fz", "N", s.command_fz);
-  visit("ref.cog", "m", s.reference_cog);
-  visit("ref.zmp", "m", s.reference_zmp);
-  visit("ref.fz", "N", s.reference_fz);
-  for (size_t side = 0; side < 2; ++side) {
-    const std::string foot = side == 0 ? "left" : "right";
-    visit(foot + ".force", "N", s.foot_force[side]);
-    visit(foot + ".cop", "m", s.foot_cop[side]);
-    visit(foot + ".planned_contact", "1", s.planned_contact[side]);
-  }
-  visit("push.force", "N", s.push_force);
-  visit("push.point", "m", s.push_point);
-  visit("contact.residual", "m/s", s.contact_residual);
-  visit("contact.iterations", "1", s.contact_iterations);
-  visit("energy", "J", s.energy);
-  visit("work.servos", "J", s.work.servos);
-  visit("work.contacts", "J", s.work.contacts);
-  visit("work.outside", "J", s.work.outside);
-  visit("work.joints", "J", s.work.joints);
-}
-
-// Overloads by the type of a field; `joints` names the entries of joint vectors.
-class ColumnNames {
- public:
-  ColumnNames(const std::vector<std::string>& joints, std::vector<std::string>& names)
-      : joints_(joints), names_(names) {}
-  void operator()(const std::string& name, const char* unit, const Eigen::Vector3d&) const {
-    for (const char* const axis : {".x", ".y", ".z"}) add(name + axis, unit);
-  }
-  void operator()(const std::string& name, const char* unit, const Eigen::VectorXd&) const {
-    for (const std::string& joint : joints_) add(name + "." + joint, unit);
-  }
-  void operator()(const std::string& name, const char* unit, const BasePose& base) const {
-    (*this)(name, unit, base.position);
-    for (const char* const part : {".qw", ".qx", ".qy", ".qz"}) names_.push_back(name + part);
-  }
-  template <typename Scalar>
-  std::enable_if_t<std::is_arithmetic_v<Scalar>> operator()(const std::string& name,
-                                                            const char* unit, const Scalar&) const {
-    add(name, unit);
-  }
-
- private:
-  void add(const std::string& name, const std::string& unit) const {
-    names_.push_back(unit == "1" ? name : name + "[" + unit + "]");
-  }
-  const std::vector<std::string>& joints_;
-  std::vector<std::string>& names_;
-};
-
-class AppendValues {
- public:
-  AppendValues(size_t joints, std::string& bytes)
-      : joints_(static_cast<Eigen::Index>(joints)), bytes_(bytes) {}
-  void operator()(const std::string&, const char*, const Eigen::Vector3d& v) const {
-    for (const double value : v) add(value);
-  }
-  void operator()(const std::string&, const char*, const Eigen::VectorXd& v) const {
-    require(v.size() == joints_, "a joint vector of the log has the wrong size");
-    for (const double value : v) add(value);
-  }
-  void operator()(const std::string&, const char*, const BasePose& base) const {
-    for (const double value : base.position) add(value);
-    const Eigen::Quaterniond& q = base.attitude;
-    for (const double value : {q.w(), q.x(), q.y(), q.z()}) add(value);
-  }
-  template <typename Scalar>
-  std::enable_if_t<std::is_arithmetic_v<Scalar>> operator()(const std::string&, const char*,
-                                                            const Scalar& value) const {
-    add(static_cast<double>(value));
-  }
-
- private:
-  void add(double value) const {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  Eigen::Index joints_;
-  std::string& bytes_;
-};
 
 class TakeValues {
  public:
@@ -172,8 +69,8 @@ class TakeValues {
 
 std::vector<std::string> columns_of(const std::vector<std::string>& joints) {
   std::vector<std::string> names;
-  const SimulationSample sample;
-  for_each_field(sample, ColumnNames(joints, names));
+  for (const LogQuantity& quantity : log_quantities(joints))
+    for (size_t i = 0; i < quantity.columns(); ++i) names.push_back(quantity.column(i));
   return names;
 }
 
@@ -226,19 +123,9 @@ SimulationResult result_of(const JsonNode& node) {
 
 std::string header_of(const SimulationLog& log, const std::string& command_line,
                       std::uint32_t version_of_file) {
-  OrderedJson header = {{"format", "ayumi.log/" + std::to_string(version_of_file)},
-                        {"tool", std::string("ayumi ") + version()},
-                        {"gravity", kGravity},
-                        {"frame", "world: x forward, y left, z up"},
-                        {"quaternion_order", "w x y z, base to world"},
-                        {"dt", log.dt},
-                        {"controller", log.controller ? name_of(*log.controller) : ""},
-                        {"plant", log.plant}};
-  OrderedJson provenance;
-  for_each_provenance(log.provenance,
-                      [&](const char* key, const std::string& value) { provenance[key] = value; });
-  provenance["command_line"] = command_line;
-  header["provenance"] = provenance;
+  OrderedJson header = {{"format", "ayumi.log/" + std::to_string(version_of_file)}};
+  header.update(about_log(log));
+  header["provenance"]["command_line"] = command_line;
   header["world"] = OrderedJson::parse(world_text(log.world, false));
   header["scenario"] = OrderedJson::array();
   for (const Disturbance& push : log.scenario)
@@ -292,8 +179,7 @@ std::uint32_t checksum_of(std::string_view text) {
 std::string rows_of(const SimulationLog& log) {
   std::string rows;
   rows.reserve(log.samples.size() * columns_of(log.joints).size() * sizeof(double));
-  for (const SimulationSample& sample : log.samples)
-    for_each_field(sample, AppendValues(log.joints.size(), rows));
+  for (const SimulationSample& sample : log.samples) append_values(sample, log.joints.size(), rows);
   return rows;
 }
 
@@ -368,6 +254,12 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   for (SimulationSample& sample : log.samples)
     for_each_field(sample, TakeValues(log.joints.size(), at));
   return log;
+}
+
+bool is_log_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(8, ' ');
+  return std::filesystem::is_regular_file(path) && file.read(begin.data(), 8) && begin == kMagic;
 }
 
 SimulationLog read_log(const std::filesystem::path& path) {

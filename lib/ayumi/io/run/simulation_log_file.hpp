@@ -21,6 +21,8 @@ std::string plain_log_bytes(const SimulationLog& log);
 /// Reads both versions. Throws Error(bad_file) naming the file: not a log, another version,
 /// damaged, truncated.
 SimulationLog parse_log(const std::string& bytes, const std::string& file);
+/// Whether the file is there and begins as a log does.
+bool is_log_file(const std::filesystem::path& path);
 SimulationLog read_log(const std::filesystem::path& path);
 void write_log(const std::filesystem::path& path, const SimulationLog& log);
 

@@ -1,0 +1,89 @@
+#include "ayumi/io/run/log_fields.hpp"
+
+#include <type_traits>
+
+#include "ayumi/base/error.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Overloads by the type of a field; `joints` names the entries of joint vectors.
+class ListQuantities {
+ public:
+  ListQuantities(const std::vector<std::string>& joints, std::vector<LogQuantity>& list)
+      : joints_(joints), list_(list) {}
+  void operator()(const std::string& name, const char* unit, const Eigen::Vector3d&) const {
+    add(name, unit, {"x", "y", "z"});
+  }
+  void operator()(const std::string& name, const char* unit, const Eigen::VectorXd&) const {
+    add(name, unit, joints_);
+  }
+  void operator()(const std::string& name, const char* unit, const BasePose&) const {
+    list_.push_back(
+        {name, {"x", "y", "z", "qw", "qx", "qy", "qz"}, {unit, unit, unit, "1", "1", "1", "1"}});
+  }
+  template <typename Scalar>
+  std::enable_if_t<std::is_arithmetic_v<Scalar>> operator()(const std::string& name,
+                                                            const char* unit, const Scalar&) const {
+    list_.push_back({name, {}, {unit}});
+  }
+
+ private:
+  void add(const std::string& name, const char* unit, const std::vector<std::string>& parts) const {
+    list_.push_back({name, parts, std::vector<std::string>(parts.size(), unit)});
+  }
+  const std::vector<std::string>& joints_;
+  std::vector<LogQuantity>& list_;
+};
+
+class AppendValues {
+ public:
+  AppendValues(size_t joints, std::string& bytes)
+      : joints_(static_cast<Eigen::Index>(joints)), bytes_(bytes) {}
+  void operator()(const std::string&, const char*, const Eigen::Vector3d& v) const {
+    for (const double value : v) add(value);
+  }
+  void operator()(const std::string&, const char*, const Eigen::VectorXd& v) const {
+    require(v.size() == joints_, "a joint vector of the log has the wrong size");
+    for (const double value : v) add(value);
+  }
+  void operator()(const std::string&, const char*, const BasePose& base) const {
+    for (const double value : base.position) add(value);
+    const Eigen::Quaterniond& q = base.attitude;
+    for (const double value : {q.w(), q.x(), q.y(), q.z()}) add(value);
+  }
+  template <typename Scalar>
+  std::enable_if_t<std::is_arithmetic_v<Scalar>> operator()(const std::string&, const char*,
+                                                            const Scalar& value) const {
+    add(static_cast<double>(value));
+  }
+
+ private:
+  void add(double value) const {
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  Eigen::Index joints_;
+  std::string& bytes_;
+};
+
+}  // namespace
+
+std::string LogQuantity::column(size_t index) const {
+  const std::string& unit = units.at(index);
+  return name + (parts.empty() ? "" : "." + parts.at(index)) +
+         (unit == "1" ? "" : "[" + unit + "]");
+}
+
+std::vector<LogQuantity> log_quantities(const std::vector<std::string>& joints) {
+  std::vector<LogQuantity> list;
+  const SimulationSample sample;
+  for_each_field(sample, ListQuantities(joints, list));
+  return list;
+}
+
+void append_values(const SimulationSample& sample, size_t joints, std::string& bytes) {
+  for_each_field(sample, AppendValues(joints, bytes));
+}
+
+}  // namespace ayumi

@@ -1,0 +1,74 @@
+#pragma once
+// The quantities of a sample of a log in file order: names, units and values of their columns.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/sim/simulation_log.hpp"
+
+namespace ayumi {
+
+// Calls visit(name, field) for every field of a sample, in file order. The one list behind column
+// names, writing and reading.
+template <typename Sample, typename Visit>
+void for_each_field(Sample& s, const Visit& visit) {
+  visit("base", "m", s.state.base);
+  visit("base.v", "m/s", s.state.base_velocity);
+  visit("base.w", "rad/s", s.state.base_angular_velocity);
+  visit("theta", "rad", s.state.theta);
+  visit("dtheta", "rad/s", s.state.dtheta);
+  visit("target", "rad", s.target);
+  visit("torque", "N m", s.torque);
+  visit("ref.base", "m", s.reference_base);
+  visit("ref.theta", "rad", s.reference_theta);
+  visit("cog", "m", s.cog);
+  visit("dcog", "m/s", s.dcog);
+  visit("zmp", "m", s.zmp);
+  visit("fz", "N", s.fz);
+  visit("measured.cog", "m", s.measured_cog);
+  visit("measured.zmp", "m", s.measured_zmp);
+  visit("measured.fz", "N", s.measured_fz);
+  visit("cmd.base", "m", s.command_base);
+  visit("cmd.theta", "rad", s.command_theta);
+  visit("cmd.cog", "m", s.command_cog);
+  visit("cmd.zmp", "m", s.command_zmp);
+  visit("cmd.fz", "N", s.command_fz);
+  visit("ref.cog", "m", s.reference_cog);
+  visit("ref.zmp", "m", s.reference_zmp);
+  visit("ref.fz", "N", s.reference_fz);
+  for (size_t side = 0; side < 2; ++side) {
+    const std::string foot = side == 0 ? "left" : "right";
+    visit(foot + ".force", "N", s.foot_force[side]);
+    visit(foot + ".cop", "m", s.foot_cop[side]);
+    visit(foot + ".planned_contact", "1", s.planned_contact[side]);
+  }
+  visit("push.force", "N", s.push_force);
+  visit("push.point", "m", s.push_point);
+  visit("contact.residual", "m/s", s.contact_residual);
+  visit("contact.iterations", "1", s.contact_iterations);
+  visit("energy", "J", s.energy);
+  visit("work.servos", "J", s.work.servos);
+  visit("work.contacts", "J", s.work.contacts);
+  visit("work.outside", "J", s.work.outside);
+  visit("work.joints", "J", s.work.joints);
+}
+
+/// One quantity of a log: a number, or several of one kind.
+struct LogQuantity {
+  std::string name;                     ///< "theta", "cog", "fz"
+  std::vector<std::string> parts = {};  ///< "x", "qw", a joint; empty for a number
+  std::vector<std::string> units = {};  ///< of each column; "1" where it has none
+
+  size_t columns() const { return units.size(); }
+  /// "cog.x[m]", "left.planned_contact"
+  std::string column(size_t index) const;
+};
+
+/// Those of a sample with these joints.
+std::vector<LogQuantity> log_quantities(const std::vector<std::string>& joints);
+
+/// The values of all columns, 8 bytes each, behind `bytes`. Throws Error(internal) when a joint
+/// vector has another size.
+void append_values(const SimulationSample& sample, size_t joints, std::string& bytes);
+
+}  // namespace ayumi

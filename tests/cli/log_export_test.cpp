@@ -1,0 +1,168 @@
+// `ayumi export` of everything that a run knows, for other programs.
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+const char* const kPushed = R"({
+  "format": "ayumi.pattern/1", "name": "arm up", "robot": "hoap1", "units": { "angle": "deg" },
+  "phases": [{ "until": 1, "support": "both" }],
+  "keyframes": [
+    { "t": 0, "posture": "home" }, { "t": 0.8, "posture": { "l_shoulder_pitch": 30 } }
+  ],
+  "scenario": [{ "type": "impulse", "at": 0.3, "impulse": 0.3, "direction": [1, 0, 0], "duration": 0.05 }]
+})";
+
+// One run for all tests.
+class LogExport : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new Folder("LogExport");
+    write(folder->path() / "p.json", kPushed);
+    const Output output =
+        run_program({"run", "-q", "p.json", "--no-pictures", "-o", "run"}, folder->path());
+    ASSERT_EQ(output.exit_code, 0) << output.out << output.err;
+  }
+  static void TearDownTestSuite() { delete folder; }
+
+  static Output ayumi(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"export", "-q"});
+    return run_program(arguments, folder->path());
+  }
+  static void expect_refused(const std::vector<std::string>& arguments, int exit_code,
+                             const std::string& message) {
+    const Output output = ayumi(arguments);
+    EXPECT_EQ(output.exit_code, exit_code) << message;
+    EXPECT_NE(output.err.find(message), std::string::npos) << output.err;
+    EXPECT_EQ(std::count(output.err.begin(), output.err.end(), '\n'), 1) << output.err;
+    EXPECT_FALSE(fs::exists(folder->path() / arguments.back())) << message;
+  }
+  // Columns by name; cells are separated by commas and not quoted.
+  static std::map<std::string, std::vector<double>> columns(const std::string& file) {
+    std::istringstream stream(contents(folder->path() / file));
+    std::vector<std::string> names;
+    std::map<std::string, std::vector<double>> result;
+    std::string line, cell;
+    std::getline(stream, line);
+    for (std::istringstream cells(line); std::getline(cells, cell, ',');) names.push_back(cell);
+    while (std::getline(stream, line)) {
+      std::istringstream cells(line);
+      for (const std::string& name : names) {
+        std::getline(cells, cell, ',');
+        result[name].push_back(std::stod(cell));
+      }
+      EXPECT_FALSE(std::getline(cells, cell, ',')) << "more cells than columns";
+    }
+    EXPECT_EQ(result.size(), names.size()) << "a name twice";
+    return result;
+  }
+  static Folder* folder;
+};
+Folder* LogExport::folder = nullptr;
+
+TEST_F(LogExport, CsvHasAllColumnsOfTheLog) {
+  const Output output = ayumi({"run", "--format", "csv-log", "--json", "-o", "all.csv"});
+  ASSERT_EQ(output.exit_code, 0) << output.err;
+  const auto json = nlohmann::json::parse(output.out);
+  auto table = columns("all.csv");
+  EXPECT_EQ(json.at("rows"), table.at("t[s]").size());
+  EXPECT_EQ(json.at("columns").size(), table.size());
+  EXPECT_EQ(json.at("rate_hz"), 1000);
+  for (const char* name :
+       {"base.qw", "theta.l_elbow[rad]", "dtheta.l_elbow[rad/s]", "target.l_elbow[rad]",
+        "torque.l_elbow[N m]", "cog.z[m]", "ref.zmp.x[m]", "left.force.z[N]", "zmp.margin[m]",
+        "push.force.x[N]", "disturbance.1_impulse", "energy[J]"})
+    EXPECT_TRUE(table.contains(name)) << name;
+  // The header of the log names its columns; the export has them all.
+  const std::string log = contents(folder->path() / "run/log_closed_loop.bin");
+  const size_t begin = log.find("\"columns\":[") + 10, end = log.find("],\"rows\"", begin) + 1;
+  const auto logged = nlohmann::json::parse(log.substr(begin, end - begin));
+  EXPECT_GT(logged.size(), 200u);
+  for (const auto& name : logged) EXPECT_TRUE(table.contains(name)) << name;
+}
+
+// The second route to what follows from the columns of the log.
+TEST_F(LogExport, DerivedColumnsFollowFromTheOthers) {
+  ASSERT_EQ(ayumi({"run", "--format", "csv-log", "-o", "derived.csv"}).exit_code, 0);
+  auto table = columns("derived.csv");
+  int pushed = 0;
+  for (size_t k = 0; k < table["t[s]"].size(); ++k) {
+    const auto at = [&](const std::string& name) { return table.at(name).at(k); };
+    EXPECT_EQ(at("t[s]"), static_cast<double>(k) * 0.001);
+    const double omega = std::sqrt(9.80665 / (at("cog.z[m]") - at("zmp.z[m]")));
+    EXPECT_NEAR(at("dcm.x[m]"), at("cog.x[m]") + at("dcog.x[m/s]") / omega, 1e-12);
+    EXPECT_EQ(at("support.planned"), 3);
+    EXPECT_EQ(at("phase"), 0);
+    EXPECT_EQ(at("support"), at("left.contact") + 2 * at("right.contact"));
+    EXPECT_EQ(at("left.contact"), at("left.force.z[N]") > 0 ? 1 : 0);
+    EXPECT_EQ(at("disturbance.1_impulse"), at("push.force.x[N]") != 0 ? 1 : 0) << k;
+    pushed += static_cast<int>(at("disturbance.1_impulse"));
+    // The ZMP of a standing robot is between the edges of its soles.
+    EXPECT_GT(at("zmp.margin[m]"), -1e-3) << k;
+    EXPECT_LT(at("zmp.margin[m]"), 0.1) << k;
+  }
+  EXPECT_EQ(pushed, 50) << "0.05 s of 1 ms";
+}
+
+TEST_F(LogExport, NumpyReadsTheArchiveWithoutPickle) {
+  const char* const python = "/usr/bin/python3";
+  if (!fs::exists(python) || run_program({"-c", "import numpy"}, folder->path(), python).exit_code)
+    GTEST_SKIP() << "python3-numpy is not installed";
+  const Output output =
+      ayumi({"run", "--format", "npz", "--log", "open_loop", "--json", "-o", "a.npz"});
+  ASSERT_EQ(output.exit_code, 0) << output.err;
+  ASSERT_EQ(ayumi({"run/log_open_loop.bin", "--format", "csv-log", "-o", "a.csv"}).exit_code, 0);
+  const Output said = run_program({AYUMI_SOURCE_DIR "/tests/cli/read_npz.py", "a.npz", "a.csv"},
+                                  folder->path(), python);
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("arrays agree"), std::string::npos) << said.out;
+  const auto arrays = nlohmann::json::parse(output.out).at("arrays");
+  EXPECT_EQ(arrays.at(0).at("name"), "t");
+  EXPECT_EQ(arrays.at(1).at("shape").at(1), 7);
+}
+
+TEST_F(LogExport, SameLogSameBytes) {
+  for (const std::string format : {"csv-log", "npz"}) {
+    const std::string extension = format == "npz" ? ".npz" : ".csv";
+    for (const char* threads : {"1", "2"})
+      ASSERT_EQ(ayumi({"run", "--threads", threads, "--format", format, "-o",
+                       "same" + std::string(threads) + extension})
+                    .exit_code,
+                0);
+    EXPECT_EQ(contents(folder->path() / ("same1" + extension)),
+              contents(folder->path() / ("same2" + extension)));
+    EXPECT_EQ(contents(folder->path() / ("same1" + extension)).find("same1"), std::string::npos);
+  }
+}
+
+TEST_F(LogExport, BadInputGetsOneLine) {
+  write(folder->path() / "half.bin",
+        contents(folder->path() / "run/log_closed_loop.bin").substr(0, 100000));
+  std::string old = contents(folder->path() / "run/log_closed_loop.bin");
+  old[8] = 7;
+  write(folder->path() / "other.bin", old);
+  write(folder->path() / "empty.csv", "");
+  expect_refused({"half.bin", "--format", "npz", "-o", "x.npz"}, 3, "truncated");
+  expect_refused({"other.bin", "--format", "csv-log", "-o", "x.csv"}, 3, "log version 7");
+  expect_refused({"empty.csv", "--format", "npz", "-o", "x.npz"}, 3, "needs a RUN");
+  expect_refused({"p.json", "--format", "npz", "-o", "x.npz"}, 3, "needs a RUN");
+  expect_refused({"nowhere", "--format", "npz", "-o", "x.npz"}, 3, "no such folder");
+  expect_refused({"run", "--format", "npz", "--log", "open", "-o", "x.npz"}, 3,
+                 "no log 'open' in this run");
+  expect_refused({"run", "--format", "npz", "--robot", "humanoid30", "-o", "x.npz"}, 3,
+                 "the log has the joints");
+  expect_refused({"run/log_open_loop.bin", "--format", "hoap", "-o", "x.csv"}, 3,
+                 "this is a log of a run, and a joint table needs the whole RUN");
+  expect_refused({"run", "--format", "npz", "-o", "x.csv"}, 2, "--format npz writes a .npz");
+  expect_refused({"run", "--format", "npz", "--ramp", "3", "-o", "x.npz"}, 2, "--ramp");
+  expect_refused({"run/log_open_loop.bin", "--format", "npz", "--log", "a", "-o", "x.npz"}, 2,
+                 "is one log");
+}
+
+}  // namespace
+}  // namespace ayumi::test
