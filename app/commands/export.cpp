@@ -125,9 +125,12 @@ struct CautiousTable {
 CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
                            const SimulationLog& log, const RobotModel& model) {
   if (!options.log.empty()) return {extract_reference(model, log), caution_of(log)};
-  if (options.pushed && !run.pushed)
+  const bool disturbed = !log.scenario.empty();
+  if (options.pushed && !(run.light ? disturbed : run.pushed.has_value()))
     fail(ErrorCode::usage,
          options.input + ": --pushed: the run has no disturbances; leave --pushed out");
+  if (run.light)
+    return {extract_reference(model, log), disturbed ? run.pushed_caution : run.reference_caution};
   if (!options.pushed && run.reference) return {*run.reference, run.reference_caution};
   if (run.pushed) return {*run.pushed, run.pushed_caution};
   return {extract_reference(model, log), caution_of(log)};

@@ -40,13 +40,16 @@ struct RunCommand {
   SimulationChoice choice;
   bool repair = false;
   bool pictures = true;
+  bool light = false;  ///< the logs and the verdicts only
 };
 
 /// What the run writes, as far as it is known before the run.
 std::vector<std::string> names_of_files(const RunCommand& options) {
-  std::vector<std::string> names = {
-      "run.json",      "log_open_loop.bin", "log_closed_loop.bin",  "log_undisturbed.bin",
-      "reference.csv", "reference.json",    "reference_pushed.csv", "hoap.csv"};
+  std::vector<std::string> names = {"run.json", "log_open_loop.bin", "log_closed_loop.bin",
+                                    "log_undisturbed.bin"};
+  if (!options.light)
+    for (const char* name : {"reference.csv", "reference.json", "reference_pushed.csv", "hoap.csv"})
+      names.emplace_back(name);
   if (options.repair) names.emplace_back("repaired.json");
   if (options.pictures)
     for (const char* name : {"loci.svg", "loci.png", "snapshots.png", "clip.mp4", "report.html"})
@@ -175,9 +178,11 @@ void MainJob::simulate(const Task& input) {
 void MainJob::export_tables(const Task& input) {
   folder_.reference = extract_reference(input.robot, table_log());
   folder_.reference_caution = table_caution(input, table_log(), folder_.unfit);
-  write_file(output_->file("reference.json"),
-             reference_json(*folder_.reference, folder_.reference_caution));
-  note_file("reference.json");
+  if (!options_.light) {
+    write_file(output_->file("reference.json"),
+               reference_json(*folder_.reference, folder_.reference_caution));
+    note_file("reference.json");
+  }
   if (&table_log() != &judged_log()) {
     folder_.pushed = extract_reference(input.robot, judged_log());
     folder_.pushed_caution = table_caution(input, judged_log(), folder_.unfit);
@@ -191,8 +196,10 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
   safety.profile = input.robot.limits().name;
   const SafeTable safe = make_safe_run(input.robot, *folder_.reference, torques_of(log), safety);
   folder_.sections.emplace_back("export", safety_json(safe.report));
-  std::string text = "reference.csv, reference.json";
-  if (folder_.pushed) text += ", reference_pushed.csv (with the reactions to the disturbances)";
+  std::string text = options_.light ? "the logs contain the tables; ayumi export writes them"
+                                    : "reference.csv, reference.json";
+  if (folder_.pushed && !options_.light)
+    text += ", reference_pushed.csv (with the reactions to the disturbances)";
   const bool encoders = input.robot.dofs().front().encoder.device > 0;
   const TableCaution& caution = folder_.reference_caution;
   if (!caution.unfit.empty()) {
@@ -200,12 +207,12 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
   } else if (!caution.disturbances.empty()) {
     text = "no table for a robot: the table of the pattern is from a run with disturbances: " +
            caution.disturbances + "\n            " + text;
-  } else if (encoders && safe.report.safe) {
+  } else if (encoders && safe.report.safe && !options_.light) {
     write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
     note_file("hoap.csv");
     text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) + " rows, largest step " +
             text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit)";
-  } else if (encoders) {
+  } else if (encoders && !safe.report.safe) {
     text += "; no hoap.csv, the table is unsafe: " + text_of(safe.report.violations.front());
   }
   say("export", text);
@@ -254,8 +261,8 @@ void MainJob::write_report(const RobotModel& model, const std::string& title) {
 std::vector<std::string> MainJob::file_names() const {
   std::vector<std::string> names = folder_.files;
   names.emplace_back("run.json");
-  names.emplace_back("reference.csv");
-  if (folder_.pushed) names.emplace_back("reference_pushed.csv");
+  if (!folder_.light) names.emplace_back("reference.csv");
+  if (folder_.pushed && !folder_.light) names.emplace_back("reference_pushed.csv");
   for (const auto& [name, log] : folder_.logs) names.push_back(log_file_name(name));
   std::sort(names.begin(), names.end());
   return names;
@@ -263,6 +270,7 @@ std::vector<std::string> MainJob::file_names() const {
 
 bool MainJob::run(const std::string& file) {
   context_.print(file + "\n");
+  folder_.light = options_.light;
   Task input = load_pattern(context_, file, options_.input, options_.pictures);
   refuse_unstable_gains(input, chosen_controller(input, options_.choice), options_.choice.unstable);
   output_.emplace(target_, context_.force);
@@ -314,7 +322,9 @@ void add_run(CLI::App& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi run patterns/hoap1_walk.json -o out/\n"
       "  ayumi run walk.json --repair -o out/walk\n"
-      "  ayumi run a.json b.json -o out/ --no-pictures --json");
+      "  ayumi run a.json b.json -o out/ --no-pictures --json\n"
+      "  ayumi run walk.json --light -o out/        then, for example: ayumi report out/ -o "
+      "walk.html");
   auto options = std::make_shared<RunCommand>();
   command->add_option("PATTERN", options->patterns, "Pattern files.")->required();
   command->add_option("-o,--out", options->out, "Folder for the results.")
@@ -323,6 +333,14 @@ void add_run(CLI::App& app, Context& context) {
   command->add_flag("--repair", options->repair, "Repair an inconsistent pattern first.");
   command->add_flag_callback(
       "--no-pictures", [options] { options->pictures = false; }, "Write tables and verdicts only.");
+  command->add_flag_callback(
+      "--light",
+      [options] {
+        options->light = true;
+        options->pictures = false;
+      },
+      "Write the logs and verdicts only. Tables, plots, clips and the report can be made from them "
+      "later.");
   add_pattern_options(*command, options->input);
   add_simulation_options(*command, options->choice);
   command->callback([options, &context] { run_patterns(context, *options); });

@@ -164,5 +164,65 @@ TEST_F(LogExport, BadInputGetsOneLine) {
                  "is one log");
 }
 
+// A light run has no tables and no pictures, and everything that is made from a run is the same.
+TEST_F(LogExport, LightRunGivesTheSameFiles) {
+  for (const std::string kind : {"full", "light"}) {
+    std::vector<std::string> words = {"run", "-q", "p.json", "-o", kind};
+    words.push_back(kind == "light" ? "--light" : "--no-pictures");
+    const Output output = run_program(words, folder->path());
+    ASSERT_EQ(output.exit_code, 0) << output.out << output.err;
+    std::vector<std::vector<std::string>> commands = {
+        {"export", kind, "--format", "csv", "-o", "/table.csv"},
+        {"export", kind, "--format", "json", "-o", "/table.json"},
+        {"export", kind, "--format", "csv", "--pushed", "-o", "/pushed.csv"},
+        {"export", kind, "--format", "hoap", "-o", "/hoap.csv"},
+        {"export", kind, "--format", "gltf", "-o", "/walk.glb"},
+        {"export", kind, "--format", "csv-log", "-o", "/log.csv"},
+        {"preview", kind, "--at", "0.4", "--size", "320x240", "-o", "/one.png"},
+        {"plot", kind, "-o", "/loci.svg"},
+        {"report", kind, "-o", "/report.html"}};
+    for (std::vector<std::string>& command : commands) {
+      command.back() = kind + "_" + command.back().substr(1);
+      command.insert(command.begin() + 1, "-q");
+      const Output made = run_program(command, folder->path());
+      EXPECT_EQ(made.exit_code, 0) << command[0] << " " << command.back() << "\n" << made.err;
+    }
+  }
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder->path() / "light"))
+    files.push_back(entry.path().filename());
+  std::sort(files.begin(), files.end());
+  EXPECT_EQ(files, (std::vector<std::string>{"log_closed_loop.bin", "log_open_loop.bin",
+                                             "log_undisturbed.bin", "run.json"}));
+  // The command line of the run is in the heads: the options differ, and nothing else.
+  const auto without = [](std::string text, const std::string& word) {
+    for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at))
+      text.erase(at, word.size());
+    return text;
+  };
+  for (const char* name : {"table.csv", "table.json", "pushed.csv", "hoap.csv", "walk.glb",
+                           "log.csv", "one.png", "loci.svg", "report.html"}) {
+    const std::string full = contents(folder->path() / ("full_" + std::string(name)));
+    const std::string light = contents(folder->path() / ("light_" + std::string(name)));
+    EXPECT_FALSE(full.empty()) << name;
+    EXPECT_TRUE(without(full, " --no-pictures") == without(light, " --light")) << name;
+  }
+  EXPECT_EQ(contents(folder->path() / "full/hoap.csv"),
+            contents(folder->path() / "light_hoap.csv"));
+}
+
+TEST_F(LogExport, LightRunThatIsUnfitIsRefused) {
+  std::string text = kPushed;
+  text.replace(text.find("\"impulse\": 0.3"), 14, "\"impulse\": 8.0");
+  write(folder->path() / "q.json", text);
+  const Output fell = run_program({"run", "-q", "q.json", "--light", "-o", "fell"}, folder->path());
+  EXPECT_EQ(fell.exit_code, 1) << fell.out;
+  const Output output = ayumi({"fell", "--format", "hoap", "-o", "fell.csv"});
+  EXPECT_EQ(output.exit_code, 1);
+  EXPECT_NE(output.out.find("not written, because"), std::string::npos) << output.out;
+  EXPECT_NE(output.out.find("fell at"), std::string::npos) << output.out;
+  EXPECT_FALSE(fs::exists(folder->path() / "fell.csv"));
+}
+
 }  // namespace
 }  // namespace ayumi::test

@@ -20,6 +20,7 @@ constexpr const char* kRunFormat = "ayumi.run/1";
 constexpr const char* kRunFile = "run.json";
 constexpr const char* kReferenceFile = "reference.csv";
 constexpr const char* kPushedFile = "reference_pushed.csv";
+constexpr const char* kLightKey = "light";
 constexpr const char* kSealKey = "contents_sha256";
 // [bytes] Chosen: a log of half an hour at 1 kHz has less.
 constexpr size_t kLargestFile = size_t{4} << 30;
@@ -33,6 +34,14 @@ void make_folder(const fs::path& folder) {
     fail(ErrorCode::bad_file, folder.string() + ": cannot be made (" + error.message() + ")");
 }
 
+OrderedJson json_of(const TableCaution& caution) {
+  return {{"disturbances", caution.disturbances}, {"unfit", caution.unfit}};
+}
+
+TableCaution caution_of(const JsonNode& node) {
+  return {node.at("disturbances").string(), node.at("unfit").string()};
+}
+
 OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::string>& hashes) {
   OrderedJson json = {{"format", kRunFormat}, {"tool", std::string("ayumi ") + version()}};
   OrderedJson provenance;
@@ -44,6 +53,9 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
     json[key] = OrderedJson::parse(text);
   }
   json["unfit"] = run.unfit;
+  if (run.light)
+    json[kLightKey] = {{"reference", json_of(run.reference_caution)},
+                       {"reference_pushed", json_of(run.pushed_caution)}};
   json["logs"] = OrderedJson::object();
   for (const auto& [name, log] : run.logs)
     json["logs"][name] = {{"file", log_file_name(name)},
@@ -135,8 +147,9 @@ void write_run(const fs::path& folder, const RunFolder& run) {
     hashes[name] = sha256(bytes);
   };
   for (const auto& [name, log] : run.logs) write(log_file_name(name), log_bytes(log));
-  if (run.reference) write(kReferenceFile, reference_csv(*run.reference, run.reference_caution));
-  if (run.pushed) write(kPushedFile, reference_csv(*run.pushed, run.pushed_caution));
+  if (run.reference && !run.light)
+    write(kReferenceFile, reference_csv(*run.reference, run.reference_caution));
+  if (run.pushed && !run.light) write(kPushedFile, reference_csv(*run.pushed, run.pushed_caution));
   for (const std::string& name : run.files)
     hashes[name] = sha256(read_file(folder / name, kLargestFile));
   write_file(folder / kRunFile, sealed(summary_of(run, hashes).dump(2)));
@@ -170,6 +183,11 @@ RunFolder read_run(const fs::path& folder) {
     value = provenance.at(key).string();
   });
   if (root.has("unfit")) run.unfit = root.at("unfit").strings();
+  if (const auto light = root.find(kLightKey)) {
+    run.light = true;
+    run.reference_caution = caution_of(light->at("reference"));
+    run.pushed_caution = caution_of(light->at("reference_pushed"));
+  }
   for (const auto& [name, node] : root.at("logs").members())
     run.logs.emplace(name, log_of(folder, root, name));
   for (const auto& [name, hash] : root.at("files").members()) {
@@ -184,7 +202,7 @@ RunFolder read_run(const fs::path& folder) {
   }
   for (const auto& [key, node] : root.members())
     if (key != "format" && key != "tool" && key != "provenance" && key != "logs" &&
-        key != "files" && key != "unfit" && key != kSealKey)
+        key != "files" && key != "unfit" && key != kLightKey && key != kSealKey)
       run.sections.emplace_back(key, node.value().dump(2));
   return run;
 }

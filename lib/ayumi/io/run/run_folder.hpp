@@ -23,6 +23,8 @@ struct RunFolder {
   std::optional<ReferenceTrajectory> reference;  ///< reference.csv, of an undisturbed run
   std::optional<ReferenceTrajectory> pushed;     ///< reference_pushed.csv, of a disturbed run
   TableCaution reference_caution = {}, pushed_caution = {};  ///< heads of these tables
+  /// Without tables, which follow from the logs; run.json then has what their heads would say.
+  bool light = false;
   std::vector<std::string> files;  ///< others in the folder, relative, existing
   /// Why the run gives no table for a robot: an inconsistent pattern, a run that fell or did not
   /// settle. Empty where nothing is known against it.
