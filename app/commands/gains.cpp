@@ -110,7 +110,7 @@ Design design(const RobotModel& model, GainsCommand options) {
     spec.gains.emplace_back(name, value);
   d.params = design_gains(d.omega, options.wishes, dtad_params(model, spec));
   d.loop = single_support_loop(model, model.limits(), z, model.description().servo_period);
-  if (options.latency) d.loop.delay = *options.latency;
+  if (options.latency) d.loop.delay += *options.latency - model.description().sensors.latency;
   d.analysis = analyze_loop(d.loop, d.params);
   d.most_ka = largest_stable_ka(d.loop, d.params, kMostKa);
   d.reaches = reaches(model);
@@ -165,7 +165,7 @@ std::string report(const RobotModel& model, const Design& d) {
                                  text::fixed(1e3 * p.offset_time / w, 0) + " ms\n"
                            : ", a constant ZMP offset is never accepted as normal\n";
   out += "loop on one foot: ankle stiffness " + text::brief(d.loop.stiffness) +
-         " N m/rad, sensor latency " + text::brief(1e3 * d.loop.delay) +
+         " N m/rad, delay of sensors and servos " + text::brief(1e3 * d.loop.delay) +
          " ms; the loop is stable, and stays stable " +
          (d.most_ka >= kMostKa ? "beyond ka = " + text::brief(kMostKa)
                                : "up to ka = " + text::fixed(d.most_ka, 2)) +

@@ -107,6 +107,28 @@ struct Walk {
   SimulateOptions options;
 };
 
+/// The robot with every form of servo at every joint, as in the servos of small humanoids.
+RobotModel with_every_servo_form(const RobotModel& model) {
+  RobotDescription robot = model.description();
+  for (auto& [joint, servo] : robot.servos) {
+    servo.delay = 0.0037;
+    servo.speed_command_limit = 30;
+    servo.viscous = 0.01;
+    servo.coulomb = 0.03;
+    servo.stribeck_torque = 0.02;
+    servo.stribeck_rate = 0.1;
+    servo.stribeck_exponent = 1.4;
+    servo.load = {0.02, 0.04, 0.01, 0.02, 0.001, 0.001};
+    servo.backlash = 0.001;
+    servo.stall_torque = 10;
+    servo.back_emf = 0.3;
+    servo.dead_band = 2e-4;
+    servo.quantized = true;
+    servo.offset = 1e-3;
+  }
+  return RobotModel(robot);
+}
+
 Kernel tick_of(const std::string& name, const PlantKind& kind) {
   struct Run : Walk {
     std::optional<Simulator> simulator;
@@ -144,6 +166,8 @@ int run_closed_loop(int rounds) {
   std::vector<Contender> contenders;
   contenders.push_back({"Ayumi", {}, &walk.model});
   contenders.push_back({"Ayumi, stiff soles", {}, &stiff});
+  const RobotModel servos = with_every_servo_form(walk.model);
+  contenders.push_back({"Ayumi, all servo forms", {}, &servos});
 #ifdef BENCH_HAS_MUJOCO
   contenders.push_back({"MuJoCo, one step of 1 ms", mujoco_plant_kind(1), &walk.model});
   contenders.push_back({"MuJoCo", mujoco_plant_kind(), &walk.model});

@@ -17,6 +17,7 @@
 #include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/sensors.hpp"
 #include "ayumi/sim/simulator.hpp"
+#include "tests/support/one_joint.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace {
@@ -85,6 +86,26 @@ TEST_F(Allocations, PlantSensorsAndEstimatorHaveNoneAfterTheFirstSteps) {
               for (const CommandSample& s : series.samples) step(s);
             }),
             0);
+}
+
+TEST_F(Allocations, AStepWithEveryFormOfServoHasNoneAfterTheFirstSteps) {
+  RobotDescription d = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1").description();
+  for (auto& [joint, servo] : d.servos) servo = test::servo_forms().back().servo;
+  const RobotModel model(d);
+  const RobotState start = model.rest_state();
+  Plant plant(model, model.limits(), World{});
+  plant.set_state(start);
+  const StepInput nothing;
+  VectorXd target = start.theta;
+  const auto steps = [&] {
+    for (int k = 0; k < 1000; ++k) {
+      target[0] = start.theta[0] + test::sine(1e-3 * k);
+      plant.step(target, nothing, 1e-3);
+    }
+  };
+  steps();
+  plant.set_state(start);
+  EXPECT_EQ(allocations_of(steps), 0);
 }
 
 TEST_F(Allocations, ATickOfTheClosedLoopHasNoneAfterTheFirstSteps) {

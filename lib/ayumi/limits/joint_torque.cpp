@@ -1,7 +1,8 @@
 // A motor has a peak torque: |tau| <= peak torque of the actuator profile, with tau from inverse
-// dynamics and the ground wrench shared between the feet, plus the rotor's inertia, viscous and dry
-// friction of the servo (demand/ground_demand.hpp, motor_torques()). Beside a flight's edges
-// accelerations have no meaning, so torques are not judged there.
+// dynamics and the ground wrench shared between the feet, plus the rotor's inertia, viscous and
+// Coulomb friction of the servo (demand/ground_demand.hpp, motor_torques()). Not part of it
+// are Stribeck and load-dependent friction, and the torque that is lost with speed at a voltage.
+// Beside a flight's edges accelerations have no meaning, so torques are not judged there.
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"

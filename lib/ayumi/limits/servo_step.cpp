@@ -1,8 +1,9 @@
 // A servo receives one target in each of its periods T, and its motor follows no step that is
 // larger than the speed limit allows: |theta(k) - theta(k - T)| <= speed limit T. Where the joint's
 // planned speed is too large itself, that is joint_speed; a step beyond it is a jump between
-// samples. The target is the posture led by kd/kp times its rate (motion/servo_feedforward.hpp). It
-// may step by more than the posture; then `export` refuses the table, and a warning says so.
+// samples. The target is the posture led by the servo's lag (delay + kd/kp) times its rate
+// (motion/servo_feedforward.hpp). It may step by more than the posture; then `export` refuses the
+// table, and a warning says so.
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"

@@ -28,6 +28,15 @@ double available_torque(const ActuatorLimits& limits, int dof, double rate, doub
 /// infinite where the files give no motor. Negative beyond the no-load speed: the motor brakes.
 double voltage_torque(const ServoDescription& servo, double rate, double direction);
 
+/// Torques that a servo can give at a rate [N m, N], and whether the voltage bounds them there.
+struct TorqueRange {
+  double low = 0, high = 0;
+  bool low_by_voltage = false, high_by_voltage = false;
+};
+/// By peak torque, speed limit and voltage. Beyond its no-load speed a motor brakes, with more than
+/// its peak torque where it must.
+TorqueRange torque_range(const ActuatorLimits& limits, int dof, double rate);
+
 /// Dry friction [N m] of a servo whose motor turns at `rate` [rad/s] with the torque `motor`, while
 /// everything else exerts `external` on the joint [N m].
 double dry_friction(const ServoDescription& servo, double rate, double motor, double external);

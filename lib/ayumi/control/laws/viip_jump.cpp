@@ -60,12 +60,12 @@ constexpr double kNoForce = 0.5;
 constexpr double kNoForceTime = 0.015;
 
 // Largest step of a servo target, times the joint's speed limit: targets lead the joint by
-// (kd dtheta + tau) / kp. Chosen: that lead must build up within the push. Half: viip jump, slip
-// 1.3 to 2.69 mm; twice: ZMP error 3.39 to 1.31 mm.
+// (delay + kd/kp) dtheta + tau/kp. Chosen: that lead must build up within the push. Half: viip
+// jump, slip 1.3 to 2.69 mm; twice: ZMP error 3.39 to 1.31 mm.
 constexpr double kTargetRate = 3;
 
 // Time over which the torque feedforward is faded in and out [s]. Chosen: within the stoop, and
-// long against the servos' kd / kp of 20 ms. Figures change by less than 5 % from half to twice.
+// long against the lag of servos, up to 20 ms. Figures change by less than 5 % from half to twice.
 constexpr double kTorqueFadeTime = 0.3;
 
 // The legs run on after release with this time constant [s]. Source: docs/theory.md, "Flight":

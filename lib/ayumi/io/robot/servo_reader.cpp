@@ -4,18 +4,11 @@
 #include <numbers>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
 
 namespace ayumi {
 
 namespace {
-
-/// A key of a group, the field it fills, and the values that a servo can have.
-struct Field {
-  const char* key;
-  double ServoDescription::*value;
-  double least, most;
-  double unit = 1;
-};
 
 constexpr double kRadPerDegree = std::numbers::pi / 180;
 
@@ -34,42 +27,97 @@ constexpr double kMostRate = 1e4;       // [rad/s]
 /// Share of a gear's torque that its friction takes. Definition: at 1 the gear cannot turn.
 constexpr double kMostLoadFriction = 1;
 
+/// Values that a constant of a servo can have, with its unit and what to do about others.
+struct Bounds {
+  double least, most;
+  const char* unit;
+  const char* advice = "";
+};
+constexpr Bounds kStiffness = {0, kMostStiffness, "N m/rad"};
+constexpr Bounds kDamping = {0, kMostDamping, "N m s/rad"};
+constexpr Bounds kInertia = {0, kMostInertia, "kg m^2"};
+constexpr Bounds kTorque = {0, kMostTorque, "N m"};
+constexpr Bounds kDelay = {0, kMostDelay, "s", "; state it in seconds: 3.7 ms is 0.0037"};
+constexpr Bounds kRate = {0, kMostRate, "rad/s"};
+constexpr Bounds kExponent = {0.1, 10, ""};
+constexpr Bounds kPlay = {0, kMostPlay, "rad", "; in degrees the key ends in _deg"};
+constexpr Bounds kPlayDeg = {0, kMostPlay / kRadPerDegree, "deg"};
+constexpr Bounds kOffset = {-kMostOffset, kMostOffset, "rad",
+                            "; in degrees the key ends in _deg. Beyond it, mount the horn anew"};
+constexpr Bounds kOffsetDeg = {-kMostOffset / kRadPerDegree, kMostOffset / kRadPerDegree, "deg",
+                               "; beyond it, mount the horn anew"};
+constexpr Bounds kPositionGain = {0, 1e5, "1/s"};
+constexpr Bounds kTorqueConstant = {0, kMostTorque, "N m/A"};
+constexpr Bounds kResistance = {0, 1e6, "ohm"};
+constexpr Bounds kVoltage = {0, 1e4, "V"};
+constexpr Bounds kVoltageGain = {0, kMostStiffness, "V/rad"};
+constexpr Bounds kShare = {0, kMostLoadFriction, ""};
+constexpr Bounds kPerTorque = {0, kMostLoadFriction, "1/(N m)"};
+
+std::string with_unit(double value, const char* unit) {
+  return text::brief(value) + (*unit ? " " : "") + unit;
+}
+
+double within(const JsonNode& node, const Bounds& bounds) {
+  const double value = node.number();
+  const bool small = value < bounds.least;
+  if (small || value > bounds.most)
+    node.complain(with_unit(value, bounds.unit) + " is too " + (small ? "small" : "large") +
+                  "; the " + (small ? "smallest" : "largest") + " allowed value is " +
+                  with_unit(small ? bounds.least : bounds.most, bounds.unit) + bounds.advice);
+  return value;
+}
+
+double positive(const JsonNode& node, const Bounds& bounds) {
+  const double value = within(node, bounds);
+  if (value == 0) node.complain("it must be above 0");
+  return value;
+}
+
+/// A key of a group, the field it fills, and the values that a servo can have.
+struct Field {
+  const char* key;
+  double ServoDescription::*value;
+  Bounds bounds;
+  double unit = 1;
+};
+
 using S = ServoDescription;
 const std::vector<Field>& fields() {
-  static const std::vector<Field> all = {
-      {"kp", &S::kp, 0, kMostStiffness},
-      {"kd", &S::kd, 0, kMostDamping},
-      {"rotor_inertia", &S::rotor_inertia, 0, kMostInertia},
-      {"viscous", &S::viscous, 0, kMostDamping},
-      {"coulomb", &S::coulomb, 0, kMostTorque},
-      {"delay", &S::delay, 0, kMostDelay},
-      {"speed_command_limit", &S::speed_command_limit, 0, kMostRate},
-      {"stribeck_torque", &S::stribeck_torque, 0, kMostTorque},
-      {"stribeck_rate", &S::stribeck_rate, 0, kMostRate},
-      {"stribeck_exponent", &S::stribeck_exponent, 0.1, 10},
-      {"backlash", &S::backlash, 0, kMostPlay},
-      {"backlash_deg", &S::backlash, 0, kMostPlay / kRadPerDegree, kRadPerDegree},
-      {"gear_stiffness", &S::gear_stiffness, 0, kMostStiffness},
-      {"gear_damping", &S::gear_damping, 0, kMostDamping},
-      {"dead_band", &S::dead_band, 0, kMostPlay},
-      {"dead_band_deg", &S::dead_band, 0, kMostPlay / kRadPerDegree, kRadPerDegree},
-      {"offset", &S::offset, -kMostOffset, kMostOffset},
-      {"offset_deg", &S::offset, -kMostOffset / kRadPerDegree, kMostOffset / kRadPerDegree,
-       kRadPerDegree}};
+  static const std::vector<Field> all = {{"kp", &S::kp, kStiffness},
+                                         {"kd", &S::kd, kDamping},
+                                         {"rotor_inertia", &S::rotor_inertia, kInertia},
+                                         {"viscous", &S::viscous, kDamping},
+                                         {"coulomb", &S::coulomb, kTorque},
+                                         {"delay", &S::delay, kDelay},
+                                         {"speed_command_limit", &S::speed_command_limit, kRate},
+                                         {"stribeck_torque", &S::stribeck_torque, kTorque},
+                                         {"stribeck_rate", &S::stribeck_rate, kRate},
+                                         {"stribeck_exponent", &S::stribeck_exponent, kExponent},
+                                         {"backlash", &S::backlash, kPlay},
+                                         {"backlash_deg", &S::backlash, kPlayDeg, kRadPerDegree},
+                                         {"gear_stiffness", &S::gear_stiffness, kStiffness},
+                                         {"gear_damping", &S::gear_damping, kDamping},
+                                         {"dead_band", &S::dead_band, kPlay},
+                                         {"dead_band_deg", &S::dead_band, kPlayDeg, kRadPerDegree},
+                                         {"offset", &S::offset, kOffset},
+                                         {"offset_deg", &S::offset, kOffsetDeg, kRadPerDegree}};
   return all;
 }
 
 struct LoadField {
   const char *key, *bam;
   double LoadFriction::*value;
+  Bounds bounds = kShare;
 };
 constexpr std::array<LoadField, 6> kLoadFields = {{
     {"motor", "load_friction_motor", &LoadFriction::motor},
     {"external", "load_friction_external", &LoadFriction::external},
     {"motor_stribeck", "load_friction_motor_stribeck", &LoadFriction::motor_stribeck},
     {"external_stribeck", "load_friction_external_stribeck", &LoadFriction::external_stribeck},
-    {"motor_quadratic", "load_friction_motor_quad", &LoadFriction::motor_quadratic},
-    {"external_quadratic", "load_friction_external_quad", &LoadFriction::external_quadratic},
+    {"motor_quadratic", "load_friction_motor_quad", &LoadFriction::motor_quadratic, kPerTorque},
+    {"external_quadratic", "load_friction_external_quad", &LoadFriction::external_quadratic,
+     kPerTorque},
 }};
 
 /// A motor behind its gear.
@@ -77,12 +125,6 @@ struct Motor {
   double torque_constant = 0;  ///< [N m/A]
   double resistance = 0;       ///< [ohm]
 };
-
-double positive(const JsonNode& node, double most) {
-  const double value = node.number_within(0, most);
-  if (value == 0) node.complain("it must be above 0");
-  return value;
-}
 
 /// Which parts of the file each of BAM's models has.
 struct BamModel {
@@ -107,9 +149,7 @@ const BamModel& bam_model(const JsonNode& root) {
 
 LoadFriction bam_load(const JsonNode& root, const BamModel& model) {
   LoadFriction load;
-  const auto share = [&](const char* key) {
-    return root.at(key).number_within(0, kMostLoadFriction);
-  };
+  const auto share = [&](const char* key) { return within(root.at(key), kShare); };
   if (!model.load) return load;
   if (!model.directional) {
     load.motor = load.external = share("load_friction_base");
@@ -120,35 +160,35 @@ LoadFriction bam_load(const JsonNode& root, const BamModel& model) {
   for (const LoadField& field : kLoadFields)
     if (model.quadratic || (field.value != &LoadFriction::motor_quadratic &&
                             field.value != &LoadFriction::external_quadratic))
-      load.*field.value = share(field.bam);
+      load.*field.value = within(root.at(field.bam), field.bounds);
   return load;
 }
 
 // The zero offset of the file is that of the bench, so it stays there.
-Motor read_bam(const JsonNode& node, const std::filesystem::path& folder, ServoDescription& servo,
-               std::string& bytes) {
-  const std::filesystem::path path = folder / node.string();
+Motor read_bam(const JsonNode& node, ServoDescription& servo, std::string& bytes) {
+  const std::filesystem::path path =
+      std::filesystem::path(node.file()).parent_path() / node.string();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored))
-    node.complain("there is no file " + path.string());
+    node.complain("there is no file " + path.string() +
+                  "; a path is relative to the file that names it");
   const std::string text = read_file(path);
   bytes += text;
   const Json document = parse_json(text, path.string(), ErrorCode::bad_file);
   const JsonNode root = root_of(document, path.string(), ErrorCode::bad_file);
   const BamModel& model = bam_model(root);
-  servo.rotor_inertia = root.at("armature").number_within(0, kMostInertia);
-  servo.coulomb = root.at("friction_base").number_within(0, kMostTorque);
-  servo.viscous = root.at("friction_viscous").number_within(0, kMostDamping);
+  servo.rotor_inertia = within(root.at("armature"), kInertia);
+  servo.coulomb = within(root.at("friction_base"), kTorque);
+  servo.viscous = within(root.at("friction_viscous"), kDamping);
   servo.stribeck_torque = servo.stribeck_rate = 0;
   if (model.stribeck) {
-    servo.stribeck_torque = root.at("friction_stribeck").number_within(0, kMostTorque);
-    servo.stribeck_rate = positive(root.at("dtheta_stribeck"), kMostRate);
-    servo.stribeck_exponent = root.at("alpha").number_within(0.1, 10);
+    servo.stribeck_torque = within(root.at("friction_stribeck"), kTorque);
+    servo.stribeck_rate = positive(root.at("dtheta_stribeck"), kRate);
+    servo.stribeck_exponent = within(root.at("alpha"), kExponent);
   }
   servo.load = bam_load(root, model);
-  if (const auto delay = root.find("command_delay"))
-    servo.delay = delay->number_within(0, kMostDelay);
-  return {positive(root.at("kt"), kMostTorque), positive(root.at("R"), 1e6)};
+  if (const auto delay = root.find("command_delay")) servo.delay = within(*delay, kDelay);
+  return {positive(root.at("kt"), kTorqueConstant), positive(root.at("R"), kResistance)};
 }
 
 // The voltage bounds the torque; with a gain in volts per radian it is also what the position loop
@@ -156,16 +196,16 @@ Motor read_bam(const JsonNode& node, const std::filesystem::path& folder, ServoD
 void read_motor(const JsonNode& node, Motor motor, ServoDescription& servo) {
   node.only_keys({"torque_constant", "resistance", "voltage", "gain"});
   if (const auto constant = node.find("torque_constant"))
-    motor.torque_constant = positive(*constant, kMostTorque);
+    motor.torque_constant = positive(*constant, kTorqueConstant);
   if (const auto resistance = node.find("resistance"))
-    motor.resistance = positive(*resistance, 1e6);
+    motor.resistance = positive(*resistance, kResistance);
   if (motor.torque_constant == 0) node.at("torque_constant");  // complains
   if (motor.resistance == 0) node.at("resistance");
-  const double voltage = positive(node.at("voltage"), 1e4);
+  const double voltage = positive(node.at("voltage"), kVoltage);
   servo.stall_torque = motor.torque_constant * voltage / motor.resistance;
   servo.back_emf = motor.torque_constant * motor.torque_constant / motor.resistance;
   if (const auto gain = node.find("gain")) {
-    servo.kp = motor.torque_constant * gain->number_within(0, kMostStiffness) / motor.resistance;
+    servo.kp = motor.torque_constant * within(*gain, kVoltageGain) / motor.resistance;
     servo.kd = servo.back_emf;
     servo.speed_command_limit = 0;
   }
@@ -173,8 +213,8 @@ void read_motor(const JsonNode& node, Motor motor, ServoDescription& servo) {
 
 void read_speed_loop(const JsonNode& group, ServoDescription& servo) {
   if (!group.has("position_gain") && !group.has("speed_gain")) return;
-  const double position = positive(group.at("position_gain"), 1e5);
-  servo.kd = positive(group.at("speed_gain"), kMostDamping);
+  const double position = positive(group.at("position_gain"), kPositionGain);
+  servo.kd = positive(group.at("speed_gain"), kDamping);
   servo.kp = position * servo.kd;
 }
 
@@ -211,6 +251,12 @@ void check_servo(const JsonNode& group, const std::string& joint, const ServoDes
   if (servo.stribeck_torque > 0 && servo.stribeck_rate <= 0)
     group.complain("joint " + joint +
                    ": stribeck_torque needs a stribeck_rate above 0, the rate at which it fades");
+  if (servo.stribeck_rate <= 0 &&
+      (servo.load.motor_stribeck > 0 || servo.load.external_stribeck > 0 ||
+       servo.load.motor_quadratic > 0 || servo.load.external_quadratic > 0))
+    group.complain("joint " + joint +
+                   ": the load friction at rest needs a stribeck_rate above 0, the rate at which "
+                   "it fades");
   if (servo.speed_command_limit > 0 && servo.kd <= 0)
     group.complain("joint " + joint +
                    ": speed_command_limit needs an inner speed loop; state position_gain and "
@@ -222,17 +268,17 @@ void check_servo(const JsonNode& group, const std::string& joint, const ServoDes
 }  // namespace
 
 void read_servo_group(const JsonNode& group, const std::vector<std::string>& joints,
-                      const std::filesystem::path& folder, ServoGroups& out) {
+                      ServoGroups& out) {
   check_group(group);
   std::string bytes;
   for (const std::string& joint : joints) {
     ServoDescription& servo = out.servos[joint];
     Motor motor;
     bytes.clear();
-    if (const auto bam = group.find("bam")) motor = read_bam(*bam, folder, servo, bytes);
+    if (const auto bam = group.find("bam")) motor = read_bam(*bam, servo, bytes);
     for (const Field& field : fields())
       if (const auto found = group.find(field.key))
-        servo.*field.value = field.unit * found->number_within(field.least, field.most);
+        servo.*field.value = field.unit * within(*found, field.bounds);
     read_speed_loop(group, servo);
     if (const auto node = group.find("motor"))
       read_motor(*node, motor, servo);
@@ -244,7 +290,7 @@ void read_servo_group(const JsonNode& group, const std::vector<std::string>& joi
       load->only_keys(keys);
       for (const LoadField& field : kLoadFields)
         if (const auto share = load->find(field.key))
-          servo.load.*field.value = share->number_within(0, kMostLoadFriction);
+          servo.load.*field.value = within(*share, field.bounds);
     }
     if (const auto quantized = group.find("quantized")) servo.quantized = quantized->boolean();
     check_servo(group, joint, servo);

@@ -2,7 +2,6 @@
 // The "servos" groups of a sidecar, and the parameter files of BAM (Better Actuator Models of
 // Rhoban, friction models M1 to M6) that they may name. docs/formats.md, "Servos".
 
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -19,10 +18,10 @@ struct ServoGroups {
   std::string files;  ///< bytes of the parameter files that were read, in their order
 };
 
-/// Reads one group into the servos of `joints`; a later group changes what it names. Parameter
-/// files are looked for beside `folder`. Complains about constants that no servo can have, with
-/// the limit.
+/// Reads one group into the servos of `joints`; a later group changes what it names. A parameter
+/// file is looked for beside the file in which the group stands. Complains about constants that no
+/// servo can have, with the limit.
 void read_servo_group(const JsonNode& group, const std::vector<std::string>& joints,
-                      const std::filesystem::path& folder, ServoGroups& out);
+                      ServoGroups& out);
 
 }  // namespace ayumi

@@ -115,9 +115,8 @@ std::map<std::string, ServoDescription> read_servos(
                                                       : ServoDescription{.viscous = joint.damping,
                                                                          .coulomb = joint.friction};
   }
-  const std::filesystem::path folder = std::filesystem::path(node.file()).parent_path();
   for (const JsonNode& group : node.items())
-    read_servo_group(group, group_joints(group, robot), folder, groups);
+    read_servo_group(group, group_joints(group, robot), groups);
   files += groups.files;
   std::map<std::string, ServoDescription> servos;
   for (const auto& [joint, stated] : groups.stated) servos[joint] = groups.servos[joint];
@@ -287,6 +286,18 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "collision_ignore",
                                         "assumptions"};
 
+// Counts can be rounded to only where the encoder has some.
+void check_counts(const JsonNode& root, const RobotDescription& robot) {
+  const auto check = [&](const char* key, const std::map<std::string, ServoDescription>& servos) {
+    for (const auto& [joint, servo] : servos)
+      if (servo.quantized && !robot.encoders.contains(joint))
+        root.at(key).complain("the servo of " + joint +
+                              " is quantized, but 'encoders' gives no counts_per_degree for it");
+  };
+  check("servos", robot.servos);
+  for (const ActuatorProfile& profile : robot.profiles) check("profiles", profile.servos);
+}
+
 void read_root(const JsonNode& root, RobotDescription& robot, std::string& files) {
   const std::vector<std::pair<const char*, std::function<void(const JsonNode&)>>> readers = {
       {"locked_joints", [&](const JsonNode& node) { lock_joints(node, robot); }},
@@ -310,11 +321,8 @@ void read_root(const JsonNode& root, RobotDescription& robot, std::string& files
   for (const auto& [key, read] : readers)
     if (const auto node = root.find(key)) read(*node);
   read_lists(root, robot);
+  check_counts(root, robot);
 }
-
-}  // namespace
-
-namespace {
 
 std::filesystem::path find_urdf(const JsonNode& node,
                                 const std::vector<std::filesystem::path>& folders) {

@@ -211,7 +211,8 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
   table.commands = true;
   imported.motion.theta = postures_of(model, model.limits(), table).theta;
   imported.commands = false;
-  imported.filled.push_back("angles are servo targets: the velocity lead kd/kp was subtracted");
+  imported.filled.push_back(
+      "angles are servo targets: the velocity lead, delay + kd/kp, was subtracted");
 }
 
 // A motion begins and ends at rest: as if it returned along its own path.

@@ -100,12 +100,15 @@ void JointLaws::set(const VectorXd& targets, const std::vector<JointFault>& faul
   }
 }
 
-// Within a solve a joint that has left its servo's law, its sticking friction or the flank of its
-// gear does not return.
+// What moves is expected to slide on. Within a solve a joint that has left its servo's law or the
+// flank of its gear does not return, and friction that was expected to slide sticks once at most.
 void JointLaws::start(const VectorXd& theta, const double* rate, double dt) {
   for (size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];
-    joint.saturated = joint.sliding = joint.speed_bound = joint.gear_changed = false;
+    joint.saturated = joint.speed_bound = joint.gear_changed = joint.stuck = false;
+    const double motor = joint.has_gear ? joint.dphi : rate[j];
+    joint.sliding = joint.coulomb > 0 && std::abs(motor) > kStickRate;
+    if (joint.sliding) joint.slip_torque = -std::copysign(joint.coulomb, motor);
     if (!joint.has_gear) continue;
     const double play =
         joint.phi - theta[static_cast<Eigen::Index>(j)] + dt * (joint.dphi - rate[j]);
@@ -194,14 +197,14 @@ bool JointLaws::check_servo(Joint& joint, size_t j, double phi, double dphi, dou
   }
   torque = joint.speed_bound ? joint.speed_torque : joint.inside_band ? 0 : joint.kp * error;
   torque -= joint.kd * dphi;
-  const double direction = torque > 0 ? 1.0 : -1.0;
-  const double peak = available_torque(limits_, static_cast<int>(j), dphi, direction);
-  const double voltage = voltage_torque(servo, dphi, direction);
-  if (direction * torque <= std::min(peak, voltage)) return false;
+  const TorqueRange range = torque_range(limits_, static_cast<int>(j), dphi);
+  if (torque >= range.low && torque <= range.high) return false;
+  const bool above = torque > range.high;
+  torque = above ? range.high : range.low;
+  // The voltage's bound falls with the rate; it is continued to the end of the step.
   joint.saturated = true;
-  joint.limit_torque = direction * (voltage < peak ? servo.stall_torque : peak);
-  joint.limit_slope = voltage < peak ? servo.back_emf : 0;
-  torque = direction * std::min(peak, voltage);
+  joint.limit_slope = (above ? range.high_by_voltage : range.low_by_voltage) ? servo.back_emf : 0;
+  joint.limit_torque = torque + joint.limit_slope * dphi;
   return true;
 }
 
@@ -219,18 +222,31 @@ bool JointLaws::check_gear(Joint& joint, double theta, double rate, double dphi,
   return joint.gear_changed = joint.flank != before;
 }
 
+// Friction that drives the motor sticks.
+bool JointLaws::check_friction(Joint& joint, double dphi) {
+  if (joint.coulomb <= 0) return false;
+  if (joint.sliding && joint.slip_torque * dphi > 0 && !joint.stuck) {
+    joint.stuck = true;
+    joint.sliding = false;
+    return true;
+  }
+  if (joint.sliding || std::abs(dphi) <= kStickRate) return false;
+  joint.sliding = true;
+  joint.slip_torque = -std::copysign(joint.coulomb, dphi);
+  return true;
+}
+
+// A joint changes one law at a time: the rate of a motor that was wrongly taken to stick says
+// nothing of its servo, and that of a servo beyond its limits nothing of its gear.
 bool JointLaws::check(const VectorXd& theta, const double* rate, double dt) {
   bool changed = false;
   for (size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];
     const double angle = theta[static_cast<Eigen::Index>(j)];
     const double dphi = motor_rate(joint, rate[j]);
-    changed |= check_servo(joint, j, joint.has_gear ? joint.phi : angle, dphi, dt);
-    changed |= check_gear(joint, angle, rate[j], dphi, dt);
-    if (joint.coulomb > 0 && !joint.sliding && std::abs(dphi) > kStickRate) {
-      joint.sliding = changed = true;
-      joint.slip_torque = -std::copysign(joint.coulomb, dphi);
-    }
+    changed |= check_friction(joint, dphi) ||
+               check_servo(joint, j, joint.has_gear ? joint.phi : angle, dphi, dt) ||
+               check_gear(joint, angle, rate[j], dphi, dt);
   }
   return changed;
 }
@@ -268,7 +284,7 @@ void JointLaws::advance(const VectorXd& theta, const double* before, const doubl
       joint.dphi = dphi;
     } else {
       const double rotor = limits_.servo[j].rotor_inertia;
-      joint.external = rotor * (rate - before[j]) / dt - torque_[i] - drag - force;
+      joint.external = rotor * (rate - before[j]) / dt - torque_[i] - drag;
     }
   }
 }

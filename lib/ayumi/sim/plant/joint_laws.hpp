@@ -27,8 +27,8 @@ class JointLaws {
   void set(const Eigen::VectorXd& targets, const std::vector<JointFault>& faults,
            const Eigen::VectorXd& theta, double dt);
 
-  /// Starts a solve from these positions and rates: every servo obeys its law again and every dry
-  /// friction sticks.
+  /// Starts a solve from these positions and rates: every servo obeys its law again, and the dry
+  /// friction of a motor that moves slides on.
   void start(const Eigen::VectorXd& theta, const double* rate, double dt);
 
   /// Adds the impulses of the laws to `impulse`, the joints' part of the right side (dof), and
@@ -39,9 +39,9 @@ class JointLaws {
            std::vector<double>& diagonal);
 
   /// Compares the solved rates at the end of the step with the laws. Where a servo passes its
-  /// torque limit or the limit of its speed loop, dry friction slips, or a gear meets or leaves a
-  /// flank, that joint follows another law from now on; returns true when this happened, and the
-  /// step has to be solved again.
+  /// torque limit or the limit of its speed loop, dry friction slips or sticks, or a gear meets or
+  /// leaves a flank, that joint follows another law from now on; returns true when this happened,
+  /// and the step has to be solved again.
   bool check(const Eigen::VectorXd& theta, const double* rate, double dt);
 
   /// Torque of each servo by the last check() [N m, N].
@@ -50,7 +50,7 @@ class JointLaws {
   bool saturated(int j) const { return joints_[static_cast<size_t>(j)].saturated; }
 
   /// Largest number of times that a solve can be repeated because of one joint.
-  static constexpr size_t kChangesPerJoint = 4;
+  static constexpr size_t kChangesPerJoint = 5;
 
   /// Takes the solved step over: adds the work of servos, gears, friction and end stops, with the
   /// joint rates before and after it, and moves the motors.
@@ -79,6 +79,7 @@ class JointLaws {
     double last_torque = 0, last_rate = 0;  // of the motor in the last step
     // Of the solve.
     bool saturated = false, sliding = false, speed_bound = false, gear_changed = false;
+    bool stuck = false;  // the friction slid at first
     Flank flank = Flank::none;
     double limit_torque = 0, limit_slope = 0;  // while saturated: limit_torque - limit_slope dphi
     double speed_torque = 0;                   // while speed_bound: speed_torque - kd dphi [N m, N]
@@ -95,6 +96,7 @@ class JointLaws {
   Impulse motor_impulse(const Joint& joint, double phi, double dt) const;
   void solve_motor(Joint& joint, double theta, double dt, Impulse& on_joint) const;
   bool check_servo(Joint& joint, size_t j, double phi, double dphi, double dt);
+  static bool check_friction(Joint& joint, double dphi);
   static bool check_gear(Joint& joint, double theta, double rate, double dphi, double dt);
   /// Rate at the end of the step, with that of the joint.
   static double motor_rate(const Joint& joint, double rate);

@@ -125,16 +125,9 @@ void MujocoPlant::Impl::limit_torques() {
   for (int j = 0; j < model->dof_count(); ++j) {
     if (!m->actuator_forcelimited[j]) continue;
     const double rate = d->qvel[velocity[static_cast<size_t>(j)]];
-    for (int end = 0; end < 2; ++end) {
-      const double direction = end == 0 ? -1.0 : 1.0;
-      m->actuator_forcerange[2 * j + end] =
-          direction *
-          std::min(available_torque(limits, j, rate, direction),
-                   voltage_torque(limits.servo[static_cast<size_t>(j)], rate, direction));
-    }
-    // Beyond its no-load speed a motor brakes with more than its peak torque.
-    double* range = m->actuator_forcerange + 2 * j;
-    if (range[0] > range[1]) (rate > 0 ? range[0] : range[1]) = rate > 0 ? range[1] : range[0];
+    const TorqueRange range = torque_range(limits, j, rate);
+    m->actuator_forcerange[2 * j] = range.low;
+    m->actuator_forcerange[2 * j + 1] = range.high;
   }
 }
 
