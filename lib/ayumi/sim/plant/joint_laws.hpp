@@ -49,7 +49,8 @@ class JointLaws {
   /// Whether servo j is at its torque limit.
   bool saturated(int j) const { return joints_[static_cast<size_t>(j)].saturated; }
 
-  /// Largest number of times that a solve can be repeated because of one joint.
+  /// Largest number of times that a solve can be repeated because of one joint. Derived: friction
+  /// sticks, then slides; speed loop, torque limit and gear change once each.
   static constexpr size_t kChangesPerJoint = 5;
 
   /// Takes the solved step over: adds the work of servos, gears, friction and end stops, with the
