@@ -13,7 +13,7 @@ struct LogExport {
   std::string robot;  ///< "" = the one that the run names
 };
 
-/// "csv-log", "npz"
+/// "csv-log", "npz", "mcap"
 const std::vector<std::string>& log_formats();
 bool is_log_format(const std::string& format);
 

@@ -1,4 +1,5 @@
-# The packages of lib/ayumi/report/page, fetched once into the build folder by its lock file. Sets
+# The packages of lib/ayumi/report/page, those of the tests included, fetched once into the build
+# folder by its lock file. Sets
 # AYUMI_NODE (the program) and AYUMI_NODE_MODULES (the folder), both empty where there is no npm or
 # it fails; the report is then built without its replay, and says so.
 option(AYUMI_WITH_REPLAY "Fetch three.js with npm for the report's replay" ON)

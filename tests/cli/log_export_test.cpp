@@ -96,7 +96,7 @@ TEST_F(LogExport, DerivedColumnsFollowFromTheOthers) {
     EXPECT_EQ(at("t[s]"), static_cast<double>(k) * 0.001);
     const double omega = std::sqrt(9.80665 / (at("cog.z[m]") - at("zmp.z[m]")));
     EXPECT_NEAR(at("dcm.x[m]"), at("cog.x[m]") + at("dcog.x[m/s]") / omega, 1e-12);
-    EXPECT_EQ(at("support.planned"), 3);
+    EXPECT_EQ(at("planned_support"), 3);
     EXPECT_EQ(at("phase"), 0);
     EXPECT_EQ(at("support"), at("left.contact") + 2 * at("right.contact"));
     EXPECT_EQ(at("left.contact"), at("left.force.z[N]") > 0 ? 1 : 0);
@@ -126,9 +126,35 @@ TEST_F(LogExport, NumpyReadsTheArchiveWithoutPickle) {
   EXPECT_EQ(arrays.at(1).at("shape").at(1), 7);
 }
 
+// Foxglove's own libraries read the file, in order and by its index.
+TEST_F(LogExport, FoxgloveReadsTheMcap) {
+  if (std::string(AYUMI_NODE).empty())
+    GTEST_SKIP() << "built without npm: @mcap/core and @foxglove/schemas are not there";
+  for (const std::string log : {"closed_loop", "open_loop"}) {
+    const Output output =
+        ayumi({"run", "--format", "mcap", "--log", log, "--json", "-o", log + ".mcap"});
+    ASSERT_EQ(output.exit_code, 0) << output.err;
+    ASSERT_EQ(ayumi({"run", "--format", "csv-log", "--log", log, "-o", log + ".csv"}).exit_code, 0);
+    const Output said =
+        run_program({"NODE_PATH=" AYUMI_NODE_MODULES, AYUMI_NODE,
+                     AYUMI_SOURCE_DIR "/tests/cli/read_mcap.cjs", log + ".mcap", log + ".csv"},
+                    folder->path(), "/usr/bin/env");
+    EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+    EXPECT_NE(said.out.find(" agree"), std::string::npos) << said.out;
+    const auto topics = nlohmann::json::parse(output.out).at("topics");
+    std::map<std::string, nlohmann::json> by_name;
+    for (const auto& topic : topics) by_name[topic.at("topic")] = topic;
+    EXPECT_EQ(by_name.at("/tf").at("schema"), "foxglove.FrameTransforms");
+    EXPECT_EQ(by_name.at("/scene").at("schema"), "foxglove.SceneUpdate");
+    EXPECT_EQ(by_name.at("/joint_states").at("schema"), "foxglove.JointStates");
+    EXPECT_EQ(by_name.at("/robot").at("messages"), 1);
+    EXPECT_GE(by_name.at("/events").at("messages"), 1) << "the push";
+  }
+}
+
 TEST_F(LogExport, SameLogSameBytes) {
-  for (const std::string format : {"csv-log", "npz"}) {
-    const std::string extension = format == "npz" ? ".npz" : ".csv";
+  for (const std::string format : {"csv-log", "npz", "mcap"}) {
+    const std::string extension = format == "csv-log" ? ".csv" : "." + format;
     for (const char* threads : {"1", "2"})
       ASSERT_EQ(ayumi({"run", "--threads", threads, "--format", format, "-o",
                        "same" + std::string(threads) + extension})

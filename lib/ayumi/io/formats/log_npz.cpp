@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "arrays are little-endian");
 
 // Definition: a .npy file of version 1.0; its data begin at a multiple of 64 bytes.
-constexpr char kMagic[] = "\x93NUMPY\x01";
+constexpr char kNpyMagic[] = "\x93NUMPY\x01";
 constexpr size_t kAlignment = 64;
 
 std::string shape_text(const std::vector<size_t>& shape) {
@@ -33,7 +33,7 @@ std::string npy(const std::string& type, const std::vector<size_t>& shape, std::
   const size_t fixed = 10;  // Definition: magic word, version and length of the head
   head.append(kAlignment - 1 - (fixed + head.size()) % kAlignment, ' ');
   head += '\n';
-  std::string bytes(kMagic, 7);
+  std::string bytes(kNpyMagic, 7);
   bytes += '\0';
   bytes += static_cast<char>(head.size() & 0xff);
   bytes += static_cast<char>(head.size() >> 8);

@@ -56,7 +56,7 @@ std::vector<LogQuantity> quantities_of(const RobotModel& model, const Simulation
   for (const char* name : {"dcm", "cmd.dcm", "ref.dcm"})
     list.push_back({name, {"x", "y"}, {"m", "m"}});
   list.push_back({"zmp.margin", {}, {"m"}});
-  for (const char* name : {"left.contact", "right.contact", "support", "support.planned", "phase"})
+  for (const char* name : {"left.contact", "right.contact", "support", "planned_support", "phase"})
     list.push_back({name, {}, {"1"}});
   LogQuantity disturbance = {"disturbance"};
   for (size_t i = 0; i < log.scenario.size(); ++i) {

@@ -26,7 +26,8 @@ struct LogTable {
 ///   zmp.margin             distance of the ZMP inside the hull of the soles planned down, where
 ///                          they are; no value without one
 ///   left.contact, ...      whether the ground presses on the foot
-///   support, ...planned    feet on the ground, really and by plan: 0 none, 1 left, 2 right, 3 both
+///   support, planned_support
+///                        feet on the ground, really and by plan: 0 none, 1 left, 2 right, 3 both
 ///   phase                  number of the planned support since the start, from 0
 ///   disturbance.<n>_<name> whether disturbance n of the scenario, from 1, acts
 /// Throws Error(bad_file), beginning with `file`, for a log without samples or of another robot.

@@ -1,7 +1,5 @@
 #include "ayumi/io/run/simulation_log_file.hpp"
 
-#include <zlib.h>
-
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -9,6 +7,7 @@
 #include <type_traits>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/io/compression.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/pattern/scenario_text.hpp"
 #include "ayumi/io/run/log_about.hpp"
@@ -171,11 +170,6 @@ void append_word(std::string& bytes, std::uint32_t word) {
   bytes.append(reinterpret_cast<const char*>(&word), sizeof word);
 }
 
-std::uint32_t checksum_of(std::string_view text) {
-  return static_cast<std::uint32_t>(
-      crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));
-}
-
 std::string rows_of(const SimulationLog& log) {
   std::string rows;
   rows.reserve(log.samples.size() * columns_of(log.joints).size() * sizeof(double));
@@ -200,7 +194,7 @@ std::string plain_bytes(const SimulationLog& log, const std::string& command_lin
 std::string log_bytes(const SimulationLog& log) {
   const std::string header = header_of(log, log.provenance.command_line, kCompressed);
   std::string bytes = prefix_of(kCompressed, header);
-  append_word(bytes, checksum_of(header));
+  append_word(bytes, crc32_of(header));
   return bytes + header + compress_samples(rows_of(log), columns_of(log.joints).size());
 }
 
@@ -224,7 +218,7 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   if (bytes.size() < begin || length > bytes.size() - begin)
     stop("truncated: the header is cut off");
   const std::string text = bytes.substr(begin, length);
-  if (version_of_file == kCompressed && word_at(bytes, kPrefix) != checksum_of(text))
+  if (version_of_file == kCompressed && word_at(bytes, kPrefix) != crc32_of(text))
     stop("damaged: the header has another checksum than the one that was written with it");
   const std::string place = file + " (header)";
   const Json document = parse_json(text, place, ErrorCode::bad_file);
