@@ -30,8 +30,8 @@ enum Opcode : std::uint8_t {
 };
 constexpr const char* kCompression = "zstd";
 
-// [bytes] Chosen: the size at which a chunk is closed. Half of it makes a file of the bundled walk
-// 1 % larger; a viewer reads at least one chunk to show one time.
+// [bytes] Chosen: the size at which a chunk is closed. A viewer reads a whole chunk to show one
+// time. At half of it a file of the bundled walk is 0.8 % smaller, at twice 0.9 % larger.
 constexpr size_t kChunk = size_t{1} << 20;
 
 // The content of a record.
