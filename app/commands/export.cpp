@@ -2,8 +2,10 @@
 // open loop, with ramp and hold around it. Unsafe tables are refused.
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
@@ -11,16 +13,21 @@
 #include "ayumi/check/table_safety.hpp"
 #include "ayumi/control/laws/dtad.hpp"
 #include "ayumi/io/formats/hoap.hpp"
+#include "ayumi/io/formats/sign_test.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
+#include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/table.hpp"
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "ayumi/task/servo_table.hpp"
 #include "commands.hpp"
 #include "log_export.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "run_robot.hpp"
+#include "sign_test_sheet.hpp"
 #include "simulation.hpp"
 
 namespace ayumi::app {
@@ -30,10 +37,20 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportOptions {
-  std::string input, format, output, robot, log;
+  std::string input, format, output, robot, log, layout;
+  std::string servo;  ///< as given; "": the lead
   std::vector<std::string> set;
   SafetyOptions safety;
-  bool pushed = false, force_unsafe = false;
+  std::optional<double> ramp, hold;  ///< as given [s]
+  std::optional<double> interval;    ///< from row to row, as given [ms]
+  std::optional<double> rate;        ///< as given [1/s]
+  bool pushed = false, force_unsafe = false, sign_test = false;
+};
+
+/// An imported sequence whose motion is unchanged: its rows are written as they were.
+struct KeptRows {
+  HoapFile file;
+  std::string bytes;
 };
 
 struct Source {
@@ -43,26 +60,61 @@ struct Source {
   Eigen::MatrixXd torque;          ///< of a run's motors, rows x dof; empty where not known
   std::optional<Task> plan;        ///< of a pattern: the check knows what it needs
   std::vector<std::string> unfit;  ///< why no robot should receive the table
+  std::optional<KeptRows> kept = {};
+  double interval = 0;  ///< from row to row of the file that was imported; 0: none was [s]
 };
 
-// What the servos receive when a pattern is replayed as it is.
-ReferenceTrajectory open_loop_reference(const RobotModel& model, const ActuatorLimits& actuators,
-                                        const CommandSeries& series) {
-  const Eigen::VectorXd lead = velocity_lead(actuators);
-  ReferenceTrajectory reference;
-  reference.dt = series.dt;
-  reference.joints = model.dof_names();
-  for (const CommandSample& sample : series.samples) {
-    ReferenceRow row;
-    row.theta = sample.state.theta + lead.cwiseProduct(sample.state.dtheta);
-    row.base = sample.state.base;
-    row.cog = sample.cog;
-    row.zmp = sample.zmp;
-    row.fz = sample.fz;
-    row.contact = {supports(sample.support, Side::left), supports(sample.support, Side::right)};
-    reference.rows.push_back(std::move(row));
+// Whether the pattern still moves as the table that was imported.
+bool moves_as_imported(const Task& task) {
+  constexpr double kSame = 1e-6;  // Chosen: a hundredth of a count [rad]
+  const DenseTable& table = *task.pattern.table;
+  if (theta_sha256(table) != table.sequence->theta_sha256) return false;
+  const CommandSeries& series = task.series;
+  const double rows = series.duration() / table.dt + 1;
+  if (std::abs(rows - static_cast<double>(table.theta.rows())) > 0.5) return false;
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const double row = static_cast<double>(k) * series.dt / table.dt;
+    if (std::abs(row - std::round(row)) > 1e-6 || std::lround(row) >= table.theta.rows()) continue;
+    for (size_t i = 0; i < table.joints.size(); ++i) {
+      const int dof = task.robot.find_dof(table.joints[i]);
+      const double angle = table.theta(std::lround(row), static_cast<Eigen::Index>(i));
+      if (dof < 0 || std::abs(series.samples[k].state.theta[dof] - angle) > kSame) return false;
+    }
   }
-  return reference;
+  return true;
+}
+
+/// Takes the rows of an imported sequence as they were, unless the motion was changed.
+void take_kept_rows(const Task& task, const ExportOptions& options, Source& source) {
+  if (!task.pattern.table) return;
+  const DenseTable& table = *task.pattern.table;
+  source.interval = 0.001 * table.interval_ms;
+  if (!table.sequence || !options.servo.empty() || !moves_as_imported(task)) return;
+  std::string bytes = kept_sequence(table);
+  HoapFile file =
+      parse_hoap(plain_table_text(bytes, table.sequence->file), table.sequence->file, task.robot);
+  ReferenceTrajectory targets = hoap_targets(task.robot, file);
+  const ReferenceTrajectory planned = resampled(source.reference, targets.dt);
+  for (size_t k = 0; k < targets.rows.size(); ++k) {
+    Eigen::VectorXd theta = std::move(targets.rows[k].theta);
+    targets.rows[k] = planned.rows[std::min(k, planned.rows.size() - 1)];
+    targets.rows[k].theta = std::move(theta);
+  }
+  targets.provenance = source.reference.provenance;  // nothing is known of its servo
+  source.reference = std::move(targets);
+  source.kept = {std::move(file), std::move(bytes)};
+}
+
+/// What goes to the robot is judged by its own actuators, and made for them, not by those a study
+/// has assumed.
+std::string profile_of(const ExportOptions& options, const RobotModel& model,
+                       const std::string& recorded) {
+  if (!options.safety.profile.empty()) return options.safety.profile;
+  return options.format == "hoap" ? model.limits().name : recorded;
+}
+
+ServoContent content_of(const ExportOptions& options) {
+  return servo_content(options.servo.empty() ? "lead" : options.servo);
 }
 
 bool draws(const ExportOptions& options) { return options.format == "gltf"; }
@@ -83,7 +135,8 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
              ": phases: the pattern has VIIP goals, so its joint angles are "
              "known only after a simulation; run it (ayumi run), then export the RUN");
   Source source{input.robot,
-                open_loop_reference(input.robot, input.robot.limits(input.profile), input.series),
+                table_of_series(input.robot, profile_of(options, input.robot, input.profile),
+                                input.series, content_of(options)),
                 input.caution.disturbances,
                 {},
                 {},
@@ -95,8 +148,43 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
     const std::string reason = judge(input, check_options(input)).reason();
     if (!reason.empty()) source.unfit.push_back(reason);
   }
+  take_kept_rows(input, options, source);
   source.plan = std::move(input);
   return source;
+}
+
+double asked_period(const ExportOptions& options, const Source& source) {
+  if (options.interval) return 0.001 * *options.interval;
+  if (options.rate) return 1 / *options.rate;
+  return source.interval > 0 ? source.interval : source.reference.dt;
+}
+
+/// The rows at the interval that is asked for, else at that of the file that was imported. A robot
+/// takes some intervals only.
+void set_rate(const ExportOptions& options, Source& source) {
+  const double period = asked_period(options, source);
+  const double before = source.reference.dt;
+  source.reference = resampled(source.reference, period);
+  if (source.reference.dt != before) {
+    source.kept.reset();
+    source.torque.resize(0, 0);  // of rows at the old rate
+  }
+  if (source.kept && !options.layout.empty() && options.layout != source.kept->file.layout.name)
+    source.kept.reset();
+  if (options.format != "hoap" || source.kept) return;
+  const SequenceLayout layout = written_layout(source.model, options.layout);
+  const double ms = 1000 * period;
+  std::vector<std::string> known;
+  bool takes = layout.intervals_ms.empty();
+  for (const int interval : layout.intervals_ms) {
+    known.push_back(std::to_string(interval));
+    takes = takes || std::abs(ms - interval) < 1e-6;
+  }
+  if (!takes)
+    fail(ErrorCode::bad_file, options.output + ": a row each " + text::brief(ms) +
+                                  " ms, but the layout '" + layout.name + "' of '" +
+                                  source.model.name() + "' has " + text::join(known, ", ") +
+                                  " ms; give one of them with --interval");
 }
 
 Source source_of_table(const ExportOptions& options, const Context& context,
@@ -124,16 +212,27 @@ struct CautiousTable {
 // The table of a run that is asked for; `log` is the one that it is from.
 CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
                            const SimulationLog& log, const RobotModel& model) {
-  if (!options.log.empty()) return {extract_reference(model, log), caution_of(log)};
+  const ServoContent content = content_of(options);
+  const std::string profile = profile_of(options, model, log.provenance.profile);
+  const auto made = [&](const SimulationLog& from) {
+    return table_of_log(model, profile, from, content);
+  };
+  if (!options.log.empty()) return {made(log), caution_of(log)};
   const bool disturbed = !log.scenario.empty();
   if (options.pushed && !(run.light ? disturbed : run.pushed.has_value()))
     fail(ErrorCode::usage,
          options.input + ": --pushed: the run has no disturbances; leave --pushed out");
-  if (run.light)
-    return {extract_reference(model, log), disturbed ? run.pushed_caution : run.reference_caution};
-  if (!options.pushed && run.reference) return {*run.reference, run.reference_caution};
-  if (run.pushed) return {*run.pushed, run.pushed_caution};
-  return {extract_reference(model, log), caution_of(log)};
+  if (run.light) return {made(log), disturbed ? run.pushed_caution : run.reference_caution};
+  const bool pushed = options.pushed || !run.reference;
+  const TableCaution& caution = !pushed      ? run.reference_caution
+                                : run.pushed ? run.pushed_caution
+                                             : caution_of(log);
+  const auto& table = pushed ? run.pushed : run.reference;
+  if (!table) return {made(log), caution};
+  const TableServo wanted = table_servo(model, profile, content);
+  const bool as_wanted = table->servo.content == wanted.content &&
+                         table->servo.delay == wanted.delay && table->servo.lag == wanted.lag;
+  return {as_wanted ? *table : made(log), caution};
 }
 
 std::string log_of_table(const ExportOptions& options, const RunFolder& run) {
@@ -178,6 +277,10 @@ Source source_of(const ExportOptions& options, const Context& context) {
   refuse_log_file(options.input);
   if (!is_reference_table(options.input)) return source_of_pattern(options, context);
   verify_run_of(options.input);
+  if (!options.servo.empty())
+    fail(ErrorCode::usage, options.input +
+                               ": --servo: the targets of a table are made for their servo "
+                               "already; export the pattern or the run");
   return source_of_table(options, context, read_reference(options.input),
                          read_table_caution(options.input));
 }
@@ -204,8 +307,13 @@ void export_gltf(const ExportOptions& options, Context& context) {
 
 std::string bytes_of(const std::string& format, const Source& source,
                      const ReferenceTrajectory& table, const TableCaution& caution,
-                     const SafetyOptions& safety) {
-  if (format == "hoap") return hoap_csv(source.model, table, safety);
+                     const ExportOptions& options, size_t first) {
+  const SafetyOptions& safety = options.safety;
+  if (format == "hoap" && source.kept)
+    return hoap_csv_around(source.model, table, first, source.reference.rows.size(), safety,
+                           source.kept->file, source.kept->bytes);
+  if (format == "hoap")
+    return hoap_csv(source.model, table, safety, written_layout(source.model, options.layout));
   return format == "json" ? reference_json(table, caution) : reference_csv(table, caution);
 }
 
@@ -261,6 +369,14 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
   return reasons;
 }
 
+std::string words_of(const TableServo& servo) {
+  if (servo.content == "ideal") return "the plain posture (--servo ideal)";
+  const bool one = servo.lag.find(' ') == std::string::npos;
+  return std::string(servo.content == "lead" ? "ahead by their lag"
+                                             : "ahead by their lag and sag") +
+         (one ? " of " + servo.lag + " s" : "");
+}
+
 std::string in_words(const ExportOptions& options, const Source& source, const SafeTable& safe,
                      const std::vector<std::string>& refused) {
   const SafetyReport& report = safe.report;
@@ -273,10 +389,15 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
     text = options.output + ": not written, because " + text::join(refused, "\n  and ") + "\n";
   if (refused.empty())
     for (const std::string& reason : source.unfit) text += "  written although " + reason + "\n";
-  text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) + " s";
+  const TableServo& servo = safe.table.servo;
+  if (!servo.content.empty())
+    text += "  made for the servos of profile " + servo.profile + ": " + words_of(servo) + "\n";
+  text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
+          " s; 0 s of the pattern is " + text::brief(report.ramp) + " s of the table";
   if (!report.worst_joint.empty())
     text += "; largest step " + text::fixed(100 * report.max_step_ratio, 1) + " % of the limit (" +
-            report.worst_joint + " at " + text::fixed(report.worst_at, 3) + " s)";
+            report.worst_joint + " at " +
+            on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ")";
   if (!report.margin_joint.empty())
     text += "; " + text::brief(report.min_limit_margin * 180 / EIGEN_PI, 3) +
             " deg from the nearest position limit (" + report.margin_joint + ")";
@@ -288,12 +409,41 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   return text;
 }
 
+/// What became of an imported sequence.
+std::string words_on_sequence(const Source& source, const SafeTable& safe) {
+  if (!source.plan || !source.plan->pattern.table || !source.plan->pattern.table->sequence)
+    return "";
+  if (!source.kept)
+    return "  the rows are computed: they are not those of the imported sequence any more\n";
+  const HoapFile& file = source.kept->file;
+  std::string text = "  the rows of the motion are those of the imported sequence, unchanged";
+  if (safe.report.ramp == 0 && safe.report.hold == 0)
+    text += "; --ramp S and --hold S add rows around them";
+  text += "\n";
+  if (file.general_commands > 0)
+    text += "  " + std::to_string(file.general_commands) +
+            " of them are commands to single devices, which the robot will carry out\n";
+  const std::vector<SequenceLayout> layouts = sequence_layouts(source.model);
+  if (file.layout.name != layouts.front().name)
+    text += "  their columns are those of the layout " + file.layout.name + "; --layout " +
+            layouts.front().name + " writes those of this robot\n";
+  return text;
+}
+
 /// What the head of the written table has to say.
 TableCaution caution_of_written(const Source& source, const SafeTable& safe) {
   std::vector<std::string> words = source.unfit;
   for (const SafetyViolation& violation : safe.report.violations)
     words.push_back("unsafe: " + text_of(violation));
   return {source.disturbances, text::join(words, "; ")};
+}
+
+/// The name says it too where a table that no robot should receive is written: walk.UNSAFE.csv.
+std::string unsafe_name(const std::string& output) {
+  if (output == "-" || fs::path(output).stem().extension() == ".UNSAFE") return output;
+  const fs::path path = output;
+  return (path.parent_path() / (path.stem().string() + ".UNSAFE" + path.extension().string()))
+      .string();
 }
 
 /// A HOAP sequence has no head that the robot's program would skip: what has to be said stands in a
@@ -317,14 +467,15 @@ void write_table(const ExportOptions& options, const Context& context, const Sou
   const bool old_note = fs::is_regular_file(note) && read_file(note).starts_with(kNoteHead);
   const bool beside = options.format == "hoap" && !nothing;
   if (beside) refuse_overwriting(context, note);
-  write_file(options.output, bytes_of(options.format, source, safe.table, caution, options.safety));
+  write_file(options.output,
+             bytes_of(options.format, source, safe.table, caution, options, safe.first));
   if (old_note && !beside) fs::remove(note);  // it was about the table that was there before
   if (!beside) return;
   write_file(note, note_text(caution));
   context.print(note + ": what to know before a robot receives it\n");
 }
 
-std::string as_json(const ExportOptions& options, const SafeTable& safe,
+std::string as_json(const ExportOptions& options, const Source& source, const SafeTable& safe,
                     const std::vector<std::string>& sufficient,
                     const std::vector<std::string>& refused) {
   const nlohmann::ordered_json json = {
@@ -334,6 +485,11 @@ std::string as_json(const ExportOptions& options, const SafeTable& safe,
       {"rows", safe.table.rows.size()},
       {"first_row", safe.first},
       {"rate_hz", 1 / safe.table.dt},
+      {"interval_ms", 1000 * safe.table.dt},
+      {"servo", safe.table.servo.content.empty()
+                    ? nlohmann::ordered_json(nullptr)
+                    : nlohmann::ordered_json(safe.table.servo.content)},
+      {"imported_rows_unchanged", source.kept.has_value()},
       {"joints", safe.table.joints},
       {"profile", options.safety.profile},
       {"sufficient_profiles", sufficient},
@@ -341,20 +497,97 @@ std::string as_json(const ExportOptions& options, const SafeTable& safe,
   return json.dump(2);
 }
 
+// Time over which the speed at both ends of a table of whole counts is judged [s]. Chosen: one
+// count in it is 0.004 rad/s, far below the limit of 0.1 rad/s; from row to row one count is
+// 0.08 rad/s. At half and at twice the value the recorded HOAP-3 motions begin and end at rest too.
+constexpr double kRestWindow = 0.02;
+
+/// One file per joint, and the sheet. The folder is made where needed; nothing in it is replaced
+/// without --force.
+void export_sign_test(const ExportOptions& options, Context& context) {
+  if (options.format == "gltf")
+    fail(ErrorCode::usage, "--sign-test: the format is hoap, csv or json");
+  const std::string name = options.robot.empty() ? options.input : options.robot;
+  if (name.empty())
+    fail(ErrorCode::usage, "--sign-test needs a robot: ayumi export ROBOT --sign-test -o DIR");
+  const RobotModel model = load_robot(name, robot_search(context), {.meshes = true});
+  Source source{model, {}, {}, {}, {}, {}};
+  source.reference.dt = model.description().servo_period;
+  const double dt = asked_period(options, source);
+  const SequenceLayout layout =
+      options.format == "hoap" ? written_layout(model, options.layout) : SequenceLayout{};
+  SafetyOptions safety = options.safety;
+  safety.ramp = 0;  // the test begins in the home posture
+  safety.hold = options.hold.value_or(0);
+  safety.profile = profile_of(options, model, "");
+  const std::vector<SignTest> tests = sign_tests(model, dt);
+  const std::string extension = options.format == "json" ? ".json" : ".csv";
+  const fs::path folder = options.output;
+  std::vector<std::pair<fs::path, std::string>> files;
+  nlohmann::ordered_json joints = nlohmann::ordered_json::array();
+  for (const SignTest& test : tests) {
+    SafeTable safe = make_safe(model, test.table, safety);
+    const std::string& joint = model.dofs()[static_cast<size_t>(test.dof)].name;
+    if (!safe.report.safe)
+      fail(ErrorCode::bad_model, "sign test of " + joint + ": " +
+                                     text_of(safe.report.violations.front()) +
+                                     "; correct the limits or the home posture of the robot");
+    safe.table.provenance.robot = name;
+    safe.table.provenance.robot_sha256 = model.description().sha256;
+    safe.table.provenance.pattern = "sign test of " + joint;
+    safe.table.provenance.profile = safety.profile;
+    safe.table.servo = table_servo(model, safety.profile, ServoContent::ideal);
+    files.emplace_back(folder / (test.name + extension),
+                       options.format == "hoap"   ? hoap_csv(model, safe.table, safety, layout)
+                       : options.format == "json" ? reference_json(safe.table)
+                                                  : reference_csv(safe.table));
+    joints.push_back({{"joint", joint},
+                      {"file", test.name + extension},
+                      {"picture", test.name + ".png"},
+                      {"from_rad", test.from},
+                      {"to_rad", test.to}});
+  }
+  for (const SignTest& test : tests)
+    files.emplace_back(folder / (test.name + ".png"), encode_png(sign_test_picture(model, test)));
+  files.emplace_back(folder / "sheet.html", sign_test_page(model, tests, extension));
+  if (fs::exists(folder) && !fs::is_directory(folder))
+    fail(ErrorCode::bad_file, options.output + ": this is not a folder");
+  if (fs::exists(folder))
+    for (const auto& [path, bytes] : files) refuse_overwriting(context, path);
+  fs::create_directories(folder);
+  for (const auto& [path, bytes] : files) write_file(path, bytes);
+  context.print(options.output + ": a slow motion of each of " + std::to_string(tests.size()) +
+                " joints (" + options.format + "), and sheet.html with a picture of each\n" +
+                "  Hang the robot up before you play them.\n");
+  context.print_json(nlohmann::ordered_json{
+      {"format", options.format},
+      {"output", options.output},
+      {"sheet", "sheet.html"},
+      {"tests", joints}}.dump(2));
+}
+
 void export_table(ExportOptions options, Context& context) {
+  if (options.sign_test) return export_sign_test(options, context);
   refuse_overwriting(context, options.output);
   if (options.format == "gltf") return export_gltf(options, context);
-  const Source source = source_of(options, context);
-  // What goes to the robot is judged by its own actuators, not by those a study has assumed.
-  if (options.safety.profile.empty())
-    options.safety.profile =
-        options.format == "hoap" ? source.model.limits().name : source.reference.provenance.profile;
+  Source source = source_of(options, context);
+  set_rate(options, source);
+  // An imported sequence is complete as it is.
+  if (source.kept) options.safety.ramp = options.safety.hold = 0;
+  if (source.kept) options.safety.rest_window = kRestWindow;
+  if (options.ramp) options.safety.ramp = *options.ramp;
+  if (options.hold) options.safety.hold = *options.hold;
+  options.safety.profile = profile_of(options, source.model, source.reference.provenance.profile);
   const SafeTable safe = judged(options, source, options.safety.profile);
   std::vector<std::string> others;
   if (!safe.report.safe) others = sufficient_profiles(options, source);
   const std::vector<std::string> refused = refusals(options, source, safe);
+  if (refused.empty() && (!safe.report.safe || !source.unfit.empty())) {
+    options.output = unsafe_name(options.output);
+    refuse_overwriting(context, options.output);
+  }
   if (refused.empty()) write_table(options, context, source, safe);
-  context.print(in_words(options, source, safe, refused));
+  context.print(in_words(options, source, safe, refused) + words_on_sequence(source, safe));
   if (!safe.report.safe)
     context.print("  judged by profile " + options.safety.profile + "; " +
                   (others.empty()
@@ -364,7 +597,7 @@ void export_table(ExportOptions options, Context& context) {
   if (options.format == "hoap" && !knows_torque(source))
     context.print(
         "  torque not checked, because a table has no torques; export the RUN to check them\n");
-  context.print_json(as_json(options, safe, others, refused));
+  context.print_json(as_json(options, source, safe, others, refused));
   context.exit_code = refused.empty() ? 0 : 1;
 }
 
@@ -374,8 +607,9 @@ void add_export(CLI::App& app, Context& context) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command =
       app.add_subcommand("export", "write a joint table of a run or pattern for the robot");
-  command->add_option("input", options->input, "Run folder, pattern or reference table.")
-      ->required()
+  command
+      ->add_option("input", options->input,
+                   "Run folder, pattern or reference table; with --sign-test a robot.")
       ->type_name("RUN_OR_PATTERN");
   std::vector<std::string> formats = {"csv", "json", "hoap", "gltf"};
   formats.insert(formats.end(), log_formats().begin(), log_formats().end());
@@ -386,14 +620,34 @@ void add_export(CLI::App& app, Context& context) {
               text::join(log_formats(), ", ") + ".")
       ->required()
       ->check(CLI::IsMember(formats));
-  command->add_option("-o,--out", options->output, "File to write.")->required()->type_name("FILE");
+  command->add_option("-o,--out", options->output, "File to write; with --sign-test a folder.")
+      ->required()
+      ->type_name("FILE");
+  command->add_flag("--sign-test", options->sign_test,
+                    "Write a slow, small motion of each joint of a robot, and a sheet with a "
+                    "picture of each, which shows the way the joint has to move.");
   command
-      ->add_option("--ramp", options->safety.ramp, "Shortest approach ramp before the motion [s].")
-      ->check(number_within(0.0, 60.0))
-      ->capture_default_str();
-  command->add_option("--hold", options->safety.hold, "How long the last posture is held [s].")
-      ->check(number_within(0.0, 60.0))
-      ->capture_default_str();
+      ->add_option("--ramp", options->ramp,
+                   "Shortest approach ramp before the motion (default: 2; 0 for an imported "
+                   "sequence whose motion is unchanged) [s].")
+      ->check(number_within(0.0, 60.0));
+  command
+      ->add_option("--hold", options->hold,
+                   "How long the last posture is held (default: 0.5; 0 as with --ramp) [s].")
+      ->check(number_within(0.0, 60.0));
+  CLI::Option* interval =
+      command
+          ->add_option("--interval", options->interval,
+                       "Time from row to row (default: that of the imported sequence, else the "
+                       "servo period of the robot). HOAP robots take 1, 2 or 10 [ms].")
+          ->check(number_within(0.1, 1000.0))
+          ->type_name("MS");
+  command->add_option("--rate", options->rate, "The same as rows per second [1/s].")
+      ->check(number_within(1.0, 10000.0))
+      ->type_name("HZ")
+      ->excludes(interval);
+  command->add_option("--layout", options->layout,
+                      "Layout of the sidecar for --format hoap (default: the first one).");
   command
       ->add_option(
           "--from", options->safety.from,
@@ -411,15 +665,25 @@ void add_export(CLI::App& app, Context& context) {
   command->add_flag("--pushed", options->pushed,
                     "Export the table of the run with its disturbances. The table says so.");
   command->add_flag("--force-unsafe", options->force_unsafe,
-                    "Write the table although it is unsafe. The table says so.");
+                    "Write the table although it is unsafe or unfit. Its head and its name, for "
+                    "example walk.UNSAFE.csv, say so.");
+  command
+      ->add_option("--servo", options->servo,
+                   "Servo for which the targets are made: ideal (the plain posture), lead (ahead "
+                   "by the lag of the profile's servos, default) or lead+sag (and against the sag "
+                   "under load).")
+      ->check(CLI::IsMember({"ideal", "lead", "lead+sag"}));
   command->footer(
       "Examples:\n"
       "  ayumi export out/ --format hoap -o walk_hoap.csv\n"
       "  ayumi export out/ --format csv --pushed -o pushed.csv\n"
       "  ayumi export out/ --format gltf -o walk.glb\n"
       "  ayumi export out/ --format npz --log open_loop -o fall.npz\n"
+      "  ayumi export hoap1 --sign-test --format hoap -o signs/\n"
       "  ayumi export patterns/hoap1_walk.json --format json --ramp 3 -o walk_table.json");
   command->callback([options, command, &context] {
+    if (options->input.empty() && !options->sign_test)
+      fail(ErrorCode::usage, "RUN_OR_PATTERN is missing; see ayumi export --help");
     if (is_log_format(options->format))
       export_log({options->input, options->format, options->output, options->log, options->robot},
                  *command, context);

@@ -1,5 +1,6 @@
 // Motions of other origin as patterns: HOAP sequences, tables of angles, Ayumi's own joint tables.
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -45,6 +46,8 @@ void print_import(const Context& context, const ImportCommand& options,
   context.print_json(Json{
       {"output", options.out},
       {"table", table_beside(options.out).string()},
+      {"sequence",
+       imported.sequence.empty() ? Json() : Json(sequence_beside(options.out).string())},
       {"format", imported.format},
       {"rows", imported.rows},
       {"duration_s", duration},
@@ -56,16 +59,23 @@ void print_import(const Context& context, const ImportCommand& options,
 void import_motion(const Context& context, const ImportCommand& options) {
   refuse_overwriting(context, options.out);
   refuse_overwriting(context, table_beside(options.out));
+  refuse_overwriting(context, sequence_beside(options.out));
   const RobotModel model = load_robot(options.robot, robot_search(context));
   const std::string name = options.file == "-" ? "standard input" : options.file;
-  const ImportedMotion imported =
-      read_motion(read_input(options.file), name, model, options.import);
+  ImportedMotion imported = read_motion(read_input(options.file), name, model, options.import);
   GroundedMotion motion =
       grounded(model, imported.motion, table_beside(options.out).filename().string());
   motion.pattern.name = "imported from " + fs::path(name).filename().string();
   motion.pattern.robot = robot_as_written(options.robot);
   motion.pattern.file = "imported";  // relative names hold from the working folder
-  write_pattern_and_table(options.out, motion.pattern, imported.filled, imported.caution);
+  if (!imported.sequence.empty()) {
+    motion.pattern.table->interval_ms = static_cast<int>(std::lround(1000 * imported.motion.dt));
+    imported.filled.push_back("the sequence is kept in " +
+                              sequence_beside(options.out).filename().string() +
+                              ": as long as the motion is unchanged, export writes its rows");
+  }
+  write_pattern_and_table(options.out, motion.pattern, imported.filled, imported.caution,
+                          imported.sequence);
   print_import(context, options, imported, motion);
 }
 
@@ -80,7 +90,7 @@ void add_import(CLI::App& app, Context& context) {
       "-o m03.json\n"
       "  ayumi import angles.csv --robot hoap1 --unit deg --rate 200 -o angles.json");
   static ImportCommand options;
-  static std::string unit = "rad";
+  static std::string unit = "rad", signs = "encoder";
   command->add_option("FILE", options.file, "Sequence or table; - is standard input.")->required();
   command->add_option("--robot", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
       ->required()
@@ -100,6 +110,12 @@ void add_import(CLI::App& app, Context& context) {
   command->add_option("--rate", options.import.rate, "Rate of a table without a time column [1/s].")
       ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
+  command
+      ->add_option("--signs", signs,
+                   "Signs of rows of radians in device order: those of the robot's encoders, or "
+                   "those of the joints.")
+      ->check(CLI::IsMember({"encoder", "joint"}))
+      ->capture_default_str();
   command->add_flag(
       "--commands", options.import.commands,
       "The angles are servo targets (as written by export): subtract the velocity lead. "
@@ -113,6 +129,7 @@ void add_import(CLI::App& app, Context& context) {
       ->type_name("DEG");
   command->callback([&context] {
     options.import.degrees = unit == "deg";
+    options.import.encoder_signs = signs == "encoder";
     import_motion(context, options);
   });
 }

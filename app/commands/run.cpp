@@ -21,6 +21,7 @@
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/render/snapshots.hpp"
 #include "ayumi/repair/repair.hpp"
+#include "ayumi/task/servo_table.hpp"
 #include "pattern_input.hpp"
 #include "repairing.hpp"
 #include "report_input.hpp"
@@ -176,7 +177,7 @@ void MainJob::simulate(const Task& input) {
 }
 
 void MainJob::export_tables(const Task& input) {
-  folder_.reference = extract_reference(input.robot, table_log());
+  folder_.reference = table_of_log(input.robot, input.profile, table_log(), ServoContent::lead);
   folder_.reference_caution = table_caution(input, table_log(), folder_.unfit);
   if (!options_.light) {
     write_file(output_->file("reference.json"),
@@ -184,7 +185,7 @@ void MainJob::export_tables(const Task& input) {
     note_file("reference.json");
   }
   if (&table_log() != &judged_log()) {
-    folder_.pushed = extract_reference(input.robot, judged_log());
+    folder_.pushed = table_of_log(input.robot, input.profile, judged_log(), ServoContent::lead);
     folder_.pushed_caution = table_caution(input, judged_log(), folder_.unfit);
   }
   write_hoap(input, table_log());
@@ -194,7 +195,9 @@ void MainJob::export_tables(const Task& input) {
 void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
   SafetyOptions safety;
   safety.profile = input.robot.limits().name;
-  const SafeTable safe = make_safe_run(input.robot, *folder_.reference, torques_of(log), safety);
+  const ReferenceTrajectory table =
+      table_of_log(input.robot, safety.profile, log, ServoContent::lead);
+  const SafeTable safe = make_safe_run(input.robot, table, torques_of(log), safety);
   folder_.sections.emplace_back("export", safety_json(safe.report));
   std::string text = options_.light ? "the logs contain the tables; ayumi export writes them"
                                     : "reference.csv, reference.json";

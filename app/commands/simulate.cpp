@@ -8,6 +8,7 @@
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/run/run_output.hpp"
+#include "ayumi/task/servo_table.hpp"
 #include "pattern_input.hpp"
 #include "simulation.hpp"
 
@@ -31,7 +32,8 @@ RunFolder run_of(const Task& input, const SimulationLog& log) {
   run.sections.emplace_back("simulate", simulation_json(log));
   run.unfit = unfit_reasons(judged, log);
   const bool pushed = !log.scenario.empty();
-  (pushed ? run.pushed : run.reference) = extract_reference(input.robot, log);
+  (pushed ? run.pushed : run.reference) =
+      table_of_log(input.robot, input.profile, log, ServoContent::lead);
   (pushed ? run.pushed_caution : run.reference_caution) = table_caution(input, log, run.unfit);
   return run;
 }

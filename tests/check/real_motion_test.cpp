@@ -286,14 +286,15 @@ TEST(HoapImport, AWalkRoundedToCountsPassesTheCheck) {
   }
 }
 
-// What a robot answers, and what other programs write in radians: no intervals.
+// What a robot answers, and what other programs write in radians: no intervals. Radians have the
+// signs of the encoders, which are negative here.
 TEST(HoapImport, BareRowsOfCountsOrRadians) {
   const int elbow = hoap1().find_dof("r_elbow"), knee = hoap1().find_dof("l_knee");
   std::string counts, radians;
   for (int k = 0; k < 12; ++k) {
     for (int m = 1; m <= 23; ++m) {
       counts += (m == 10 ? "2090" : m == 14 ? "-836" : m == 21 ? std::to_string(k % 3) : "0");
-      radians += (m == 10 ? "-0.17453292519943295" : m == 14 ? "0.069813170079773182" : "0");
+      radians += (m == 10 ? "0.17453292519943295" : m == 14 ? "-0.069813170079773182" : "0");
       counts += m < 23 ? "," : "\r\n";
       radians += m < 23 ? ", " : "\n";
     }

@@ -99,8 +99,11 @@ TEST_F(Export, UnsafeTablesAreRefused) {
   EXPECT_EQ(violation.at("limit"), 57);
   const Output forced = ayumi({"bad.csv", "--format", "hoap", "-o", "h.csv", "--force-unsafe"});
   EXPECT_EQ(forced.exit_code, 0);
-  EXPECT_NE(forced.out.find("unsafe: r_hip_yaw at 2.500 s"), std::string::npos) << forced.out;
-  EXPECT_TRUE(fs::exists(folder.path() / "h.csv"));
+  EXPECT_NE(forced.out.find("unsafe: r_hip_yaw at 2.500 s (pattern 0.500 s)"), std::string::npos)
+      << forced.out;
+  EXPECT_FALSE(fs::exists(folder.path() / "h.csv"));
+  EXPECT_TRUE(fs::exists(folder.path() / "h.UNSAFE.csv"));
+  EXPECT_TRUE(fs::exists(folder.path() / "h.UNSAFE.csv.txt"));
 }
 
 // HOAP-1 whose servos take a target every 2 ms.
@@ -199,6 +202,169 @@ TEST_F(Export, HoapNamesTheTorqueBeyondTheRobotsOwnMotors) {
     named = named || (v.at("kind") == "torque" && v.at("joint") == "r_knee" &&
                       v.at("limit") == 4.5 && v.at("value") > 4.5 && v.at("at_s") > 2);
   EXPECT_TRUE(named) << output.out;
+}
+
+// A sequence of HOAP-1 around its home posture: `tail` behind the motors, `end` of the lines. The
+// left elbow turns by a count in so many rows, also in the last one.
+std::string sequence(const std::string& interval, const std::string& tail, const std::string& end,
+                     int rows = 60, bool waist = false, double slowness = 10) {
+  const int home[20] = {0, 0, 3607,  9107,  -5500, 0, 18810,  -2090, 0, 5225,
+                        0, 0, -3607, -9107, 5500,  0, -18810, 2090,  0, -5225};
+  std::string text;
+  for (int k = 0; k < rows; ++k) {
+    text += interval + ",2";
+    for (int i = 0; i < 20; ++i)
+      text += i == 0 && k % 2 == 1
+                  ? ",-0"
+                  : "," + std::to_string(home[i] + (i == 19 ? static_cast<int>(k / slowness) : 0));
+    text += (waist ? ",418" : "") + tail + end;
+    if (k == 30 && interval == "2") text += "2,3,7,A,12" + end;
+  }
+  return text;
+}
+
+// What the import makes of a sequence, exported unchanged, is the sequence: to the byte.
+TEST_F(Export, ImportedSequencesComeBackToTheByte) {
+  struct Case {
+    const char* name;
+    std::string bytes;
+  };
+  std::string mixed = sequence("1", ",R,R,R", "\r\n");
+  mixed.replace(mixed.find("\r\n"), 2, "\n");
+  const std::string uneven = sequence("1", ",R,R,R", "\n") + sequence("10", ",R,R,R", "\n", 1);
+  const std::vector<Case> cases = {
+      {"1 ms", sequence("1", ",R,R,R", "\n")},
+      {"2 ms, CRLF, a general command", sequence("2", ",R,R,R", "\r\n")},
+      {"10 ms", sequence("10", ",R,R,R", "\n")},
+      {"blanks around R", sequence("1", ", R ,R ,R", "\n")},
+      {"columns of HOAP-2, R as its word", sequence("1", ",R,R,R,R", "\n", 60, true)},
+      {"columns of HOAP-3", sequence("2", ",75,60,R,R,R,R", "\r\n", 60, true)},
+      {"line ends of two kinds", mixed},
+      {"intervals that change", uneven},
+      {"no end of the last line",
+       sequence("1", ",R,R,R", "\n") + "1,2" + sequence("1", ",R,R,R", "", 1).substr(3)},
+      {"moving at its ends", sequence("1", ",R,R,R", "\n", 60, false, 0.2)},
+      {"five rows", sequence("1", ",R,R,R", "\n", 5)}};
+  for (const Case& c : cases)
+    for (const bool commands : {false, true}) {
+      write(folder.path() / "s.csv", c.bytes);
+      std::vector<std::string> words = {"import", "s.csv",  "--robot", "hoap1",
+                                        "-o",     "i.json", "-q",      "--force"};
+      if (commands) words.emplace_back("--commands");
+      const Output imported = run_program(words, folder.path());
+      ASSERT_EQ(imported.exit_code, 0) << c.name << imported.err;
+      const fs::path safe = folder.path() / "b.csv", unsafe = folder.path() / "b.UNSAFE.csv";
+      fs::remove(safe);
+      fs::remove(unsafe);
+      const Output output =
+          ayumi({"i.json", "--format", "hoap", "-o", "b.csv", "--force-unsafe", "--force"});
+      EXPECT_TRUE(contents(fs::exists(unsafe) ? unsafe : safe) == c.bytes)
+          << c.name << output.err << output.out;
+    }
+}
+
+// With a ramp and a hold, the rows around those of the file have its columns and interval.
+TEST_F(Export, RampAndHoldAroundAnImportedSequence) {
+  const std::string bytes = sequence("2", ",R,R,R", "\r\n");
+  write(folder.path() / "s.csv", bytes);
+  ASSERT_EQ(
+      run_program({"import", "s.csv", "--robot", "hoap1", "-o", "i.json"}, folder.path()).exit_code,
+      0);
+  const Output output = ayumi(
+      {"i.json", "--format", "hoap", "-o", "b.csv", "--ramp", "1", "--hold", "0.1", "--json"});
+  ASSERT_EQ(output.exit_code, 0) << output.out << output.err;
+  const auto json = nlohmann::json::parse(output.out);
+  EXPECT_EQ(json.at("interval_ms"), 2);
+  EXPECT_EQ(json.at("imported_rows_unchanged"), true);
+  const std::string made = contents(folder.path() / "b.csv");
+  const size_t at = made.find(bytes);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(line_count(made.substr(0, at)), 500);
+  EXPECT_EQ(line_count(made.substr(at + bytes.size())), 50);
+  for (const std::string& line : lines("b.csv")) EXPECT_TRUE(line.ends_with('\r')) << line;
+}
+
+// A motion that was changed has rows of its own, in the columns of the robot.
+TEST_F(Export, AChangedImportedSequenceIsComputed) {
+  write(folder.path() / "s.csv", sequence("2", ",75,60,R,R,R,R", "\n", 60, true));
+  ASSERT_EQ(
+      run_program({"import", "s.csv", "--robot", "hoap1", "-o", "i.json"}, folder.path()).exit_code,
+      0);
+  std::string table = contents(folder.path() / "i.csv");
+  const size_t angle = table.find(',', table.rfind('\n', table.size() - 2)) + 1;
+  table.replace(angle, table.find(',', angle) - angle, "0.01");  // r_hip_yaw in the last row
+  write(folder.path() / "i.csv", table);
+  const Output output =
+      ayumi({"i.json", "--format", "hoap", "-o", "b.csv", "--force-unsafe", "--json"});
+  const auto json = nlohmann::json::parse(output.out);
+  EXPECT_EQ(json.at("imported_rows_unchanged"), false);
+  EXPECT_EQ(json.at("interval_ms"), 2);
+  write(folder.path() / "i.sequence.csv", "1,2\n");
+  EXPECT_EQ(
+      run_program({"import", "s.csv", "--robot", "hoap1", "-o", "i.json"}, folder.path()).exit_code,
+      3);  // it would overwrite
+}
+
+TEST_F(Export, AKeptSequenceThatWasChangedIsRefused) {
+  write(folder.path() / "s.csv", sequence("1", ",R,R,R", "\n"));
+  ASSERT_EQ(
+      run_program({"import", "s.csv", "--robot", "hoap1", "-o", "i.json"}, folder.path()).exit_code,
+      0);
+  write(folder.path() / "i.sequence.csv", sequence("1", ",R,R,R", "\n", 59));
+  const Output output = ayumi({"i.json", "--format", "hoap", "-o", "b.csv"});
+  EXPECT_EQ(output.exit_code, 3);
+  EXPECT_NE(output.err.find("no longer the sequence that was imported"), std::string::npos)
+      << output.err;
+  EXPECT_FALSE(fs::exists(folder.path() / "b.csv"));
+}
+
+// HOAP takes a row each 1, 2 or 10 ms; other tables have any rate. Both clocks are named.
+TEST_F(Export, RatesAndClocks) {
+  const Output two = ayumi({"p.json", "--format", "hoap", "-o", "two.csv", "--interval", "2"});
+  ASSERT_EQ(two.exit_code, 0) << two.err << two.out;
+  EXPECT_NE(two.out.find("0 s of the pattern is 2 s of the table"), std::string::npos) << two.out;
+  EXPECT_NE(two.out.find(" s (pattern "), std::string::npos) << two.out;
+  const auto rows = lines("two.csv");
+  EXPECT_EQ(rows.size(), 1000u + 1001 + 250);
+  ASSERT_EQ(ayumi({"p.json", "--format", "hoap", "-o", "one.csv"}).exit_code, 0);
+  const auto fine = lines("one.csv");
+  for (size_t k = 1000; k < 2001; ++k)  // the motion: every second row
+    EXPECT_EQ(rows[k].substr(1), fine[2 * k].substr(1));
+  const Output ten = ayumi({"p.json", "--format", "hoap", "-o", "t.csv", "--rate", "100"});
+  EXPECT_EQ(ten.exit_code, 0) << ten.err;
+  EXPECT_EQ(cells(lines("t.csv").front()).front(), "10");
+  const Output odd = ayumi({"p.json", "--format", "hoap", "-o", "o.csv", "--interval", "5"});
+  EXPECT_EQ(odd.exit_code, 3);
+  EXPECT_NE(odd.err.find("the layout 'HOAP-1' of 'hoap1' has 1, 2, 10 ms"), std::string::npos)
+      << odd.err;
+  EXPECT_EQ(ayumi({"p.json", "--format", "csv", "-o", "o.csv", "--interval", "5"}).exit_code, 0);
+  EXPECT_EQ(ayumi({"p.json", "--format", "hoap", "-o", "x.csv", "--interval", "0"}).exit_code, 2);
+  EXPECT_EQ(ayumi({"p.json", "--format", "hoap", "-o", "x.csv", "--layout", "HOAP1"}).exit_code, 3);
+}
+
+// The recorded sequences of HOAP-2 and HOAP-3.
+TEST_F(Export, RecordedSequencesComeBackToTheByte) {
+  const fs::path data = AYUMI_SOURCE_DIR "/../shared/data";
+  if (!fs::exists(data / "hoap3/motions")) GTEST_SKIP() << "no recorded sequences in " << data;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(data / "hoap3/motions"))
+    files.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(data / "hoap2"))
+    if (entry.path().string().find("excerpt") != std::string::npos) files.push_back(entry.path());
+  const std::string path = (data / "hoap3/hoap3_description").string();
+  for (const fs::path& file : files) {
+    const Output imported = run_program(
+        {"import", file.string(), "--robot", AYUMI_SOURCE_DIR "/examples/hoap3/robot.json",
+         "--robot-path", path, "-o", "i.json", "-q", "--force"},
+        folder.path());
+    ASSERT_EQ(imported.exit_code, 0) << file << imported.err;
+    ayumi({"i.json", "--robot-path", path, "--format", "hoap", "-o", "b.csv", "--force-unsafe",
+           "--force"});
+    const fs::path unsafe = folder.path() / "b.UNSAFE.csv", safe = folder.path() / "b.csv";
+    EXPECT_TRUE(contents(fs::exists(unsafe) ? unsafe : safe) == contents(file)) << file;
+    fs::remove(unsafe);
+    fs::remove(safe);
+  }
 }
 
 }  // namespace

@@ -80,6 +80,56 @@ TEST_F(Run, TheTableIsThatOfTheRunWithoutDisturbances) {
             std::string::npos);
 }
 
+// Whatever disturbs the run, the tables for the robot are those of the run without it.
+TEST_F(Run, TheTablesOfManyDisturbedRunsAreThoseOfTheUndisturbedRun) {
+  ASSERT_EQ(run("calm.json").exit_code, 0);
+  const std::string table = rows("out/reference.csv"), hoap = contents(folder / "out/hoap.csv");
+  const std::vector<std::string> scenarios = {
+      R"({ "type": "impulse", "at": 0.2, "duration": 0.02, "direction": [1, 0, 0], "impulse": 0.4 })",
+      R"({ "type": "impulse", "at": 0.7, "duration": 0.05, "direction": [-1, 0, 0], "impulse": 0.4 })",
+      R"({ "type": "impulse", "at": 0.4, "duration": 0.02, "direction": [0, -1, 0], "impulse": 0.4 })",
+      R"({ "type": "payload", "at": 0, "mass": 0.2, "on": "torso" })",
+      R"({ "type": "latency", "at": 0, "latency": 0.004 })",
+      kPush + "," +
+          R"({ "type": "impulse", "at": 1.0, "duration": 0.02, "direction": [1, 0, 0], "impulse": 0.3 })"};
+  for (const std::string& scenario : scenarios) {
+    fs::remove_all(folder / "out");
+    write(folder / "p.json", arm_up(scenario));
+    const Output pushed = run("p.json");
+    ASSERT_LE(pushed.exit_code, 1) << scenario << pushed.err;
+    EXPECT_TRUE(rows("out/reference.csv") == table) << scenario;
+    EXPECT_TRUE(rows("out/reference_pushed.csv") != table) << scenario;
+    EXPECT_NE(contents(folder / "out/reference_pushed.csv").find("# disturbances: "),
+              std::string::npos);
+    if (fs::exists(folder / "out/hoap.csv")) {
+      EXPECT_TRUE(contents(folder / "out/hoap.csv") == hoap) << scenario;
+    }
+  }
+}
+
+// A table says which servo it was made for, and may be made for another.
+TEST_F(Run, TablesAreMadeForAServo) {
+  ASSERT_EQ(run("calm.json").exit_code, 0);
+  EXPECT_NE(contents(folder / "out/reference.csv").find("\n# servo: lead\n# servo_profile: hoap1"),
+            std::string::npos);
+  std::vector<std::string> made;
+  for (const std::string input : {"out", "calm.json"})
+    for (const std::string servo : {"ideal", "lead", "lead+sag"}) {
+      const Output out = ayumi({"export", input, "--format", "csv", "-o", "t", "-q", "--force",
+                                "--servo", servo, "--ramp", "0", "--hold", "0"});
+      ASSERT_EQ(out.exit_code, 0) << out.err << out.out;
+      EXPECT_NE(contents(folder / "t").find("# servo: " + servo + "\n"), std::string::npos);
+      made.push_back(rows("t"));
+    }
+  ASSERT_EQ(exported({"--ramp", "0", "--hold", "0", "--force"}, "csv").exit_code, 0);
+  EXPECT_TRUE(rows("t") == made[1]);  // the lead is the default
+  EXPECT_TRUE(made[0] != made[1] && made[1] != made[2] && made[0] != made[2]);
+  EXPECT_TRUE(made[3] != made[4] && made[4] != made[5] && made[3] != made[5]);
+  const Output table =
+      ayumi({"export", "out/reference.csv", "--format", "csv", "-o", "u", "--servo", "ideal"});
+  EXPECT_EQ(table.exit_code, 2);
+}
+
 TEST_F(Run, TheTableOfAPushedRunIsExportedWithPushedOnlyAndSaysSo) {
   ASSERT_EQ(run("pushed.json").exit_code, 0);
   ASSERT_EQ(exported({}, "csv").exit_code, 0);
@@ -145,10 +195,11 @@ TEST_F(Run, ARunThatFellGivesNoTableForARobot) {
   EXPECT_FALSE(fs::exists(folder / "t"));
   const Output forced = exported({"--force-unsafe"}, "csv");
   EXPECT_EQ(forced.exit_code, 0);
-  EXPECT_NE(contents(folder / "t").find("# unfit: under its disturbances the run fell at"),
+  EXPECT_FALSE(fs::exists(folder / "t"));  // the name says it too
+  EXPECT_NE(contents(folder / "t.UNSAFE").find("# unfit: under its disturbances the run fell at"),
             std::string::npos);
   // The forced table is still marked, and refused as it stands.
-  const Output again = ayumi({"export", "t", "--format", "hoap", "-o", "h.csv", "-q"});
+  const Output again = ayumi({"export", "t.UNSAFE", "--format", "hoap", "-o", "h.csv", "-q"});
   EXPECT_NE(again.exit_code, 0);
 }
 

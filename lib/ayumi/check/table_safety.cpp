@@ -149,10 +149,13 @@ void judge_ends(const ReferenceTrajectory& motion, const SafetyOptions& options,
                 SafetyReport& report, Violations& violations) {
   const size_t last = motion.rows.size() - 1;
   if (last == 0) return;
+  const auto window = static_cast<size_t>(std::lround(options.rest_window / motion.dt));
+  const size_t span = std::clamp<size_t>(window, 1, last);
+  const double time = static_cast<double>(span) * motion.dt;
   for (size_t j = 0; j < motion.joints.size(); ++j) {
     const auto at = [&](size_t k) { return motion.rows[k].theta[static_cast<Eigen::Index>(j)]; };
-    const double start = std::abs(at(1) - at(0)) / motion.dt;
-    const double end = std::abs(at(last) - at(last - 1)) / motion.dt;
+    const double start = std::abs(at(span) - at(0)) / time;
+    const double end = std::abs(at(last) - at(last - span)) / time;
     report.start_speed = std::max(report.start_speed, start);
     report.end_speed = std::max(report.end_speed, end);
     if (start > options.rest_speed)
@@ -216,10 +219,18 @@ Eigen::VectorXd speed_limits(const RobotModel& model, const std::vector<Eigen::I
 
 }  // namespace
 
+std::string on_both_clocks(double t, double begin, double end) {
+  constexpr double kSlack = 1e-9;  // Definition: rounding of whole multiples of a tick [s]
+  const std::string pattern = t < begin - kSlack ? "ramp"
+                              : t > end + kSlack ? "hold"
+                                                 : "pattern " + text::fixed(t - begin, 3) + " s";
+  return text::fixed(t, 3) + " s (" + pattern + ")";
+}
+
 std::string text_of(const SafetyViolation& v) {
-  return v.joint + " at " + text::fixed(v.t, 3) + " s: " + v.kind + " " + text::brief(v.value, 6) +
-         " " + v.unit + ", limit " + text::brief(v.limit, 6) + " (" + std::to_string(v.rows) +
-         (v.rows == 1 ? " row)" : " rows)");
+  return v.joint + " at " + on_both_clocks(v.t, v.begin, v.end) + ": " + v.kind + " " +
+         text::brief(v.value, 6) + " " + v.unit + ", limit " + text::brief(v.limit, 6) + " (" +
+         std::to_string(v.rows) + (v.rows == 1 ? " row)" : " rows)");
 }
 
 std::vector<SafetyViolation> torque_violations(const RobotModel& model,
@@ -301,17 +312,21 @@ SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& referenc
   SafetyReport& report = result.report;
   report.ramp = static_cast<double>(result.first) * reference.dt;
   report.hold = static_cast<double>(hold) * reference.dt;
+  report.motion = static_cast<double>(reference.rows.size() - 1) * reference.dt;
   Violations violations;
   judge_rows(model, result.table, options, report, violations);
   judge_ends(reference, options, report, violations);
-  report.violations = violations.list();
-  report.safe = report.violations.empty();
+  add_violations(result, violations.list());
   return result;
 }
 
 void add_violations(SafeTable& safe, const std::vector<SafetyViolation>& violations) {
   std::vector<SafetyViolation>& list = safe.report.violations;
-  list.insert(list.end(), violations.begin(), violations.end());
+  for (const SafetyViolation& violation : violations) {
+    list.push_back(violation);
+    list.back().begin = safe.report.ramp;
+    list.back().end = safe.report.ramp + safe.report.motion;
+  }
   safe.report.safe = list.empty();
 }
 

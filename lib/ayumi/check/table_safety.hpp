@@ -18,6 +18,7 @@ struct SafetyOptions {
   double hold = 0.5;          ///< the last row is repeated this long [s]
   double counts_per_ms = 57;  ///< the motor board's own speed cap
   double rest_speed = 0.1;    ///< start and end count as rest below this [rad/s]
+  double rest_window = 0;     ///< mean over so long; 0: from one row to the next [s]
 };
 
 /// One way in which a table is unsafe: its worst instant.
@@ -28,14 +29,20 @@ struct SafetyViolation {
   double value = 0, limit = 0;  ///< in `unit`
   std::string unit;             ///< "rad", "counts", "rad/s", "N m"
   int rows = 0;                 ///< how many rows break this limit
+  double begin = 0, end = 0;    ///< of the motion, in the time of the table [s]
 };
 
-/// "l_knee at 1.234 s: step 61 counts exceeds 57 (3 rows)"
+/// A time of a table on both clocks: "3.234 s (pattern 1.234 s)"; where the motion does not last
+/// from `begin` to `end`, "1.234 s (ramp)" or "9.500 s (hold)".
+std::string on_both_clocks(double t, double begin, double end);
+
+/// "l_knee at 3.234 s (pattern 1.234 s): step 61 counts, limit 57 (3 rows)"
 std::string text_of(const SafetyViolation& violation);
 
 struct SafetyReport {
   bool safe = true;
   double ramp = 0, hold = 0;              ///< as laid around the motion [s]
+  double motion = 0;                      ///< duration of the motion between them [s]
   double max_step_ratio = 0;              ///< step / what one tick allows
   std::string worst_joint;                ///< of max_step_ratio
   double worst_at = 0;                    ///< [s]

@@ -112,6 +112,21 @@ struct EncoderDescription {
   double counts_per_degree = 0;  ///< signed: the sign of the joint's positive direction
 };
 
+/// Columns of a file with which the robot's own programs exchange targets or measured angles: one
+/// row per frame, without a head row.
+struct SequenceLayout {
+  std::string name;
+  /// Columns around those of the motors: "interval" (milliseconds to the next row, first column
+  /// only), a fixed text ("2", "60", "R"), or "*" for anything, which can be read only.
+  std::vector<std::string> before, after;
+  int motors = 0;                 ///< columns of the motors, in the order of devices from 1
+  bool radians = false;           ///< angles in radians with the signs of the encoders, not counts
+  std::vector<int> intervals_ms;  ///< intervals that the robot takes [ms]; empty: any
+
+  bool has_interval() const { return !before.empty() && before.front() == "interval"; }
+  size_t columns() const { return before.size() + static_cast<size_t>(motors) + after.size(); }
+};
+
 /// A foot: the polygon of its sole.
 struct SoleDescription {
   std::string link;  ///< foot link
@@ -155,6 +170,7 @@ struct RobotDescription {
   std::map<std::string, ServoDescription> servos;                 ///< by joint name
   std::vector<ActuatorProfile> profiles;                          ///< the first is the default
   std::map<std::string, EncoderDescription> encoders;
+  std::vector<SequenceLayout> layouts;  ///< the first with an interval is the one that is written
   SensorDescription sensors;
   ControlDefaults control;
   double soft_limit_margin = 0;  ///< inside the position limits [rad]

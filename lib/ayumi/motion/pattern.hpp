@@ -71,16 +71,25 @@ struct Keyframe {
   std::string place;                               ///< its place in the file, for messages
 };
 
+/// The file of targets from which a table was imported, kept beside the table.
+struct KeptSequence {
+  std::string file;          ///< as the head of the table names it, or an absolute path
+  std::string sha256;        ///< of its bytes
+  std::string theta_sha256;  ///< of the angles that the import made of it (DenseTable::theta)
+};
+
 /// A sampled motion in a file beside the pattern: all columns of the file, at a fixed rate.
 struct DenseTable {
-  std::string file;                       ///< as the pattern names it
-  double dt = 0.001;                      ///< [s]
-  std::vector<std::string> joints;        ///< columns of theta
-  Eigen::MatrixXd theta;                  ///< rows x joints [rad]
-  bool commands = false;                  ///< theta are servo targets, not the posture
-  std::vector<BasePose> base;             ///< empty or one per row
-  std::vector<Eigen::Vector3d> cog, zmp;  ///< empty or one per row, world [m]
-  std::vector<double> fz;                 ///< empty or one per row [N]
+  std::string file;                           ///< as the pattern names it
+  double dt = 0.001;                          ///< [s]
+  std::vector<std::string> joints;            ///< columns of theta
+  Eigen::MatrixXd theta;                      ///< rows x joints [rad]
+  bool commands = false;                      ///< theta are servo targets, not the posture
+  std::vector<BasePose> base;                 ///< empty or one per row
+  std::vector<Eigen::Vector3d> cog, zmp;      ///< empty or one per row, world [m]
+  std::vector<double> fz;                     ///< empty or one per row [N]
+  std::optional<KeptSequence> sequence = {};  ///< of an imported table
+  int interval_ms = 0;  ///< from row to row of the file that was imported; 0: none was [ms]
 };
 
 /// A smooth change that is added to the sampled motion, as a repair writes it: uniform cubic

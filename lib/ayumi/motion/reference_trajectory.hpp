@@ -15,6 +15,15 @@ struct Provenance {
   std::string robot, robot_sha256, pattern, pattern_sha256, profile, controller, command_line;
 };
 
+/// The servo that a table was made for.
+struct TableServo {
+  std::string content;  ///< "ideal" (the posture), "lead" or "lead+sag"; "" where it is not known
+  std::string profile;  ///< whose servos they are
+  /// Of the joints in the order of the columns, or one number for all of them: transport delay, and
+  /// time by which a joint is behind its target [s].
+  std::string delay, lag;
+};
+
 struct ReferenceRow {
   Eigen::VectorXd theta;                          ///< servo targets, joints order [rad]
   BasePose base;                                  ///< planned or reference base, world
@@ -29,6 +38,11 @@ struct ReferenceTrajectory {
   std::vector<std::string> joints;  ///< columns of theta
   std::vector<ReferenceRow> rows;   ///< row k at k dt
   Provenance provenance;
+  TableServo servo = {};
 };
+
+/// The table at another rate, straight between its rows; where the last row is not on the new
+/// ticks, it is the row after them.
+ReferenceTrajectory resampled(const ReferenceTrajectory& table, double dt);
 
 }  // namespace ayumi

@@ -67,6 +67,15 @@ std::string export_words(const ExportNote& note) {
   return words + "</ul>\n";
 }
 
+/// Which of the runs the tables are from, where the runs of this page were disturbed.
+std::string source_of_tables(const SimulationLog& log) {
+  if (log.scenario.empty()) return "";
+  return "<p>The tables <code>reference.csv</code> and <code>hoap.csv</code> are from the run "
+         "without the disturbances, which this page does not show. "
+         "<code>reference_pushed.csv</code> is from the disturbed run and contains the reactions "
+         "to the disturbances: it is not for a robot.</p>\n";
+}
+
 std::string margin(double metres) {
   return millimetres(std::abs(metres)) + (metres < 0 ? " mm outside" : " mm inside");
 }
@@ -145,7 +154,10 @@ std::string verdict_section(const ReportInput& input) {
                                                      : "inconsistent");
   out += ".</p>\n" + table(run_table(input));
   if (input.results.repair) out += repair_words(*input.results.repair);
-  if (input.results.safety) out += export_words(*input.results.safety);
+  if (input.results.safety) {
+    out += export_words(*input.results.safety);
+    out += source_of_tables(*input.runs.back().log);
+  }
   return section("verdict",
                  stands && (consistent || repaired) ? "Verdict: good" : "Verdict: not good", out);
 }

@@ -1,36 +1,82 @@
 #include "ayumi/io/formats/hoap.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <string_view>
+#include <limits>
+#include <numeric>
+#include <optional>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 
 namespace ayumi {
 
 namespace {
 
-class SequenceParser {
- public:
-  SequenceParser(const std::string& bytes, const std::string& file, const HoapLayout& layout)
-      : rest_(bytes), file_(file), layout_(layout) {}
+constexpr double kRadiansPerDegree = EIGEN_PI / 180;  // Definition
+constexpr int kLongestInterval = 60000;               // Definition: a minute [ms]
 
-  HoapSequence whole() {
+std::optional<double> any_number(std::string_view cell) {
+  double value = 0;
+  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+bool is_whole(std::string_view cell) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc() && end == cell.data() + cell.size();
+}
+
+bool all_numbers(const std::vector<std::string_view>& cells) {
+  return std::all_of(cells.begin(), cells.end(),
+                     [](std::string_view cell) { return any_number(cell).has_value(); });
+}
+
+bool is_row_of_commands(const std::vector<std::string_view>& cells) {
+  return cells.size() > 2 && is_whole(cells[0]) && (cells[1] == "2" || cells[1] == "3");
+}
+
+int devices_of(const RobotModel& model) {
+  int most = 0;
+  for (const Dof& dof : model.dofs()) most = std::max(most, dof.encoder.device);
+  return most;
+}
+
+// "25 (HOAP-1), 27 (HOAP-2)"
+std::string list_of(const std::vector<SequenceLayout>& layouts, bool with_interval) {
+  std::vector<std::string> words;
+  for (const SequenceLayout& layout : layouts)
+    if (layout.has_interval() == with_interval)
+      words.push_back(std::to_string(layout.columns()) + " (" + layout.name + ")");
+  return text::join(words, ", ");
+}
+
+class Reader {
+ public:
+  Reader(const std::string& bytes, const std::string& file, const RobotModel& model,
+         int interval_ms)
+      : rest_(bytes), file_(file), layouts_(sequence_layouts(model)), given_(interval_ms) {
+    const size_t end = bytes.find('\n');
+    if (end != std::string::npos && end > 0 && bytes[end - 1] == '\r') result_.line_end = "\r\n";
+  }
+
+  HoapFile whole() {
     while (!rest_.empty()) {
       const std::string_view line = take_line(rest_);
       ++line_;
-      if (!line.empty()) row(line);
+      if (!line.empty()) read(line);
     }
-    if (counts_.empty()) fail(ErrorCode::bad_file, file_ + ": the file has no row of a sequence");
-    HoapSequence sequence;
-    sequence.interval_ms = interval_;
-    sequence.counts =
-        Eigen::Map<const Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-            counts_.data(), static_cast<Eigen::Index>(counts_.size()) / layout_.motors,
-            layout_.motors);
-    return sequence;
+    if (result_.rows.empty())
+      fail(ErrorCode::bad_file, file_ + ": no row with targets for the motors");
+    if (bare_) set_bare_times();
+    set_tick();
+    return std::move(result_);
   }
 
  private:
@@ -38,125 +84,301 @@ class SequenceParser {
     fail(ErrorCode::bad_file, file_ + ":" + std::to_string(line_) + ": " + reason);
   }
 
-  void row(std::string_view line) {
+  void read(std::string_view line) {
     const std::vector<std::string_view> cells = cells_of(line);
-    if (cells.size() > 1 && cells[1] != "2")
-      stop("command '" + std::string(cells[1].substr(0, 16)) +
-           "': only fixed commands (2) are allowed here; `ayumi import` also reads general "
-           "commands (3)");
-    if (cells.size() != static_cast<size_t>(layout_.columns()))
-      stop(std::to_string(cells.size()) + " columns, but sequences of this robot have " +
-           std::to_string(layout_.columns()) + " (interval, 2, " + std::to_string(layout_.motors) +
-           " motors, " + std::to_string(layout_.rc_words + layout_.requests) + " more)");
-    const int interval = whole_number(cells[0], 1);
-    if (interval < 1) stop("an interval of " + std::to_string(interval) + " ms");
-    if (!counts_.empty() && interval != interval_)
-      stop("the interval changes from " + std::to_string(interval_) + " to " +
-           std::to_string(interval) + " ms; a fixed rate is needed");
-    interval_ = interval;
-    for (int m = 0; m < layout_.motors; ++m)
-      counts_.push_back(whole_number(cells[static_cast<size_t>(2 + m)], 3 + m));
+    if (result_.rows.empty() && result_.general_commands == 0)
+      bare_ = all_numbers(cells) && (is_bare(cells.size()) || !is_row_of_commands(cells));
+    if (bare_) return read_bare(cells);
+    int interval = 0;
+    const auto [end, error] =
+        std::from_chars(cells[0].data(), cells[0].data() + cells[0].size(), interval);
+    if (error != std::errc() || end != cells[0].data() + cells[0].size() || interval < 1 ||
+        interval > kLongestInterval)
+      stop("'" + std::string(cells[0].substr(0, 24)) + "' is not an interval in milliseconds");
+    if (cells.size() < 3 || (cells[1] != "2" && cells[1] != "3"))
+      stop("expected an interval, then 2 (targets) or 3 (a command to one device)");
+    if (cells[1] == "3")
+      ++result_.general_commands;
+    else
+      read_targets(cells, line);
+    now_ += interval;
+    if (now_ > std::numeric_limits<int>::max() / 2) stop("the sequence lasts longer than 12 days");
   }
 
-  int whole_number(std::string_view cell, int column) const {
-    int value = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc() || end != cell.data() + cell.size())
-      stop("column " + std::to_string(column) + ": '" + std::string(cell.substr(0, 24)) +
-           "' is not a whole number");
-    if (value < -32768 || value > 32767)
-      stop("column " + std::to_string(column) + ": " + std::to_string(value) +
-           " does not fit into 16 bits");
-    return value;
+  bool is_bare(size_t columns) const {
+    return std::any_of(layouts_.begin(), layouts_.end(), [&](const SequenceLayout& layout) {
+      return !layout.has_interval() && layout.columns() == columns;
+    });
+  }
+
+  void find_layout(size_t columns, bool with_interval) {
+    if (!result_.rows.empty()) {
+      if (columns != result_.layout.columns())
+        stop(std::to_string(columns) + " columns, but the rows before have " +
+             std::to_string(result_.layout.columns()));
+      return;
+    }
+    for (const SequenceLayout& layout : layouts_)
+      if (layout.columns() == columns && layout.has_interval() == with_interval) {
+        result_.layout = layout;
+        return;
+      }
+    stop(std::to_string(columns) + " columns; " +
+         (with_interval ? "sequences" : "rows without an interval") + " of this robot have " +
+         list_of(layouts_, with_interval) + "; \"layouts\" of its sidecar names them");
+  }
+
+  void read_targets(const std::vector<std::string_view>& cells, std::string_view line) {
+    find_layout(cells.size(), true);
+    HoapRow row{now_, {}};
+    const size_t begin = result_.layout.before.size();
+    const auto motors = static_cast<size_t>(result_.layout.motors);
+    for (size_t m = 0; m < motors; ++m) {
+      const std::string_view cell = cells[begin + m];
+      const auto count = any_number(cell);
+      if (!count || !is_whole(cell) || *count < -32768 || *count > 32767)
+        stop("column " + std::to_string(begin + m + 1) + ": '" + std::string(cell.substr(0, 24)) +
+             "' is not a count of 16 bits");
+      row.values.push_back(*count);
+    }
+    size_t at = 0;  // behind the comma after the last motor
+    for (size_t comma = 0; comma < begin + motors && at != std::string_view::npos; ++comma)
+      at = line.find(',', at == 0 ? 0 : at + 1);
+    result_.last_words = at == std::string_view::npos ? "" : std::string(line.substr(at));
+    if (result_.rows.empty()) result_.first_words = result_.last_words;
+    result_.rows.push_back(std::move(row));
+  }
+
+  void read_bare(const std::vector<std::string_view>& cells) {
+    find_layout(cells.size(), false);
+    HoapRow row{0, {}};
+    const size_t begin = result_.layout.before.size();
+    for (size_t m = 0; m < static_cast<size_t>(result_.layout.motors); ++m) {
+      const std::string_view cell = cells[begin + m];
+      const auto value = any_number(cell);
+      if (!value || std::abs(*value) > 32768)
+        stop("column " + std::to_string(begin + m + 1) + ": '" + std::string(cell.substr(0, 24)) +
+             "' is neither a count of 16 bits nor an angle");
+      fraction_ = fraction_ || *value != std::round(*value);
+      row.values.push_back(*value);
+    }
+    result_.rows.push_back(std::move(row));
+  }
+
+  // A fraction anywhere: the values are angles. The layout is then the one of angles.
+  void set_bare_times() {
+    const size_t columns = result_.layout.columns();
+    const SequenceLayout* found = nullptr;
+    for (const SequenceLayout& layout : layouts_)
+      if (!found && !layout.has_interval() && layout.columns() == columns &&
+          layout.radians == fraction_)
+        found = &layout;
+    if (!found)
+      fail(ErrorCode::bad_file,
+           file_ + (fraction_ ? ": the values are no whole numbers" : ": the values are counts") +
+               ", but no layout of this robot without an interval has " + std::to_string(columns) +
+               " columns in " + (fraction_ ? "radians" : "counts"));
+    result_.layout = *found;
+    const int interval = given_ > 0                    ? given_
+                         : found->intervals_ms.empty() ? 1
+                                                       : found->intervals_ms.front();
+    for (size_t r = 0; r < result_.rows.size(); ++r)
+      result_.rows[r].at = static_cast<int>(r) * interval;
+  }
+
+  void set_tick() {
+    int tick = 0;
+    for (size_t r = 1; r < result_.rows.size(); ++r) {
+      const int step = result_.rows[r].at - result_.rows[r - 1].at;
+      result_.even = result_.even && (tick == 0 || step == tick);
+      tick = std::gcd(tick, step);
+    }
+    result_.tick_ms = std::max(tick, 1);
   }
 
   std::string_view rest_;
   const std::string& file_;
-  const HoapLayout& layout_;
-  std::vector<int> counts_;
-  int interval_ = 1;
+  const std::vector<SequenceLayout> layouts_;
+  const int given_;
+  HoapFile result_;
+  bool bare_ = false, fraction_ = false;
+  int now_ = 0;
   size_t line_ = 0;
 };
 
-// Dof of each device, in device order.
-std::vector<int> dofs_by_device(const RobotModel& model) {
-  std::vector<int> dofs(static_cast<size_t>(model.dof_count()), -1);
+// Dof of each device of a layout, in device order.
+std::vector<int> dofs_by_device(const RobotModel& model, const SequenceLayout& layout) {
+  const std::string need = "; the layout '" + layout.name + "' needs each of the devices 1 to " +
+                           std::to_string(layout.motors) + " once, with counts per degree";
+  std::vector<int> dofs(static_cast<size_t>(layout.motors), -1);
   for (int dof = 0; dof < model.dof_count(); ++dof) {
     const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
     const int device = joint.encoder.device;
-    if (device < 1 || device > model.dof_count() || dofs[static_cast<size_t>(device - 1)] >= 0 ||
+    if (device < 1 || device > layout.motors || dofs[static_cast<size_t>(device - 1)] >= 0 ||
         joint.encoder.counts_per_degree == 0)
-      fail(ErrorCode::bad_model,
-           "robot '" + model.name() + "': joint '" + joint.name + "' has encoder device " +
-               std::to_string(device) + "; a HOAP sequence needs each of 1 to " +
-               std::to_string(model.dof_count()) + " once, with counts per degree");
+      fail(ErrorCode::bad_model, "robot '" + model.name() + "': joint '" + joint.name +
+                                     "' has encoder device " + std::to_string(device) + need);
     dofs[static_cast<size_t>(device - 1)] = dof;
   }
+  for (size_t m = 0; m < dofs.size(); ++m)
+    if (dofs[m] < 0)
+      fail(ErrorCode::bad_model, "robot '" + model.name() + "': no joint has encoder device " +
+                                     std::to_string(m + 1) + need);
   return dofs;
+}
+
+// Rows [begin, end) of counts in device order, between what stands before and behind the motors.
+void append_rows(std::string& text, const Eigen::MatrixXi& counts, const std::vector<int>& dofs,
+                 Eigen::Index begin, Eigen::Index end, const std::string& before,
+                 const std::string& behind) {
+  for (Eigen::Index k = begin; k < end; ++k) {
+    text += before;
+    for (const int dof : dofs) text += "," + std::to_string(counts(k, dof));
+    text += behind;
+  }
+}
+
+int interval_of(double dt) {
+  const double ms = dt * 1000;
+  const int interval = static_cast<int>(std::round(ms));
+  if (interval < 1 || std::abs(ms - interval) > 1e-6)
+    fail(ErrorCode::bad_pattern,
+         "a HOAP sequence needs a whole number of milliseconds between rows, the table has " +
+             text::brief(ms) + " ms");
+  return interval;
+}
+
+Eigen::MatrixXi counts_of(const RobotModel& model, const ReferenceTrajectory& table,
+                          const SafetyOptions& options) {
+  const Eigen::MatrixXi counts =
+      encoder_counts(model, table, count_step_limits(model, table.dt, options));
+  if (counts.cwiseAbs().maxCoeff() > 32767)
+    fail(ErrorCode::bad_pattern, "a joint angle needs more counts than 16 bits hold");
+  return counts;
 }
 
 }  // namespace
 
-HoapSequence parse_hoap(const std::string& bytes, const std::string& file,
-                        const HoapLayout& layout) {
-  return SequenceParser(bytes, file, layout).whole();
+std::vector<SequenceLayout> sequence_layouts(const RobotModel& model) {
+  if (!model.description().layouts.empty()) return model.description().layouts;
+  const int motors = devices_of(model);
+  return {{"motors and three requests", {"interval", "2"}, {"R", "R", "R"}, motors, false, {}},
+          {"answers", {}, {"*", "*"}, motors, false, {1}},
+          {"angles", {}, {"*", "*"}, motors, true, {2}}};
 }
 
-std::string hoap_text(const HoapSequence& sequence, const HoapLayout& layout) {
-  std::string text;
-  for (Eigen::Index k = 0; k < sequence.counts.rows(); ++k) {
-    text += std::to_string(sequence.interval_ms) + ",2";
-    for (const int count : sequence.counts.row(k)) text += "," + std::to_string(count);
-    for (int i = 0; i < layout.rc_words; ++i) text += ",60";  // head centre
-    for (int i = 0; i < layout.requests; ++i) text += ",R";
-    text += '\n';
+SequenceLayout written_layout(const RobotModel& model, const std::string& name) {
+  std::vector<std::string> names;
+  for (const SequenceLayout& layout : sequence_layouts(model)) {
+    if (!layout.has_interval()) continue;
+    names.push_back(layout.name);
+    if (!name.empty() && layout.name != name) continue;
+    dofs_by_device(model, layout);
+    return layout;
   }
-  return text;
+  if (!name.empty() && !names.empty())
+    fail(ErrorCode::bad_model, "robot '" + model.name() + "' has no layout '" + name + "'" +
+                                   text::suggestion(name, names) + "; it has " +
+                                   text::join(names, ", "));
+  fail(ErrorCode::bad_model, "robot '" + model.name() +
+                                 "' has no layout with an interval, so no sequence can be written "
+                                 "for it; give one in \"layouts\" of its sidecar");
 }
 
-HoapLayout hoap_layout(const RobotModel& model) {
-  return {.motors = static_cast<int>(dofs_by_device(model).size())};
+HoapFile parse_hoap(const std::string& bytes, const std::string& file, const RobotModel& model,
+                    int interval_ms) {
+  return Reader(bytes, file, model, interval_ms).whole();
+}
+
+bool looks_like_hoap(const std::string& bytes, const RobotModel& model) {
+  std::string_view rest = bytes;
+  std::string_view line = take_line(rest);
+  while (line.empty() && !rest.empty()) line = take_line(rest);
+  const std::vector<std::string_view> cells = cells_of(line);
+  if (is_row_of_commands(cells)) return true;  // no head row could begin so
+  if (!all_numbers(cells)) return false;
+  for (const SequenceLayout& layout : sequence_layouts(model))
+    if (!layout.has_interval() && layout.columns() == cells.size()) return true;
+  return false;
+}
+
+Eigen::VectorXd values_on_ticks(const HoapFile& sequence, int device) {
+  const std::vector<HoapRow>& rows = sequence.rows;
+  const auto column = static_cast<size_t>(device - 1);
+  const int begin = rows.front().at;
+  const Eigen::Index count = (rows.back().at - begin) / sequence.tick_ms + 1;
+  Eigen::VectorXd values(count);
+  size_t r = 0;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int t = begin + static_cast<int>(k) * sequence.tick_ms;
+    while (r + 1 < rows.size() && rows[r + 1].at <= t) ++r;
+    values[k] = rows[r].values[column];
+    if (rows[r].at == t) continue;
+    const double u = static_cast<double>(t - rows[r].at) / (rows[r + 1].at - rows[r].at);
+    values[k] = (1 - u) * rows[r].values[column] + u * rows[r + 1].values[column];
+  }
+  return values;
+}
+
+double angle_of_unit(const HoapFile& sequence, const Dof& dof) {
+  const double per_degree = dof.encoder.counts_per_degree;
+  if (sequence.layout.radians) return per_degree < 0 ? -1 : 1;
+  return kRadiansPerDegree / per_degree;
+}
+
+ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence) {
+  ReferenceTrajectory table;
+  table.dt = sequence.dt();
+  table.joints = model.dof_names();
+  table.provenance.robot = model.name();
+  const Eigen::Index count =
+      (sequence.rows.back().at - sequence.rows.front().at) / sequence.tick_ms + 1;
+  table.rows.resize(static_cast<size_t>(count));
+  for (ReferenceRow& row : table.rows) row.theta = model.posture();
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    if (dof.encoder.device < 1 || dof.encoder.device > sequence.layout.motors) continue;
+    const Eigen::VectorXd angles =
+        values_on_ticks(sequence, dof.encoder.device) * angle_of_unit(sequence, dof);
+    for (Eigen::Index k = 0; k < count; ++k)
+      table.rows[static_cast<size_t>(k)].theta[j] = angles[k];
+  }
+  return table;
+}
+
+std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
+                     const SafetyOptions& options, const SequenceLayout& layout) {
+  const std::vector<int> dofs = dofs_by_device(model, layout);
+  const int interval = interval_of(table.dt);
+  std::string behind;
+  for (const std::string& word : layout.after) behind += "," + word;
+  std::string text;
+  const Eigen::MatrixXi counts = counts_of(model, table, options);
+  append_rows(text, counts, dofs, 0, counts.rows(), std::to_string(interval) + ",2", behind + "\n");
+  return text;
 }
 
 std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
                      const SafetyOptions& options) {
-  const std::vector<int> dofs = dofs_by_device(model);
-  const double ms = table.dt * 1000;
-  HoapSequence sequence;
-  sequence.interval_ms = static_cast<int>(std::round(ms));
-  if (sequence.interval_ms < 1 || std::abs(ms - sequence.interval_ms) > 1e-6)
-    fail(ErrorCode::bad_pattern,
-         "a HOAP sequence needs a whole number of milliseconds between rows, the table has " +
-             std::to_string(ms) + " ms");
-  const Eigen::MatrixXi counts =
-      encoder_counts(model, table, count_step_limits(model, table.dt, options));
-  sequence.counts.resize(counts.rows(), counts.cols());
-  for (size_t m = 0; m < dofs.size(); ++m)
-    sequence.counts.col(static_cast<Eigen::Index>(m)) = counts.col(dofs[m]);
-  if (sequence.counts.cwiseAbs().maxCoeff() > 32767)
-    fail(ErrorCode::bad_pattern, "a joint angle needs more counts than 16 bits hold");
-  return hoap_text(sequence, hoap_layout(model));
+  return hoap_csv(model, table, options, written_layout(model));
 }
 
-ReferenceTrajectory read_hoap(const std::filesystem::path& path, const RobotModel& model) {
-  const std::vector<int> dofs = dofs_by_device(model);
-  const HoapSequence sequence = parse_hoap(read_file(path), path.string(), hoap_layout(model));
-  ReferenceTrajectory table;
-  table.dt = sequence.interval_ms * 0.001;
-  table.joints = model.dof_names();
-  table.provenance.robot = model.name();
-  for (Eigen::Index k = 0; k < sequence.counts.rows(); ++k) {
-    ReferenceRow row;
-    row.theta.resize(model.dof_count());
-    for (size_t m = 0; m < dofs.size(); ++m) {
-      const double per_degree =
-          model.dofs()[static_cast<size_t>(dofs[m])].encoder.counts_per_degree;
-      row.theta[dofs[m]] =
-          sequence.counts(k, static_cast<Eigen::Index>(m)) / per_degree * (EIGEN_PI / 180);
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+std::string hoap_csv_around(const RobotModel& model, const ReferenceTrajectory& table, size_t first,
+                            size_t count, const SafetyOptions& options, const HoapFile& sequence,
+                            const std::string& bytes) {
+  const auto begin = static_cast<Eigen::Index>(first);
+  const auto end = static_cast<Eigen::Index>(first + count);
+  const auto rows = static_cast<Eigen::Index>(table.rows.size());
+  if (begin == 0 && end == rows) return bytes;
+  const std::vector<int> dofs = dofs_by_device(model, sequence.layout);
+  const std::string before = std::to_string(interval_of(table.dt)) + ",2";
+  const Eigen::MatrixXi counts = counts_of(model, table, options);
+  std::string text;
+  append_rows(text, counts, dofs, 0, begin, before, sequence.first_words + sequence.line_end);
+  text += bytes;
+  if (!bytes.ends_with('\n')) text += sequence.line_end;
+  append_rows(text, counts, dofs, end, rows, before, sequence.last_words + sequence.line_end);
+  return text;
 }
 
 }  // namespace ayumi

@@ -1,11 +1,14 @@
 #pragma once
 // HOAP sequence files: what the motion program of Fujitsu's HOAP robots plays, one row per frame,
-//   <interval ms>,2,<motor 1>,...,<motor n>[,<RC words>],R,...
+//   <interval ms>,2,<motor 1>,...,<motor n>[,<words>],R,...
 // without a head row. Motors in device order, values in encoder counts, interval = time to the next
-// row. "R" requests sensor data. HOAP-1 has 20 motors and three boards: 25 columns.
+// row. "R" requests sensor data. The columns are those of a layout of the robot's sidecar; files
+// without an interval are what a robot answers.
 
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "ayumi/check/table_safety.hpp"
 #include "ayumi/model/robot_model.hpp"
@@ -13,36 +16,65 @@
 
 namespace ayumi {
 
-/// Columns of a sequence file behind the interval and the command word.
-struct HoapLayout {
-  int motors = 20;
-  int rc_words = 0;  ///< hobby servo boards between motors and requests
-  int requests = 3;  ///< "R" at the end
-  int columns() const { return 2 + motors + rc_words + requests; }
+/// The robot's layouts. A sidecar without any has two: interval, 2, the motors of all encoders and
+/// three requests; and the motors with two more values behind them, without an interval.
+std::vector<SequenceLayout> sequence_layouts(const RobotModel& model);
+
+/// The layout of that name, else the first with an interval: the one that is written. Throws
+/// Error(bad_model) where there is none, or where the robot does not have each of its devices once.
+SequenceLayout written_layout(const RobotModel& model, const std::string& name = "");
+
+/// One row with a value for every motor.
+struct HoapRow {
+  int at = 0;                  ///< [ms] from the first row of the file
+  std::vector<double> values;  ///< by device from 1: counts, or radians where the layout says so
 };
 
-/// Counts as a file holds them, rows x motors in device order.
-struct HoapSequence {
-  int interval_ms = 1;
-  Eigen::MatrixXi counts;
+/// What a sequence file contains.
+struct HoapFile {
+  SequenceLayout layout;
+  std::vector<HoapRow> rows;
+  int tick_ms = 1;           ///< greatest common divisor of the intervals between rows [ms]
+  bool even = true;          ///< all these intervals are equal
+  int general_commands = 0;  ///< rows with commands to one device
+  std::string first_words, last_words;  ///< behind the motors of the first and last row, as written
+  std::string line_end = "\n";          ///< of the first line
+
+  double dt() const { return 0.001 * tick_ms; }
 };
 
-/// Throws Error(bad_file) "file:line: ..." for a row of another length, a command other than 2, a
-/// cell that is not a whole 16-bit number, intervals that change, no rows. Blanks and CR are fine.
-HoapSequence parse_hoap(const std::string& bytes, const std::string& file,
-                        const HoapLayout& layout);
-std::string hoap_text(const HoapSequence& sequence, const HoapLayout& layout);
+/// Blanks, CR, `-0` and any text behind the motors are fine. Rows without an interval follow each
+/// other in the interval of their layout, or in `interval_ms` where it is above 0. Throws
+/// Error(bad_file) "file:line: ..." for a number of columns that no layout of the robot has, a
+/// value that is no count of 16 bits (or no angle), an interval that is none, no rows.
+HoapFile parse_hoap(const std::string& bytes, const std::string& file, const RobotModel& model,
+                    int interval_ms = 0);
 
-/// Layout of this robot. Throws Error(bad_model) when its joints have no encoder devices 1..n.
-HoapLayout hoap_layout(const RobotModel& model);
+/// Whether a file begins as a sequence of this robot.
+bool looks_like_hoap(const std::string& bytes, const RobotModel& model);
 
-/// The table as a sequence file; counts by encoder_counts under the options' step limits. Throws
-/// Error(bad_pattern) when dt is not whole milliseconds or a count leaves 16 bits.
+/// Values of one device from 1 at every tick, straight between rows.
+Eigen::VectorXd values_on_ticks(const HoapFile& sequence, int device);
+
+/// Angle of a joint per unit of the file's values; radians have the sign of the encoder.
+double angle_of_unit(const HoapFile& sequence, const Dof& dof);
+
+/// What the servos receive: joint angles of a sequence on its ticks (other fields zero), in the
+/// robot's joint order. Joints without a device in the file keep their home angle.
+ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence);
+
+/// The table as a sequence file, in the layout that the robot writes unless another is given;
+/// counts by encoder_counts under the options' step limits. Throws Error(bad_pattern) when dt is
+/// not whole milliseconds or a count leaves 16 bits.
 std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
                      const SafetyOptions& options = {});
+std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
+                     const SafetyOptions& options, const SequenceLayout& layout);
 
-/// Joint angles of a sequence file (other fields zero), in the robot's joint order. Throws as
-/// parse_hoap.
-ReferenceTrajectory read_hoap(const std::filesystem::path& path, const RobotModel& model);
+/// An imported sequence as it was, with the rows of `table` before row `first` ahead of it, and
+/// those from `first` + `count` behind it: a ramp and a hold in the form of the sequence.
+std::string hoap_csv_around(const RobotModel& model, const ReferenceTrajectory& table, size_t first,
+                            size_t count, const SafetyOptions& options, const HoapFile& sequence,
+                            const std::string& bytes);
 
 }  // namespace ayumi

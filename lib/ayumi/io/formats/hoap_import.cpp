@@ -2,253 +2,153 @@
 // requests where others have hobby servo words, commands to single devices between the rows; and
 // what robots answer, or other programs write for them, is bare: no intervals, counts or radians.
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <numeric>
-#include <optional>
-#include <string_view>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/table/comma_cells.hpp"
+#include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/table/motion_import.hpp"
 
 namespace ayumi {
 
 namespace {
 
-constexpr double kRadiansPerDegree = EIGEN_PI / 180;
-
-std::optional<int> whole_number(std::string_view cell) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
-  return value;
-}
-
-int motors_of(size_t columns) {
-  return columns == 25 ? 20 : columns == 27 || columns == 29 ? 21 : 0;
-}
-
-constexpr size_t kBareColumns = 23;  // Definition: 21 motors, then two that say nothing of them
-constexpr int kBareMotors = 21;
-
-// Counts per degree of the motors, in the makers' own angles. Source: the encoders in
-// robots/hoap1/robot.json.
-constexpr double kCounts = 209;
-constexpr std::array<int, kBareMotors> kSigns = {1, 1, -1, 1,  1,  -1, 1, 1,  -1, -1, 1,
-                                                 1, 1, -1, -1, -1, -1, 1, -1, 1,  1};
-
-struct Row {
-  int at = 0;                  // [ms]
-  std::vector<double> counts;  // by device from 1
-};
-
-std::optional<double> any_number(std::string_view cell) {
-  double value = 0;
-  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
-
-class Reader {
- public:
-  Reader(const std::string& bytes, const std::string& file) : rest_(bytes), file_(file) {
-    std::string_view rest = rest_;
-    bare_ = is_bare_hoap_row(take_line(rest));
-  }
-
-  std::vector<Row> rows() {
-    while (!rest_.empty()) {
-      const std::string_view line = take_line(rest_);
-      ++line_;
-      if (!line.empty()) read(line);
-    }
-    if (rows_.empty()) fail(ErrorCode::bad_file, file_ + ": no row with targets for the motors");
-    if (radians_) {
-      for (Row& row : rows_)
-        for (int m = 0; m < kBareMotors; ++m)
-          row.counts[static_cast<size_t>(m)] *=
-              kSigns[static_cast<size_t>(m)] * kCounts / kRadiansPerDegree;
-    }
-    return std::move(rows_);
-  }
-  bool bare() const { return bare_; }
-  bool radians() const { return radians_; }
-  int general_commands() const { return general_; }
-  size_t columns() const { return columns_; }
-
- private:
-  [[noreturn]] void stop(const std::string& reason) const {
-    fail(ErrorCode::bad_file, file_ + ":" + std::to_string(line_) + ": " + reason);
-  }
-
-  // One row per tick of 1 ms until the rate is known.
-  void read_bare(const std::vector<std::string_view>& cells) {
-    if (cells.size() != kBareColumns)
-      stop(std::to_string(cells.size()) + " columns, but the rows before have 23");
-    Row row{now_++, {}};
-    for (int m = 0; m < kBareMotors; ++m) {
-      const std::string_view cell = cells[static_cast<size_t>(m)];
-      const auto value = any_number(cell);
-      if (!value || std::abs(*value) > 32768)
-        stop("column " + std::to_string(1 + m) + ": '" + std::string(cell.substr(0, 24)) +
-             "' is neither a count of 16 bits nor an angle");
-      radians_ = radians_ || *value != std::round(*value);
-      row.counts.push_back(*value);
-    }
-    rows_.push_back(std::move(row));
-  }
-
-  void read(std::string_view line) {
-    const std::vector<std::string_view> cells = cells_of(line);
-    if (bare_) return read_bare(cells);
-    const auto interval = whole_number(cells[0]);
-    if (!interval || *interval < 1 || *interval > 60000)
-      stop("'" + std::string(cells[0].substr(0, 24)) + "' is not an interval in milliseconds");
-    if (cells.size() < 3 || (cells[1] != "2" && cells[1] != "3"))
-      stop("expected an interval, then 2 (targets) or 3 (a command to one device)");
-    if (cells[1] == "3")
-      ++general_;
-    else
-      read_targets(cells);
-    now_ += *interval;
-  }
-
-  void read_targets(const std::vector<std::string_view>& cells) {
-    const int motors = motors_of(cells.size());
-    if (motors == 0 || (columns_ != 0 && cells.size() != columns_))
-      stop(std::to_string(cells.size()) + " columns" +
-           (columns_ != 0 ? ", but the rows before have " + std::to_string(columns_)
-                          : "; sequences have 25 (HOAP-1), 27 (HOAP-2) or 29 (HOAP-3)"));
-    columns_ = cells.size();
-    Row row{now_, {}};
-    for (int m = 0; m < motors; ++m) {
-      const std::string_view cell = cells[static_cast<size_t>(2 + m)];
-      const auto count = whole_number(cell);
-      if (!count || *count < -32768 || *count > 32767)
-        stop("column " + std::to_string(3 + m) + ": '" + std::string(cell.substr(0, 24)) +
-             "' is not a count of 16 bits");
-      row.counts.push_back(*count);
-    }
-    rows_.push_back(std::move(row));
-  }
-
-  std::string_view rest_;
-  const std::string& file_;
-  std::vector<Row> rows_;
-  bool bare_ = false, radians_ = false;
-  int now_ = 0, general_ = 0;
-  size_t columns_ = 0, line_ = 0;
-};
-
-// Counts of one device at every tick, interpolated linearly between rows.
-Eigen::VectorXd on_ticks(const std::vector<Row>& rows, size_t device, int tick) {
-  const int begin = rows.front().at;
-  const Eigen::Index count = (rows.back().at - begin) / tick + 1;
-  Eigen::VectorXd values(count);
-  size_t r = 0;
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const int t = begin + static_cast<int>(k) * tick;
-    while (r + 2 < rows.size() && rows[r + 1].at <= t) ++r;
-    if (rows.size() == 1) {
-      values[k] = rows[0].counts[device];
-      continue;
-    }
-    const double u = static_cast<double>(t - rows[r].at) / (rows[r + 1].at - rows[r].at);
-    values[k] = (1 - u) * rows[r].counts[device] + u * rows[r + 1].counts[device];
-  }
-  return values;
-}
-
-void refuse_lost_motion(const std::vector<Row>& rows, size_t device, const RobotModel& model,
+void refuse_lost_motion(const HoapFile& sequence, int device, const RobotModel& model,
                         const std::string& file, std::vector<std::string>& filled) {
+  const auto column = static_cast<size_t>(device - 1);
   const auto [least, most] = std::minmax_element(
-      rows.begin(), rows.end(),
-      [&](const Row& a, const Row& b) { return a.counts[device] < b.counts[device]; });
-  // Movement of an axis that holds its place [counts]. Chosen: 0.05 degrees, half of what servos do
-  // not follow (kOfCounts of table_import.cpp).
-  constexpr double kTrembling = 10;
-  const double low = least->counts[device], high = most->counts[device];
-  const std::string name = "device " + std::to_string(device + 1);
-  if (high - low > kTrembling)
+      sequence.rows.begin(), sequence.rows.end(),
+      [&](const HoapRow& a, const HoapRow& b) { return a.values[column] < b.values[column]; });
+  // Movement of an axis that holds its place. Chosen: 0.05 degrees, half of what servos do not
+  // follow (kOfCounts of table_import.cpp); as counts those of an encoder of 209 counts per degree.
+  constexpr double kTremblingCounts = 10, kTremblingAngle = 0.05 * EIGEN_PI / 180;
+  const double low = least->values[column], high = most->values[column];
+  const std::string unit = sequence.layout.radians ? " rad" : " counts";
+  const std::string name = "device " + std::to_string(device);
+  if (high - low > (sequence.layout.radians ? kTremblingAngle : kTremblingCounts))
     fail(ErrorCode::bad_file, file + ": " + name + " moves from " + text::brief(low) + " to " +
-                                  text::brief(high) + " counts, but no joint of '" + model.name() +
+                                  text::brief(high) + unit + ", but no joint of '" + model.name() +
                                   "' has this device; add it to \"encoders\" in the sidecar");
   filled.push_back(name + " is not on this robot and is ignored; its target is always " +
-                   text::brief(low) + " counts");
+                   text::brief(low) + unit);
 }
 
-// Rows without intervals: one per millisecond as robots answer, one per 2 ms as files in radians
-// are meant, or as is said.
-void set_bare_rate(const Reader& reader, double rate, ImportedMotion& result) {
-  result.motion.dt = rate > 0 ? 1 / rate : reader.radians() ? 0.002 : 0.001;
-  result.filled.push_back(std::string(reader.radians() ? "angles in radians" : "counts") +
+void refuse_zeros(const HoapFile& sequence, const std::string& file) {
+  for (const HoapRow& row : sequence.rows)
+    for (const double value : row.values)
+      if (value != 0) return;
+  if (sequence.rows.size() > 1)
+    fail(ErrorCode::bad_file,
+         file + ": every value of every motor is 0; nothing was recorded here");
+}
+
+// A step that no motor board passes on: the file has a jump, or rows are missing.
+void say_largest_step(const HoapFile& sequence, std::vector<std::string>& filled) {
+  if (sequence.layout.radians) return;
+  const double limit = SafetyOptions().counts_per_ms;
+  double worst = limit;
+  size_t row = 0, device = 0;
+  for (size_t r = 1; r < sequence.rows.size(); ++r) {
+    const HoapRow &from = sequence.rows[r - 1], &to = sequence.rows[r];
+    for (size_t m = 0; m < to.values.size(); ++m) {
+      const double step = std::abs(to.values[m] - from.values[m]) / (to.at - from.at);
+      if (step <= worst) continue;
+      worst = step;
+      row = r;
+      device = m + 1;
+    }
+  }
+  if (device > 0)
+    filled.push_back("device " + std::to_string(device) + " jumps by " + text::brief(worst) +
+                     " counts/ms to row " + std::to_string(row + 1) + " (motor boards pass on " +
+                     text::brief(limit) + "): rows may be missing there");
+}
+
+/// Joints whose angles leave their position limits somewhere.
+std::vector<std::string> beyond_limits(const RobotModel& model, const Eigen::MatrixXd& theta) {
+  constexpr double kSlack = 1e-6;  // Chosen: rounding of decimals [rad]; no knee bends by it
+  std::vector<std::string> names;
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    if (dof.limited && (theta.col(j).minCoeff() < dof.lower - kSlack ||
+                        theta.col(j).maxCoeff() > dof.upper + kSlack))
+      names.push_back(dof.name);
+  }
+  return names;
+}
+
+// Angles in radians: says which of them were negated, and whether the other reading fits better.
+void apply_signs(const RobotModel& model, bool encoder_signs, ImportedMotion& result) {
+  std::vector<std::string> negative;
+  Eigen::MatrixXd other = result.motion.theta;
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    if (dof.encoder.device < 1 || dof.encoder.counts_per_degree >= 0) continue;
+    negative.push_back(dof.name);
+    other.col(j) *= -1;
+  }
+  if (!encoder_signs) result.motion.theta.swap(other);
+  if (encoder_signs)
+    result.filled.push_back(
+        "angles in radians have the signs of the encoders: those of " +
+        (negative.empty() ? std::string("no joint") : text::join(negative, ", ")) +
+        " were negated (--signs joint takes all angles as they are)");
+  else
+    result.filled.push_back(
+        "angles in radians have the signs of the joints: none was negated (--signs encoder applies "
+        "the signs of the encoders)");
+  const std::vector<std::string> beyond = beyond_limits(model, result.motion.theta);
+  if (beyond.size() > beyond_limits(model, other).size())
+    result.filled.push_back("with these signs " + text::join(beyond, ", ") +
+                            " leave their position limits; with --signs " +
+                            (encoder_signs ? "joint" : "encoder") + " fewer joints do");
+}
+
+void say_bare_rate(const HoapFile& sequence, double rate, ImportedMotion& result) {
+  if (rate > 0) result.motion.dt = 1 / rate;
+  result.filled.push_back(std::string(sequence.layout.radians ? "angles in radians" : "counts") +
                           " without intervals: " + text::brief(1000 * result.motion.dt) +
                           " ms from row to row" + (rate > 0 ? "" : " (--rate HZ for another)"));
 }
 
 }  // namespace
 
-bool is_bare_hoap_row(std::string_view line) {
-  const std::vector<std::string_view> cells = cells_of(line);
-  return cells.size() == kBareColumns &&
-         std::all_of(cells.begin(), cells.end(),
-                     [](std::string_view cell) { return any_number(cell).has_value(); });
-}
-
 ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
-                                const RobotModel& model, double rate) {
-  Reader reader(bytes, file);
-  const std::vector<Row> rows = reader.rows();
-  int tick = 0;
-  bool even = true;
-  for (size_t r = 1; r < rows.size(); ++r) {
-    const int step = rows[r].at - rows[r - 1].at;
-    even = even && (tick == 0 || step == tick);
-    tick = std::gcd(tick, step);
-  }
-  tick = std::max(tick, 1);
+                                const RobotModel& model, double rate, bool encoder_signs) {
+  const HoapFile sequence = parse_hoap(bytes, file, model);
+  refuse_zeros(sequence, file);
+  const ReferenceTrajectory targets = hoap_targets(model, sequence);
   ImportedMotion result;
   result.format = "hoap";
-  result.rows = static_cast<int>(rows.size());
-  result.motion.dt = 0.001 * tick;
-  if (reader.bare()) set_bare_rate(reader, rate, result);
-  if (!even)
+  result.rows = static_cast<int>(sequence.rows.size());
+  result.motion.dt = sequence.dt();
+  if (sequence.layout.has_interval())
+    result.sequence = bytes;
+  else
+    say_bare_rate(sequence, rate, result);
+  if (!sequence.even)
     result.filled.push_back("the intervals change: rows are interpolated linearly, every " +
-                            std::to_string(tick) + " ms");
-  if (reader.general_commands() > 0)
+                            std::to_string(sequence.tick_ms) + " ms");
+  if (sequence.general_commands > 0)
     result.filled.push_back(
-        std::to_string(reader.general_commands()) +
+        std::to_string(sequence.general_commands) +
         " commands to single devices are ignored, but the time of their rows counts");
-  const Eigen::VectorXd home = model.posture();
-  const size_t motors = rows.front().counts.size();
-  std::vector<int> dof_of_device(motors, -1);
-  for (int dof = 0; dof < model.dof_count(); ++dof) {
-    const auto device = static_cast<size_t>(model.dofs()[dof].encoder.device);
-    if (device >= 1 && device <= motors) dof_of_device[device - 1] = dof;
-  }
-  const Eigen::Index count = (rows.back().at - rows.front().at) / tick + 1;
-  result.motion.theta = home.transpose().replicate(count, 1);
-  std::vector<char> in_file(static_cast<size_t>(model.dof_count()), 0);
-  for (size_t device = 0; device < motors; ++device) {
-    const int dof = dof_of_device[device];
-    if (dof < 0) {
-      refuse_lost_motion(rows, device, model, file, result.filled);
-      continue;
-    }
-    in_file[static_cast<size_t>(dof)] = 1;
-    const double per_degree = model.dofs()[dof].encoder.counts_per_degree;
-    result.motion.theta.col(dof) = on_ticks(rows, device, tick) * (kRadiansPerDegree / per_degree);
-  }
-  for (int dof = 0; dof < model.dof_count(); ++dof)
-    if (!in_file[static_cast<size_t>(dof)])
+  say_largest_step(sequence, result.filled);
+  std::vector<char> known(static_cast<size_t>(sequence.layout.motors) + 1, 0);
+  result.motion.theta.resize(static_cast<Eigen::Index>(targets.rows.size()), model.dof_count());
+  for (size_t k = 0; k < targets.rows.size(); ++k)
+    result.motion.theta.row(static_cast<Eigen::Index>(k)) = targets.rows[k].theta.transpose();
+  for (const Dof& dof : model.dofs())
+    if (dof.encoder.device >= 1 && dof.encoder.device <= sequence.layout.motors)
+      known[static_cast<size_t>(dof.encoder.device)] = 1;
+  for (int device = 1; device <= sequence.layout.motors; ++device)
+    if (!known[static_cast<size_t>(device)])
+      refuse_lost_motion(sequence, device, model, file, result.filled);
+  for (const Dof& dof : model.dofs())
+    if (dof.encoder.device < 1 || dof.encoder.device > sequence.layout.motors)
       result.filled.push_back(
-          model.dofs()[dof].name +
-          ": the file does not have this joint; it keeps its angle of the home posture");
+          dof.name + ": the file does not have this joint; it keeps its angle of the home posture");
+  if (sequence.layout.radians) apply_signs(model, encoder_signs, result);
   return result;
 }
 

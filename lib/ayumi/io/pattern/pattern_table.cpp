@@ -4,6 +4,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/table/table.hpp"
 
 namespace ayumi {
@@ -11,6 +12,10 @@ namespace ayumi {
 namespace fs = std::filesystem;
 
 fs::path table_beside(const fs::path& path) { return fs::path(path).replace_extension(".csv"); }
+
+fs::path sequence_beside(const fs::path& path) {
+  return fs::path(path).replace_extension(".sequence.csv");
+}
 
 std::vector<fs::path> pattern_files(const fs::path& path) {
   std::vector<fs::path> files = {path};
@@ -26,8 +31,8 @@ std::vector<fs::path> pattern_files(const fs::path& path) {
 }
 
 void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
-                             const std::vector<std::string>& comments,
-                             const TableCaution& caution) {
+                             const std::vector<std::string>& comments, const TableCaution& caution,
+                             const std::string& sequence) {
   if (!pattern.table) {
     write_pattern(path, pattern, comments);
     return;
@@ -42,14 +47,37 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
   // Written as it holds from the pattern's old folder, which write_pattern turns into the new one.
   const fs::path from = fs::absolute(pattern.file.empty() ? path : fs::path(pattern.file));
   named.table->file = fs::absolute(table).lexically_relative(from.parent_path()).string();
-  write_file(table, dense_table_csv(*pattern.table, caution));
+  std::optional<KeptSequence>& kept = named.table->sequence;
+  std::vector<fs::path> written;
   try {
+    if (!sequence.empty()) {
+      const fs::path copy = sequence_beside(path);
+      kept = {copy.filename().string(), sha256(sequence), theta_sha256(*named.table)};
+      write_file(copy, sequence);
+      written.push_back(copy);
+    } else if (kept && kept->theta_sha256 != theta_sha256(*named.table)) {
+      kept.reset();
+    } else if (kept) {
+      const fs::path folder = fs::absolute(table).lexically_normal().parent_path();
+      kept->file = fs::path(kept->file).lexically_relative(folder).string();
+    }
+    write_file(table, dense_table_csv(*named.table, caution));
+    written.push_back(table);
     write_pattern(path, named, comments);
   } catch (...) {
     std::error_code ignored;
-    fs::remove(table, ignored);
+    for (const fs::path& file : written) fs::remove(file, ignored);
     throw;
   }
+}
+
+std::string kept_sequence(const DenseTable& table) {
+  std::string bytes = read_file(table.sequence->file);
+  if (sha256(bytes) != table.sequence->sha256)
+    fail(ErrorCode::bad_file, table.sequence->file +
+                                  ": this is no longer the sequence that was imported; import the "
+                                  "changed sequence again");
+  return bytes;
 }
 
 TableCaution caution_of(const Pattern& pattern) {

@@ -165,6 +165,61 @@ void read_encoders(const JsonNode& node, RobotDescription& robot) {
   }
 }
 
+// ["interval", "2", "motors", "60", "R"]: the columns before and after those of the motors.
+void read_columns(const JsonNode& node, SequenceLayout& layout) {
+  std::vector<std::string>* side = &layout.before;
+  for (const JsonNode& item : node.items()) {
+    const std::string column = item.string();
+    if (column == "motors") {
+      if (side == &layout.after) item.complain("the column 'motors' is given twice");
+      side = &layout.after;
+      continue;
+    }
+    if (column == "interval" && (side == &layout.after || !side->empty()))
+      item.complain("the column 'interval' must be the first one");
+    if (column.empty() || column.find_first_of(", \t\r\n\"") != std::string::npos)
+      item.complain("'" + column +
+                    "' is not the text of a column; expected interval, motors, * or a text "
+                    "without blanks and commas");
+    side->push_back(column);
+  }
+  if (side == &layout.before) node.complain("the column 'motors' is missing");
+  if (!layout.has_interval()) return;
+  if (layout.before.size() != 2 || layout.before[1] != "2")
+    node.complain("after 'interval' comes \"2\", the code of a row of targets, then 'motors'");
+  if (contains(layout.after, "*"))
+    node.complain("'*' is only for layouts without 'interval', because it cannot be written");
+}
+
+void read_layouts(const JsonNode& node, RobotDescription& robot) {
+  constexpr int kMostMotors = 127;         // Definition: more than any bus of a humanoid has
+  constexpr int kLongestInterval = 60000;  // Definition: a minute [ms]
+  for (const JsonNode& item : node.items()) {
+    item.only_keys({"name", "columns", "motors", "unit", "intervals_ms"});
+    SequenceLayout layout;
+    layout.name = item.at("name").string();
+    for (const SequenceLayout& other : robot.layouts)
+      if (other.name == layout.name) item.complain("two layouts are named '" + layout.name + "'");
+    read_columns(item.at("columns"), layout);
+    layout.motors = item.at("motors").integer();
+    if (layout.motors < 1 || layout.motors > kMostMotors)
+      item.at("motors").complain(std::to_string(layout.motors) + " motors; expected 1 to " +
+                                 std::to_string(kMostMotors));
+    if (const auto unit = item.find("unit"))
+      layout.radians = unit->one_of({"counts", "rad"}) == "rad";
+    if (layout.radians && layout.has_interval())
+      item.at("unit").complain("rows with an interval are targets, which are counts");
+    if (const auto intervals = item.find("intervals_ms"))
+      for (const JsonNode& interval : intervals->items()) {
+        layout.intervals_ms.push_back(interval.integer());
+        if (layout.intervals_ms.back() < 1 || layout.intervals_ms.back() > kLongestInterval)
+          interval.complain("an interval of " + std::to_string(layout.intervals_ms.back()) +
+                            " ms; expected 1 to " + std::to_string(kLongestInterval));
+      }
+    robot.layouts.push_back(layout);
+  }
+}
+
 void read_sensors(const JsonNode& node, SensorDescription& sensors) {
   node.only_keys({"imu_link", "imu_position", "latency", "attitude_noise", "attitude_bias",
                   "gyro_noise", "accelerometer_noise", "force_noise", "force_resolution",
@@ -279,6 +334,7 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "servo_period",
                                         "profiles",
                                         "encoders",
+                                        "layouts",
                                         "sensors",
                                         "control",
                                         "soft_limit_margin",
@@ -311,6 +367,7 @@ void read_root(const JsonNode& root, RobotDescription& robot, std::string& files
       {"servos", [&](const JsonNode& node) { robot.servos = read_servos(node, {}, robot, files); }},
       {"profiles", [&](const JsonNode& node) { read_profiles(node, robot, files); }},
       {"encoders", [&](const JsonNode& node) { read_encoders(node, robot); }},
+      {"layouts", [&](const JsonNode& node) { read_layouts(node, robot); }},
       {"sensors", [&](const JsonNode& node) { read_sensors(node, robot.sensors); }},
       {"control", [&](const JsonNode& node) { read_control(node, robot); }},
       {"soft_limit_margin", [&](const JsonNode& node) { robot.soft_limit_margin = node.number(); }},

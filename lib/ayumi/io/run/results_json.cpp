@@ -70,8 +70,15 @@ OrderedJson cause_json(const InfeasibilityCause& cause) {
 }
 
 OrderedJson json_of(const SafetyViolation& v) {
-  return {{"kind", v.kind},   {"joint", v.joint}, {"at_s", v.t},   {"value", figure(v.value)},
-          {"limit", v.limit}, {"unit", v.unit},   {"rows", v.rows}};
+  const bool in_motion = v.t >= v.begin && v.t <= v.end;
+  return {{"kind", v.kind},
+          {"joint", v.joint},
+          {"at_s", v.t},
+          {"pattern_at_s", in_motion ? OrderedJson(v.t - v.begin) : OrderedJson(nullptr)},
+          {"value", figure(v.value)},
+          {"limit", v.limit},
+          {"unit", v.unit},
+          {"rows", v.rows}};
 }
 
 }  // namespace
@@ -167,6 +174,7 @@ std::string safety_json(const SafetyReport& report) {
     violations.push_back(json_of(violation));
   return dumped({{"safe", report.safe},
                  {"ramp_s", report.ramp},
+                 {"motion_s", report.motion},
                  {"hold_s", report.hold},
                  {"max_step_ratio", figure(report.max_step_ratio)},
                  {"worst_joint", report.worst_joint},

@@ -14,10 +14,11 @@
 namespace ayumi {
 
 struct ImportOptions {
-  std::string format{};   ///< "hoap", "csv", "json"; "" by the content
-  bool degrees = false;   ///< unit of bare joint columns
-  double rate = 0;        ///< of rows without a time column [1/s]
-  bool commands = false;  ///< angles are what servos receive, as in Ayumi's reference tables
+  std::string format{};       ///< "hoap", "csv", "json"; "" by the content
+  bool degrees = false;       ///< unit of bare joint columns
+  double rate = 0;            ///< of rows without a time column [1/s]
+  bool commands = false;      ///< angles are what servos receive, as in Ayumi's reference tables
+  bool encoder_signs = true;  ///< rows of radians have the signs of the encoders, not of the joints
   std::optional<double> smooth{};  ///< largest change of an angle [deg]; left out: 0.1 of counts,
                                    ///< none of angles
 };
@@ -28,22 +29,18 @@ struct ImportedMotion {
   int rows = 0;                     ///< data rows of the file
   bool commands = false;            ///< motion.theta is what servos receive
   TableCaution caution = {};        ///< of the run that the table is from
+  std::string sequence = {};        ///< bytes of a HOAP sequence, kept to be exported unchanged
   std::vector<std::string> filled;  ///< what the file does not say, or says beside the motion
 };
 
-/// Layouts of HOAP sequences by columns: 25 (HOAP-1: 20 motors), 27 (HOAP-2: 21), 29 (HOAP-3: 21).
-/// Blanks, CR, `-0` and `R` anywhere behind the motors are fine. General commands (3) only take
-/// their time. Where intervals change, rows are interpolated linearly on their greatest common
-/// divisor. Bare rows of 23 numbers are encoder answers (counts, 1 ms) or, with a fraction
-/// anywhere, radians of 21 motors (2 ms); `rate` [1/s] says otherwise. Throws Error(bad_file)
-/// "file:line:
-/// ..." for another number of columns, a cell that is no count, and where a device moves that the
-/// robot does not have.
+/// A HOAP sequence in one of the robot's layouts (io/formats/hoap.hpp). General commands (3) only
+/// take their time. Where intervals change, rows are interpolated linearly on their greatest common
+/// divisor. Rows without an interval have that of their layout, or `rate` [1/s]; those of radians
+/// have the signs of the encoders unless `encoder_signs` is false. Throws Error(bad_file) as
+/// parse_hoap, and where a device moves that the robot does not have.
 ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
-                                const RobotModel& model, double rate = 0);
-
-/// Whether a row is one without interval and command: 21 motors, then two more numbers.
-bool is_bare_hoap_row(std::string_view line);
+                                const RobotModel& model, double rate = 0,
+                                bool encoder_signs = true);
 
 /// A head row and numbers: t[s] (or t, time, time_ms), joints as theta.<joint>[rad] or by their
 /// names, bare or with a unit as in r_knee[deg], and whole groups of cog, zmp, fz, base, contact

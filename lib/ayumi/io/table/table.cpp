@@ -1,6 +1,7 @@
 #include "ayumi/io/table/table.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
@@ -8,6 +9,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/table/table_columns.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -105,6 +107,15 @@ HeaderLines provenance_lines(const Provenance& p) {
           {"command_line", p.command_line}};
 }
 
+// The servo that the table was made for, where it is known.
+HeaderLines servo_lines(const TableServo& servo) {
+  if (servo.content.empty()) return {};
+  return {{"servo", servo.content},
+          {"servo_profile", servo.profile},
+          {"servo_delay", servo.delay},
+          {"servo_lag", servo.lag}};
+}
+
 // What a person has to know before a robot receives the table; nothing for most tables.
 HeaderLines caution_lines(const TableCaution& caution) {
   HeaderLines lines;
@@ -122,6 +133,14 @@ Provenance provenance_of(const std::map<std::string, std::string>& header) {
   };
   return {value("robot"),   value("robot_sha256"), value("pattern"),     value("pattern_sha256"),
           value("profile"), value("controller"),   value("command_line")};
+}
+
+TableServo servo_of(const std::map<std::string, std::string>& header) {
+  const auto value = [&](const char* key) {
+    const auto found = header.find(key);
+    return found == header.end() ? std::string() : read_header_value(found->second);
+  };
+  return {value("servo"), value("servo_profile"), value("servo_delay"), value("servo_lag")};
 }
 
 void require_format(const NumberTable& table, const char* format, const std::string& file) {
@@ -144,12 +163,27 @@ Eigen::VectorXd theta_of(const NumberTable& table, Eigen::Index row, const std::
   return theta;
 }
 
+// What the head of a table says of the sequence that was imported.
+void read_import(const std::map<std::string, std::string>& header,
+                 const std::filesystem::path& table, DenseTable& dense) {
+  const auto line = [&](const char* key) {
+    const auto found = header.find(key);
+    return found == header.end() ? std::string() : read_header_value(found->second);
+  };
+  const std::string interval = line("interval_ms");
+  std::from_chars(interval.data(), interval.data() + interval.size(), dense.interval_ms);
+  const std::string file = line("sequence");
+  if (file.empty()) return;
+  dense.sequence = {std::filesystem::absolute(table.parent_path() / file).lexically_normal(),
+                    line("sequence_sha256"), line("theta_sha256")};
+}
+
 }  // namespace
 
 std::string reference_csv(const ReferenceTrajectory& reference, const TableCaution& caution) {
   std::string text = csv_header(common_header(kReferenceFormat, reference.dt)) +
                      csv_header(provenance_lines(reference.provenance)) +
-                     csv_header(caution_lines(caution)) +
+                     csv_header(servo_lines(reference.servo)) + csv_header(caution_lines(caution)) +
                      text::join(reference_columns(reference), ",") + "\n";
   for (size_t k = 0; k < reference.rows.size(); ++k) {
     append_cells(text, cells_of(reference, k), false);
@@ -167,6 +201,8 @@ std::string reference_json(const ReferenceTrajectory& reference, const TableCaut
     const bool number = key == "gravity" || key == "dt" || key == "rate_hz";
     text += "  " + quoted(key) + ": " + (number ? value : quoted(value)) + ",\n";
   }
+  for (const auto& [key, value] : servo_lines(reference.servo))
+    text += "  " + quoted(key) + ": " + quoted(value) + ",\n";
   for (const auto& [key, value] : caution_lines(caution))
     text += "  " + quoted(key) + ": " + quoted(value) + ",\n";
   std::vector<std::string> members;
@@ -198,6 +234,7 @@ ReferenceTrajectory read_reference(const std::filesystem::path& path) {
   reference.dt = tick_of(table, layout, file);
   reference.joints = layout.joints;
   reference.provenance = provenance_of(table.header);
+  reference.servo = servo_of(table.header);
   for (Eigen::Index k = 0; k < table.values.rows(); ++k) {
     ReferenceRow row;
     row.theta = theta_of(table, k, layout.theta);
@@ -241,6 +278,15 @@ void require_joints(const ReferenceTrajectory& reference, const std::vector<std:
                                     reference.joints[i] + "', of the robot '" + joints[i] + "'");
 }
 
+std::string theta_sha256(const DenseTable& table) {
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = table.theta;
+  std::string text;
+  for (const std::string& joint : table.joints) text += joint + "\n";
+  text.append(reinterpret_cast<const char*>(rows.data()),
+              static_cast<size_t>(rows.size()) * sizeof(double));
+  return sha256(text);
+}
+
 DenseTable read_dense_table(const std::filesystem::path& path) {
   const std::string file = path.string();
   const NumberTable table = read_number_table(path);
@@ -250,6 +296,7 @@ DenseTable read_dense_table(const std::filesystem::path& path) {
   dense.dt = tick_of(table, layout, file);
   dense.joints = layout.joints;
   dense.commands = holds_commands(table);
+  read_import(table.header, path, dense);
   const Eigen::Index rows = table.values.rows();
   if (static_cast<double>(rows) * dense.dt > 3600)
     fail(ErrorCode::bad_file, file + ": lasts " +
@@ -275,6 +322,12 @@ std::string dense_table_csv(const DenseTable& table, const TableCaution& caution
   if (!table.base.empty()) append(columns, kBaseColumns);
   auto header = common_header(kMotionFormat, table.dt);
   if (table.commands) header.emplace_back("theta", "commands");
+  if (table.interval_ms > 0) header.emplace_back("interval_ms", std::to_string(table.interval_ms));
+  if (const auto& kept = table.sequence) {
+    header.emplace_back("sequence", kept->file);
+    header.emplace_back("sequence_sha256", kept->sha256);
+    header.emplace_back("theta_sha256", kept->theta_sha256);
+  }
   for (const auto& line : caution_lines(caution)) header.push_back(line);
   std::string text = csv_header(header) + text::join(columns, ",") + "\n";
   for (Eigen::Index k = 0; k < table.theta.rows(); ++k) {

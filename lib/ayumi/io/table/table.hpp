@@ -37,6 +37,8 @@ void require_joints(const ReferenceTrajectory& reference, const std::vector<std:
 /// business of the pattern's phases; contact columns are skipped. Time starts at 0 at a fixed rate.
 /// Throws Error(bad_file) as read_reference.
 DenseTable read_dense_table(const std::filesystem::path& path);
+/// Fingerprint of the angles of a table, which says whether they are still those of the import.
+std::string theta_sha256(const DenseTable& table);
 /// The text read_dense_table reads.
 std::string dense_table_csv(const DenseTable& table, const TableCaution& caution = {});
 

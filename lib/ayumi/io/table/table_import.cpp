@@ -4,6 +4,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/motion_import.hpp"
@@ -215,6 +216,17 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
       "angles are servo targets: the velocity lead, delay + kd/kp, was subtracted");
 }
 
+// The robot keeps the last target of a sequence, so a short one can be made longer.
+void hold_last_row(Eigen::Index least, ImportedMotion& imported) {
+  Eigen::MatrixXd& theta = imported.motion.theta;
+  const Eigen::Index rows = theta.rows();
+  if (rows >= least) return;
+  theta.conservativeResize(least, Eigen::NoChange);
+  theta.bottomRows(least - rows) = theta.row(rows - 1).replicate(least - rows, 1);
+  imported.filled.push_back("the last posture is held until there are " + std::to_string(least) +
+                            " rows, which the check of a motion needs");
+}
+
 // A motion begins and ends at rest: as if it returned along its own path.
 Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, double cutoff) {
   const Eigen::Index n = raw.size();
@@ -252,27 +264,6 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
   imported.filled.push_back("angles smoothed by at most " + text::brief(degrees) + " deg");
 }
 
-bool looks_like_hoap(const std::string& bytes) {
-  std::string_view rest = bytes;
-  if (is_bare_hoap_row(take_line(rest))) return true;
-  // Interval, 2 or 3, then more: no head row could begin so.
-  size_t i = 0;
-  const auto skip = [&](const char* set) {
-    const size_t from = i;
-    while (i < bytes.size() && std::string(set).find(bytes[i]) != std::string::npos) ++i;
-    return i > from;
-  };
-  skip(" \t\r\n");
-  if (!skip("0123456789")) return false;
-  skip(" \t");
-  if (i >= bytes.size() || bytes[i++] != ',') return false;
-  skip(" \t");
-  if (i >= bytes.size() || (bytes[i] != '2' && bytes[i] != '3')) return false;
-  ++i;
-  skip(" \t");
-  return i < bytes.size() && bytes[i] == ',';
-}
-
 }  // namespace
 
 ImportedMotion read_table_motion(const std::string& bytes, const std::string& file,
@@ -305,10 +296,14 @@ ImportedMotion read_table_motion(const std::string& bytes, const std::string& fi
 ImportedMotion read_motion(const std::string& given, const std::string& file,
                            const RobotModel& model, const ImportOptions& options) {
   const std::string bytes = plain_table_text(given, file);
-  const bool hoap = options.format == "hoap" || (options.format.empty() && looks_like_hoap(bytes));
-  ImportedMotion result = hoap ? read_hoap_motion(bytes, file, model, options.rate)
-                               : read_table_motion(bytes, file, model, options);
+  const bool hoap =
+      options.format == "hoap" || (options.format.empty() && looks_like_hoap(bytes, model));
+  ImportedMotion result =
+      hoap ? read_hoap_motion(bytes, file, model, options.rate, options.encoder_signs)
+           : read_table_motion(bytes, file, model, options);
+  if (!result.sequence.empty()) result.sequence = given;
   constexpr int kLeastRows = 6;  // Derived: accelerations take five (motion/differentiate.hpp)
+  if (!result.sequence.empty()) hold_last_row(kLeastRows, result);
   if (result.motion.theta.rows() < kLeastRows)
     fail(ErrorCode::bad_file, file + ": " + std::to_string(result.motion.theta.rows()) +
                                   " rows of motion; at least " + std::to_string(kLeastRows) +

@@ -1,0 +1,74 @@
+#include "ayumi/io/formats/sign_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/math/track.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Size of the motion. Chosen: clearly seen by a person, and no joint reaches anything by it. Half
+// of it is hard to see at a wrist; with twice of it, feet of a robot touch each other.
+constexpr double kAngle = 5 * EIGEN_PI / 180;  // [rad]
+constexpr double kSlide = 0.01;                // [m]
+// Times of one test [s]. Chosen: 2.5 degrees per second on average, slow enough to be stopped.
+constexpr double kRest = 0.5, kMove = 2, kHold = 1;
+
+double wanted_change(const RobotModel& model, const Dof& dof, double from) {
+  const double size = dof.prismatic ? kSlide : kAngle;
+  if (!dof.limited) return size;
+  const double margin = dof.prismatic ? 0 : model.description().soft_limit_margin;
+  const double up = dof.upper - margin - from, down = from - (dof.lower + margin);
+  if (up >= size) return size;
+  if (down >= size) return -size;
+  return up >= down ? std::max(up, 0.0) : -std::max(down, 0.0);
+}
+
+double share_at(double t) {
+  if (t < kRest + kMove) return minimum_jerk((t - kRest) / kMove).value;
+  return 1 - minimum_jerk((t - kRest - kMove - kHold) / kMove).value;
+}
+
+}  // namespace
+
+std::vector<SignTest> sign_tests(const RobotModel& model, double dt) {
+  std::vector<SignTest> tests;
+  const Eigen::VectorXd home = model.posture();
+  const auto rows = static_cast<size_t>(std::lround((2 * kRest + 2 * kMove + kHold) / dt)) + 1;
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    const auto at = static_cast<size_t>(j);
+    if (model.limits().has_servo[at] && model.limits().servo[at].kp <= 0) continue;  // passive
+    SignTest test;
+    test.dof = j;
+    test.from = home[j];
+    test.to = home[j] + wanted_change(model, dof, home[j]);
+    test.table.dt = dt;
+    test.table.joints = model.dof_names();
+    for (size_t k = 0; k < rows; ++k) {
+      ReferenceRow row;
+      row.theta = home;
+      row.theta[j] += share_at(static_cast<double>(k) * dt) * (test.to - test.from);
+      row.contact = {false, false};
+      test.table.rows.push_back(std::move(row));
+    }
+    tests.push_back(std::move(test));
+  }
+  if (tests.empty())
+    fail(ErrorCode::bad_model, "robot '" + model.name() + "': no joint has a motor");
+  std::stable_sort(tests.begin(), tests.end(), [&](const SignTest& a, const SignTest& b) {
+    return model.dofs()[static_cast<size_t>(a.dof)].encoder.device <
+           model.dofs()[static_cast<size_t>(b.dof)].encoder.device;
+  });
+  for (size_t i = 0; i < tests.size(); ++i) {
+    const std::string number = std::to_string(i + 1);
+    tests[i].name = (number.size() < 2 ? "0" : "") + number + "_" +
+                    model.dofs()[static_cast<size_t>(tests[i].dof)].name;
+  }
+  return tests;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,46 @@
+#include "ayumi/motion/reference_trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ayumi {
+
+namespace {
+
+ReferenceRow between(const ReferenceRow& a, const ReferenceRow& b, double u) {
+  ReferenceRow row;
+  row.theta = (1 - u) * a.theta + u * b.theta;
+  row.contact = a.contact;
+  row.base.position = (1 - u) * a.base.position + u * b.base.position;
+  row.base.attitude = a.base.attitude.slerp(u, b.base.attitude);
+  row.cog = (1 - u) * a.cog + u * b.cog;
+  row.zmp = (1 - u) * a.zmp + u * b.zmp;
+  row.fz = (1 - u) * a.fz + u * b.fz;
+  return row;
+}
+
+}  // namespace
+
+ReferenceTrajectory resampled(const ReferenceTrajectory& table, double dt) {
+  constexpr double kOnRow = 1e-6;  // Definition: part of a row within which a time is that row's
+  if (table.rows.empty() || std::abs(dt - table.dt) < kOnRow * table.dt) return table;
+  ReferenceTrajectory result = table;
+  result.dt = dt;
+  result.rows.clear();
+  const double last = static_cast<double>(table.rows.size() - 1);
+  const auto count = static_cast<size_t>(std::ceil(last * table.dt / dt - kOnRow)) + 1;
+  for (size_t k = 0; k < count; ++k) {
+    const double at = std::min(static_cast<double>(k) * dt / table.dt, last);
+    const double row = std::round(at);
+    if (std::abs(at - row) < kOnRow) {
+      result.rows.push_back(table.rows[static_cast<size_t>(row)]);
+      continue;
+    }
+    const auto before = static_cast<size_t>(std::floor(at));
+    result.rows.push_back(
+        between(table.rows[before], table.rows[before + 1], at - static_cast<double>(before)));
+  }
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,109 @@
+#include "ayumi/task/servo_table.hpp"
+
+#include <algorithm>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/control/torque_feedforward.hpp"
+#include "ayumi/motion/servo_feedforward.hpp"
+#include "ayumi/sim/simulate.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// One number where all joints have the same, else one per joint.
+template <class Value>
+std::string list_of(const ActuatorLimits& limits, const Value& value) {
+  std::vector<std::string> texts;
+  for (const ServoDescription& servo : limits.servo) texts.push_back(text::brief(value(servo), 6));
+  const bool equal = std::all_of(texts.begin(), texts.end(),
+                                 [&](const std::string& text) { return text == texts.front(); });
+  return equal && !texts.empty() ? texts.front() : text::join(texts, " ");
+}
+
+}  // namespace
+
+std::string name_of(ServoContent content) {
+  return content == ServoContent::ideal  ? "ideal"
+         : content == ServoContent::lead ? "lead"
+                                         : "lead+sag";
+}
+
+ServoContent servo_content(const std::string& name) {
+  for (const ServoContent content :
+       {ServoContent::ideal, ServoContent::lead, ServoContent::lead_and_sag})
+    if (name_of(content) == name) return content;
+  fail(ErrorCode::usage, "unknown servo '" + name + "' (known: ideal, lead, lead+sag)");
+}
+
+TableServo table_servo(const RobotModel& model, const std::string& profile, ServoContent content) {
+  const ActuatorLimits& limits = model.limits(profile);
+  return {name_of(content), limits.name,
+          list_of(limits, [](const ServoDescription& servo) { return servo.delay; }),
+          list_of(limits,
+                  [](const ServoDescription& servo) { return servo.kp > 0 ? servo.lag() : 0.0; })};
+}
+
+ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& profile,
+                                    const CommandSeries& series, ServoContent content) {
+  const ActuatorLimits& limits = model.limits(profile);
+  Eigen::VectorXd lead = velocity_lead(limits);
+  if (content == ServoContent::ideal) lead.setZero();
+  Eigen::MatrixXd sag = Eigen::MatrixXd::Zero(model.dof_count(), 1);
+  if (content == ServoContent::lead_and_sag) sag = torque_feedforward(model, limits, series);
+  ReferenceTrajectory reference;
+  reference.dt = series.dt;
+  reference.joints = model.dof_names();
+  reference.servo = table_servo(model, profile, content);
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const CommandSample& sample = series.samples[k];
+    ReferenceRow row;
+    row.theta = sample.state.theta + lead.cwiseProduct(sample.state.dtheta) +
+                lead_at(sag, static_cast<long>(k));
+    row.base = sample.state.base;
+    row.cog = sample.cog;
+    row.zmp = sample.zmp;
+    row.fz = sample.fz;
+    row.contact = {supports(sample.support, Side::left), supports(sample.support, Side::right)};
+    reference.rows.push_back(std::move(row));
+  }
+  return reference;
+}
+
+ReferenceTrajectory table_of_log(const RobotModel& model, const std::string& profile,
+                                 const SimulationLog& log, ServoContent content) {
+  ReferenceTrajectory table = extract_reference(model, log);
+  table.servo = table_servo(model, profile, content);
+  const ActuatorLimits& limits = model.limits(profile);
+  const ActuatorLimits& own = model.limits(log.provenance.profile);
+  const bool same = limits.name == own.name;
+  if (content == ServoContent::lead_and_sag && same) return table;
+  const Eigen::VectorXd lead = velocity_lead(limits), own_lead = velocity_lead(own);
+  const size_t last = log.samples.empty() ? 0 : log.samples.size() - 1;
+  for (size_t k = 0; k <= last && k < table.rows.size(); ++k) {
+    const Eigen::VectorXd& theta = log.samples[k].reference_theta;
+    Eigen::VectorXd& target = table.rows[k].theta;
+    if (content == ServoContent::ideal) {
+      target = theta;
+      continue;
+    }
+    const size_t before = k > 0 ? k - 1 : 0, after = std::min(k + 1, last);
+    Eigen::VectorXd rate = Eigen::VectorXd::Zero(theta.size());
+    if (after > before)
+      rate = (log.samples[after].reference_theta - log.samples[before].reference_theta) /
+             (static_cast<double>(after - before) * log.dt);
+    Eigen::VectorXd sag = Eigen::VectorXd::Zero(theta.size());
+    if (content == ServoContent::lead_and_sag)
+      for (Eigen::Index j = 0; j < sag.size(); ++j) {
+        const double kp = limits.servo[static_cast<size_t>(j)].kp;
+        if (kp > 0)
+          sag[j] = (target[j] - theta[j] - own_lead[j] * rate[j]) *
+                   own.servo[static_cast<size_t>(j)].kp / kp;
+      }
+    target = theta + lead.cwiseProduct(rate) + sag;
+  }
+  return table;
+}
+
+}  // namespace ayumi

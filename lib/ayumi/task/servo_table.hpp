@@ -1,0 +1,34 @@
+#pragma once
+// Tables of servo targets, made for the servos of a profile: the plain posture, the posture ahead
+// by the lag of the servo (motion/servo_feedforward), or this and the offset against its sag under
+// the torque of the motion (control/torque_feedforward).
+
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/command_series.hpp"
+#include "ayumi/motion/reference_trajectory.hpp"
+#include "ayumi/sim/simulation_log.hpp"
+
+namespace ayumi {
+
+enum class ServoContent { ideal, lead, lead_and_sag };
+/// "ideal", "lead", "lead+sag"
+std::string name_of(ServoContent content);
+/// Throws Error(usage) for an unknown name.
+ServoContent servo_content(const std::string& name);
+
+/// What a table says of the servo that it was made for.
+TableServo table_servo(const RobotModel& model, const std::string& profile, ServoContent content);
+
+/// The pattern as it is, one row per sample.
+ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& profile,
+                                    const CommandSeries& series, ServoContent content);
+
+/// The reference posture of a run. Its rates are differences of neighbouring samples. With the sag
+/// and the profile of the run, these are the targets that the servos received in the run.
+ReferenceTrajectory table_of_log(const RobotModel& model, const std::string& profile,
+                                 const SimulationLog& log, ServoContent content);
+
+}  // namespace ayumi
