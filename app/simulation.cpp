@@ -94,6 +94,14 @@ PlantKind plant_of(const std::string& name) {
                              " (known: ayumi, mujoco)");
 }
 
+std::vector<std::string> built_plants() {
+#ifdef AYUMI_HAS_MUJOCO
+  return {"ayumi", "mujoco"};
+#else
+  return {"ayumi"};
+#endif
+}
+
 SimulationLog simulate_once(const Context& context, const Task& input,
                             const SimulationChoice& choice) {
   SimulateOptions options = simulate_options(input);

@@ -24,6 +24,8 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice);
 void add_plant_option(CLI::App& command, std::string& plant);
 /// Throws Error(usage) for a plant this program was built without.
 PlantKind plant_of(const std::string& name);
+/// The plants of this program.
+std::vector<std::string> built_plants();
 
 /// --allow-unstable.
 void add_unstable_flag(CLI::App& command, bool& allowed);

@@ -34,7 +34,9 @@ Controller::Law Controller::first_law() {
          "controller " + name_of(spec_.type) +
              ": the pattern has no phase with \"viip\" goals; add one or use dtad");
   Eigen::MatrixXd lead;
-  if (series_->viip.empty()) lead = torque_feedforward(*model_, limits_, *series_);
+  const bool as_they_are = spec_.type == ControllerKind::none && series_->targets.cols() > 0;
+  if (as_they_are) target_ = start_.theta = series_->targets.col(0);
+  if (series_->viip.empty() && !as_they_are) lead = torque_feedforward(*model_, limits_, *series_);
   const bool in_command = series_->servo_commands;
   if (lead.size() > 0 && in_command) start_.theta -= lead.col(0);
   if (lead.size() == 0 || in_command) lead.setZero(model_->dof_count(), 1);
@@ -48,7 +50,7 @@ Controller::Law Controller::first_law() {
 // DTAD or open loop, going on at the handover's plan.
 Controller::Law Controller::law_of_command(Handover from) const {
   const bool dtad = spec_.type.kind == ControllerKind::dtad || spec_.type == ControllerKind::viip;
-  if (!dtad) return OpenLoop(limits_, from.command, torque_lead_, from.target);
+  if (!dtad) return OpenLoop(limits_, from.command, torque_lead_, from.target, series_->targets);
   const bool own_gains = spec_.type.kind == ControllerKind::dtad;
   const DtadParams params =
       dtad_params(*model_, own_gains ? spec_ : ControllerSpec{ControllerKind::dtad, {}});

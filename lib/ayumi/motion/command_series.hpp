@@ -39,6 +39,9 @@ struct CommandSeries {
   Eigen::VectorXd joint_weight;               ///< diagonal of W [dof]
   /// The joints come from a table of servo targets without their lead; it is replayed unchanged.
   bool servo_commands = false;
+  /// What the servos receive in open loop in place of the command with its feedforward, dof x
+  /// samples [rad]; the last column holds after the end. Empty: nothing takes its place.
+  Eigen::MatrixXd targets = {};
 
   double duration() const { return dt * static_cast<double>(samples.size() - 1); }
 };

@@ -9,18 +9,23 @@ namespace ayumi {
 
 OpenLoop::OpenLoop(const ActuatorLimits& actuators, CommandPlan command,
                    std::shared_ptr<const Eigen::MatrixXd> torque_lead,
-                   const Eigen::VectorXd& target)
+                   const Eigen::VectorXd& target, const Eigen::MatrixXd& targets)
     : command_(std::move(command)),
       torque_lead_(std::move(torque_lead)),
       velocity_lead_(velocity_lead(actuators)),
-      target_(target) {}
+      target_(target),
+      targets_(&targets) {}
 
 void OpenLoop::update(const Estimate& estimate, ControlOutput& out) {
-  const auto torque_lead = lead_at(*torque_lead_, command_.sample());
+  const long sample = command_.sample();
+  const auto torque_lead = lead_at(*torque_lead_, sample);
   command_.look_ahead(estimate);
   const CommandSample& now = plan();
   out.reference = now.state;
-  out.target = now.state.theta + velocity_lead_.cwiseProduct(now.state.dtheta) + torque_lead;
+  if (targets_->cols() > 0)
+    out.target = lead_at(*targets_, sample);
+  else
+    out.target = now.state.theta + velocity_lead_.cwiseProduct(now.state.dtheta) + torque_lead;
   out.cog = now.cog;
   out.cog_reference = {now.zmp, now.fz, Eigen::Vector3d::Zero(), now.dcog};
   target_ = out.target;

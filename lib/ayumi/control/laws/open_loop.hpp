@@ -1,5 +1,6 @@
 #pragma once
-// Open loop: the servos receive the command with its feedforward; nothing is measured.
+// Open loop: the servos receive the command with its feedforward, or the targets that the series
+// has in its place; nothing is measured.
 
 #include <memory>
 
@@ -10,9 +11,11 @@ namespace ayumi {
 class OpenLoop {
  public:
   /// `torque_lead`: offsets of the servo targets by sample of the pattern [rad], one column:
-  /// throughout (control/torque_feedforward). `target`: last servo targets [rad].
+  /// throughout (control/torque_feedforward). `target`: last servo targets [rad]. `targets`: what
+  /// is sent by sample of the series, dof x samples; it outlives this and its copies.
   OpenLoop(const ActuatorLimits& actuators, CommandPlan command,
-           std::shared_ptr<const Eigen::MatrixXd> torque_lead, const Eigen::VectorXd& target);
+           std::shared_ptr<const Eigen::MatrixXd> torque_lead, const Eigen::VectorXd& target,
+           const Eigen::MatrixXd& targets);
 
   /// The command of the coming tick.
   const CommandSample& plan() const { return command_.now(); }
@@ -25,6 +28,7 @@ class OpenLoop {
   CommandPlan command_;
   std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   Eigen::VectorXd velocity_lead_, target_;
+  const Eigen::MatrixXd* targets_;
 };
 
 }  // namespace ayumi

@@ -1,0 +1,94 @@
+#include "ayumi/check/motor_board.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kDegreesPerRadian = 180 / EIGEN_PI;           // Definition
+constexpr double kLeastCount = -32768, kLargestCount = 32767;  // Definition: 16 bits, signed
+constexpr double kWhole = 1e-6;  // Chosen: rounding of degrees and radians, in counts
+
+// Keeps the worst of each kind for one joint.
+class Watch {
+ public:
+  Watch(std::string joint, double unit) : joint_(std::move(joint)), unit_(unit) {}
+  void note(const char* kind, double change, double t) {
+    if (std::abs(change) <= kWhole) return;
+    for (Clamp& known : found_) {
+      if (known.kind != kind) continue;
+      ++known.rows;
+      if (std::abs(change) * unit_ <= known.change) return;
+      known.change = std::abs(change) * unit_;
+      known.t = t;
+      return;
+    }
+    found_.push_back({kind, joint_, t, std::abs(change) * unit_, 1});
+  }
+  const std::vector<Clamp>& found() const { return found_; }
+
+ private:
+  std::string joint_;
+  double unit_;  // [rad] per count; 1 without counts
+  std::vector<Clamp> found_;
+};
+
+}  // namespace
+
+BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& table,
+                           const SafetyOptions& options) {
+  const Eigen::MatrixXi rounded =
+      encoder_counts(model, table, count_step_limits(model, table.dt, options));
+  const double ms = table.dt * 1000;
+  const bool whole = std::round(ms) >= 1 && std::abs(ms - std::round(ms)) < kWhole;
+  const Eigen::Index share = whole ? std::lround(ms) : 1;
+  const auto rows = static_cast<Eigen::Index>(table.rows.size());
+  BoardTargets result;
+  result.dt = whole ? 0.001 : table.dt;
+  result.targets.resize(model.dof_count(), (rows - 1) * share + 1);
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    const double counts =
+        dof.encoder.device > 0 ? dof.encoder.counts_per_degree * kDegreesPerRadian : 0;
+    const double scale = counts != 0 ? counts : 1;
+    double lower = -1e300, upper = 1e300, step = model.limits(options.profile).speed[j] * result.dt;
+    if (dof.limited) {
+      lower = std::min(dof.lower * scale, dof.upper * scale);
+      upper = std::max(dof.lower * scale, dof.upper * scale);
+    }
+    if (counts != 0) {
+      lower = std::ceil(lower - kWhole);
+      upper = std::floor(upper + kWhole);
+      step = options.counts_per_ms * 1000 * result.dt;
+    }
+    const auto column = std::find(table.joints.begin(), table.joints.end(), dof.name);
+    const auto at = static_cast<Eigen::Index>(column - table.joints.begin());
+    Watch watch(dof.name, 1 / std::abs(scale));
+    double board = 0;
+    for (Eigen::Index k = 0; k < result.targets.cols(); ++k) {
+      const Eigen::Index row = k / share;
+      const double x = table.rows[static_cast<size_t>(row)].theta[at] * scale;
+      double asked = x;
+      if (counts != 0)
+        asked = std::abs(x - std::round(x)) < kWhole ? std::round(x) : rounded(row, j);
+      const double t = static_cast<double>(k) * result.dt;
+      const double fits = counts != 0 ? std::clamp(asked, kLeastCount, kLargestCount) : asked;
+      const double inside = std::clamp(fits, lower, upper);
+      board = k == 0 ? inside : std::clamp(inside, board - step, board + step);
+      watch.note("range", asked - fits, t);
+      watch.note("position", fits - inside, t);
+      watch.note("speed", inside - board, t);
+      result.targets(j, k) = board / scale;
+    }
+    result.clamps.insert(result.clamps.end(), watch.found().begin(), watch.found().end());
+  }
+  std::stable_sort(result.clamps.begin(), result.clamps.end(),
+                   [](const Clamp& a, const Clamp& b) { return a.change > b.change; });
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,36 @@
+#pragma once
+// What the robot makes of a table: every target becomes a whole count of 16 bits, which the motor
+// board keeps within the position limits of the joint. The board moves its target by at most so
+// many counts per millisecond.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/check/table_safety.hpp"
+
+namespace ayumi {
+
+/// One way in which a joint does not receive what the table says: its worst instant.
+struct Clamp {
+  std::string kind;  ///< "range" (16 bits), "position" or "speed"
+  std::string joint;
+  double t = 0;       ///< of the worst, from the first row [s]
+  double change = 0;  ///< from what the table says [rad]
+  int rows = 0;       ///< how many ticks differ
+};
+
+/// Targets as the servos receive them.
+struct BoardTargets {
+  double dt = 0.001;        ///< tick of the board [s]
+  Eigen::MatrixXd targets;  ///< dof x ticks, the robot's order [rad]
+  std::vector<Clamp> clamps;
+};
+
+/// The rows of the table as the boards pass them on: each row holds until the next one, in ticks of
+/// a millisecond where the interval is a whole number of them, else of the interval. Joints without
+/// an encoder have no counts: their speed limit is that of the profile of the options. Throws
+/// Error(bad_pattern) for a table without rows or with other joints than the robot's.
+BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& table,
+                           const SafetyOptions& options = {});
+
+}  // namespace ayumi

@@ -1,0 +1,136 @@
+// `ayumi replay` and `ayumi export --sign-test`: tables as the robot receives them.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Json = nlohmann::json;
+
+const char* const kBow = R"({
+  "format": "ayumi.pattern/1", "name": "arm up", "robot": "hoap1", "units": { "angle": "deg" },
+  "phases": [{ "until": 1.5, "support": "both" }],
+  "keyframes": [{ "t": 0, "posture": "home" },
+                { "t": 1.0, "posture": { "l_shoulder_pitch": 60, "r_shoulder_pitch": 60 } }]
+})";
+
+class Replay : public testing::Test {
+ protected:
+  Output ayumi(const std::vector<std::string>& arguments) {
+    return run_program(arguments, folder.path());
+  }
+  void export_bow(const std::string& format, const std::string& file) {
+    write(folder / "p.json", kBow);
+    const Output out =
+        ayumi({"export", "p.json", "--format", format, "-o", file, "-q", "--ramp", "0.5"});
+    ASSERT_EQ(out.exit_code, 0) << out.err << out.out;
+  }
+  Folder folder;
+};
+
+// Each plant of the program judges a table that was exported: the robot stands, nothing is clamped.
+TEST_F(Replay, WhatWasExportedStands) {
+  export_bow("hoap", "h.csv");
+  export_bow("csv", "t.csv");
+  export_bow("json", "t.json");
+  for (const std::string file : {"h.csv", "t.csv", "t.json"}) {
+    std::vector<std::string> words = {"replay", file, "--json", "-q", "--robot", "hoap1"};
+    if (file != "h.csv") words.resize(4);  // the head names the robot
+    const Output out = ayumi(words);
+    ASSERT_EQ(out.exit_code, 0) << file << out.err << out.out;
+    const Json json = Json::parse(out.out);
+    EXPECT_EQ(json.at("verdict"), "stands");
+    EXPECT_EQ(json.at("clamps").size(), 0u) << out.out;
+    for (const auto& [plant, run] : json.at("plants").items()) {
+      EXPECT_EQ(run.at("outcome"), "stands") << plant;
+      EXPECT_LT(run.at("tracking").at("mean_rad"), 0.02);
+    }
+  }
+}
+
+// A jump is clamped to 57 counts per millisecond; a bow that is too deep lets the robot fall.
+TEST_F(Replay, JumpsAreClampedAndFallsAreFound) {
+  const int home[20] = {0, 0, 3607,  9107,  -5500, 0, 18810,  -2090, 0, 5225,
+                        0, 0, -3607, -9107, 5500,  0, -18810, 2090,  0, -5225};
+  const auto rows = [&](int motor, int other, int change) {
+    std::string text;
+    for (int k = 0; k < 600; ++k) {
+      text += "2,2";
+      for (int i = 0; i < 20; ++i)
+        text += "," + std::to_string(home[i] + (k < 200      ? 0
+                                                : i == motor ? change
+                                                : i == other ? -change
+                                                             : 0));
+      text += ",R,R,R\n";
+    }
+    return text;
+  };
+  write(folder / "jump.csv", rows(6, 16, -1000));
+  const Output jump =
+      ayumi({"replay", "jump.csv", "--robot", "hoap1", "--plant", "ayumi", "--json"});
+  ASSERT_EQ(jump.exit_code, 0) << jump.err << jump.out;
+  const Json clamp = Json::parse(jump.out).at("clamps").at(0);
+  EXPECT_EQ(clamp.at("kind"), "speed");
+  EXPECT_NEAR(clamp.at("change_rad"), 943 / 209.0 * 3.14159265 / 180, 1e-6);
+  write(folder / "lean.csv", rows(4, 14, 4500));  // both ankles by 21 degrees
+  const Output lean = ayumi({"replay", "lean.csv", "--robot", "hoap1", "-o", "out", "--json"});
+  EXPECT_EQ(lean.exit_code, 1) << lean.err << lean.out;
+  EXPECT_EQ(Json::parse(lean.out).at("plants").at("ayumi").at("outcome"), "fell");
+  EXPECT_TRUE(fs::exists(folder / "out/run.json"));
+  EXPECT_TRUE(fs::exists(folder / "out/log_ayumi.bin"));
+}
+
+TEST_F(Replay, BadTablesLeaveNothing) {
+  export_bow("hoap", "h.csv");
+  const std::string good = contents(folder / "h.csv");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {good.substr(0, good.size() / 2 - 20), "columns, but the rows before have 25"},
+      {"", "ayumi"},
+      {"1,2,nan" + good.substr(5), "is not a count of 16 bits"},
+      {"t[s],no_joint[rad]\n0,0\n1,0\n", "no_joint"}};
+  for (const auto& [bytes, words] : cases) {
+    write(folder / "bad.csv", bytes);
+    const Output out = ayumi({"replay", "bad.csv", "--robot", "hoap1", "-o", "out"});
+    EXPECT_EQ(out.exit_code, 3) << words << out.out;
+    EXPECT_NE(out.err.find(words), std::string::npos) << out.err;
+    EXPECT_EQ(line_count(out.err), 1) << out.err;
+    EXPECT_FALSE(fs::exists(folder / "out"));
+  }
+  EXPECT_EQ(ayumi({"replay", "h.csv"}).exit_code, 2);  // a sequence does not name its robot
+  EXPECT_EQ(ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "bullet"}).exit_code, 2);
+}
+
+// One file and one picture per joint; only this joint moves, by 5 degrees.
+TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
+  const Output out =
+      ayumi({"export", "hoap1", "--sign-test", "--format", "hoap", "-o", "signs", "--json", "-q"});
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const Json tests = Json::parse(out.out).at("tests");
+  ASSERT_EQ(tests.size(), 20u);
+  EXPECT_EQ(folder.files().size(), 1 + 20u + 20 + 1);  // the folder, tables, pictures, sheet
+  for (size_t i = 0; i < 20; ++i) {
+    const std::string text = contents(folder / ("signs/" + std::string(tests[i].at("file"))));
+    std::vector<int> first, most(20, 0);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream row(line);
+      std::vector<int> now;
+      for (std::string cell; std::getline(row, cell, ',') && cell != "R";)
+        now.push_back(std::stoi(cell));
+      ASSERT_EQ(now.size(), 22u);
+      if (first.empty()) first = now;
+      for (size_t m = 0; m < 20; ++m)
+        if (std::abs(now[m + 2] - first[m + 2]) > std::abs(most[m]))
+          most[m] = now[m + 2] - first[m + 2];
+    }
+    for (size_t m = 0; m < 20; ++m)
+      EXPECT_NEAR(std::abs(most[m]), m == i ? 1045 : 0, 1) << tests[i].dump();
+  }
+  EXPECT_EQ(ayumi({"export", "hoap1", "--sign-test", "--format", "hoap", "-o", "signs"}).exit_code,
+            3);
+}
+
+}  // namespace
+}  // namespace ayumi::test
