@@ -145,6 +145,37 @@ TEST(JointFriction, HoldsWhatTheServoCannotMove) {
   }
 }
 
+// A stiff servo far from its target asks for a rate that no motor reaches. The joint still moves at
+// the full torque, then at the speed limit, and arrives.
+TEST(TorqueLimit, AFarTargetIsReachedAtTheSpeedLimit) {
+  const RobotModel& model = hoap1();
+  const ActuatorLimits& limits = model.limits("hoap1-measured");
+  const int j = model.find_dof("r_shoulder_pitch");
+  RobotState state = model.rest_state();
+  state.base.position.z() = 100;
+  for (const double dt : {1e-3, 2.5e-4}) {
+    Plant plant(model, limits, World{});
+    plant.set_state(state);
+    Eigen::VectorXd target = state.theta;
+    target[j] -= 1.0;
+    double fastest = 0;
+    for (int i = 0; i < std::lround(0.3 / dt); ++i) {
+      const double torque = plant.step(target, {}, dt).torque[j];
+      const double rate = -plant.state().dtheta[j];
+      fastest = std::max(fastest, rate);
+      if (rate < 0.95 * limits.speed[j] && fastest < limits.speed[j]) {
+        EXPECT_EQ(torque, -limits.peak_torque[j]);
+      }
+      // The momentum of the base carries the arm on, the motor does not.
+      if (rate > 1.1 * limits.speed[j]) {
+        EXPECT_EQ(torque, 0);
+      }
+    }
+    EXPECT_GT(fastest, limits.speed[j]) << dt;
+    EXPECT_NEAR(plant.state().theta[j], target[j], 0.01) << dt;
+  }
+}
+
 // Every reading is three ticks older than without; the motion (open loop) is the same.
 TEST(Latency, DelaysEveryReading) {
   const Disturbance push{.at = 0.6, .duration = 0.02, .what = Push{.magnitude = 0.2}};

@@ -49,6 +49,18 @@ TorqueRange torque_range(const ActuatorLimits& limits, int dof, double rate) {
   return range;
 }
 
+TorqueBound torque_bound(const ActuatorLimits& limits, int dof, double rate, double direction) {
+  const TorqueRange range = torque_range(limits, dof, rate);
+  const double v = rate * direction, peak = limits.peak_torque[dof], speed = limits.speed[dof];
+  if (direction > 0 ? range.high_by_voltage : range.low_by_voltage) {
+    const double slope = limits.servo[static_cast<size_t>(dof)].back_emf;
+    return {TorquePiece::voltage, (direction > 0 ? range.high : -range.low) + slope * v, slope};
+  }
+  if (v <= speed || !std::isfinite(speed)) return {TorquePiece::peak, peak, 0};
+  if (v >= 1.1 * speed) return {};
+  return {TorquePiece::fall, 11 * peak, 10 * peak / speed};
+}
+
 double dry_friction(const ServoDescription& servo, double rate, double motor, double external) {
   const LoadFriction& load = servo.load;
   double friction = servo.coulomb + std::abs(load.external * external - load.motor * motor);

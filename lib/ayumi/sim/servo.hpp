@@ -37,6 +37,19 @@ struct TorqueRange {
 /// its peak torque where it must.
 TorqueRange torque_range(const ActuatorLimits& limits, int dof, double rate);
 
+/// The bound of the torque over the rate is a chain of straight pieces: the peak torque up to the
+/// speed limit, its fall beyond, nothing, and what the voltage gives.
+enum class TorquePiece { peak, fall, none, voltage };
+
+/// One of these pieces in one direction: torque - slope rate, both counted in that direction.
+struct TorqueBound {
+  TorquePiece piece = TorquePiece::none;
+  double torque = 0;  ///< at rest [N m, N]
+  double slope = 0;   ///< loss of torque with speed [N m s/rad, N s/m]
+};
+/// The piece that bounds the torque in `direction` (+1 or -1) at this rate.
+TorqueBound torque_bound(const ActuatorLimits& limits, int dof, double rate, double direction);
+
 /// Dry friction [N m] of a servo whose motor turns at `rate` [rad/s] with the torque `motor`, while
 /// everything else exerts `external` on the joint [N m].
 double dry_friction(const ServoDescription& servo, double rate, double motor, double external);

@@ -13,6 +13,10 @@ using Eigen::VectorXd;
 
 namespace {
 
+/// Pieces of the torque's bound that a servo may follow in one solve after the first. Chosen: as
+/// many as the chain has left; the first is right unless the rate crosses a corner within the step.
+constexpr int kBoundChanges = 3;
+
 /// Joint rate up to which dry friction acts as a steep viscous friction, which is how it sticks
 /// [rad/s, m/s]. Chosen: a joint under a load below its dry friction creeps by less than 0.06
 /// deg/s. No measured case changes from half to twice (constants.md).
@@ -106,6 +110,7 @@ void JointLaws::start(const VectorXd& theta, const double* rate, double dt) {
   for (size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];
     joint.saturated = joint.speed_bound = joint.gear_changed = joint.stuck = false;
+    joint.bound_changes = 0;
     const double motor = joint.has_gear ? joint.dphi : rate[j];
     joint.sliding = joint.coulomb > 0 && std::abs(motor) > kStickRate;
     if (joint.sliding) joint.slip_torque = -std::copysign(joint.coulomb, motor);
@@ -121,8 +126,8 @@ void JointLaws::start(const VectorXd& theta, const double* rate, double dt) {
 JointLaws::Impulse JointLaws::motor_impulse(const Joint& joint, double phi, double dt) const {
   Impulse out{0, dt * joint.viscous};
   if (joint.saturated) {
-    out.sum = dt * joint.limit_torque;
-    out.damping += dt * joint.limit_slope;
+    out.sum = dt * joint.direction * joint.bound.torque;
+    out.damping += dt * joint.bound.slope;
   } else if (joint.speed_bound || joint.inside_band) {
     out.sum = joint.speed_bound ? dt * joint.speed_torque : 0;
     out.damping += dt * joint.kd;
@@ -181,13 +186,24 @@ void JointLaws::add(const VectorXd& theta, const double* rate, double dt, double
   }
 }
 
+// A servo that passes the bound of its torque first follows the piece that holds at the rate before
+// the step, then the one at the solved rate. The rate that the servo's own law asks for is of no
+// use here: far from its target that is a rate which no motor reaches, where the bound is zero.
+bool JointLaws::check_bound(Joint& joint, size_t j, double dphi) {
+  torque_[static_cast<Eigen::Index>(j)] =
+      joint.direction * joint.bound.torque - joint.bound.slope * dphi;
+  if (joint.bound_changes == kBoundChanges) return false;
+  const TorqueBound bound = torque_bound(limits_, static_cast<int>(j), dphi, joint.direction);
+  if (bound.piece == joint.bound.piece) return false;
+  ++joint.bound_changes;
+  joint.bound = bound;
+  return true;
+}
+
 bool JointLaws::check_servo(Joint& joint, size_t j, double phi, double dphi, double dt) {
   const ServoDescription& servo = limits_.servo[j];
   double& torque = torque_[static_cast<Eigen::Index>(j)];
-  if (joint.saturated) {
-    torque = joint.limit_torque - joint.limit_slope * dphi;
-    return false;
-  }
+  if (joint.saturated) return check_bound(joint, j, dphi);
   const double error = joint.target - phi - dt * dphi;
   const double most = joint.kd * servo.speed_command_limit;
   if (most > 0 && !joint.speed_bound && !joint.inside_band && std::abs(joint.kp * error) > most) {
@@ -199,12 +215,10 @@ bool JointLaws::check_servo(Joint& joint, size_t j, double phi, double dphi, dou
   torque -= joint.kd * dphi;
   const TorqueRange range = torque_range(limits_, static_cast<int>(j), dphi);
   if (torque >= range.low && torque <= range.high) return false;
-  const bool above = torque > range.high;
-  torque = above ? range.high : range.low;
-  // The voltage's bound falls with the rate; it is continued to the end of the step.
   joint.saturated = true;
-  joint.limit_slope = (above ? range.high_by_voltage : range.low_by_voltage) ? servo.back_emf : 0;
-  joint.limit_torque = torque + joint.limit_slope * dphi;
+  joint.direction = torque > range.high ? 1.0 : -1.0;
+  joint.bound = torque_bound(limits_, static_cast<int>(j), joint.last_rate, joint.direction);
+  torque = joint.direction * joint.bound.torque - joint.bound.slope * dphi;
   return true;
 }
 

@@ -50,8 +50,9 @@ class JointLaws {
   bool saturated(int j) const { return joints_[static_cast<size_t>(j)].saturated; }
 
   /// Largest number of times that a solve can be repeated because of one joint. Derived: friction
-  /// sticks, then slides; speed loop, torque limit and gear change once each.
-  static constexpr size_t kChangesPerJoint = 5;
+  /// sticks, then slides; speed loop, torque limit and gear change once each, and the bound of the
+  /// torque has kBoundChanges more pieces.
+  static constexpr size_t kChangesPerJoint = 8;
 
   /// Takes the solved step over: adds the work of servos, gears, friction and end stops, with the
   /// joint rates before and after it, and moves the motors.
@@ -82,9 +83,11 @@ class JointLaws {
     bool saturated = false, sliding = false, speed_bound = false, gear_changed = false;
     bool stuck = false;  // the friction slid at first
     Flank flank = Flank::none;
-    double limit_torque = 0, limit_slope = 0;  // while saturated: limit_torque - limit_slope dphi
-    double speed_torque = 0;                   // while speed_bound: speed_torque - kd dphi [N m, N]
-    double slip_torque = 0;                    // of the dry friction while it slides [N m, N]
+    double direction = 0;              // of the torque while saturated
+    TorqueBound bound;                 // which the torque then follows
+    int bound_changes = 0;             // in this solve
+    double speed_torque = 0;           // while speed_bound: speed_torque - kd dphi [N m, N]
+    double slip_torque = 0;            // of the dry friction while it slides [N m, N]
     double momentum = 0, inertia = 0;  // of a motor: inertia dphi+ = momentum + slope dtheta+
     double mesh = 0, slope = 0;        // impulse of a gear: mesh + slope (dphi+ - dtheta+)
     bool beyond_range(double theta) const { return limited && (theta < lower || theta > upper); }
@@ -96,6 +99,7 @@ class JointLaws {
 
   Impulse motor_impulse(const Joint& joint, double phi, double dt) const;
   void solve_motor(Joint& joint, double theta, double dt, Impulse& on_joint) const;
+  bool check_bound(Joint& joint, size_t j, double dphi);
   bool check_servo(Joint& joint, size_t j, double phi, double dphi, double dt);
   static bool check_friction(Joint& joint, double dphi);
   static bool check_gear(Joint& joint, double theta, double rate, double dphi, double dt);
