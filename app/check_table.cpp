@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
 
 namespace ayumi::app {
 
@@ -16,13 +16,6 @@ std::string padded(std::string text, size_t width) {
 }
 
 std::string mm(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
-
-std::string quantity(double value, const std::string& unit) {
-  if (unit == "m") return mm(value);
-  if (unit == "rad") return text::brief(value * 180 / std::numbers::pi) + " deg";
-  if (unit == "1") return text::fixed(value, 2);
-  return text::brief(value) + " " + unit;
-}
 
 std::string seconds(const Finding& f) {
   if (f.begin == f.end) return "at " + text::fixed(f.at, 3) + " s";
@@ -38,23 +31,22 @@ std::string check_table(const ConsistencyReport& report) {
   std::string out;
   for (const Finding& f : report.findings)
     out += "  " + padded(name_of(f.severity), 8) + padded(name_of(f.kind), 19) + f.where + ", " +
-           seconds(f) + ": " + quantity(f.worst, f.unit) + ", limit " + quantity(f.limit, f.unit) +
-           "\n" + std::string(10, ' ') + f.hint + "\n";
+           seconds(f) + ": " + amount_text(f) + "\n" + std::string(10, ' ') + f.hint + "\n";
   const auto at = [&](FindingKind kind) { return report.summary[kind]; };
   const double margin = at(FindingKind::support_margin);
   out += "  ZMP " + mm(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
          " the support; the posture differs from the keys by " + mm(at(FindingKind::cog_residual)) +
          " in COG, " + mm(at(FindingKind::zmp_residual)) + " in ZMP and " +
          text::fixed(at(FindingKind::fz_residual), 2) +
-         " N in force; the ZMP of the point-mass model is off by " +
-         mm(at(FindingKind::point_mass_gap)) + "\n";
+         " N in force; the ZMP of the point-mass model is " + mm(at(FindingKind::point_mass_gap)) +
+         " from the command\n";
   std::vector<std::string> shares;
   for (const FindingSpec* spec : summary_figures())
     if (spec->figure.share_name)
       shares.push_back(std::string(spec->figure.share_name) + " " + percent(at(spec->kind)));
   out += "  share of the limits: " + text::join(shares, ", ") + "\n";
   out += "  feet: slip " + mm(at(FindingKind::foot_slip)) + ", sink " +
-         mm(at(FindingKind::foot_penetration)) + ", height while standing " +
+         mm(at(FindingKind::foot_penetration)) + ", gap while standing " +
          mm(at(FindingKind::foot_float)) + "; nearest bodies " +
          mm(at(FindingKind::self_collision)) + " apart\n";
   return out;

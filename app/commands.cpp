@@ -8,6 +8,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "help.hpp"
+#include "option_checks.hpp"
 #include "signals.hpp"
 
 namespace ayumi::app {
@@ -68,7 +69,7 @@ void add_global_options(CLI::App& app, Context& context) {
   app.add_flag("--force", context.force, "Overwrite existing results.");
   app.add_option("--threads", context.threads,
                  "Number of threads, 0 for all. Results do not depend on it.")
-      ->check(CLI::Range(0, 1024).description(""))
+      ->check(whole_number_within(0, 1024).description(""))
       ->type_name("N");
   app.add_option("--seed", context.seed, "Seed of noise and random choices.")->type_name("N");
   app.add_option("--robot-path", context.robot_path,
@@ -85,6 +86,14 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+// What can stand after `new` or `edit`, where nothing of that kind was given; else nothing.
+std::vector<std::string> kinds_of(const CLI::App& command) {
+  std::vector<std::string> kinds;
+  if (command.get_parent() && command.get_subcommands().empty())
+    for (const CLI::App* kind : command.get_subcommands(nullptr)) kinds.push_back(kind->get_name());
+  return kinds;
+}
+
 // CLI11's message, or a better one that names the nearest command or option.
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
@@ -97,8 +106,13 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
       return "unknown option '" + word + "'" +
              text::suggestion(word.substr(0, word.find('=')), option_names(level));
     if (chosen.empty()) return "unknown command '" + word + "'" + text::suggestion(word, commands);
+    if (!kinds_of(level).empty())
+      return "there is no '" + word + "' in ayumi " + level.get_name() + "; choose one of " +
+             text::join(kinds_of(level), ", ") + text::suggestion(word, kinds_of(level));
     return "unexpected argument '" + word + "'";
   }
+  if (!kinds_of(level).empty())
+    return level.get_name() + ": choose one of " + text::join(kinds_of(level), ", ");
   return error.what();
 }
 

@@ -174,8 +174,9 @@ const char* kPendulum =
     "reference COG moves to absorb the difference.";
 const char* kLong =
     "The long term of DTAD computes the ZMP that brings the COG back to the command. The ZMP moves "
-    "farther than the COG is off (K > 1), and still farther while the COG moves away (D > 0; the "
-    "printed + is a misprint). A ZMP outside the support is replaced by the nearest point of the "
+    "by more than the error of the COG (K > 1), and by still more while this error grows (D > 0; "
+    "the printed + is a misprint). A ZMP outside the support is replaced by the nearest point of "
+    "the "
     "support, because the ground cannot push outside the feet.";
 const char* kResolve =
     "Many joint rates give the COG its reference velocity while the free foot and the trunk follow "

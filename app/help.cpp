@@ -23,7 +23,7 @@ std::string overview(const CLI::App& app) {
   }
   return text +
          "\nExit code: 0 done, 1 the verdict is negative, 2 wrong usage, 3 bad input, 4 a solver "
-         "failed, 5 internal error\n";
+         "failed, 5 internal error, 130 stopped by Ctrl-C\n";
 }
 
 }  // namespace

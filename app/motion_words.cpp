@@ -66,7 +66,7 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
 std::string cost_words(const WeightedChange& cost) {
   constexpr double kLeastShare = 1e-3;  // of the change; less does not show in three digits
   const std::string missing = cost.safety > kLeastShare * cost.change
-                                  ? " and " + text::brief(cost.safety) + " for missing robustness"
+                                  ? ", cost of missing safety " + text::brief(cost.safety)
                                   : "";
   return "  weighted change " + text::brief(cost.change) + missing;
 }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/task/task.hpp"
@@ -38,8 +39,15 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
   refuse_overwriting(context, out);
   pattern.robot = robot_as_written(robot);
   pattern.name = std::filesystem::path(out).stem().string();
-  pattern.file = out;
-  Task task = make_task(std::move(pattern), model, "", context.progress());
+  pattern.file.clear();  // the places in messages are not yet those of a file
+  Task task = [&] {
+    try {
+      return make_task(std::move(pattern), model, "", context.progress());
+    } catch (const Error& error) {
+      fail(error.code(),
+           std::string("nothing is written, because the robot cannot do this: ") + error.what());
+    }
+  }();
   const CommandSeries& series = task.series;
   const bool consistent =
       !series.viip.empty() || !model.has_soles() || choose_profile(context, task);
@@ -47,8 +55,10 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
   written.file = "new";  // relative names hold from the working folder
   write_pattern(out, written, comments);
   context.print(out + ": " + text::fixed(series.duration(), 2) + " s, " +
-                std::to_string(written.phases.size()) + " phases, " +
-                std::to_string(written.keyframes.size()) + " keyframes\n  COG " +
+                std::to_string(written.phases.size()) +
+                (written.phases.size() == 1 ? " phase, " : " phases, ") +
+                std::to_string(written.keyframes.size()) +
+                (written.keyframes.size() == 1 ? " keyframe" : " keyframes") + "\n  COG " +
                 series.origin.at("cog") + "\n");
   context.print_json(nlohmann::ordered_json{{"pattern", out},
                                             {"duration_s", series.duration()},

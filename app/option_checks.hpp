@@ -8,4 +8,10 @@ namespace ayumi::app {
 /// A number from `least` to `most`. CLI::Range lets nan pass.
 CLI::Validator number_within(double least, double most);
 
+/// A whole number from `least` to `most`.
+CLI::Validator whole_number_within(int least, int most);
+
+/// One of these words. CLI::IsMember answers in braces.
+CLI::Validator one_of(const std::vector<std::string>& words);
+
 }  // namespace ayumi::app

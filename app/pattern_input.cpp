@@ -72,6 +72,12 @@ CheckOptions check_options(const Task& input, const std::vector<std::string>& ov
   return options;
 }
 
+void refuse_unknown_tolerances(const std::vector<std::string>& overrides) {
+  CheckOptions options;
+  options.tolerances = read_pairs(overrides, "--tolerance");
+  tolerances(options);
+}
+
 void refuse_overwriting(const Context& context, const std::filesystem::path& path) {
   require_file_target(path);
   if (!context.force) refuse_existing(path);

@@ -39,6 +39,9 @@ std::string robot_as_written(const std::string& robot);
 /// Those of the task, with `overrides` ("kind=value") over the tolerances of its pattern.
 CheckOptions check_options(const Task& input, const std::vector<std::string>& overrides);
 
+/// Throws Error(usage) for an override that no kind of finding has.
+void refuse_unknown_tolerances(const std::vector<std::string>& overrides);
+
 /// "name=value" pairs. Throws Error(usage) naming the option and the word.
 std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
                                          const std::string& option);

@@ -25,9 +25,9 @@ bool read_number(const std::string& word, double& value) {
   fail(ErrorCode::usage, "--lock '" + word + "': " + why);
 }
 
-void lock_keyframe(const std::string& word, const Task& input, RepairOptions& options) {
+void lock_keyframe(const std::string& word, const Pattern& pattern, RepairOptions& options) {
   double number = 0;
-  const auto& keys = input.pattern.keyframes;
+  const auto& keys = pattern.keyframes;
   if (!read_number(word.substr(9), number) || number != std::floor(number) || number < 0 ||
       number >= static_cast<double>(keys.size()))
     complain(word, keys.empty() ? "the pattern has no keyframes"
@@ -36,15 +36,15 @@ void lock_keyframe(const std::string& word, const Task& input, RepairOptions& op
   options.locked_windows.emplace_back(t, t);
 }
 
-void lock_window(const std::string& word, const Task& input, RepairOptions& options) {
+void lock_window(const std::string& word, double duration, RepairOptions& options) {
   const size_t dots = word.find("..");
   double begin = 0, end = 0;
   if (!read_number(word.substr(0, dots), begin) || !read_number(word.substr(dots + 2), end))
     complain(word, "a time window has the form BEGIN..END in seconds, for example 1.2..1.8");
-  const double last = input.series.duration();
-  if (!(begin <= end) || begin < 0 || begin > last)
-    complain(word, "the window must lie in the motion, 0..." + text::exact(last) +
-                       " s, and end after it begins");
+  if (!(begin <= end)) complain(word, "the window must end after it begins");
+  if (begin < 0 || begin > duration)
+    complain(word, "the window must begin within the motion" +
+                       (std::isfinite(duration) ? ", 0.." + text::exact(duration) + " s" : ""));
   options.locked_windows.emplace_back(begin, end);
 }
 
@@ -61,16 +61,17 @@ bool stays_inside(const fs::path& name) {
 
 }  // namespace
 
-void read_locks(const std::vector<std::string>& words, const Task& input, RepairOptions& options) {
+void read_locks(const std::vector<std::string>& words, const Pattern& pattern, double duration,
+                RepairOptions& options) {
   for (const std::string& word : words) {
     if (word == "foot:left" || word == "foot:right")
       options.locked_feet[word == "foot:left" ? 0 : 1] = true;
     else if (word.starts_with("foot:"))
       complain(word, "the feet are foot:left and foot:right");
     else if (word.starts_with("keyframe:"))
-      lock_keyframe(word, input, options);
+      lock_keyframe(word, pattern, options);
     else if (word.find("..") != std::string::npos)
-      lock_window(word, input, options);
+      lock_window(word, duration, options);
     else
       options.locked_joints.push_back(word);
   }

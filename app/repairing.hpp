@@ -15,7 +15,9 @@ RepairOptions wished_options(const Pattern& pattern);
 
 /// Locks in words: a joint ("l_elbow"), a foot ("foot:left"), a keyframe ("keyframe:3", counted
 /// from 0 as in messages) or a time window ("1.2..1.8"). Throws Error(usage) for anything else.
-void read_locks(const std::vector<std::string>& words, const Task& input, RepairOptions& options);
+/// A window must begin before `duration` [s].
+void read_locks(const std::vector<std::string>& words, const Pattern& pattern, double duration,
+                RepairOptions& options);
 
 /// repair() of what the pattern samples to; where an older correction is there and does not do, of
 /// what the author wrote without it.

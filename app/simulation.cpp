@@ -6,6 +6,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/gain_design.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "option_checks.hpp"
 #ifdef AYUMI_HAS_MUJOCO
 #include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 #endif
@@ -31,7 +32,7 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   command.add_flag("--true-state", choice.true_state,
                    "Give the controller the true state in place of the estimate.");
   command.add_option("--substeps", choice.substeps, "Integrator steps per servo period.")
-      ->check(CLI::Range(1, 100).description(""))
+      ->check(whole_number_within(1, 100).description(""))
       ->type_name("N");
   add_unstable_flag(command, choice.unstable);
   add_plant_option(command, choice.plant);

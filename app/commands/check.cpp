@@ -155,6 +155,7 @@ void check(Context& context, const CheckCommand& options) {
     return;
   }
   if (options.patterns.empty()) fail(ErrorCode::usage, "check: name at least one PATTERN");
+  refuse_unknown_tolerances(options.tolerances);
   if (options.watch) {
     watch(context, options);
     return;

@@ -65,6 +65,7 @@ std::string label_of(const std::string& file) {
 
 void diff(Context& context, const DiffCommand& options) {
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
+  read_pairs(options.weights, "--weight");
   const Task a = load_pattern(context, options.a, options.input);
   const Task b = load_pattern(context, options.b, options.input);
   if (a.robot.dof_names() != b.robot.dof_names())

@@ -80,6 +80,7 @@ void write_edited(Context& context, const EditCommand& options, const Pattern& e
 }
 
 Task load(const Context& context, const EditCommand& options) {
+  refuse_unknown_tolerances(options.tolerances);
   refuse_overwriting(context, options.out);
   return load_pattern(context, options.pattern, options.input);
 }
@@ -106,7 +107,7 @@ std::string in_words(double scale, const ConsistencyReport& before, const ForceR
   const auto newtons = [](const ForceRange& f) {
     return text::fixed(f.least, 1) + " to " + text::fixed(f.most, 1) + " N";
   };
-  std::string out = "  takes " + text::brief(scale) + " of the original time\n";
+  std::string out = "  takes " + text::brief(scale) + " times the original time\n";
   if (pace)
     out += pace->bounded ? "  a faster pace fails: " + pace->limited_by + "\n"
                          : "  no limit was found down to this scale\n";

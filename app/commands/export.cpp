@@ -399,8 +399,9 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
             report.worst_joint + " at " +
             on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ")";
   if (!report.margin_joint.empty())
-    text += "; " + text::brief(report.min_limit_margin * 180 / EIGEN_PI, 3) +
-            " deg from the nearest position limit (" + report.margin_joint + ")";
+    text += "; " + text::brief(std::abs(report.min_limit_margin) * 180 / EIGEN_PI, 3) + " deg " +
+            (report.min_limit_margin < 0 ? "beyond a" : "from the nearest") + " position limit (" +
+            report.margin_joint + ")";
   text += "\n";
   for (const SafetyViolation& violation : report.violations)
     text += "  unsafe: " + text_of(violation) + "\n";
@@ -619,7 +620,7 @@ void add_export(CLI::App& app, Context& context) {
           "Format of the file. A joint table: csv, json, hoap or gltf. The log of a run: " +
               text::join(log_formats(), ", ") + ".")
       ->required()
-      ->check(CLI::IsMember(formats));
+      ->check(one_of(formats));
   command->add_option("-o,--out", options->output, "File to write; with --sign-test a folder.")
       ->required()
       ->type_name("FILE");

@@ -155,7 +155,7 @@ std::string report(const RobotModel& model, const Design& d) {
   for (const auto& [name, value] : gain_list(p)) out += " " + name + "=" + text::brief(value);
   out += "\n(18)(19)  K = " + text::brief(long_term_k(p)) +
          ", D = " + text::fixed(1e3 * long_term_d(p) / w, 1) +
-         " ms: the reference ZMP moves K times as far as the COG is off\n";
+         " ms: the reference ZMP moves by K times the error of the COG and D times its rate\n";
   out += "short term  " + text::fixed(100 * p.zmp_gain / (1 + p.zmp_gain), 0) +
          " % of a ZMP error is answered immediately, filtered over " +
          text::fixed(1e3 * p.zmp_filter / w, 1) + " ms\n";

@@ -103,9 +103,9 @@ void add_import(CLI::App& app, Context& context) {
   command
       ->add_option("--format", options.import.format,
                    "Format of the file (default: recognized by its content).")
-      ->check(CLI::IsMember({"hoap", "csv", "json"}));
+      ->check(one_of({"hoap", "csv", "json"}));
   command->add_option("--unit", unit, "Unit of columns whose names are bare joint names.")
-      ->check(CLI::IsMember({"rad", "deg"}))
+      ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
   command->add_option("--rate", options.import.rate, "Rate of a table without a time column [1/s].")
       ->check(number_within(1.0, 1e5))

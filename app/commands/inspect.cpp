@@ -7,6 +7,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/control/controller.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/model/diagnose.hpp"
 #include "ayumi/model/outline.hpp"
@@ -318,6 +319,7 @@ std::vector<std::string> write_picture(const Context& context, const RobotModel&
 
 void inspect(const Context& context, const InspectOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context), {.meshes = true});
+  check_controller(model, {ControllerKind::dtad, {}});  // the sidecar's gains of both laws
   std::vector<std::string> notes;
   if (!options.picture.empty())
     notes = write_picture(context, model, options.picture, options.view);

@@ -18,6 +18,7 @@
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/task/task.hpp"
 #include "new_pattern.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "walk_that_fits.hpp"
 
@@ -250,7 +251,7 @@ void add_gait(CLI::App& command, NewOptions& options) {
       ->capture_default_str()
       ->type_name("SHARE");
   command.add_option("--first", options.first, "Foot that swings first.")
-      ->check(CLI::IsMember({"left", "right"}))
+      ->check(one_of({"left", "right"}))
       ->capture_default_str();
 }
 
@@ -328,7 +329,7 @@ void add_viip(CLI::App& command, NewOptions& options) {
       .add_option("--steps", options.viip_steps,
                   "Number of steps; the last one brings the feet together. Without --velocity, the "
                   "robot steps in place.")
-      ->check(CLI::Range(1, 10000).description(""))
+      ->check(whole_number_within(1, 10000).description(""))
       ->type_name("N");
   command
       .add_option("--velocity", options.velocity, "Velocity of the COG [m/s]: forward, and left.")

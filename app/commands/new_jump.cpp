@@ -127,6 +127,7 @@ void new_jump(Context& context, JumpOptions options) {
   }
   if (options.profile.empty()) {
     options.profile = choose_profile(model, p, !options.stoop);
+    jump_pattern(model, p);  // values out of range are refused first
     if (options.profile.empty())
       context.print("no actuator profile of " + model.name() +
                     " passes the check with a height of " + text::brief(p.height) +

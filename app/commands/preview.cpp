@@ -14,6 +14,7 @@
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/render/log_reading.hpp"
 #include "ayumi/render/snapshots.hpp"
+#include "option_checks.hpp"
 #include "plan_log.hpp"
 #include "preview_batch.hpp"
 #include "run_robot.hpp"
@@ -238,18 +239,18 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
   command.add_option("--to", clip.end, "Last time [s] (default: the end).");
   command.add_option("--at", clip.at, "Time of a single picture [s].")->capture_default_str();
   command.add_option("--strip", options.strip, "Number of snapshots side by side in a .png.")
-      ->check(CLI::Range(1, 400));
+      ->check(whole_number_within(1, 400));
   command
       .add_option("--exposures", options.exposures,
                   "Number of postures that are drawn into one .png, evenly spaced in time.")
-      ->check(CLI::Range(1, 100));
+      ->check(whole_number_within(1, 100));
   command.add_option("--columns", options.columns, "Columns of --strip and --sheet.")
-      ->check(CLI::Range(1, 100))
+      ->check(whole_number_within(1, 100))
       ->capture_default_str();
   command.add_option("--view", clip.camera.view, "View: " + text::join(view_names(), ", ") + ".")
       ->capture_default_str();
   command.add_option("--camera", options.camera, "Camera: follow, fixed or orbit.")
-      ->check(CLI::IsMember({"follow", "fixed", "orbit"}).description(""))
+      ->check(one_of({"follow", "fixed", "orbit"}).description(""))
       ->capture_default_str();
   command.add_option("--zoom", clip.camera.zoom, "Magnification; 2 is twice as large.")
       ->capture_default_str();
@@ -290,7 +291,7 @@ void add_preview(CLI::App& app, Context& context) {
   command->add_option("--robot", options->robot,
                       "Robot to use in place of the one that the run names.");
   command->add_option("--format", options->format, "Format of the clips of several runs.")
-      ->check(CLI::IsMember({"mp4", "webm", "gif", "apng", "png", "glb"}).description(""))
+      ->check(one_of({"mp4", "webm", "gif", "apng", "png", "glb"}).description(""))
       ->capture_default_str();
   command
       ->add_option("--sheet", options->sheet, "Also draw one picture of each run into this .png.")

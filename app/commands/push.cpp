@@ -141,8 +141,9 @@ std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const
       lines.push_back((standing ? "standing" : motion) + ": " + name_of(push.controllers[k].type) +
                       " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
                       " B; " + open + " worst " + text::fixed(s.open_worst, 2) + " B, mean " +
-                      text::fixed(s.open_mean, 2) + " B; less than " + open + " in " +
-                      std::to_string(s.below_open) + " of " + std::to_string(s.cases) + " cases");
+                      text::fixed(s.open_mean, 2) + " B; it survives less than " + open + " in " +
+                      std::to_string(s.below_open) + " of " + std::to_string(s.cases) +
+                      (s.cases == 1 ? " case" : " cases"));
     }
   return lines;
 }
@@ -298,7 +299,7 @@ void add_push(CLI::App& app, Context& context) {
   command
       ->add_option("--directions", push.directions,
                    "Number of directions, evenly spread; the first is forward.")
-      ->check(CLI::Range(1, 360).description(""))
+      ->check(whole_number_within(1, 360).description(""))
       ->type_name("N")
       ->capture_default_str();
   command
@@ -319,7 +320,7 @@ void add_push(CLI::App& app, Context& context) {
   command
       ->add_option("--replicas", push.replicas,
                    "Number of small variations of every push; the robot must survive all of them.")
-      ->check(CLI::Range(0, 100).description(""))
+      ->check(whole_number_within(0, 100).description(""))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--duration", push.duration, "Duration of a push [s].")
@@ -329,7 +330,7 @@ void add_push(CLI::App& app, Context& context) {
   command->add_flag("--noise", push.simulate.sensor_noise,
                     "Simulate noise, bias and latency of the sensors.");
   command->add_option("--substeps", push.simulate.substeps, "Integrator steps per servo period.")
-      ->check(CLI::Range(1, 100).description(""))
+      ->check(whole_number_within(1, 100).description(""))
       ->type_name("N")
       ->capture_default_str();
   add_unstable_flag(*command, options->unstable);

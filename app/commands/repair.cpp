@@ -3,6 +3,7 @@
 #include "ayumi/repair/repair.hpp"
 
 #include <chrono>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/author/edit/edit.hpp"
@@ -11,7 +12,9 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/run/results_json.hpp"
+#include "ayumi/repair/weighted_change.hpp"
 #include "check_table.hpp"
 #include "motion_words.hpp"
 #include "option_checks.hpp"
@@ -199,11 +202,27 @@ RepairOptions repair_options(const RepairCommand& options, const Task& input) {
   if (options.safety) repair.safety = *options.safety;
   for (const auto& [joint, factor] : read_pairs(options.weights, "--weight"))
     repair.joint_weights[joint] = factor;
-  read_locks(options.locked, input, repair);
+  read_locks(options.locked, input.pattern, input.series.duration(), repair);
   repair.keep_partial = options.repair.keep_partial;
   repair.knot_spacing = options.repair.knot_spacing;
   repair.max_iterations = options.repair.max_iterations;
   return repair;
+}
+
+// What the command line alone can get wrong is refused before the pattern is sampled.
+void refuse_wrong_wishes(const Context& context, const RepairCommand& options) {
+  refuse_unknown_tolerances(options.tolerances);
+  if (options.locked.empty() && options.weights.empty()) return;
+  const Pattern pattern = read_pattern(options.pattern, read_pairs(options.input.set, "--set"));
+  RepairOptions wishes;
+  read_locks(options.locked, pattern, std::numeric_limits<double>::infinity(), wishes);
+  const RobotModel model = load_robot(robot_of(pattern), robot_search(context));
+  weight_factors(model, read_pairs(options.weights, "--weight"));
+  for (const std::string& joint : wishes.locked_joints)
+    if (model.find_dof(joint) < 0)
+      fail(ErrorCode::usage, "--lock '" + joint + "': the robot '" + model.name() +
+                                 "' has no such joint" +
+                                 text::suggestion(joint, model.dof_names()));
 }
 
 int exit_code_of(const RepairResult& result) {
@@ -221,6 +240,7 @@ void repair_pattern(Context& context, RepairCommand options) {
          "in place of -");
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
+  refuse_wrong_wishes(context, options);
   const Task input = load(context, options);
   options.repair = repair_options(options, input);
   const auto begin = std::chrono::steady_clock::now();
@@ -292,7 +312,7 @@ void add_repair(CLI::App& app, Context& context) {
           "--trust", options.trust,
           "Quantity that the others follow where they disagree: posture, cog or zmp (default: the "
           "pattern's, posture).")
-      ->check(CLI::IsMember({"posture", "cog", "zmp"}))
+      ->check(one_of({"posture", "cog", "zmp"}))
       ->type_name("QUANTITY");
   command->add_flag("--baked", options.baked, "Write a dense table in place of a correction.");
   command->add_flag("--keep-partial", options.repair.keep_partial,
@@ -324,7 +344,7 @@ void add_repair(CLI::App& app, Context& context) {
   command
       ->add_option("--max-iterations", options.repair.max_iterations,
                    "Largest number of iterations of Ipopt in each round.")
-      ->check(CLI::Range(1, 10000))
+      ->check(whole_number_within(1, 10000))
       ->type_name("N")
       ->capture_default_str();
   command

@@ -24,6 +24,8 @@ struct ReportCommand {
 };
 
 void report_run(ReportCommand options, Context& context) {
+  if (fs::path(options.output).extension() != ".html")
+    fail(ErrorCode::usage, "--out " + options.output + ": the name must end in .html");
   refuse_overwriting(context, options.output);
   if (!is_run_folder(options.input))
     fail(ErrorCode::bad_file,

@@ -206,10 +206,10 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
   const bool encoders = input.robot.dofs().front().encoder.device > 0;
   const TableCaution& caution = folder_.reference_caution;
   if (!caution.unfit.empty()) {
-    text = "no table for a robot: " + caution.unfit + "\n            " + text;
+    text = "no table for a robot: " + caution.unfit + "\n            not for a robot: " + text;
   } else if (!caution.disturbances.empty()) {
     text = "no table for a robot: the table of the pattern is from a run with disturbances: " +
-           caution.disturbances + "\n            " + text;
+           caution.disturbances + "\n            not for a robot: " + text;
   } else if (encoders && safe.report.safe && !options_.light) {
     write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
     note_file("hoap.csv");

@@ -39,8 +39,8 @@ Json gains_json(const std::map<std::string, double>& gains) {
 
 std::string line(const std::string& label, const TuneFigures& f) {
   return "  " + label + " objective " + text::fixed(f.objective, 4) + " = recovery " +
-         text::fixed(f.recovery, 4) + " + 10 x " + std::to_string(f.falls) + " falls of " +
-         std::to_string(f.pushes) + " + unpushed " + text::fixed(f.unpushed, 4) + "\n";
+         text::fixed(f.recovery, 4) + " + 10 x (" + std::to_string(f.falls) + " falls / pushes " +
+         std::to_string(f.pushes) + ") + without a push " + text::fixed(f.unpushed, 4) + "\n";
 }
 
 void tune(Context& context, TuneCommand& options) {
@@ -67,8 +67,8 @@ void tune(Context& context, TuneCommand& options) {
     first = false;
   }
   out +=
-      " }\n  " + std::to_string(result.choices) + " choices tried, " +
-      std::to_string(result.refused) +
+      " }\n  " + std::to_string(result.choices) + (result.choices == 1 ? " choice" : " choices") +
+      " of gains tried, " + std::to_string(result.refused) +
       " not tried because their loop is unstable; test the result with other pushes: ayumi push\n";
   context.print(out);
   context.print_json(Json{
@@ -115,7 +115,7 @@ void add_tune(CLI::App& app, Context& context) {
   command
       ->add_option("--directions", t.directions,
                    "Number of push directions, evenly spread; the first is forward.")
-      ->check(CLI::Range(1, 360).description(""))
+      ->check(whole_number_within(1, 360).description(""))
       ->capture_default_str()
       ->type_name("N");
   command
@@ -124,7 +124,7 @@ void add_tune(CLI::App& app, Context& context) {
       ->delimiter(',')
       ->type_name("T");
   command->add_option("--rounds", t.rounds, "Number of passes of the search through all gains.")
-      ->check(CLI::Range(1, 50).description(""))
+      ->check(whole_number_within(1, 50).description(""))
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--noise", t.simulate.sensor_noise,

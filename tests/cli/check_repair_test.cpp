@@ -250,12 +250,12 @@ TEST_F(CheckRepair, WishesOfTheFile) {
 
 TEST_F(CheckRepair, LocksInWords) {
   plant_zmp_outside("outside.json");
-  for (const auto& [lock, message] :
-       std::vector<std::pair<std::string, std::string>>{{"foot:middle", "foot:left and foot:right"},
-                                                        {"keyframe:99", "numbered 0 to 20"},
-                                                        {"3..2", "must lie in the motion"},
-                                                        {"a..b", "BEGIN..END in seconds"},
-                                                        {"l_kne", "did you mean 'l_knee'?"}}) {
+  for (const auto& [lock, message] : std::vector<std::pair<std::string, std::string>>{
+           {"foot:middle", "foot:left and foot:right"},
+           {"keyframe:99", "numbered 0 to 20"},
+           {"3..2", "the window must end after it begins"},
+           {"a..b", "BEGIN..END in seconds"},
+           {"l_kne", "did you mean 'l_knee'?"}}) {
     const Output wrong = ayumi({"repair", "outside.json", "-o", "out.json", "--lock", lock});
     EXPECT_EQ(wrong.exit_code, 2) << lock;
     EXPECT_NE(wrong.err.find(message), std::string::npos) << wrong.err;

@@ -20,7 +20,7 @@ TEST_F(Usage, HelpIsOneScreen) {
   const Output help = ayumi({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_LE(line_count(help.out), 50);
-  for (const char* word : {"inspect", "robots", "--json", "--force"})
+  for (const char* word : {"inspect", "robots", "--json", "--force", "130 stopped by Ctrl-C"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   EXPECT_EQ(help.err, "");
 }
@@ -61,6 +61,41 @@ TEST_F(Usage, VersionNamesTheLibraries) {
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.out.find("ayumi 0."), 0u) << version.out;
   EXPECT_NE(version.out.find("Eigen"), std::string::npos) << version.out;
+}
+
+TEST_F(Usage, ACommandWithoutItsKindListsTheKinds) {
+  EXPECT_NE(ayumi({"new"}).err.find("new: choose one of walk, step, "), std::string::npos);
+  const std::string unknown = ayumi({"new", "wlak", "-o", "w.json"}).err;
+  EXPECT_NE(unknown.find("there is no 'wlak' in ayumi new; choose one of walk, step, "),
+            std::string::npos)
+      << unknown;
+  EXPECT_NE(unknown.find("did you mean 'walk'?"), std::string::npos) << unknown;
+}
+
+// What the words alone show to be wrong is refused before a pattern is sampled, and in few words.
+TEST_F(Usage, WrongWordsAreRefusedFirst) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"check", kWalk, "--tolerance", "nix=1"}, "there is no kind of finding 'nix'"},
+      {{"repair", kWalk, "-o", "r.json", "--tolerance", "nix=1"}, "no kind of finding 'nix'"},
+      {{"repair", kWalk, "-o", "r.json", "--lock", "nix"},
+       "--lock 'nix': the robot 'hoap1' has no such joint"},
+      {{"repair", kWalk, "-o", "r.json", "--lock", "3..1"}, "the window must end after it begins"},
+      {{"repair", kWalk, "-o", "r.json", "--weight", "nix=2"}, "weighted joint 'nix'"},
+      {{"repair", kWalk, "-o", "r.json", "--trust", "foo"},
+       "'foo' is not one of posture, cog, zmp"},
+      {{"simulate", kWalk, "--substeps", "0"}, "0 is not a whole number from 1 to 100"},
+      {{"report", "run", "-o", "x.txt"}, "--out x.txt: the name must end in .html"},
+      {{"export", "log_closed_loop.bin", "--format", "csv", "-o", "x.csv"},
+       "log_closed_loop.bin: no such file"},
+      {{"new", "jump", "--height", "0.5", "-o", "j.json"}, "jump: height 0.5 m is out of range"},
+      {{"new", "walk", "--cog-height", "0.4", "-o", "w.json"}, "nothing is written"}};
+  for (const auto& [words, complaint] : cases) {
+    const Output refused = ayumi(words);
+    EXPECT_EQ(refused.err.find("sample\n"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find(complaint), std::string::npos) << refused.err;
+    EXPECT_EQ(refused.out, "");
+    EXPECT_NE(refused.exit_code, 0);
+  }
 }
 
 TEST_F(Usage, MistypedWordsAreAnsweredWithTheNearest) {

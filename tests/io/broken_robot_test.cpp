@@ -161,7 +161,7 @@ TEST(BrokenRobot, WrongTrees) {
             "r.urdf:9: joint x: planar joints are not supported; use two prismatic and one "
             "continuous joint");
   EXPECT_NE(urdf_error(urdf(kBody + link("a") + joint("x", "trunk", "a", "floating")))
-                .find("joint x: a floating joint inside the robot"),
+                .find("joint x: a floating joint may only carry the whole robot"),
             std::string::npos);
   EXPECT_EQ(urdf_error(urdf(link("a") + "  <link/>\n")),
             "r.urdf:4: <link> has no attribute 'name'");
@@ -224,8 +224,9 @@ TEST(BrokenRobot, WrongSidecars) {
             "robot.json: /servos/0/joints/0: no moving joint of the robot matches '*_knee'");
   EXPECT_EQ(sidecar_error(", \"servos\": [{\"joints\": [\"*\"], \"kp\": \"stiff\"}]"),
             "robot.json: /servos/0/kp: expected a number, found a string");
-  EXPECT_EQ(sidecar_error(", \"postures_deg\": {\"home\": {\"l_hip\": 90}}"),
-            "robot.json: /postures/home/l_hip: 1.571 rad exceeds the limit 1 rad");
+  EXPECT_EQ(
+      sidecar_error(", \"postures_deg\": {\"home\": {\"l_hip\": 90}}"),
+      "robot.json: posture 'home': the joint 'l_hip' is at 90 deg, above its limit of 57.3 deg");
   EXPECT_EQ(sidecar_error(", \"encoders\": {\"l_hip\": {\"device\": 1, \"counts_per_degree\": 1}, "
                           "\"r_hip\": {\"device\": 1, \"counts_per_degree\": 1}}"),
             "robot.json: /encoders/r_hip/device: the joint 'l_hip' has this device already");
@@ -233,7 +234,7 @@ TEST(BrokenRobot, WrongSidecars) {
             "robot.json: /joint_order: the joint 'r_hip' is missing; add it");
   EXPECT_EQ(sidecar_error(", \"profiles\": [{\"name\": \"a\", \"limits\": [{\"joints\": [\"*\"], "
                           "\"speed\": 0}]}]"),
-            "robot.json: /profiles/a/l_hip: 0 is not possible; give a number above 0");
+            "robot.json: profile 'a': the speed of 'l_hip' is 0; it must be above 0");
   const TemporaryFolder folder;
   folder.write("robot.json", sidecar(""));
   EXPECT_EQ(message_of(folder, "robot.json"),
@@ -243,7 +244,7 @@ TEST(BrokenRobot, WrongSidecars) {
   EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty; it must hold JSON");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");
   EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /format: 'ayumi.pattern/1' is not one of ayumi.robot/1");
+            "robot.json: /format: 'ayumi.pattern/1' is not possible; only 'ayumi.robot/1' is");
 }
 
 }  // namespace

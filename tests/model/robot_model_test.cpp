@@ -268,12 +268,13 @@ TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
   EXPECT_EQ(error_of([](auto& r) {
               r.postures["home"] = {{"l_kne", 0.1}};
             }),
-            "robot.json: /postures/home/l_kne: is not a moving joint of the robot; did you mean "
+            "robot.json: posture 'home': 'l_kne' is not a moving joint of the robot; did you mean "
             "'l_knee'?");
   EXPECT_EQ(error_of([](auto& r) {
               r.postures["home"] = {{"l_knee", 2.9}};
             }),
-            "robot.json: /postures/home/l_knee: 2.9 rad exceeds the limit 2 rad");
+            "robot.json: posture 'home': the joint 'l_knee' is at 166.2 deg, above its limit of "
+            "114.6 deg");
   EXPECT_EQ(error_of([](auto& r) {
               r.joint_order = {"l_hip", "l_knee", "r_hip"};
             }),
@@ -281,7 +282,7 @@ TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
   EXPECT_EQ(error_of([](auto& r) {
               r.control.joint_weight = {{"l_knee", 0.0}};
             }),
-            "robot.json: /control/joint_weight/l_knee: 0 is not possible; give a number above 0");
+            "robot.json: /control/joint_weight: the weight of 'l_knee' is 0; it must be above 0");
 }
 
 }  // namespace

@@ -1,13 +1,22 @@
 #include "ayumi/io/task_file.hpp"
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/motion/pattern_context.hpp"
 
 namespace ayumi {
 
 Task load_task(Pattern pattern, const TaskOptions& options, const Progress& progress) {
   const std::string name = options.robot.empty() ? robot_of(pattern) : options.robot;
-  RobotModel robot = load_robot(name, options.robots, {.meshes = options.meshes});
+  RobotModel robot = [&] {
+    try {
+      return load_robot(name, options.robots, {.meshes = options.meshes});
+    } catch (const Error& error) {
+      if (!options.robot.empty() || error.code() != ErrorCode::bad_file) throw;
+      fail(error.code(), in_file(pattern, "/robot: ") + error.what());
+    }
+  }();
   TableCaution caution = caution_of(pattern);
   Task task = make_task(std::move(pattern), std::move(robot), options.profile, progress);
   task.robot_name = name;

@@ -115,8 +115,8 @@ class TreeBuilder {
       const int child = link_index(each.child);
       if (each.type == JointType::floating)
         complain_urdf(robot_, "joint " + each.name +
-                                  ": a floating joint inside the robot; only the root floats, " +
-                                  "on a link with neither mass nor shape nor another joint");
+                                  ": a floating joint may only carry the whole robot; its parent "
+                                  "must be the root link, without mass, shape and other joints");
       if (each.type == JointType::fixed)
         add_link(child, body, pose * each.origin);
       else
@@ -234,9 +234,12 @@ void validate_postures(const RobotDescription& robot, const std::vector<Dof>& do
       const double value = given->second;
       if (value >= dof.lower - 1e-9 && value <= dof.upper + 1e-9) continue;
       const bool low = value < dof.lower;
-      complain_sidecar(robot, "/postures/" + name + "/" + dof.name + ": " + text::brief(value) +
-                                  (low ? " rad is below the limit " : " rad exceeds the limit ") +
-                                  text::brief(low ? dof.lower : dof.upper) + " rad");
+      const double unit = dof.prismatic ? 1 : EIGEN_PI / 180;
+      const std::string unit_name = dof.prismatic ? " m" : " deg";
+      complain_sidecar(robot, "posture '" + name + "': the joint '" + dof.name + "' is at " +
+                                  text::brief(value / unit) + unit_name +
+                                  (low ? ", below its limit of " : ", above its limit of ") +
+                                  text::brief((low ? dof.lower : dof.upper) / unit) + unit_name);
     }
 }
 

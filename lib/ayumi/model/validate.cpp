@@ -71,8 +71,8 @@ void validate_joint_numbers(const RobotDescription& robot, const JointDescriptio
   if (joint.axis.norm() < 1e-9)
     complain_urdf(robot, where + "its axis has length zero; give it a direction");
   if (joint.has_limits && joint.lower > joint.upper)
-    complain_urdf(robot, where + "lower limit " + text::exact(joint.lower) +
-                             " exceeds the upper limit " + text::exact(joint.upper) +
+    complain_urdf(robot, where + "lower limit " + text::brief(joint.lower) +
+                             " exceeds the upper limit " + text::brief(joint.upper) +
                              "; swap them");
   if (joint.velocity < 0 || joint.effort < 0 || joint.damping < 0 || joint.friction < 0)
     complain_urdf(robot, where + "velocity, effort, damping and friction cannot be negative");
@@ -209,7 +209,7 @@ void known_joints(const RobotDescription& robot, const std::string& pointer,
                   const std::map<std::string, Value>& map, const std::vector<std::string>& names) {
   for (const auto& [name, value] : map)
     if (!contains(names, name))
-      complain_sidecar(robot, pointer + "/" + name + ": is not a moving joint of the robot" +
+      complain_sidecar(robot, pointer + ": '" + name + "' is not a moving joint of the robot" +
                                   text::suggestion(name, names));
 }
 
@@ -221,12 +221,12 @@ void known_link(const RobotDescription& robot, const std::string& pointer,
                                 text::suggestion(name, names));
 }
 
-void positive(const RobotDescription& robot, const std::string& pointer,
+void positive(const RobotDescription& robot, const std::string& what,
               const std::map<std::string, double>& values) {
   for (const auto& [name, value] : values)
     if (!(value > 0))
-      complain_sidecar(robot, pointer + "/" + name + ": " + text::exact(value) +
-                                  " is not possible; give a number above 0");
+      complain_sidecar(
+          robot, what + " of '" + name + "' is " + text::exact(value) + "; it must be above 0");
 }
 
 void validate_sole(const RobotDescription& robot, const std::string& side,
@@ -266,20 +266,23 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
   if (robot.soles.size() == 1)
     complain_sidecar(robot, "/soles: only one foot is given; name 'left' and 'right'");
   for (const auto& [posture, values] : robot.postures)
-    known_joints(robot, "/postures/" + posture, values, names);
+    known_joints(robot, "posture '" + posture + "'", values, names);
   known_joints(robot, "/servos", robot.servos, names);
   validate_servos(robot);
   known_joints(robot, "/encoders", robot.encoders, names);
   known_joints(robot, "/control/joint_weight", robot.control.joint_weight, names);
-  positive(robot, "/control/joint_weight", robot.control.joint_weight);
+  positive(robot, "/control/joint_weight: the weight", robot.control.joint_weight);
   for (const ActuatorProfile& profile : robot.profiles) {
-    const std::string pointer = "/profiles/" + profile.name;
-    for (const auto* values : {&profile.speed, &profile.peak_torque, &profile.continuous_torque}) {
+    const std::string pointer = "profile '" + profile.name + "'";
+    for (const auto& [what, values] :
+         {std::pair(": the speed", &profile.speed),
+          std::pair(": the peak torque", &profile.peak_torque),
+          std::pair(": the continuous torque", &profile.continuous_torque)}) {
       known_joints(robot, pointer, *values, names);
-      positive(robot, pointer, *values);
+      positive(robot, pointer + what, *values);
     }
     if (!(profile.thermal_window > 0))
-      complain_sidecar(robot, pointer + "/thermal_window: must be above 0 s");
+      complain_sidecar(robot, pointer + ": thermal_window must be above 0 s");
   }
   if (!robot.trunk_link.empty()) known_link(robot, "/trunk_link", robot.trunk_link);
   if (!robot.sensors.imu_link.empty())

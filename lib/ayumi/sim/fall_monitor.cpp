@@ -136,7 +136,7 @@ bool FallMonitor::observe(double t, const CommandSample& command, const Simulati
   if (fallen_before) return false;
   std::string reason;
   if (tilt > kFallTilt)
-    reason = "trunk tilt " + text::fixed(tilt, 2) + " rad";
+    reason = "trunk tilt " + text::fixed(tilt * 180 / EIGEN_PI, 1) + " deg";
   else if ((ground_.inverse() * sample.cog).z() < kFallHeight * (command.cog.z() - command.zmp.z()))
     reason = "COG at " + text::fixed((ground_.inverse() * sample.cog).z(), 3) + " m";
   else if (report.body_contact)

@@ -6,6 +6,7 @@
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
 
@@ -149,9 +150,8 @@ class PaceSearch {
       trial.of_posture = is_of_posture(*shown);
     }
     reason_ = std::string(name_of(shown->kind)) + " " + shown->where + " at " +
-              text::fixed(shown->at, 3) + " s of " + text::fixed(duration, 3) +
-              " s: " + text::brief(shown->worst) + " " + shown->unit + ", limit " +
-              text::brief(shown->limit) + " " + shown->unit;
+              text::fixed(shown->at, 3) + " s: " + amount_text(*shown) + " (motion of " +
+              text::fixed(duration, 3) + " s)";
     trial.reason = reason_;
     return trial;
   }

@@ -61,10 +61,11 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
       {"long", &p.long_term},      {"as_printed", &p.as_printed}};
   std::vector<std::string> names = {"k", "d"};
   for (const auto& [name, field] : fields) names.push_back(name);
-  auto set = [&](const std::string& name, double value, const std::string& where) {
+  auto set = [&](const std::string& name, double value, const std::string& where,
+                 ErrorCode code = ErrorCode::usage) {
     if (!std::isfinite(value) || value < 0)
-      fail(ErrorCode::usage, where + ": gain " + name + " is " + text::brief(value) +
-                                 "; gains are finite and not negative");
+      fail(code, where + ": gain " + name + " is " + text::brief(value) +
+                     "; gains are finite and not negative");
     if (name == "k")
       p.k = value;
     else if (name == "d")
@@ -72,12 +73,11 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
     else if (const auto found = fields.find(name); found != fields.end())
       *found->second = value;
     else
-      fail(ErrorCode::usage, where + ": dtad has no gain '" + name + "'" +
-                                 text::suggestion(name, names) +
-                                 " (known: " + text::join(names, ", ") + ")");
+      fail(code, where + ": dtad has no gain '" + name + "'" + text::suggestion(name, names) +
+                     " (known: " + text::join(names, ", ") + ")");
   };
   for (const auto& [name, value] : model.description().control.dtad)
-    set(name, value, model.name() + " sidecar");
+    set(name, value, model.name() + " sidecar", ErrorCode::bad_model);
   bool q_given = false;
   for (const auto& [name, value] : spec.gains) {
     set(name, value, "controller gains");

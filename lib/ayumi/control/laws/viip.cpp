@@ -104,19 +104,19 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
                                                  {"soonest", &p.least_step_time}};
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
-  auto set = [&](const std::string& name, double value, const std::string& where) {
+  auto set = [&](const std::string& name, double value, const std::string& where,
+                 ErrorCode code = ErrorCode::usage) {
     if (!std::isfinite(value) || value < 0)
-      fail(ErrorCode::usage, where + ": gain " + name + " is " + text::brief(value) +
-                                 "; gains are finite and not negative");
+      fail(code, where + ": gain " + name + " is " + text::brief(value) +
+                     "; gains are finite and not negative");
     const auto found = fields.find(name);
     if (found == fields.end())
-      fail(ErrorCode::usage, where + ": viip has no gain '" + name + "'" +
-                                 text::suggestion(name, names) +
-                                 " (known: " + text::join(names, ", ") + ")");
+      fail(code, where + ": viip has no gain '" + name + "'" + text::suggestion(name, names) +
+                     " (known: " + text::join(names, ", ") + ")");
     *found->second = value;
   };
   for (const auto& [name, value] : model.description().control.viip)
-    set(name, value, model.name() + " sidecar");
+    set(name, value, model.name() + " sidecar", ErrorCode::bad_model);
   if (spec.type.kind == ControllerKind::viip)
     for (const auto& [name, value] : spec.gains) set(name, value, "controller gains");
   for (const char* name : {"q", "goal", "tau_z", "kz", "single", "both", "lift"})

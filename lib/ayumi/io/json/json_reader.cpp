@@ -191,7 +191,9 @@ std::string JsonNode::string() const {
 std::string JsonNode::one_of(const std::vector<std::string>& allowed) const {
   const std::string value = string();
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
-    complain("'" + value + "' is not one of " + text::join(allowed, ", ") +
+    complain("'" + value + "'" +
+             (allowed.size() == 1 ? " is not possible; only '" + allowed.front() + "' is"
+                                  : " is not one of " + text::join(allowed, ", ")) +
              text::suggestion(value, allowed));
   return value;
 }

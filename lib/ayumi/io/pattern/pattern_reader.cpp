@@ -56,16 +56,23 @@ void read_postures(const JsonNode& root, PatternScope& scope, Pattern& pattern) 
           "another file that is included has a posture of this name already; rename one");
 }
 
+// The file that a value of the pattern names.
+fs::path named_file(const JsonNode& name, const fs::path& folder) {
+  fs::path path = folder / name.string();
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) name.complain(path.string() + ": no such file");
+  return path;
+}
+
 // Posture libraries beside the pattern; returns their bytes for the fingerprint.
 std::string read_includes(const JsonNode& root, const fs::path& folder, Pattern& pattern) {
   const auto include = root.find("include");
   if (!include) return {};
-  const std::vector<std::string> names = include->value().is_array()
-                                             ? include->strings()
-                                             : std::vector<std::string>{include->string()};
+  const std::vector<JsonNode> names =
+      include->value().is_array() ? include->items() : std::vector<JsonNode>{*include};
   std::string all;
-  for (const std::string& name : names) {
-    const fs::path path = folder / name;
+  for (const JsonNode& name : names) {
+    const fs::path path = named_file(name, folder);
     const std::string bytes = read_file(path, kLargestFile);
     const Json document = parse_json(bytes, path.string(), ErrorCode::bad_pattern);
     const JsonNode library = root_of(document, path.string(), ErrorCode::bad_pattern);
@@ -204,7 +211,7 @@ Pattern pattern_of_text(const std::string& text, const fs::path& path,
                                  "' is declared, but nothing in the pattern uses it");
 
   if (const auto table = root.find("table")) {
-    const fs::path file = path.parent_path() / table->string();
+    const fs::path file = named_file(*table, path.parent_path());
     bytes += read_file(file);
     pattern.table = read_dense_table(file);
     pattern.table->file = table->string();

@@ -299,6 +299,10 @@ void read_position_limits(const JsonNode& node, RobotDescription& robot) {
       entry.complain("'" + name + "' is not a moving joint of the robot" +
                      text::suggestion(name, moving_joints(robot)));
     const Eigen::Vector2d limits = kDegree * entry.vector2();
+    if (limits.x() > limits.y())
+      entry.complain("the lower limit " + text::brief(limits.x() / kDegree) +
+                     " deg exceeds the upper limit " + text::brief(limits.y() / kDegree) +
+                     " deg; swap them");
     joint->has_limits = true;
     joint->lower = limits.x();
     joint->upper = limits.y();
