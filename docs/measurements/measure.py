@@ -13,7 +13,7 @@ to be built from it. AYUMI_THREADS is the number of threads (default 1; results 
 Needs Python 3 and nothing else.
 """
 
-import array
+import csv
 import datetime
 import functools
 import json
@@ -23,7 +23,6 @@ import pathlib
 import re
 import resource
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
@@ -96,19 +95,23 @@ def robot_copy(name, change):
 
 
 class Log:
-    """Columns of a log file by name, as docs/formats.md describes it."""
+    """Columns of a run's log by name, from `ayumi export --format csv-log`."""
 
-    def __init__(self, path):
-        data = pathlib.Path(path).read_bytes()
-        (length,) = struct.unpack_from("<I", data, 12)
-        self.header = json.loads(data[16 : 16 + length])
-        values = array.array("d")
-        values.frombytes(data[16 + length :])
-        names = [c if isinstance(c, str) else c["name"] for c in self.header["columns"]]
-        names = [n.split("[")[0] for n in names]
-        self.columns = {n: values[i :: len(names)] for i, n in enumerate(names)}
-        self.rows = len(values) // len(names)
-        self.dt = self.header["dt"]
+    def __init__(self, run):
+        table = pathlib.Path(tempfile.mkdtemp(dir=WORK)) / "log.csv"
+        ayumi("export", run, "--format", "csv-log", "-o", table)
+        with open(table, newline="") as file:
+            rows = csv.reader(line for line in file if not line.startswith("#"))
+            names = [name.split("[")[0] for name in next(rows)]
+            columns = list(zip(*rows))
+        self.columns = {}
+        for name, column in zip(names, columns):
+            try:
+                self.columns[name] = [float(value) for value in column]
+            except ValueError:
+                pass  # words: support, phase, disturbance
+        time = self.columns["t"]
+        self.dt = (time[-1] - time[0]) / (len(time) - 1)
 
     def vector(self, name, axes="xy"):
         return list(zip(*(self.columns[f"{name}.{a}"] for a in axes)))
@@ -120,8 +123,7 @@ def simulate(pattern, *words, robots=None, log=False):
         return as_json("simulate", pattern, *words, robots=robots)
     out = pathlib.Path(tempfile.mkdtemp(dir=WORK)) / "run"
     figures = as_json("simulate", pattern, "-o", out, *words, robots=robots)
-    (file,) = out.glob("log_*.bin*")
-    return figures, Log(file)
+    return figures, Log(out)
 
 
 def rms(pairs_a, pairs_b):
