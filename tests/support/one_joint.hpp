@@ -4,6 +4,7 @@
 // formulas of its own.
 
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <string>
 #include <vector>
@@ -176,8 +177,8 @@ constexpr double kRubs = 2e-3;   ///< Measured 1.3e-3: MuJoCo's dry friction yie
 constexpr double kPlays = 8e-3;  ///< Measured 5.4e-3: MuJoCo's flanks begin to push within the play
 
 /// Every form of a servo on its own, and all of them at once.
-inline std::vector<OneJoint> servo_forms() {
-  std::vector<OneJoint> all;
+inline std::deque<OneJoint> servo_forms() {
+  std::deque<OneJoint> all;  // whose elements stay where they are while it grows
   const auto add = [&](const char* name, double mujoco) -> OneJoint& {
     OneJoint& joint = all.emplace_back(OneJoint{.name = name, .servo = plain_servo()});
     joint.target = sine;
