@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
@@ -94,6 +96,43 @@ std::vector<std::string> kinds_of(const CLI::App& command) {
   return kinds;
 }
 
+// CLI11's message about one option in a whole sentence: what is wrong, and what the option expects.
+std::string option_message(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string words = error.what();
+  std::vector<const CLI::App*> levels = {&app};
+  while (!levels.back()->get_subcommands().empty())
+    levels.push_back(levels.back()->get_subcommands().front());
+  for (const CLI::App* level : levels)
+    for (const CLI::Option* option : level->get_options()) {
+      const std::string name = option->get_name();
+      std::string type = option->get_type_name();
+      type = type.substr(0, type.find(':'));
+      const bool argument = option->get_positional(), plain = type.starts_with("TEXT");
+      const std::string shown = argument ? (plain ? name : type) : name + (plain ? "" : " " + type);
+      const std::string help = "\n  " + shown + "  " + option->get_description();
+      if (words == name + " is required")
+        return (argument ? "the argument " : "the option ") + (argument ? shown : name) +
+               " is missing" + help;
+      const std::string conversion = "Could not convert: " + name + " = ";
+      if (words.starts_with(conversion))
+        return name + ": '" + words.substr(conversion.size()) + "' is not a valid number" + help;
+      if (words.starts_with(name + " excludes "))
+        return name + " and " + words.substr(name.size() + 10) + " cannot be given together";
+      if (!words.starts_with(name + ": ")) continue;
+      const std::string rest = words.substr(name.size() + 2);
+      if (rest.ends_with(" missing")) return name + ": the value is missing" + help;
+      if (!rest.starts_with("At least ") && !rest.starts_with("At Most ")) continue;
+      const int least = option->get_items_expected_min(), most = option->get_items_expected_max();
+      const int given = std::atoi(rest.c_str() + rest.rfind(' '));
+      return name + ": " + text::counted(given, "value") + " given, but " +
+             (least == most   ? std::to_string(most)
+              : given < least ? "at least " + std::to_string(least)
+                              : "at most " + std::to_string(most)) +
+             " expected" + help;
+    }
+  return words;
+}
+
 // CLI11's message, or a better one that names the nearest command or option.
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
@@ -107,13 +146,13 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
              text::suggestion(word.substr(0, word.find('=')), option_names(level));
     if (chosen.empty()) return "unknown command '" + word + "'" + text::suggestion(word, commands);
     if (!kinds_of(level).empty())
-      return "there is no '" + word + "' in ayumi " + level.get_name() + "; choose one of " +
+      return level.get_name() + ": unknown kind '" + word + "'; choose one of " +
              text::join(kinds_of(level), ", ") + text::suggestion(word, kinds_of(level));
     return "unexpected argument '" + word + "'";
   }
   if (!kinds_of(level).empty())
     return level.get_name() + ": choose one of " + text::join(kinds_of(level), ", ");
-  return error.what();
+  return option_message(app, error);
 }
 
 int parse_and_run(CLI::App& app, const Context& context, int argc, char** argv) {
@@ -164,7 +203,7 @@ RobotSearch robot_search(const Context& context) {
   for (const std::string& folder : context.robot_path) {
     std::error_code ignored;
     if (!fs::is_directory(folder, ignored))
-      fail(ErrorCode::bad_file, folder + ": --robot-path needs a folder");
+      fail(ErrorCode::bad_file, "--robot-path " + folder + ": this is not a folder");
     search.folders.emplace_back(folder);
   }
   search.folders.push_back(data_folder("robots"));

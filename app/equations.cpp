@@ -128,7 +128,8 @@ Lines limit_numbers(const RunInstant& i) {
     if (event.kind == "saturation" && event.t < t)
       lines.push_back("from " + fixed(event.t, 3) + " s on: " + event.text);
   if (lines.empty())
-    lines.push_back("no joint has reached a limit so far, and no task has given way");
+    lines.push_back(
+        "so far no joint has reached a limit, and the controller has followed all its targets");
   return lines;
 }
 

@@ -33,12 +33,13 @@ void require_options(const LogExport& options, const CLI::App& command) {
     const std::string name = option->get_single_name();
     const std::string shown = option->get_positional() ? name : "--" + name;
     if (option->count() > 0 && std::find(known.begin(), known.end(), shown) == known.end())
-      fail(ErrorCode::usage, shown + ": this option is about joint tables; --format " +
-                                 options.format + " writes a log");
+      fail(ErrorCode::usage, shown + ": this option is for joint tables only, but --format " +
+                                 options.format +
+                                 " writes the log of a run; leave this option out");
   }
   if (fs::path(options.output).extension() != extension_of(options.format))
-    fail(ErrorCode::usage, options.output + ": --format " + options.format + " writes a " +
-                               extension_of(options.format));
+    fail(ErrorCode::usage, options.output + ": --format " + options.format +
+                               " needs a file name that ends in " + extension_of(options.format));
 }
 
 SimulationLog log_of(const LogExport& options) {
@@ -46,10 +47,12 @@ SimulationLog log_of(const LogExport& options) {
     if (!is_log_file(options.input))
       fail(ErrorCode::bad_file, options.input + ": --format " + options.format +
                                     " needs a RUN, the folder that `ayumi run` or `ayumi simulate` "
-                                    "wrote, or a log file of it; this file is neither");
+                                    "wrote, or a log file from this folder; the input is neither");
     if (!options.log.empty())
-      fail(ErrorCode::usage, "--log " + options.log + ": " + options.input +
-                                 " is one log; --log chooses a log of a RUN folder");
+      fail(ErrorCode::usage,
+           "--log " + options.log + ": " + options.input +
+               " is a single log; --log chooses one of the logs of a RUN folder, so "
+               "leave it out");
   }
   return read_run_log(options.input, options.log);
 }
@@ -142,10 +145,11 @@ void export_log(const LogExport& options, const CLI::App& command, Context& cont
 
 void refuse_log_file(const std::string& input) {
   if (is_log_file(input))
-    fail(ErrorCode::bad_file, input +
-                                  ": this is a log of a run, and a joint table needs the whole "
-                                  "RUN: name its folder; of one log, --format " +
-                                  text::join(log_formats(), " or ") + " can be written");
+    fail(ErrorCode::bad_file,
+         input +
+             ": this is a single log, but a joint table is made from the "
+             "whole run; name the RUN folder, or write the log with --format " +
+             text::join(log_formats(), " or "));
 }
 
 }  // namespace ayumi::app

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "plan_log.hpp"
@@ -49,7 +50,8 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
     out += (i == 0 ? "  moved " : "        ") + joint_words(model, change.joints[i]) + "\n";
   const size_t rest = change.joints.size() - listed;
   if (listed == kJointsListed && rest > 0)
-    out += "        and " + std::to_string(rest) + " more joints by less\n";
+    out +=
+        "        and " + text::counted(rest, "more joint", "more joints") + " by smaller amounts\n";
   if (change.cog.size > 5e-5 || change.foot.size > 5e-5)
     out += "  " + largest("COG", change.cog, millimetres(change.cog.size)) + "; " +
            largest("a foot", change.foot, millimetres(change.foot.size)) + "\n";

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
@@ -20,14 +21,16 @@ bool choose_profile(const Context& context, Task& task) {
   if (task.pattern.profile.empty() && !need.sufficient.empty()) {
     task.profile = task.pattern.profile = need.sufficient.front();
     judged = judge(task);
-    context.print("profile " + task.profile + " is written: " + need.text + "\n");
+    context.print("the pattern names the profile " + task.profile + ", because " + need.text +
+                  "\n");
   } else if (!need.text.empty()) {
     context.print(need.text + "\n");
   }
   if (judged.good()) return true;
   const Finding& first = judged.report.findings.front();
-  context.print(std::string("`ayumi check` finds it inconsistent: ") + name_of(first.kind) + " " +
-                first.where + " at " + text::fixed(first.at, 3) + " s: " + first.hint + "\n");
+  context.print(std::string("the check finds the new pattern inconsistent: ") +
+                name_of(first.kind) + " " + first.where + " at " + text::fixed(first.at, 3) +
+                " s: " + first.hint + "\n");
   return false;
 }
 
@@ -55,10 +58,8 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
   written.file = "new";  // relative names hold from the working folder
   write_pattern(out, written, comments);
   context.print(out + ": " + text::fixed(series.duration(), 2) + " s, " +
-                std::to_string(written.phases.size()) +
-                (written.phases.size() == 1 ? " phase, " : " phases, ") +
-                std::to_string(written.keyframes.size()) +
-                (written.keyframes.size() == 1 ? " keyframe" : " keyframes") + "\n  COG " +
+                text::counted(written.phases.size(), "phase") + ", " +
+                text::counted(written.keyframes.size(), "keyframe") + "\n  COG " +
                 series.origin.at("cog") + "\n");
   context.print_json(nlohmann::ordered_json{{"pattern", out},
                                             {"duration_s", series.duration()},

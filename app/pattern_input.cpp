@@ -33,7 +33,7 @@ std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
     const char* end = word.data() + word.size();
     if (equals == std::string::npos || equals == 0 ||
         std::from_chars(word.data() + equals + 1, end, value).ptr != end || !std::isfinite(value))
-      fail(ErrorCode::usage, option + ": '" + word + "' is not NAME=NUMBER");
+      fail(ErrorCode::usage, option + ": '" + word + "' does not have the form NAME=NUMBER");
     pairs[word.substr(0, equals)] = value;
   }
   return pairs;

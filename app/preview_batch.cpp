@@ -6,6 +6,7 @@
 #include <optional>
 #include <thread>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/render/snapshots.hpp"
@@ -33,7 +34,9 @@ std::vector<fs::path> targets_of(const PreviewBatch& batch) {
         batch.folder /
         ((is_run_folder(input) ? clean.filename() : clean.stem()).string() + batch.extension);
     if (std::find(targets.begin(), targets.end(), target) != targets.end())
-      fail(ErrorCode::usage, input + ": two runs would be written to " + target.string());
+      fail(ErrorCode::usage,
+           input + ": another run has the same name, so both clips would be written to " +
+               target.string() + "; draw them in two calls");
     targets.push_back(target);
   }
   return targets;
@@ -105,8 +108,8 @@ void run_batch(const PreviewBatch& batch, Context& context) {
   std::error_code error;
   fs::create_directories(batch.folder, error);
   if (!fs::is_directory(batch.folder))
-    fail(ErrorCode::bad_file, batch.folder.string() + ": cannot be made (" +
-                                  (error ? error.message() : "is a file") + ")");
+    fail(ErrorCode::bad_file, batch.folder.string() + ": this folder cannot be made (" +
+                                  (error ? error.message() : "a file has this name") + ")");
   std::vector<Drawn> outcomes = draw_all(batch, targets, context.progress());
   Json runs = Json::array(), failures = Json::array();
   std::vector<Image> tiles;
@@ -122,8 +125,9 @@ void run_batch(const PreviewBatch& batch, Context& context) {
   if (!batch.sheet.empty() && !tiles.empty())
     write_png(batch.sheet, draw_sheet(tiles, batch.columns));
   context.print(batch.folder.string() + ": " + std::to_string(runs.size()) + " of " +
-                std::to_string(targets.size()) + " runs" +
-                (skipped > 0 ? ", " + std::to_string(skipped) + " were there already" : "") + "\n");
+                text::counted(targets.size(), "run") + " drawn" +
+                (skipped > 0 ? "; " + text::counted(skipped, "clip") + " existed already" : "") +
+                "\n");
   for (const Json& failure : failures)
     context.print("  failed: " + failure.at("run").get<std::string>() + ": " +
                   failure.at("error").get<std::string>() + "\n");

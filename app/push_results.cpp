@@ -115,7 +115,7 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   if (!std::filesystem::exists(file)) return known;
   const auto refuse = [&](const std::string& why) {
     fail(ErrorCode::bad_file,
-         file.string() + ": " + why + "; choose another name, or --force to begin again");
+         file.string() + ": " + why + "; choose another name, or replace the file with --force");
   };
   const std::string bytes = read_file(file);
   try {
@@ -123,12 +123,12 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
     if (json.at("format") != kFormat) refuse("this is not a file of push results");
     // The order of keys says nothing.
     if (nlohmann::json::parse(json.at("study").dump()) != nlohmann::json::parse(study.dump()))
-      refuse("this file holds the results of another study");
+      refuse("this file holds the results of a study with other settings");
     for (const Json& entry : json.at("cases")) known.at(entry.at("index")) = case_from(entry);
   } catch (const Json::exception&) {
     refuse("this is not a file of push results");
   } catch (const std::out_of_range&) {
-    refuse("this file has a case that this study does not have");
+    refuse("this file has a push that is not part of this study");
   }
   return known;
 }

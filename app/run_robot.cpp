@@ -13,8 +13,8 @@ RobotModel robot_of_run(const Context& context, const std::string& chosen,
   if (elsewhere)
     fail(ErrorCode::bad_file,
          recorded +
-             ": no such file; the run names its robot relative to the folder in "
-             "which it was made; run the command there, or name the robot with --robot");
+             ": no such file; the run names its robot by a path relative to the folder from which "
+             "the run was made; start the command in that folder, or name the robot with --robot");
   return load_robot(chosen.empty() ? recorded : chosen, robot_search(context), options);
 }
 

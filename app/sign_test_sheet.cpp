@@ -79,7 +79,9 @@ Image sign_test_picture(const RobotModel& model, const SignTest& test) {
   draw_text(image, 16, 24, test.name, {.size = 22, .bold = true, .plate = {1, 1, 1, 0.8F}});
   draw_text(image, 16, 52,
             "from the pale to the full posture: " + in_units(dof, test.from) + " to " +
-                in_units(dof, test.to) + ", drawn " + text::brief(factor, 2) + " times as far",
+                in_units(dof, test.to),
+            {.size = 16, .plate = {1, 1, 1, 0.8F}});
+  draw_text(image, 16, 76, "the picture enlarges the motion " + text::brief(factor, 2) + " times",
             {.size = 16, .plate = {1, 1, 1, 0.8F}});
   draw_text(image, 16, 616, "seen from: " + view, {.size = 14, .plate = {1, 1, 1, 0.8F}});
   return image;

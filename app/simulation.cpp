@@ -6,6 +6,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/gain_design.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/sim/run_caution.hpp"
 #include "option_checks.hpp"
 #ifdef AYUMI_HAS_MUJOCO
 #include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
@@ -49,7 +50,8 @@ void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool a
   const std::string reason = instability(input.robot, input.robot.limits(input.profile), spec,
                                          first.cog.z() - first.zmp.z(), input.series.dt);
   if (!reason.empty())
-    fail(ErrorCode::bad_pattern, reason + "; --allow-unstable runs these gains nevertheless");
+    fail(ErrorCode::bad_pattern,
+         reason + "; --allow-unstable simulates with these gains nevertheless");
 }
 
 ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choice) {
@@ -58,6 +60,10 @@ ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choi
     const ControllerType type = controller_type(choice.controller);
     if (type != spec.type) spec = {type, {}};
   }
+  if (spec.type == ControllerKind::none && !choice.gains.empty())
+    fail(ErrorCode::usage,
+         "--gain: the controller is 'none' (open loop), which has no gains; leave --gain out, or "
+         "choose dtad or viip with --controller");
   for (const auto& [name, value] : read_pairs(choice.gains, "--gain"))
     spec.gains.emplace_back(name, value);
   return spec;
@@ -150,6 +156,13 @@ std::string outcome_text(const SimulationLog& log) {
   text += ", largest trunk tilt " + text::fixed(r.max_tilt * 180 / std::numbers::pi, 1) +
           " deg, joint speed " + text::fixed(100 * r.max_speed_ratio, 0) + " % and torque " +
           text::fixed(100 * r.max_torque_ratio, 0) + " % of the limits";
+  const double end = log.dt * static_cast<double>(log.samples.size() - 1);
+  std::vector<Disturbance> late;
+  for (const Disturbance& disturbance : log.scenario)
+    if (disturbance.at > end) late.push_back(disturbance);
+  if (!late.empty())
+    text += "; the simulation ends at " + text::fixed(end, 2) +
+            " s, so this part of the scenario has no effect: " + words_of(late);
   return text;
 }
 

@@ -70,8 +70,8 @@ void diff(Context& context, const DiffCommand& options) {
   const Task b = load_pattern(context, options.b, options.input);
   if (a.robot.dof_names() != b.robot.dof_names())
     fail(ErrorCode::bad_pattern, options.b + ": the robot is '" + b.robot.name() +
-                                     "', but that of " + options.a + " is '" + a.robot.name() +
-                                     "'; only patterns of one robot can be compared");
+                                     "', but the robot of " + options.a + " is '" + a.robot.name() +
+                                     "'; only patterns of the same robot can be compared");
   const ConsistencyReport check_a = check_consistency(a.robot, a.series, check_options(a));
   const ConsistencyReport check_b = check_consistency(b.robot, b.series, check_options(b));
   const MotionChange change = motion_change(a.robot, a.series, b.series);
@@ -83,7 +83,7 @@ void diff(Context& context, const DiffCommand& options) {
       std::max({change.cog.size, change.zmp.size, change.fz.size, change.foot.size}) < 1e-9;
   std::string words = side_words(options.a, a, check_a) + side_words(options.b, b, check_b);
   if (same)
-    words += "  the same motion and commands\n";
+    words += "  both patterns have the same motion and the same commands\n";
   else
     words += motion_words(a.robot, change, check_a, check_b) + cost_words(cost) + "\n";
   if (!same_length)

@@ -107,7 +107,7 @@ std::string in_words(double scale, const ConsistencyReport& before, const ForceR
   const auto newtons = [](const ForceRange& f) {
     return text::fixed(f.least, 1) + " to " + text::fixed(f.most, 1) + " N";
   };
-  std::string out = "  takes " + text::brief(scale) + " times the original time\n";
+  std::string out = "  the motion takes " + text::brief(scale) + " times its original time\n";
   if (pace)
     out += pace->bounded ? "  a faster pace fails: " + pace->limited_by + "\n"
                          : "  no limit was found down to this scale\n";
@@ -174,9 +174,9 @@ void join(Context& context, const EditCommand& options) {
   for (size_t i = 1; i < options.patterns.size(); ++i) {
     const Task next = load_pattern(context, options.patterns[i], options.input);
     if (next.robot.description().sha256 != input.robot.description().sha256)
-      fail(ErrorCode::bad_pattern, options.patterns[i] + ": /robot: '" + next.pattern.robot +
-                                       "' is another robot than '" + input.pattern.robot + "' of " +
-                                       options.patterns.front());
+      fail(ErrorCode::bad_pattern, options.patterns[i] + ": /robot: the robot is '" +
+                                       next.pattern.robot + "', but it is '" + input.pattern.robot +
+                                       "' in " + options.patterns.front());
     joins.push_back(input.series.duration());
     add_caution(input.caution, next.caution);
     input.pattern = joined(input.robot, {input.pattern, input.series}, {next.pattern, next.series},
@@ -190,7 +190,7 @@ void join(Context& context, const EditCommand& options) {
 void ramp(Context& context, const EditCommand& options) {
   if (options.ramps.in <= 0 && options.ramps.out <= 0)
     fail(ErrorCode::usage,
-         "edit ramp: both --from and --back are 0; give at least one of them a time above 0");
+         "edit ramp: both --from and --back are 0; set at least one of them above 0 s");
   const Task input = load(context, options);
   const Pattern edited = ramped(input.robot, {input.pattern, input.series}, options.ramps,
                                 table_beside(options.out).string());

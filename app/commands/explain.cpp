@@ -90,8 +90,8 @@ Numbers numbers_of(const Context& context, const Equation& e, const ExplainComma
                                text::fixed(end, 3) + " s)");
   const RobotModel model = robot_of_run(context, options.robot, log.provenance.robot);
   if (model.dof_names() != log.joints)
-    fail(ErrorCode::usage,
-         place.run + ": the joints of the run are not those of robot " + model.name());
+    fail(ErrorCode::usage, place.run + ": the joints of the run are not those of the robot '" +
+                               model.name() + "'; name the robot of the run with --robot");
   ControllerSpec spec;
   for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
     spec.gains.emplace_back(name, value);

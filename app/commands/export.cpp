@@ -181,10 +181,10 @@ void set_rate(const ExportOptions& options, Source& source) {
     takes = takes || std::abs(ms - interval) < 1e-6;
   }
   if (!takes)
-    fail(ErrorCode::bad_file, options.output + ": a row each " + text::brief(ms) +
+    fail(ErrorCode::bad_file, options.output + ": the table has a row every " + text::brief(ms) +
                                   " ms, but the layout '" + layout.name + "' of '" +
-                                  source.model.name() + "' has " + text::join(known, ", ") +
-                                  " ms; give one of them with --interval");
+                                  source.model.name() + "' allows only " + text::join(known, ", ") +
+                                  " ms; choose one with --interval");
 }
 
 Source source_of_table(const ExportOptions& options, const Context& context,
@@ -279,8 +279,8 @@ Source source_of(const ExportOptions& options, const Context& context) {
   verify_run_of(options.input);
   if (!options.servo.empty())
     fail(ErrorCode::usage, options.input +
-                               ": --servo: the targets of a table are made for their servo "
-                               "already; export the pattern or the run");
+                               ": --servo: the targets of this table are already made for a servo; "
+                               "to choose another servo, export the pattern or the run");
   return source_of_table(options, context, read_reference(options.input),
                          read_table_caution(options.input));
 }
@@ -290,7 +290,7 @@ constexpr double kGltfRate = 60;  // keys of an animation [Hz]; viewers draw eve
 /// The table as an animation of the robot: to be looked at, so neither ramped nor judged.
 void export_gltf(const ExportOptions& options, Context& context) {
   if (fs::path(options.output).extension() != ".glb")
-    fail(ErrorCode::usage, options.output + ": --format gltf writes a .glb");
+    fail(ErrorCode::usage, options.output + ": --format gltf needs a file name that ends in .glb");
   const Source source = source_of(options, context);
   const Motion motion = motion_of(source.reference, kGltfRate);
   const std::string bytes = glb_bytes(source.model, {motion});
@@ -372,8 +372,10 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal") return "the plain posture (--servo ideal)";
   const bool one = servo.lag.find(' ') == std::string::npos;
-  return std::string(servo.content == "lead" ? "ahead by their lag"
-                                             : "ahead by their lag and sag") +
+  return std::string(
+             servo.content == "lead"
+                 ? "the targets lead the posture by the lag"
+                 : "the targets lead the posture by the lag, with a correction of the sag") +
          (one ? " of " + servo.lag + " s" : "");
 }
 
@@ -393,7 +395,7 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   if (!servo.content.empty())
     text += "  made for the servos of profile " + servo.profile + ": " + words_of(servo) + "\n";
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
-          " s; 0 s of the pattern is " + text::brief(report.ramp) + " s of the table";
+          " s; the pattern begins at " + text::brief(report.ramp) + " s of the table";
   if (!report.worst_joint.empty())
     text += "; largest step " + text::fixed(100 * report.max_step_ratio, 1) + " % of the limit (" +
             report.worst_joint + " at " +
@@ -415,7 +417,7 @@ std::string words_on_sequence(const Source& source, const SafeTable& safe) {
   if (!source.plan || !source.plan->pattern.table || !source.plan->pattern.table->sequence)
     return "";
   if (!source.kept)
-    return "  the rows are computed: they are not those of the imported sequence any more\n";
+    return "  the rows are computed anew; they are no longer the rows of the imported sequence\n";
   const HoapFile& file = source.kept->file;
   std::string text = "  the rows of the motion are those of the imported sequence, unchanged";
   if (safe.report.ramp == 0 && safe.report.hold == 0)
@@ -426,8 +428,8 @@ std::string words_on_sequence(const Source& source, const SafeTable& safe) {
             " of them are commands to single devices, which the robot will carry out\n";
   const std::vector<SequenceLayout> layouts = sequence_layouts(source.model);
   if (file.layout.name != layouts.front().name)
-    text += "  their columns are those of the layout " + file.layout.name + "; --layout " +
-            layouts.front().name + " writes those of this robot\n";
+    text += "  their columns follow the layout " + file.layout.name + "; --layout " +
+            layouts.front().name + " writes the columns of this robot\n";
   return text;
 }
 
@@ -473,7 +475,7 @@ void write_table(const ExportOptions& options, const Context& context, const Sou
   if (old_note && !beside) fs::remove(note);  // it was about the table that was there before
   if (!beside) return;
   write_file(note, note_text(caution));
-  context.print(note + ": what to know before a robot receives it\n");
+  context.print(note + ": read this note before you send the table to a robot\n");
 }
 
 std::string as_json(const ExportOptions& options, const Source& source, const SafeTable& safe,
@@ -507,7 +509,7 @@ constexpr double kRestWindow = 0.02;
 /// without --force.
 void export_sign_test(const ExportOptions& options, Context& context) {
   if (options.format == "gltf")
-    fail(ErrorCode::usage, "--sign-test: the format is hoap, csv or json");
+    fail(ErrorCode::usage, "--sign-test: --format must be hoap, csv or json");
   const std::string name = options.robot.empty() ? options.input : options.robot;
   if (name.empty())
     fail(ErrorCode::usage, "--sign-test needs a robot: ayumi export ROBOT --sign-test -o DIR");
@@ -557,8 +559,8 @@ void export_sign_test(const ExportOptions& options, Context& context) {
     for (const auto& [path, bytes] : files) refuse_overwriting(context, path);
   fs::create_directories(folder);
   for (const auto& [path, bytes] : files) write_file(path, bytes);
-  context.print(options.output + ": a slow motion of each of " + std::to_string(tests.size()) +
-                " joints (" + options.format + "), and sheet.html with a picture of each\n" +
+  context.print(options.output + ": one slow motion for each of " + std::to_string(tests.size()) +
+                " joints (" + options.format + "), and sheet.html with their pictures\n" +
                 "  Hang the robot up before you play them.\n");
   context.print_json(nlohmann::ordered_json{
       {"format", options.format},
@@ -673,7 +675,7 @@ void add_export(CLI::App& app, Context& context) {
                    "Servo for which the targets are made: ideal (the plain posture), lead (ahead "
                    "by the lag of the profile's servos, default) or lead+sag (and against the sag "
                    "under load).")
-      ->check(CLI::IsMember({"ideal", "lead", "lead+sag"}));
+      ->check(one_of({"ideal", "lead", "lead+sag"}));
   command->footer(
       "Examples:\n"
       "  ayumi export out/ --format hoap -o walk_hoap.csv\n"

@@ -62,7 +62,8 @@ void read_wishes(GainsCommand& options) {
     options.wishes.poles = {{{Complex(options.poles[0]), Complex(options.poles[1])}}};
   for (const double t : options.time_constants)
     if (!(t > 0))
-      fail(ErrorCode::usage, "--time-constants: " + text::brief(t) + " s is not above 0");
+      fail(ErrorCode::usage,
+           "--time-constants: " + text::brief(t) + " s is not possible; give a time above 0 s");
   if (!options.time_constants.empty())
     options.wishes.poles = {
         {Complex(-1 / options.time_constants[0]), Complex(-1 / options.time_constants[1])}};
@@ -153,9 +154,11 @@ std::string report(const RobotModel& model, const Design& d) {
                     " m above the soles, omega " + text::fixed(w, 2) + " /s\n";
   out += "gains, as a pattern or a sidecar names them:\n ";
   for (const auto& [name, value] : gain_list(p)) out += " " + name + "=" + text::brief(value);
-  out += "\n(18)(19)  K = " + text::brief(long_term_k(p)) +
-         ", D = " + text::fixed(1e3 * long_term_d(p) / w, 1) +
-         " ms: the reference ZMP moves by K times the error of the COG and D times its rate\n";
+  out +=
+      "\n(18)(19)  K = " + text::brief(long_term_k(p)) +
+      ", D = " + text::fixed(1e3 * long_term_d(p) / w, 1) +
+      " ms: the reference ZMP moves by K times the error of the COG plus D times the rate of this "
+      "error\n";
   out += "short term  " + text::fixed(100 * p.zmp_gain / (1 + p.zmp_gain), 0) +
          " % of a ZMP error is answered immediately, filtered over " +
          text::fixed(1e3 * p.zmp_filter / w, 1) + " ms\n";
@@ -173,7 +176,7 @@ std::string report(const RobotModel& model, const Design& d) {
   int shown = 0;
   for (const Complex& pole : d.analysis.poles)
     if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);
-  out += "recoverable without a step (error of the DCM, and the impulse that causes it):\n";
+  out += "largest error of the DCM that needs no step, and the impulse that causes this error:\n";
   for (const Reach& r : d.reaches)
     out += "  " + r.support + ", " + r.direction + ": " + text::fixed(1e3 * r.dcm, 1) + " mm, " +
            text::fixed(r.impulse, 2) + " N s\n";

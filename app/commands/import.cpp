@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
@@ -36,9 +37,9 @@ void print_import(const Context& context, const ImportCommand& options,
                   const ImportedMotion& imported, const GroundedMotion& motion) {
   const double duration = motion.pattern.duration();
   std::string words = options.out + ": " + text::fixed(duration, 3) + " s from " +
-                      std::to_string(imported.rows) + " rows (" + imported.format + "), " +
-                      std::to_string(motion.contacts.size()) + " contacts, " +
-                      std::to_string(motion.pattern.phases.size()) + " phases\n";
+                      text::counted(imported.rows, "row") + " (" + imported.format + "), " +
+                      text::counted(motion.contacts.size(), "contact") + ", " +
+                      text::counted(motion.pattern.phases.size(), "phase") + "\n";
   for (const std::string& line : imported.filled) words += "  " + line + "\n";
   context.print(words);
   Json contacts = Json::array();
@@ -62,7 +63,12 @@ void import_motion(const Context& context, const ImportCommand& options) {
   refuse_overwriting(context, sequence_beside(options.out));
   const RobotModel model = load_robot(options.robot, robot_search(context));
   const std::string name = options.file == "-" ? "standard input" : options.file;
-  ImportedMotion imported = read_motion(read_input(options.file), name, model, options.import);
+  const std::string bytes = read_input(options.file);
+  if (bytes.find("\"ayumi.pattern/") != std::string::npos)
+    fail(ErrorCode::bad_file, name +
+                                  ": this is a pattern already; import reads HOAP sequences and "
+                                  "tables of joint angles");
+  ImportedMotion imported = read_motion(bytes, name, model, options.import);
   GroundedMotion motion =
       grounded(model, imported.motion, table_beside(options.out).filename().string());
   motion.pattern.name = "imported from " + fs::path(name).filename().string();
@@ -70,9 +76,9 @@ void import_motion(const Context& context, const ImportCommand& options) {
   motion.pattern.file = "imported";  // relative names hold from the working folder
   if (!imported.sequence.empty()) {
     motion.pattern.table->interval_ms = static_cast<int>(std::lround(1000 * imported.motion.dt));
-    imported.filled.push_back("the sequence is kept in " +
+    imported.filled.push_back("a copy of the sequence is kept in " +
                               sequence_beside(options.out).filename().string() +
-                              ": as long as the motion is unchanged, export writes its rows");
+                              "; export writes its rows as long as the motion is unchanged");
   }
   write_pattern_and_table(options.out, motion.pattern, imported.filled, imported.caution,
                           imported.sequence);
@@ -114,7 +120,7 @@ void add_import(CLI::App& app, Context& context) {
       ->add_option("--signs", signs,
                    "Signs of rows of radians in device order: those of the robot's encoders, or "
                    "those of the joints.")
-      ->check(CLI::IsMember({"encoder", "joint"}))
+      ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_flag(
       "--commands", options.import.commands,

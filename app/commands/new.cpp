@@ -92,11 +92,12 @@ void new_step(const Context& context, NewOptions options) {
   w.first_swing = options.first == "left" ? Side::left : Side::right;
   const std::string where =
       w.stride == 0 ? "in place" : "of " + text::brief(w.stride) + " m forward";
-  write_new(context, model, walk_pattern(model, w), options,
-            {std::to_string(w.steps) + (w.steps == 1 ? " step " : " steps ") + where +
-                 ", the last foot then comes beside: period " + text::brief(w.period) +
-                 " s, lift " + text::brief(w.lift) + " m",
-             "A longer way: change \"to\" of the swings. The COG is solved from the ZMP keys."});
+  write_new(
+      context, model, walk_pattern(model, w), options,
+      {std::to_string(w.steps) + (w.steps == 1 ? " step " : " steps ") + where +
+           ", and then the last foot is placed beside the other: period " + text::brief(w.period) +
+           " s, lift " + text::brief(w.lift) + " m",
+       "For a longer step, change \"to\" of the swings. The COG is solved from the ZMP keys."});
 }
 
 void new_sway(const Context& context, NewOptions options) {

@@ -115,7 +115,7 @@ void new_jump(Context& context, JumpOptions options) {
     p = highest_jump(model, p, options.profile, context.progress());
     if (p.height <= 0) {
       context.print("profile " + options.profile +
-                    " allows no jump of 1 mm or more that the check accepts\n");
+                    ": the check accepts no jump of 1 mm or more, so nothing is written\n");
       context.print_json("{\"pattern\": null}");
       context.exit_code = 1;
       return;
@@ -129,12 +129,11 @@ void new_jump(Context& context, JumpOptions options) {
     options.profile = choose_profile(model, p, !options.stoop);
     jump_pattern(model, p);  // values out of range are refused first
     if (options.profile.empty())
-      context.print("no actuator profile of " + model.name() +
-                    " passes the check with a height of " + text::brief(p.height) +
-                    " m, a stoop of " + text::brief(p.stoop) + " m and ref z_G " +
-                    text::brief(p.cog_height) +
+      context.print("no actuator profile of " + model.name() + " is strong enough for a jump of " +
+                    text::brief(p.height) + " m with a stoop of " + text::brief(p.stoop) +
+                    " m and a COG height (ref z_G) of " + text::brief(p.cog_height) +
                     " m: choose a lower --height, another --stoop or --cog-height; `ayumi check` "
-                    "names the limits that are exceeded\n");
+                    "names the limits that the jump exceeds\n");
   }
   Pattern pattern = jump_pattern(model, p);
   pattern.profile = options.profile;

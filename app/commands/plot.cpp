@@ -77,7 +77,7 @@ std::optional<RobotModel> robot_at_hand(const std::string& recorded, const PlotO
     return robot_of_run(context, options.robot, recorded);
   } catch (const Error& error) {
     if (!options.robot.empty()) throw;
-    context.print(std::string("no panel of the ZMP margin: ") + error.what() + "\n");
+    context.print(std::string("the ZMP margin is not drawn: ") + error.what() + "\n");
     return std::nullopt;
   }
 }
@@ -87,8 +87,13 @@ void plot(const PlotOptions& options, Context& context) {
   const std::vector<LabelledLog> logs = logs_of(options);
   std::vector<LociRun> runs;
   for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});
-  if (runs.empty()) fail(ErrorCode::usage, "plot: the run holds no logs");
+  if (runs.empty()) fail(ErrorCode::usage, "plot: the run has no simulation log to draw");
   const std::string& recorded = logs.back().log.provenance.robot;
+  if (!options.robot.empty() &&
+      robot_of_run(context, options.robot, recorded).dof_names() != logs.back().log.joints)
+    fail(ErrorCode::usage, "--robot " + options.robot +
+                               ": the joints of this robot are not those of the run; name the "
+                               "robot of the run");
   std::vector<std::string> series;
   if (options.top) {
     write_support_plot(robot_of_run(context, options.robot, recorded), runs, options.output,

@@ -59,7 +59,7 @@ void switch_marks(const std::string& option, const std::vector<std::string>& nam
         found = true;
       }
     if (!found)
-      fail(ErrorCode::usage, option + " " + word + ": this mark is not one of " +
+      fail(ErrorCode::usage, option + " " + word + ": unknown mark; the marks are " +
                                  text::join(known, ", ") + text::suggestion(word, known));
   }
 }
@@ -140,7 +140,8 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
     const bool elsewhere =
         fs::exists(options.ghost) || options.ghost.find('/') != std::string::npos;
     if (!elsewhere && names_pattern(input))
-      fail(ErrorCode::usage, "--ghost " + options.ghost + ": a pattern has no logs; " +
+      fail(ErrorCode::usage, "--ghost " + options.ghost +
+                                 ": the input is a pattern, which has no logs; " +
                                  "give another pattern, a RUN, or 'command'");
     ghost = elsewhere ? log_of(context, options.ghost, options.log)
                       : log_of(context, input, options.ghost);
@@ -152,7 +153,8 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
     return write_glb(model, log, path, own, ghost ? &*ghost : nullptr);
   if (options.strip > 0 || options.exposures > 0) {
     if (path.extension() != ".png")
-      fail(ErrorCode::usage, path.string() + ": --strip and --exposures write a .png");
+      fail(ErrorCode::usage,
+           path.string() + ": --strip and --exposures need a file name that ends in .png");
     const StripOptions strip = strip_options(own, log);
     const Image image = draw_strip(model, log, strip);
     write_png(path, image);

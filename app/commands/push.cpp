@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
@@ -141,9 +142,9 @@ std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const
       lines.push_back((standing ? "standing" : motion) + ": " + name_of(push.controllers[k].type) +
                       " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
                       " B; " + open + " worst " + text::fixed(s.open_worst, 2) + " B, mean " +
-                      text::fixed(s.open_mean, 2) + " B; it survives less than " + open + " in " +
-                      std::to_string(s.below_open) + " of " + std::to_string(s.cases) +
-                      (s.cases == 1 ? " case" : " cases"));
+                      text::fixed(s.open_mean, 2) + " B; " + name_of(push.controllers[k].type) +
+                      " survives less than " + open + " in " + std::to_string(s.below_open) +
+                      " of " + text::counted(s.cases, "case"));
     }
   return lines;
 }

@@ -37,9 +37,10 @@ struct RepairCommand {
 };
 
 constexpr const char* kPartialMark =
-    "PARTIAL: the repair of this pattern did not come to its end; it is not consistent.";
+    "PARTIAL: the repair was stopped before its end; this pattern is not consistent.";
 constexpr const char* kStoppedMark =
-    "PARTIAL: the repair of this pattern passes, but did not come to its end; it may change less.";
+    "PARTIAL: the repair was stopped before its end; this pattern passes the check, but a smaller "
+    "change may be enough.";
 
 std::vector<std::string> marks(const RepairResult& result) {
   if (!result.check.consistent) return {kPartialMark};
@@ -94,17 +95,22 @@ std::string steering_words(const RepairCommand& options, const Pattern& pattern)
   return out;
 }
 
+const char* words_of(RepairStatus status) {
+  if (status == RepairStatus::already_consistent) return "already consistent";
+  return status == RepairStatus::not_converged ? "no repair was found" : name_of(status);
+}
+
 std::string in_words(const RepairCommand& options, const Task& input, const RepairResult& result,
                      double wall) {
   const RobotModel& model = input.robot;
   std::string out = options.pattern + ": " +
-                    (result.partial ? "stopped, partial" : name_of(result.status)) + "\n";
+                    (result.partial ? "stopped, partial" : words_of(result.status)) + "\n";
   if (result.status == RepairStatus::already_consistent)
     return out + "  nothing had to change; " + options.out + " is a copy of the pattern\n";
   out += steering_words(options, input.pattern);
   const bool moves = result.moved.joint.size > 1e-4;
   if (result.status != RepairStatus::repaired && !options.repair.keep_partial && moves)
-    out += "  the motion with the smallest violation, which is not written, would have\n";
+    out += "  the motion with the smallest violation is not written; it would have\n";
   out += motion_words(model, result.moved, result.before, result.check);
   out += cost_words(result.change) + "; " + std::to_string(result.variables) + " variables, " +
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
@@ -137,8 +143,8 @@ std::string in_words(const PassingPace& pace) {
   }
   if (pace.tried > 0 && pace.factor == 0 && pace.whole == 0)
     out +=
-        "  more time alone is not enough: the pattern does not pass when its keys are played up "
-        "to " +
+        "  more time alone is not enough: the pattern does not pass even if its keys are played "
+        "up to " +
         text::brief(pace.tried) + " times more slowly\n";
   if (pace.whole > 0)
     out += "  the pattern passes without a repair when it lasts " + text::exact(pace.whole) +
@@ -166,7 +172,7 @@ nlohmann::ordered_json in_json(const PassingPace& pace) {
 // Where to see what moved.
 std::string see_words(const RepairCommand& options, const RepairResult& result) {
   if (result.status == RepairStatus::already_consistent || options.baked) return "";
-  return "  see it: ayumi diff " + options.pattern + " " + options.out +
+  return "  to see the change: ayumi diff " + options.pattern + " " + options.out +
          " --plot moved.svg; ayumi preview " + options.out + " --ghost " + options.pattern +
          " -o moved.mp4\n";
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/motor_board.hpp"
@@ -203,14 +204,14 @@ void replay(Context& context, const ReplayCommand& options) {
   const Task task = planned(options, model, bytes, board, context);
 
   std::string words = options.file + ": " + std::to_string(played.table.rows.size()) +
-                      " rows, one each " + text::brief(1000 * played.table.dt) + " ms (" +
+                      " rows, one every " + text::brief(1000 * played.table.dt) + " ms (" +
                       played.format + (played.layout.empty() ? "" : ", " + played.layout) +
                       "), profile " + safety.profile + "\n";
-  if (board.clamps.empty()) words += "  the motor boards pass on every row\n";
+  if (board.clamps.empty()) words += "  the motor boards send every row to the motors unchanged\n";
   for (size_t i = 0; i < std::min<size_t>(board.clamps.size(), 5); ++i)
     words += "  clamped: " + text_of(board.clamps[i]) + "\n";
   if (board.clamps.size() > 5)
-    words += "  and " + std::to_string(board.clamps.size() - 5) + " smaller clamps\n";
+    words += "  and " + text::counted(board.clamps.size() - 5, "smaller clamp") + "\n";
   Json clamps = Json::array();
   for (const Clamp& clamp : board.clamps) clamps.push_back(json_of(clamp));
 

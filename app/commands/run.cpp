@@ -18,6 +18,7 @@
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/run/run_output.hpp"
 #include "ayumi/io/table/table.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/render/snapshots.hpp"
 #include "ayumi/repair/repair.hpp"
@@ -110,9 +111,8 @@ std::string check_text(const ConsistencyReport& report) {
   for (const Finding& finding : report.findings)
     if (finding.severity == Severity::error)
       text += std::string("\n            ") + name_of(finding.kind) + " at " +
-              text::fixed(finding.at, 3) + " s, " + finding.where + ": " +
-              text::brief(finding.worst) + " " + finding.unit + ", limit " +
-              text::brief(finding.limit) + "; " + finding.hint;
+              text::fixed(finding.at, 3) + " s, " + finding.where + ": " + amount_text(finding) +
+              "; " + finding.hint;
   return text;
 }
 
@@ -129,7 +129,7 @@ void MainJob::check(Task& input) {
   if (options_.repair)
     repair_pattern(input, judged.goal_need.text.empty());
   else
-    say("repair", "not asked for; --repair looks for the nearest consistent pattern");
+    say("repair", "not done; --repair looks for the nearest consistent pattern");
 }
 
 void MainJob::repair_pattern(Task& input, bool goals_reachable) {
@@ -216,7 +216,8 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
     text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) + " rows, largest step " +
             text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit)";
   } else if (encoders && !safe.report.safe) {
-    text += "; no hoap.csv, the table is unsafe: " + text_of(safe.report.violations.front());
+    text += "; hoap.csv is not written, because the table is unsafe: " +
+            text_of(safe.report.violations.front());
   }
   say("export", text);
 }
@@ -257,8 +258,10 @@ void MainJob::write_report(const RobotModel& model, const std::string& title) {
   const Report made = make_report(model, input, {}, context_.progress());
   write_file(output_->file("report.html"), made.html);
   note_file("report.html");
-  say("report", "report.html (" + std::to_string(made.html.size() / 1000) + " kB" +
-                    (has_replay() ? ")" : "; without replay, the program was built without npm)"));
+  say("report",
+      "report.html (" + std::to_string(made.html.size() / 1000) + " kB" +
+          (has_replay() ? ")"
+                        : "; without the replay, because the program was built without npm)"));
 }
 
 std::vector<std::string> MainJob::file_names() const {
@@ -302,7 +305,9 @@ void run_patterns(Context& context, const RunCommand& options) {
     const fs::path target =
         several ? fs::path(options.out) / fs::path(pattern).stem() : fs::path(options.out);
     if (std::find(targets.begin(), targets.end(), target) != targets.end())
-      fail(ErrorCode::usage, pattern + ": two inputs would be written to " + target.string());
+      fail(ErrorCode::usage,
+           pattern + ": another input has the same name, so both results would be written to " +
+               target.string() + "; give them two folders with two calls");
     require_run_target(target, context.force, names_of_files(options));
     targets.push_back(target);
   }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
@@ -39,8 +40,9 @@ Json gains_json(const std::map<std::string, double>& gains) {
 
 std::string line(const std::string& label, const TuneFigures& f) {
   return "  " + label + " objective " + text::fixed(f.objective, 4) + " = recovery " +
-         text::fixed(f.recovery, 4) + " + 10 x (" + std::to_string(f.falls) + " falls / pushes " +
-         std::to_string(f.pushes) + ") + without a push " + text::fixed(f.unpushed, 4) + "\n";
+         text::fixed(f.recovery, 4) + " + 10 x (" + text::counted(f.falls, "fall") + " / " +
+         text::counted(f.pushes, "push", "pushes") + ") + without a push " +
+         text::fixed(f.unpushed, 4) + "\n";
 }
 
 void tune(Context& context, TuneCommand& options) {
@@ -67,8 +69,8 @@ void tune(Context& context, TuneCommand& options) {
     first = false;
   }
   out +=
-      " }\n  " + std::to_string(result.choices) + (result.choices == 1 ? " choice" : " choices") +
-      " of gains tried, " + std::to_string(result.refused) +
+      " }\n  " + text::counted(result.choices, "choice") + " of gains tried, " +
+      std::to_string(result.refused) +
       " not tried because their loop is unstable; test the result with other pushes: ayumi push\n";
   context.print(out);
   context.print_json(Json{

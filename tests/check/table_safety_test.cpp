@@ -64,7 +64,8 @@ TEST(ExportSafety, FindsTheStepThatIsTooLarge) {
   EXPECT_DOUBLE_EQ(found.t, 2.005);
   EXPECT_EQ(found.value, 61);
   EXPECT_EQ(found.limit, 57);
-  EXPECT_EQ(text_of(found), "b at 2.005 s (pattern 0.005 s): step 61 counts, limit 57 (1 row)");
+  EXPECT_EQ(text_of(found),
+            "b at 2.005 s (pattern 0.005 s): step 61 counts, limit 57 counts (in 1 row)");
 }
 
 TEST(ExportSafety, FindsThePositionBeyondTheSoftLimit) {

@@ -183,11 +183,12 @@ TEST_F(LogExport, BadInputGetsOneLine) {
   expect_refused({"run", "--format", "npz", "--robot", "humanoid30", "-o", "x.npz"}, 3,
                  "the log has the joints");
   expect_refused({"run/log_open_loop.bin", "--format", "hoap", "-o", "x.csv"}, 3,
-                 "this is a log of a run, and a joint table needs the whole RUN");
-  expect_refused({"run", "--format", "npz", "-o", "x.csv"}, 2, "--format npz writes a .npz");
+                 "this is a single log, but a joint table is made from the whole run");
+  expect_refused({"run", "--format", "npz", "-o", "x.csv"}, 2,
+                 "--format npz needs a file name that ends in .npz");
   expect_refused({"run", "--format", "npz", "--ramp", "3", "-o", "x.npz"}, 2, "--ramp");
   expect_refused({"run/log_open_loop.bin", "--format", "npz", "--log", "a", "-o", "x.npz"}, 2,
-                 "is one log");
+                 "is a single log");
 }
 
 // A light run has no tables and no pictures, and everything that is made from a run is the same.

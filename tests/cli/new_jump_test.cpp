@@ -22,7 +22,7 @@ TEST(NewJump, AHeightBeyondEveryProfileIsSaid) {
   const Output made =
       run_program({"new", "-q", "jump", "--height", "0.045", "-o", "j.json"}, folder.path());
   EXPECT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_NE(made.out.find("no actuator profile of hoap1 passes the check with a height of 0.045 m"),
+  EXPECT_NE(made.out.find("no actuator profile of hoap1 is strong enough for a jump of 0.045 m"),
             std::string::npos)
       << made.out;
   EXPECT_EQ(contents(folder.path() / "j.json").find("\"profile\""), std::string::npos);

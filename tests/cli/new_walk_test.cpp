@@ -14,15 +14,16 @@ TEST(NewWalk, StairsAreWrittenForTheProfileThatClimbsThem) {
   Folder folder;
   const Output out = made(folder, {"--rise", "0.01", "--steps", "2"});
   ASSERT_EQ(out.exit_code, 0) << out.err;
-  EXPECT_NE(out.out.find("profile hoap1-strong is written: profile hoap1 is not enough"),
-            std::string::npos)
+  EXPECT_NE(
+      out.out.find("the pattern names the profile hoap1-strong, because profile hoap1 is too weak"),
+      std::string::npos)
       << out.out;
   EXPECT_NE(contents(folder.path() / "w.json").find("\"profile\": \"hoap1-strong\""),
             std::string::npos);
   // It passes with the motors it asks for, and a table for the robot as it is would be refused.
   const Output check = run_program({"check", "-q", "w.json"}, folder.path());
   EXPECT_EQ(check.exit_code, 0);
-  EXPECT_NE(check.out.find("the robot's own motors: profile hoap1 is not enough: needs "),
+  EXPECT_NE(check.out.find("the robot's own motors: profile hoap1 is too weak: the motion needs "),
             std::string::npos)
       << check.out;
   EXPECT_NE(check.out.find("(`export --format hoap` judges by this profile)"), std::string::npos);
@@ -41,8 +42,9 @@ TEST(NewWalk, WhatNoProfileMendsIsSaid) {
   Folder folder;
   const Output out = made(folder, {"--steps", "2", "--turn", "25"});
   EXPECT_EQ(out.exit_code, 0) << out.err;
-  EXPECT_NE(out.out.find("`ayumi check` finds it inconsistent: self_collision r_foot - l_foot"),
-            std::string::npos)
+  EXPECT_NE(
+      out.out.find("the check finds the new pattern inconsistent: self_collision r_foot - l_foot"),
+      std::string::npos)
       << out.out;
   EXPECT_NE(out.out.find(" is the most that the legs can reach"), std::string::npos) << out.out;
 }

@@ -65,8 +65,9 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
 
   const Output other = study.run(study.command, {"--gain", "ka=1"});
   EXPECT_EQ(other.exit_code, 3);
-  EXPECT_NE(other.err.find("results.json: this file holds the results of another study"),
-            std::string::npos)
+  EXPECT_NE(
+      other.err.find("results.json: this file holds the results of a study with other settings"),
+      std::string::npos)
       << other.err;
 }
 

@@ -116,7 +116,7 @@ TEST(GainDesign, Hoap1DefaultsAreStableAndTooMuchIsRefused) {
     refuse_unstable(loop, p);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("the loop grows at"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("the loop is unstable with"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("ka below"), std::string::npos) << error.what();
   }
 }

@@ -149,7 +149,8 @@ TEST(BrokenRobot, WrongTrees) {
             "r.urdf: link r_foot: has two parents, by the joints r_hip and x; closed chains are "
             "not supported, remove one joint");
   EXPECT_EQ(urdf_error(urdf(kBody + link("other"))),
-            "r.urdf: several root links: trunk, other; connect all but one by a joint");
+            "r.urdf: there are several root links: trunk, other; add joints so that only one root "
+            "link remains");
   EXPECT_EQ(urdf_error(urdf(kBody + link("trunk"))),
             "r.urdf: link trunk: two links have this name; rename one");
   EXPECT_EQ(urdf_error(urdf(kBody + joint("x", "trunc", "l_foot"))),
@@ -197,9 +198,10 @@ TEST(BrokenRobot, WrongMeshes) {
   const TemporaryFolder folder;
   folder.write("r.urdf", with_mesh("Trunk.OBJ"));
   folder.write("trunk.obj", "this is no mesh\n");
-  EXPECT_EQ(message_of(folder, "r.urdf", {}),
-            "r.urdf: link trunk: mesh Trunk.OBJ: there is no file Trunk.OBJ, but trunk.obj; "
-            "capitals count, correct the name");
+  EXPECT_EQ(
+      message_of(folder, "r.urdf", {}),
+      "r.urdf: link trunk: mesh Trunk.OBJ: there is no file Trunk.OBJ, but there is trunk.obj; "
+      "upper and lower case must match, correct the name");
   folder.write("r.urdf", with_mesh("trunk.obj"));
   const std::string corrupt = message_of(folder, "r.urdf", {.meshes = true});
   EXPECT_TRUE(corrupt.starts_with("r.urdf: link trunk: mesh trunk.obj: ")) << corrupt;
@@ -238,13 +240,14 @@ TEST(BrokenRobot, WrongSidecars) {
   const TemporaryFolder folder;
   folder.write("robot.json", sidecar(""));
   EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /urdf: there is no file robot.urdf, and no folder of --robot-path has "
-            "robot.urdf, itself or in urdf/");
+            "robot.json: /urdf: there is no file robot.urdf, and the folders of --robot-path "
+            "have robot.urdf neither directly nor in urdf/");
   folder.write("robot.json", "");
   EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty; it must hold JSON");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");
   EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /format: 'ayumi.pattern/1' is not possible; only 'ayumi.robot/1' is");
+            "robot.json: /format: 'ayumi.pattern/1' is not allowed; the only allowed value is "
+            "'ayumi.robot/1'");
 }
 
 }  // namespace

@@ -197,10 +197,10 @@ TEST(Hoap, RowsOfRadiansHaveTheSignsOfTheEncoders) {
   for (const std::string& line : motion.filled) said += line + "\n";
   EXPECT_NE(said.find("have the signs of the encoders: those of r_hip_pitch, "), std::string::npos)
       << said;
-  EXPECT_EQ(said.find("leave their position limits"), std::string::npos) << said;
+  EXPECT_EQ(said.find("exceed the position limits"), std::string::npos) << said;
   const ImportedMotion other = read_hoap_motion(bytes, "kick.csv", robot, 0, false);
   EXPECT_NEAR(other.motion.theta(39, robot.find_dof("l_knee")), -0.69, 1e-6);
-  EXPECT_NE(other.filled.back().find("l_knee leave their position limits"), std::string::npos)
+  EXPECT_NE(other.filled.back().find("l_knee exceed the position limits"), std::string::npos)
       << other.filled.back();
 }
 
@@ -216,7 +216,8 @@ TEST(Hoap, ZerosAreNoRecordingAndJumpsAreNamed) {
   const ImportedMotion motion = read_hoap_motion(jump, "j.csv", hoap1());
   ASSERT_FALSE(motion.filled.empty());
   EXPECT_EQ(motion.filled.front(),
-            "device 1 jumps by 100 counts/ms to row 6 (motor boards pass on 57): rows may be "
+            "device 1 jumps by 100 counts/ms before row 6, but motor boards allow at most 57 "
+            "counts/ms; rows may be "
             "missing there");
 }
 

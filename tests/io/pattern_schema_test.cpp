@@ -83,7 +83,7 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
                                            "the direction is zero",
                                            "a point needs a link",
                                            "a payload needs a link",
-                                           "takes time",
+                                           "needs a duration above",
                                            "does not move",
                                            "a bump needs",
                                            "1.5 is too large",

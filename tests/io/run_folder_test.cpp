@@ -176,7 +176,7 @@ TEST(SimulationLogFile, BrokenFilesGetOneClearMessage) {
             std::string::npos);
   std::string other = good;
   other[8] = 9;
-  EXPECT_NE(parse_message(other).find("log version 9 is not readable here"), std::string::npos);
+  EXPECT_NE(parse_message(other).find("log version 9 cannot be read"), std::string::npos);
   EXPECT_NE(parse_message(good.substr(0, 40)).find("truncated: the header is cut off"),
             std::string::npos);
   EXPECT_NE(parse_message(good.substr(0, good.size() - 1)).find("truncated"), std::string::npos);
@@ -208,7 +208,7 @@ TEST(SimulationLogFile, BrokenFilesOfVersionOneGetOneClearMessage) {
   EXPECT_NE(parse_message(rows), "no error");
   std::string column = good;
   column.replace(column.find("measured.fz"), 11, "measured.fx");
-  EXPECT_NE(parse_message(column).find("/columns: are not those of this version"),
+  EXPECT_NE(parse_message(column).find("/columns: these are not the columns of this version"),
             std::string::npos);
   // No prefix of a log and no flipped byte of its header may do worse than an Error.
   for (size_t length = 0; length < good.size(); length += 97) parse_message(good.substr(0, length));

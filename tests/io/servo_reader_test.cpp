@@ -249,7 +249,7 @@ TEST(ServoReader, SaysWhatAServoCannotBe) {
             at + "/backlash_deg: 57.3 deg is too large; the largest allowed value is 11.46 deg");
   EXPECT_EQ(group_error(R"("offset": -2)"),
             at + "/offset: -2 rad is too small; the smallest allowed value is -0.5 rad; in degrees "
-                 "the key ends in _deg. Beyond it, mount the horn anew");
+                 "the key ends in _deg. For a larger offset, mount the horn in another position");
   EXPECT_EQ(group_error(R"("stribeck_exponent": 0)"),
             at + "/stribeck_exponent: 0 is too small; the smallest allowed value is 0.1");
   EXPECT_EQ(group_error(R"("load_friction": {"motor": 2})"),
@@ -285,7 +285,7 @@ TEST(ServoReader, SaysWhichKeysDoNotGoTogether) {
   EXPECT_NE(group_error(R"("position_gain": 2)").find("'speed_gain'"), std::string::npos);
   EXPECT_NE(group_error(R"("motor": {"voltage": 7})").find("'torque_constant'"), std::string::npos);
   EXPECT_EQ(group_error(R"("motor": {"voltage": 0, "torque_constant": 1, "resistance": 1})"),
-            at + "/motor/voltage: it must be above 0");
+            at + "/motor/voltage: this value must be above 0");
   EXPECT_EQ(group_error(R"("kp": 2, "motor": {"voltage": 7, "torque_constant": 1, "resistance": 1,
                            "gain": 3})"),
             at + "/motor/gain: the group states 'kp' too; keep one of them");
@@ -306,7 +306,7 @@ TEST(ServoReader, SaysWhatIsWrongWithABamFile) {
   EXPECT_EQ(error("command_delay", 6),
             "motor.json: /command_delay: 6 s is too large; the largest allowed value is 0.1 s; "
             "state it in seconds: 3.7 ms is 0.0037");
-  EXPECT_EQ(error("R", 0), "motor.json: /R: it must be above 0");
+  EXPECT_EQ(error("R", 0), "motor.json: /R: this value must be above 0");
   EXPECT_EQ(error("kt", "high"), "motor.json: /kt: expected a number, found a string");
   EXPECT_EQ(error_of(folder, sidecar(R"({"joints": ["*_knee"], "bam": "motor.json"})")),
             "motor.json: /kt: expected a number, found a string");

@@ -136,7 +136,8 @@ TEST(Table, RefusesOtherJoints) {
     require_joints(reference, {"r_knee", "l_knee"}, "f");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "f: joint 1 of the table is 'l_knee', of the robot 'r_knee'");
+    EXPECT_STREQ(error.what(),
+                 "f: joint 1 of the table is 'l_knee', but joint 1 of the robot is 'r_knee'");
   }
 }
 
@@ -159,7 +160,7 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
            {"0,1\n1,2\n", ":1: the head row is missing: found the number '0'"},
            {"t[s],theta.a[rad],\n0,1,2\n", ":1: column 3 has no name"},
            {"t[s],theta.a[rad],t[s]\n0,1,2\n", ":1: the column 't[s]' appears twice"},
-           {head + "0,1\n0.001\n", ":3: 1 values in the row, but the head row names 2 columns"},
+           {head + "0,1\n0.001\n", ":3: 1 value in the row, but the head row names 2 columns"},
            {head + "0,1,2\n", ":2: 3 values in the row, but the head row names 2 columns"},
            {head + "0,one\n", ":2: column 'theta.a[rad]': 'one' is not a number"},
            {head + "0,\n", ":2: column 'theta.a[rad]': '' is not a number"},

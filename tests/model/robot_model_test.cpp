@@ -203,16 +203,18 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].parent = "l_thig"; }),
             "biped.urdf: joint l_knee: the link 'l_thig' does not exist; did you mean 'l_thigh'?");
   EXPECT_EQ(error_of([](auto& r) { r.links.push_back(heavy("stray")); }),
-            "biped.urdf: several root links: trunk, stray; connect all but one by a joint");
+            "biped.urdf: there are several root links: trunk, stray; add joints so that only one "
+            "root link remains");
   EXPECT_EQ(error_of([](auto& r) { r.joints.push_back(hinge("x", "r_shank", "l_shank")); }),
             "biped.urdf: link l_shank: has two parents, by the joints l_knee and x; closed chains "
             "are not supported, remove one joint");
   EXPECT_EQ(error_of([](auto& r) { r.joints.push_back(hinge("x", "r_shank", "trunk")); }),
             "biped.urdf: link cap: the joints form a loop, so no link is the root; remove one "
             "joint");
-  EXPECT_EQ(error_of([](auto& r) { r.joints[1].parent = "cap"; }),
-            "biped.urdf: link cap: lies on a loop of joints apart from the root trunk; remove one "
-            "joint of the loop");
+  EXPECT_EQ(
+      error_of([](auto& r) { r.joints[1].parent = "cap"; }),
+      "biped.urdf: link cap: belongs to a loop of joints that is not connected to the root link "
+      "trunk; remove one joint of the loop");
   EXPECT_EQ(error_of([](auto& r) { r.links[2].inertia.mass = -1; }),
             "biped.urdf: link l_shank: mass -1 kg is negative; give the link its mass");
   EXPECT_EQ(error_of([](auto& r) { r.links[5].inertia.mass = 0; }),

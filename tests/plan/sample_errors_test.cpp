@@ -97,7 +97,7 @@ TEST(SampleErrors, SwingOfASupportingFoot) {
 
 TEST(SampleErrors, FlightNeedsMore) {
   expect_words(message_of([](Pattern& p) { p.phases[2].support = Support::none; }),
-               {"phases/2", "flight", "key of cog height at lift-off and at touchdown"});
+               {"phases/2", "flight", "key of the COG height at lift-off and one at touchdown"});
   expect_words(message_of([](Pattern& p) { p.phases[0].support = Support::none; }),
                {"phases/0", "a phase on the ground before and after"});
 }

@@ -89,8 +89,8 @@ TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
   const Drawing drawing = draw_loci(runs.both(), {});
   EXPECT_TRUE(
       has(drawing,
-          "Ranges follow the command and the runs that stand; falls are cut off there (cross: "
-          "the instant of the fall)."));
+          "The axes fit the command and the runs that stand; curves of a fall are cut off at their "
+          "edge. A cross marks the fall."));
   for (const auto& item : drawing.items)
     if (const auto* path = std::get_if<DrawnPath>(&item)) {
       for (const Eigen::Vector2d& p : path->points)
@@ -125,8 +125,8 @@ TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   EXPECT_LT(most, 0.2);
   EXPECT_TRUE(
       has(drawing,
-          "Ranges follow the command and what comes before the fall; falls are cut off there "
-          "(cross: the instant of the fall)."));
+          "The axes fit the command and the time before the fall; curves of a fall are cut off at "
+          "their edge. A cross marks the fall."));
 }
 
 TEST(Loci, TheLineGoesThroughTheSamples) {

@@ -74,7 +74,9 @@ TEST_F(Commands, MistakesAreNamed) {
                {{"preview", "run", "-o", "no/where/a.png"}, 3, "does not exist"},
                {{"preview", "nothing", "-o", "a.png"}, 3, "nothing"},
                {{"preview", "run", "--log", "third", "-o", "a.png"}, 3, "third"},
-               {{"export", "run", "--format", "gltf", "-o", "a.gltf"}, 2, "writes a .glb"},
+               {{"export", "run", "--format", "gltf", "-o", "a.gltf"},
+                2,
+                "needs a file name that ends in .glb"},
                {{"plot", "run", "-o", "a.pdf"}, 2, "'.pdf' is not one of"},
                {{"plot", "nothing", "-o", "a.svg"}, 3, "nothing"},
                {{"plot", "run", "-o", "a.svg", "--from", "5"}, 2, "nothing to show from 5 s"}};

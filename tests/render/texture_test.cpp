@@ -86,21 +86,24 @@ TEST_F(Textured, AMissingPictureIsWhiteAndSaidSo) {
   const Eigen::Vector3i white = seen(surface("nowhere.png"), 0.5, 0.5);
   EXPECT_GT(white.minCoeff(), 150);
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("nowhere.png: there is no such file; drawn white"), std::string::npos);
+  EXPECT_NE(notes[0].find("nowhere.png: there is no such file; the surface is drawn white"),
+            std::string::npos);
 }
 
 TEST_F(Textured, AnotherCaseIsFoundAndSaidSo) {
   write_png(folder / "Flag.PNG", flag());
   EXPECT_GT(seen(surface("flag.png"), 0.5, 0.25)[0], 150);
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("taken from Flag.PNG, whose name differs by case"), std::string::npos);
+  EXPECT_NE(notes[0].find("taken from Flag.PNG, whose name differs in upper and lower case"),
+            std::string::npos);
 }
 
 TEST_F(Textured, ABrokenPictureIsWhiteAndSaidSo) {
   write(folder / "flag.png", "\x89PNG\r\n\x1a\nbroken");
   seen(surface("flag.png"), 0.5, 0.5);
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("is no PNG or JPEG that can be read; drawn white"), std::string::npos);
+  EXPECT_NE(notes[0].find("cannot be read as PNG or JPEG; the surface is drawn white"),
+            std::string::npos);
   write(folder / "flag.jpg", "\xff\xd8\xff broken");
   seen(surface("flag.jpg"), 0.5, 0.5);
   ASSERT_EQ(notes.size(), 1u);

@@ -25,11 +25,11 @@ TEST(InfeasibilityReport, NamesTheTimeForWhichAFootStandsOn) {
   EXPECT_EQ(found[0].finding.kind, FindingKind::contact_ends_early);
   EXPECT_EQ(found[0].finding.unit, "s");
   EXPECT_NEAR(found[0].finding.worst, 0.060, 0.005);
-  EXPECT_EQ(found[0].text.find("in the air"), std::string::npos) << found[0].text;
+  EXPECT_EQ(found[0].text.find("above the ground"), std::string::npos) << found[0].text;
   EXPECT_EQ(found[0].text.find(" mm"), std::string::npos) << found[0].text;
   EXPECT_NE(found[0].text.find(" ms after its contact has ended"), std::string::npos)
       << found[0].text;
-  EXPECT_NE(found[0].text.find("that window is locked; unlock it"), std::string::npos)
+  EXPECT_NE(found[0].text.find("this window is locked; remove the lock"), std::string::npos)
       << found[0].text;
 }
 

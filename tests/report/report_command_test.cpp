@@ -38,7 +38,7 @@ TEST_F(ReportCommand, TakesPushThresholds) {
   write(folder / "run" / "push.json", R"({"format": "ayumi.run/1"})");
   const Output other = ayumi({"report", "run", "-o", "s.html"});
   EXPECT_EQ(other.exit_code, 3);
-  EXPECT_NE(other.err.find("push.json: /format: is not the results file of a push study"),
+  EXPECT_NE(other.err.find("push.json: /format: this is not the results file of a push study"),
             std::string::npos)
       << other.err;
 }

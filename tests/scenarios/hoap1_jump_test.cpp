@@ -109,8 +109,8 @@ TEST(Hoap1Jump, GeneratedKeysNeedTheStrongActuators) {
   options.profile = "hoap1";
   const ConsistencyReport real = check_consistency(hoap1(), series, options);
   const ActuatorNeed need = actuator_need(hoap1(), series, options, real);
-  for (const char* words : {"profile hoap1 is not enough: needs ", " N m at ", " rad/s at ",
-                            "hoap1-strong is strong enough"})
+  for (const char* words : {"profile hoap1 is too weak: the motion needs ", " N m at ",
+                            " rad/s at ", "hoap1-strong is strong enough"})
     EXPECT_NE(need.text.find(words), std::string::npos) << need.text;
   EXPECT_EQ(need.sufficient, std::vector<std::string>{"hoap1-strong"});
 }

@@ -26,7 +26,7 @@ std::vector<std::string> missing(const ConsistencyReport& report) {
     const Finding* f = worst(report, spec->kind);
     if (!f) continue;
     parts.push_back(text::brief(std::abs(f->worst), 3) + " " + f->unit + spec->actuator.after +
-                    " at " + f->where + " at " + text::fixed(f->at, 2) + " s (has " +
+                    " at " + f->where + " at " + text::fixed(f->at, 2) + " s (limit " +
                     text::brief(std::abs(f->limit), 3) + ")");
   }
   return parts;
@@ -43,8 +43,8 @@ ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
     other.profile = name;
     if (missing(check_consistency(model, series, other)).empty()) need.sufficient.push_back(name);
   }
-  need.text = "profile " + report.profile + " is not enough: needs " + text::join(parts, ", ") +
-              "; " +
+  need.text = "profile " + report.profile + " is too weak: the motion needs " +
+              text::join(parts, ", ") + "; " +
               (need.sufficient.empty()
                    ? "no other profile is strong enough"
                    : text::join(need.sufficient, ", ") +
@@ -66,9 +66,8 @@ ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>
     ActuatorNeed need =
         need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
     if (need.text.empty()) continue;
-    need.text =
-        goal.place + ": " + need.text +
-        " (the later time counts from the start of the motion with keys that stands for this goal)";
+    need.text = goal.place + ": " + need.text +
+                " (this time counts from the start of the planned motion that represents the goal)";
     return need;
   }
   return {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
 
 namespace ayumi {
 
@@ -14,8 +15,7 @@ std::string Judgement::reason() const {
   const auto errors = std::count_if(report.findings.begin(), report.findings.end(), is_error);
   std::string text = std::string("the pattern is inconsistent: ") + name_of(first->kind) + " " +
                      first->where + " at " + text::fixed(first->at, 3) +
-                     " s: " + text::brief(first->worst) + " " + first->unit + ", limit " +
-                     text::brief(first->limit) + " " + first->unit;
+                     " s: " + amount_text(*first);
   if (errors > 1)
     text +=
         " (and " + std::to_string(errors - 1) + (errors == 2 ? " more error)" : " more errors)");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 
@@ -56,7 +57,7 @@ std::vector<Eigen::Index> columns_of(const RobotModel& model, const ReferenceTra
   }
   if (table.joints.size() != names.size())
     fail(ErrorCode::bad_pattern, "the joint table has " + std::to_string(table.joints.size()) +
-                                     " joints, robot '" + model.name() + "' has " +
+                                     " joints, but the robot '" + model.name() + "' has " +
                                      std::to_string(names.size()));
   return columns;
 }
@@ -228,9 +229,18 @@ std::string on_both_clocks(double t, double begin, double end) {
 }
 
 std::string text_of(const SafetyViolation& v) {
-  return v.joint + " at " + on_both_clocks(v.t, v.begin, v.end) + ": " + v.kind + " " +
-         text::brief(v.value, 6) + " " + v.unit + ", limit " + text::brief(v.limit, 6) + " (" +
-         std::to_string(v.rows) + (v.rows == 1 ? " row)" : " rows)");
+  const bool angle = v.unit.starts_with("rad");
+  const std::string unit = angle ? "deg" + v.unit.substr(3) : v.unit;
+  const auto quantity = [&](double value) {
+    return text::brief(angle ? value * 180 / EIGEN_PI : value, 6) + " " + unit;
+  };
+  const std::string what = v.kind == "start_speed" ? "speed at the start"
+                           : v.kind == "end_speed" ? "speed at the end"
+                           : v.kind == "range"     ? "encoder position"
+                                                   : v.kind;
+  return v.joint + " at " + on_both_clocks(v.t, v.begin, v.end) + ": " + what + " " +
+         quantity(v.value) + ", limit " + quantity(v.limit) + " (in " +
+         text::counted(v.rows, "row") + ")";
 }
 
 std::vector<SafetyViolation> torque_violations(const RobotModel& model,
@@ -285,7 +295,7 @@ SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& referenc
   const std::vector<Eigen::Index> columns = columns_of(model, reference);
   for (const ReferenceRow& row : reference.rows)
     if (!row.theta.allFinite())
-      fail(ErrorCode::bad_pattern, "the joint table holds an angle that is not finite");
+      fail(ErrorCode::bad_pattern, "the joint table contains an angle that is not a finite number");
   const Eigen::VectorXd target = reference.rows.front().theta;
   Eigen::VectorXd from = target;
   if (options.from != "first") {

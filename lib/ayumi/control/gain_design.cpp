@@ -120,33 +120,34 @@ DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2, Dt
 
 DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams params) {
   const auto refuse = [](const std::string& what, double value, const std::string& why) {
-    fail(ErrorCode::usage, what + " " + text::brief(value) + ": " + why);
+    fail(ErrorCode::usage, what + " " + text::brief(value) + " is not possible: " + why);
   };
   if (wishes.poles) {
     const auto& [p1, p2] = *wishes.poles;
     const double right = p1.real() < 0 ? p2.real() : p1.real();
     if (!(p1.real() < 0 && p2.real() < 0))
-      refuse("pole [1/s]", right, "the real part must be below 0, or the COG never comes back");
+      refuse("a pole with the real part", right,
+             "it must be below 0, because otherwise the COG never comes back");
     params = gains_from_poles(p1 / omega, p2 / omega, params);
   }
   if (wishes.absorb) {
     if (!(*wishes.absorb >= 0 && *wishes.absorb < 1))
-      refuse("absorbed share", *wishes.absorb, "the share must be at least 0 and below 1");
+      refuse("an absorbed share of", *wishes.absorb, "it must be at least 0 and below 1");
     params.zmp_gain = *wishes.absorb / (1 - *wishes.absorb);
   }
   if (wishes.return_time) {
     if (!(*wishes.return_time > 0))
-      refuse("return time", *wishes.return_time, "the time must be above 0 s");
+      refuse("a return time of", *wishes.return_time, "it must be above 0 s");
     params.pull_rate = params.pull_damping = 1 / (omega * *wishes.return_time);
   }
   if (wishes.zmp_filter) {
     if (!(*wishes.zmp_filter > 0))
-      refuse("ZMP filter", *wishes.zmp_filter, "the time must be above 0 s");
+      refuse("a ZMP filter of", *wishes.zmp_filter, "its time must be above 0 s");
     params.zmp_filter = omega * *wishes.zmp_filter;
   }
   if (wishes.forget) {
     if (!(*wishes.forget >= 0))
-      refuse("forgetting time", *wishes.forget, "the time must be at least 0 s");
+      refuse("a forgetting time of", *wishes.forget, "it must be at least 0 s");
     params.offset_time = omega * *wishes.forget;
   }
   return params;
@@ -174,10 +175,11 @@ std::string growth(const LoopModel& loop, const DtadParams& params) {
   const LoopAnalysis analysis = analyze_loop(loop, params);
   if (analysis.stable) return {};
   const double low = largest_stable_ka(loop, params, params.zmp_gain);
-  return "controller gains: with ka = " + text::brief(params.zmp_gain) +
-         ", tau_z = " + text::brief(params.zmp_filter) + " and sensors " + text::brief(loop.delay) +
-         " s late the loop grows at " + text::fixed(-analysis.decay, 1) + " /s, " +
-         text::fixed(analysis.frequency, 1) + " Hz; " +
+  return "controller gains: the loop is unstable with ka = " + text::brief(params.zmp_gain) +
+         ", tau_z = " + text::brief(params.zmp_filter) + " and a sensor latency of " +
+         text::brief(1e3 * loop.delay) + " ms (an error grows at " +
+         text::fixed(-analysis.decay, 1) + " /s and oscillates at " +
+         text::fixed(analysis.frequency, 1) + " Hz); " +
          (low > 1e-6 ? "ka below " + text::fixed(low, 2) + " would be stable"
                      : std::string("no ka is stable: the servos are too soft for this robot, or "
                                    "ks and kd too small"));

@@ -143,18 +143,20 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
   const double inside = support_polygon(model, held.feet, Support::both).margin(goal.head<2>());
   if (inside < margin)
     return "the COG would be " + text::fixed(1e3 * std::abs(inside), 1) + " mm " +
-           (inside < 0 ? "outside" : "inside") + " the support of the feet, of which " +
-           text::fixed(1e3 * margin, 1) + " mm must remain free at the edge";
+           (inside < 0 ? "outside" : "inside") +
+           " the support of the feet, but it must be at least " + text::fixed(1e3 * margin, 1) +
+           " mm inside";
   const Attempt attempt = lead_to(model, held, goal);
   if (attempt.miss < kGoalReached) return {};
-  return "the legs end " + text::fixed(1e3 * attempt.miss, 1) + " mm before it" +
-         (attempt.joint.empty() ? "" : ", " + attempt.joint + " at its limit");
+  return "the legs cannot reach this place: they end " + text::fixed(1e3 * attempt.miss, 1) +
+         " mm before it" +
+         (attempt.joint.empty() ? "" : ", with " + attempt.joint + " at its limit");
 }
 
 void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,
                        const std::string& place, const CogGoal& goal) {
   if (!goal.displacement.allFinite())
-    fail(ErrorCode::bad_pattern, place + "a COG displacement is not finite");
+    fail(ErrorCode::bad_pattern, place + "a COG displacement is not a finite number");
   const std::string why = obstacle(model, held, params, goal.displacement);
   if (why.empty()) return;
   double possible = 0, not_possible = 1;
@@ -166,30 +168,31 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
     }
   fail(ErrorCode::bad_pattern,
        place + "COG displacement " + in_millimetres(goal.displacement) + ": " + why + "; " +
-           (possible > 0 ? "in this direction " + in_millimetres(possible * goal.displacement) +
-                               " is possible: ask for less, or hold the COG at another height"
-                         : std::string("not even the posture without a displacement is possible")));
+           (possible > 0
+                ? "in this direction " + in_millimetres(possible * goal.displacement) +
+                      " is possible: reduce the displacement, or hold the COG at another height"
+                : std::string("not even the posture without a displacement is possible")));
 }
 
 void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,
                        const std::string& place, const StepGoal& goal) {
   if (!goal.velocity.allFinite() || !std::isfinite(goal.turn))
-    fail(ErrorCode::bad_pattern, place + "a velocity is not finite");
+    fail(ErrorCode::bad_pattern, place + "a velocity is not a finite number");
   const double z = held.cog.z() - ground_of(held.feet);
   const double period = (params.single_support + params.double_support) / std::sqrt(kGravity / z);
   const double length = period * goal.velocity.norm(), most = params.reach * z;
   if (!(length <= most))
     fail(ErrorCode::bad_pattern,
-         place + "a COG velocity of " + text::brief(goal.velocity.norm()) +
-             " m/s asks for steps of " + text::fixed(1e3 * length, 1) + " mm every " +
-             text::fixed(period, 3) + " s; the largest step is " + text::fixed(1e3 * most, 1) +
+         place + "a COG velocity of " + text::brief(goal.velocity.norm()) + " m/s needs steps of " +
+             text::fixed(1e3 * length, 1) + " mm every " + text::fixed(period, 3) +
+             " s; the largest step is " + text::fixed(1e3 * most, 1) +
              " mm, which gives a velocity of " + text::fixed(most / period, 3) + " m/s");
   const double turn = std::abs(goal.turn) * period;
   if (!(turn <= kStepTurnLimit))
     fail(ErrorCode::bad_pattern,
-         place + "turning by " + text::brief(goal.turn * 180 / M_PI) + " deg/s asks for " +
-             text::fixed(turn * 180 / M_PI, 1) + " deg in every step; at most " +
-             text::fixed(kStepTurnLimit * 180 / M_PI, 1) + " deg, " +
+         place + "turning by " + text::brief(goal.turn * 180 / M_PI) + " deg/s needs " +
+             text::fixed(turn * 180 / M_PI, 1) + " deg in every step, but the largest turn is " +
+             text::fixed(kStepTurnLimit * 180 / M_PI, 1) + " deg per step, or " +
              text::fixed(kStepTurnLimit / period * 180 / M_PI, 1) + " deg/s");
   try {
     keyed_steps(model, held, params, goal);

@@ -259,20 +259,21 @@ Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
 }
 
 std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& resolution) {
-  std::string yields;
-  if (resolution.yielding.height) yields = "the COG height";
-  if (resolution.yielding.trunk) yields += " and the trunk attitude";
+  std::string effect;
+  if (resolution.yielding.height) effect = "the COG height";
+  if (resolution.yielding.trunk) effect += " and the trunk attitude";
+  if (!effect.empty())
+    effect += resolution.yielding.trunk ? " deviate from the plan" : " deviates from the plan";
   if (resolution.scale < 1)
-    yields = (yields.empty() ? "" : yields + " give way and ") + "the whole motion becomes slower";
-  else if (!yields.empty())
-    yields += resolution.yielding.trunk ? " give way" : " gives way";
-  else
-    yields = "no task gives way";
+    effect += std::string(effect.empty() ? "" : ", and ") + "the whole motion becomes slower";
+  else if (effect.empty())
+    effect = "the other joints follow the plan nevertheless";
   std::vector<std::string> notes;
   if (resolution.limiting_dof >= 0)
-    notes.push_back("speed limit of " + model.dofs()[resolution.limiting_dof].name + ": " + yields);
+    notes.push_back(model.dofs()[resolution.limiting_dof].name +
+                    " is at its speed limit: " + effect);
   for (const int j : resolution.held)
-    notes.push_back("position limit of " + model.dofs()[j].name + ": " + yields);
+    notes.push_back(model.dofs()[j].name + " is at its position limit: " + effect);
   return notes;
 }
 
@@ -362,7 +363,8 @@ void ReferenceBody::bound_target(ControlOutput& out) {
     target = std::clamp(target, low, high);
     if (noted_[static_cast<size_t>(j)] & what) return;
     noted_[static_cast<size_t>(j)] |= what;
-    out.notes.push_back("servo target of " + model_->dofs()[j].name + " held to its " + text);
+    out.notes.push_back("the servo target of " + model_->dofs()[j].name + " is kept within the " +
+                        text);
   };
   for (int j = 0; j < out.target.size(); ++j) {
     const Dof& dof = model_->dofs()[j];

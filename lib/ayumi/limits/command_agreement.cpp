@@ -117,7 +117,7 @@ Advice cog_advice(const JudgedMotion&, const FindingWindow& window) {
   return {"the COG of the posture is " + in_mm(v.value) +
               " away from the commanded COG, mostly along " + axis_name(v.detail) +
               ": change the COG key or the posture",
-          std::string(kOrRepair) + " (which keeps the posture)"};
+          std::string(kOrRepair) + ", which keeps the posture"};
 }
 
 Advice zmp_advice(const JudgedMotion&, const FindingWindow& window) {
@@ -125,18 +125,18 @@ Advice zmp_advice(const JudgedMotion&, const FindingWindow& window) {
   return {"the ZMP of the motion is " + in_mm(v.value) +
               " away from the commanded ZMP, mostly along " + axis_name(v.detail) +
               ": change the ZMP key or the motion",
-          std::string(kOrRepair) + " (which keeps the motion)"};
+          std::string(kOrRepair) + ", which keeps the motion"};
 }
 
 Advice vertical_force_advice(const JudgedMotion&, const FindingWindow& window) {
   const double value = window.worst.value;
   return {"the motion needs " + text::fixed(std::abs(value), 1) + " N " +
-              (value > 0 ? "more" : "less") + " than the commanded f_z: leave f_z out",
+              (value > 0 ? "more" : "less") + " than the commanded f_z: remove the f_z keys",
           kOrRepair};
 }
 
 Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
-  return "the mass-concentrated model has a ZMP error of " + in_mm(window.worst.value) +
+  return "the point-mass model has a ZMP error of " + in_mm(window.worst.value) +
          " here: use the full model";
 }
 

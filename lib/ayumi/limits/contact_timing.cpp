@@ -33,11 +33,12 @@ void judge_contact_ends(JudgedMotion& motion) {
 
 Advice contact_end_advice(const JudgedMotion&, const FindingWindow& window) {
   return "the " + std::string(name_of(foot_of(window.worst))) + " sole stands still for " +
-         text::fixed(window.worst.value, 3) + " s after its contact ends: end it that much later";
+         text::fixed(window.worst.value, 3) +
+         " s after its contact ends: end the contact that much later";
 }
 
 std::string contact_end_infeasibility(const Finding& f, double) {
-  return "the " + f.where + " foot stands in its place for " + text::fixed(1000 * f.worst, 0) +
+  return "the " + f.where + " foot stands still for " + text::fixed(1000 * f.worst, 0) +
          " ms after its contact has ended";
 }
 

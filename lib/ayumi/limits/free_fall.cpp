@@ -106,7 +106,7 @@ Advice free_fall_advice(const JudgedMotion& motion, const FindingWindow& window)
            " where the flight begins or ends: no force can do this; make the COG keys continuous "
            "there";
   return "the COG must fall freely for the " + text::fixed((window.last - window.first) * dt, 3) +
-         " s of flight: leave the COG keys of the flight out";
+         " s of flight: remove the COG keys inside the flight";
 }
 
 std::string free_fall_infeasibility(const Finding&, double) {

@@ -94,12 +94,14 @@ bool friction_holds(JudgedMotion& motion, const Violation& v, double pace) {
 Advice friction_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   return "the motion needs a friction coefficient of " + text::fixed(v.value * motion.friction, 2) +
-         ", but the ground has " + text::fixed(motion.friction, 2) + ": " +
-         slow_down_text(std::sqrt(v.value)) + " or take shorter steps";
+         ", but " +
+         (v.value > 1 ? "the ground has " + text::fixed(motion.friction, 2)
+                      : "the tolerance allows " + text::fixed(v.limit * motion.friction, 2)) +
+         ": " + slow_down_text(std::sqrt(v.value / v.limit)) + " or take shorter steps";
 }
 
 std::string friction_infeasibility(const Finding& f, double violation) {
-  return "the motion needs " + ratio_text(violation) + " of the available friction (" + f.where +
+  return "the motion needs " + ratio_text(violation) + " times the available friction (" + f.where +
          ")";
 }
 

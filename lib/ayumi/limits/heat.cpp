@@ -70,14 +70,14 @@ const char* heat_unit(const JudgedMotion& motion, const Violation& v) {
 Advice heat_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string unit = std::string(" ") + heat_unit(motion, v);
-  return motion.model.dofs()[v.item].name + " averages " + text::brief(v.value, 3) + unit +
-         "; its motor bears " + text::brief(v.limit, 3) + unit +
+  return motion.model.dofs()[v.item].name + " needs " + text::brief(v.value, 3) + unit +
+         " on average; its motor bears " + text::brief(v.limit, 3) + unit +
          " without a time limit: add a rest, or straighten the leg";
 }
 
 std::string heat_infeasibility(const Finding& f, double violation) {
-  return f.where + " torque, over the motor's thermal window, reaches " + ratio_text(violation) +
-         " of its continuous limit";
+  return "the mean torque of " + f.where + " over the motor's thermal window reaches " +
+         ratio_text(violation) + " times its continuous limit";
 }
 
 }  // namespace

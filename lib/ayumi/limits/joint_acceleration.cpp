@@ -47,8 +47,8 @@ const char* acceleration_unit(const JudgedMotion& motion, const Violation& v) {
 }
 
 Advice acceleration_advice(const JudgedMotion& motion, const FindingWindow& window) {
-  return "smooth " + motion.model.dofs()[window.worst.item].name +
-         " here: a longer segment or minimum_jerk interpolation";
+  return "make the motion of " + motion.model.dofs()[window.worst.item].name +
+         " smoother here, with a longer segment or minimum_jerk interpolation";
 }
 
 }  // namespace

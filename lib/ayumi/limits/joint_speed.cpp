@@ -52,7 +52,7 @@ Advice speed_advice(const JudgedMotion& motion, const FindingWindow& window) {
 }
 
 std::string speed_infeasibility(const Finding& f, double violation) {
-  return f.where + " speed reaches " + ratio_text(violation) + " of its limit";
+  return "the speed of " + f.where + " reaches " + ratio_text(violation) + " times its limit";
 }
 
 }  // namespace

@@ -65,13 +65,13 @@ const char* torque_unit(const JudgedMotion& motion, const Violation& v) {
 
 Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return "lower the load on " + motion.model.dofs()[v.item].name + ": " +
+  return "lower the load on " + motion.model.dofs()[v.item].name + ": if inertia is the cause, " +
          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
-         " where inertia is the cause, or straighten the leg where weight is";
+         "; if weight is the cause, straighten the leg";
 }
 
 std::string torque_infeasibility(const Finding& f, double violation) {
-  return f.where + " torque reaches " + ratio_text(violation) + " of its limit";
+  return "the torque of " + f.where + " reaches " + ratio_text(violation) + " times its limit";
 }
 
 }  // namespace

@@ -96,7 +96,8 @@ std::string in_mm(double metres) { return text::fixed(1000 * std::abs(metres), 1
 std::string ratio_text(double ratio) { return text::fixed(std::ceil(100 * ratio - 1e-9) / 100, 2); }
 
 std::string slow_down_text(double factor) {
-  return "make this window " + text::fixed(std::ceil(100 * factor) / 100, 2) + " times longer";
+  return "stretch this window to " + text::fixed(std::ceil(100 * factor) / 100, 2) +
+         " times its length";
 }
 
 }  // namespace ayumi

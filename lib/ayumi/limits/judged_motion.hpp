@@ -113,7 +113,7 @@ const char* joint_unit(const JudgedMotion&, const Violation&, const char* rotary
                        const char* prismatic);
 std::string in_mm(double metres);           ///< of the size, "12.0 mm"
 std::string ratio_text(double ratio);       ///< rounded up to 0.01, "1.04"
-std::string slow_down_text(double factor);  ///< "make this window 1.04 times longer"
-inline constexpr const char* kOrRepair = ", or repair";
+std::string slow_down_text(double factor);  ///< "stretch this window to 1.04 times its length"
+inline constexpr const char* kOrRepair = ", or use `ayumi repair`";
 
 }  // namespace ayumi

@@ -70,12 +70,13 @@ Advice motor_acceleration_advice(const JudgedMotion& motion, const FindingWindow
   const Violation& v = window.worst;
   return "the motor of " + motion.model.dofs()[v.item].name +
          " cannot accelerate its own rotor that fast: " +
-         slow_down_text(std::sqrt(std::abs(v.value / v.limit))) + " or smooth the joint here";
+         slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
+         " or make the motion of the joint smoother here";
 }
 
 std::string motor_acceleration_infeasibility(const Finding& f, double violation) {
-  return f.where + " acceleration reaches " + ratio_text(violation) +
-         " of what its motor can give to its own rotor";
+  return "the acceleration of " + f.where + " reaches " + ratio_text(violation) +
+         " times what its motor can give to its own rotor";
 }
 
 }  // namespace

@@ -103,8 +103,8 @@ Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
 }
 
 std::string step_infeasibility(const Finding& f, double violation) {
-  return f.where + " steps by " + ratio_text(violation) +
-         " of what the speed limit allows in one servo period";
+  return f.where + " moves " + ratio_text(violation) +
+         " times as far in one servo period as the speed limit allows";
 }
 
 }  // namespace

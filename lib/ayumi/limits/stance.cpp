@@ -212,14 +212,14 @@ Advice float_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const std::string time = text::fixed(std::abs(v.detail) * motion.series.dt, 3) + " s";
   const std::string height = text::fixed(1000 * v.value, 2) + " mm";
   if (v.detail > 0)
-    return "the " + foot + " sole is still coming down, " + height +
-           " to go, when its contact begins: begin it " + time + " later";
+    return "the " + foot + " sole is still " + height +
+           " above the ground when its contact begins: begin the contact " + time + " later";
   if (v.detail < 0)
-    return "the " + foot + " sole has risen by " + height + " when its contact ends: end it " +
-           time + " earlier";
+    return "the " + foot + " sole is already " + height +
+           " above the ground when its contact ends: end the contact " + time + " earlier";
   return "the " + foot + " sole is " + in_mm(v.value) +
-         " above the ground while it should support: begin its contact later or end it earlier, or "
-         "lower the foot";
+         " above the ground while it should support: begin the contact later, end the contact "
+         "earlier, or lower the foot";
 }
 
 std::string slip_infeasibility(const Finding& f, double) {
@@ -227,11 +227,11 @@ std::string slip_infeasibility(const Finding& f, double) {
 }
 
 std::string penetration_infeasibility(const Finding& f, double) {
-  return "the " + f.where + " foot is " + in_mm(f.worst) + " in the ground";
+  return "the " + f.where + " foot is " + in_mm(f.worst) + " below the ground";
 }
 
 std::string float_infeasibility(const Finding& f, double) {
-  return "the " + f.where + " foot stands " + in_mm(f.worst) + " in the air";
+  return "the " + f.where + " foot should stand, but is " + in_mm(f.worst) + " above the ground";
 }
 
 }  // namespace

@@ -96,13 +96,14 @@ bool torsion_holds(JudgedMotion& motion, const Violation& v, double pace) {
 }
 
 Advice torsion_advice(const JudgedMotion&, const FindingWindow& window) {
-  return "the foot would turn on the ground: " + slow_down_text(std::sqrt(window.worst.value)) +
+  return "the foot would turn on the ground: " +
+         slow_down_text(std::sqrt(window.worst.value / window.worst.limit)) +
          " or swing the arms against the legs";
 }
 
 std::string torsion_infeasibility(const Finding& f, double violation) {
-  return "the foot would turn: " + ratio_text(violation) +
-         " of the yaw moment that friction can resist (" + f.where + ")";
+  return "the foot would turn: the motion needs " + ratio_text(violation) +
+         " times the yaw moment that friction can resist (" + f.where + ")";
 }
 
 }  // namespace

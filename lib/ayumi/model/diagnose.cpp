@@ -69,9 +69,9 @@ class Doctor {
   void examine_root() {
     const Link& root = model_.links().front();
     if (root.inertia.mass > 0 && model_.description().sidecar_file.empty())
-      warn("link " + root.name,
-           "the root link carries " + text::brief(root.inertia.mass) +
-               " kg, which some URDF readers drop (Ayumi keeps it); compare the total mass");
+      warn("link " + root.name, "the root link carries " + text::brief(root.inertia.mass) +
+                                    " kg; Ayumi counts this mass, but some URDF readers "
+                                    "ignore it and compute a smaller total mass");
   }
 
   void examine_link(const Link& link) {
@@ -180,7 +180,7 @@ class Doctor {
     if (!dof.limited)
       warn(where, "has no position limits; state them");
     else if (dof.upper - dof.lower < 1e-6)
-      warn(where, "its limits leave no range; make it a fixed joint");
+      warn(where, "its lower and upper limit are equal; make it a fixed joint");
     else if (!dof.prismatic && dof.upper - dof.lower > 4 * std::numbers::pi)
       warn(where, "its range is more than two turns; is this a placeholder?");
     if (std::isinf(limits.speed[index]))
@@ -237,9 +237,10 @@ class Doctor {
     against = static_cast<int>(same.size());
     if (conform == 0 || against == 0) return;
     warn("joints " + text::join(conform >= against ? same : opposite, ", "),
-         "the signs of the left and right encoders have another relation than on the " +
+         "one of the two encoder signs may be wrong: on the " +
              std::to_string(std::max(conform, against)) +
-             " other pairs; try the joint alone before replaying a table");
+             " other pairs of joints, the left and the right sign are related in the opposite "
+             "manner; test these joints alone before you replay a table");
   }
 
   void compare_links(const Link& left, const Link& right) {
@@ -252,7 +253,7 @@ class Doctor {
     mirrored.y() = -mirrored.y();
     const double apart = (mirrored - zero_[right.body] * right.pose * right.inertia.com).norm();
     if (a > 0 && b > 0 && apart > kAsymmetry * size_)
-      warn(where, "their centres of mass differ from mirror images of each other by " +
+      warn(where, "their centres of mass are not mirror images of each other; the difference is " +
                       millimetres(apart) + " with every joint at 0");
   }
 
@@ -266,7 +267,8 @@ class Doctor {
                           : Eigen::Vector3d(-axis.x(), axis.y(), -axis.z());
     const double apart = (origin - zero_[right.body].translation()).norm();
     if (apart > kAsymmetry * size_)
-      warn(where, "their places differ from mirror images of each other by " + millimetres(apart));
+      warn(where, "their places are not mirror images of each other; the difference is " +
+                      millimetres(apart));
     const double along = axis.dot(zero_[right.body].linear() * model_.bodies()[right.body].axis);
     if (std::abs(along) < 0.99) {
       warn(where, "their axes are not mirror images of each other");
@@ -298,7 +300,7 @@ class Doctor {
     const double lean = std::acos(std::clamp(up.z(), -1.0, 1.0));
     if (lean > 5 * kDegree)
       warn("posture home", "the root link leans by " + text::fixed(lean / kDegree, 1) +
-                               " deg against the soles; is that meant?");
+                               " deg against the soles; is this intended?");
     Eigen::Vector3d cog = Eigen::Vector3d::Zero();
     for (size_t i = 0; i < poses.size(); ++i)
       cog += model_.bodies()[i].inertia.mass / model_.mass() *

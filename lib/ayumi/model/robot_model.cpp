@@ -114,9 +114,12 @@ class TreeBuilder {
       if (each.parent != link.name) continue;
       const int child = link_index(each.child);
       if (each.type == JointType::floating)
-        complain_urdf(robot_, "joint " + each.name +
-                                  ": a floating joint may only carry the whole robot; its parent "
-                                  "must be the root link, without mass, shape and other joints");
+        complain_urdf(
+            robot_,
+            "joint " + each.name +
+                ": a floating joint may only carry the whole robot; its parent "
+                "must be the root link, and the root link must have no mass, no shape and no other "
+                "joint");
       if (each.type == JointType::fixed)
         add_link(child, body, pose * each.origin);
       else
@@ -171,13 +174,14 @@ void require_masses(const RobotDescription& robot, const std::vector<Body>& bodi
       std::find_if(robot.links.begin(), robot.links.end(),
                    [&](const LinkDescription& link) { return link.name == first; });
   massless.erase(massless.begin());
-  complain_urdf(robot,
-                "link " + first + ": " +
-                    (description->has_inertial ? "its mass is 0" : "it has no <inertial>") +
-                    (first == bodies[0].name ? " although it is the root of a robot that moves"
-                                             : " although a joint moves it") +
-                    "; give it a mass and an inertia" +
-                    (massless.empty() ? "" : " (the same: " + text::join(massless, ", ") + ")"));
+  complain_urdf(
+      robot,
+      "link " + first + ": " +
+          (description->has_inertial ? "its mass is 0" : "it has no <inertial>") +
+          (first == bodies[0].name ? " although it is the root of a robot that moves"
+                                   : " although a joint moves it") +
+          "; give it a mass and an inertia" +
+          (massless.empty() ? "" : " (the same holds for " + text::join(massless, ", ") + ")"));
 }
 
 double value_or(const std::map<std::string, double>& map, const std::string& key, double other) {

@@ -152,8 +152,8 @@ int find_root_link(const RobotDescription& robot) {
     complain_urdf(robot, "link " + robot.links.front().name +
                              ": the joints form a loop, so no link is the root; remove one joint");
   if (roots.size() > 1)
-    complain_urdf(robot, "several root links: " + text::join(roots, ", ") +
-                             "; connect all but one by a joint");
+    complain_urdf(robot, "there are several root links: " + text::join(roots, ", ") +
+                             "; add joints so that only one root link remains");
   std::set<std::string> reached = {roots[0]};
   std::vector<std::string> open = roots;
   while (!open.empty()) {
@@ -164,8 +164,10 @@ int find_root_link(const RobotDescription& robot) {
   }
   for (const LinkDescription& link : robot.links)
     if (!reached.contains(link.name))
-      complain_urdf(robot, "link " + link.name + ": lies on a loop of joints apart from the root " +
-                               roots[0] + "; remove one joint of the loop");
+      complain_urdf(robot,
+                    "link " + link.name +
+                        ": belongs to a loop of joints that is not connected to the root link " +
+                        roots[0] + "; remove one joint of the loop");
   const auto root =
       std::find_if(robot.links.begin(), robot.links.end(),
                    [&](const LinkDescription& link) { return link.name == roots[0]; });

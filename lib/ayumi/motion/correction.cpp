@@ -63,7 +63,7 @@ void require_track(const CorrectionTrack& track) {
   const auto columns = static_cast<Eigen::Index>(6 + track.joints.size());
   if (track.coefficients.cols() != columns)
     fail(ErrorCode::bad_pattern, "correction: " + std::to_string(track.coefficients.cols()) +
-                                     " columns where base and joints make " +
+                                     " columns, but base and joints need " +
                                      std::to_string(columns));
   if (!(track.spacing > 0) || !track.coefficients.allFinite() || !std::isfinite(track.begin))
     fail(ErrorCode::bad_pattern,

@@ -21,7 +21,8 @@ int find_joint(const RobotModel& model, const std::string& joint, const std::str
       fail(ErrorCode::bad_pattern,
            place + ": joint '" + joint + "' " +
                (each.mimic.empty() ? "does not move; remove the key"
-                                   : "follows '" + each.mimic + "' (mimic); set that joint"));
+                                   : "follows '" + each.mimic + "' (mimic); set '" + each.mimic +
+                                         "' in its place"));
   fail(ErrorCode::bad_pattern, place + ": the robot '" + model.name() + "' has no joint '" + joint +
                                    "'" + text::suggestion(joint, model.dof_names()));
 }

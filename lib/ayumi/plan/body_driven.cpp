@@ -44,8 +44,9 @@ namespace {
   const std::string where = in_file(job.pattern, "phases/" + std::to_string(job.feet.phase(t))) +
                             ": t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
   const std::string remedy = "; lower the COG height (here " +
-                             text::fixed(sample.cog.z() - ground, 4) +
-                             " m above the soles) or shorten the stride";
+                             text::fixed(sample.cog.z() - ground, 4) + " m above the soles)" +
+                             (job.tracks.torso ? ", tilt the torso less," : "") +
+                             " or shorten the stride";
   if (solution.knee_flipped)
     fail(ErrorCode::bad_pattern, where + " knee would have to bend the wrong way" + remedy);
   fail(ErrorCode::bad_pattern,
@@ -91,14 +92,12 @@ void require_body_tracks(const SampleJob& job) {
       const auto& track = job.tracks.cog[axis];
       if (axis < 2 && !track) continue;
       if (track && is_ballistic(*track, begin, phase.until)) continue;
-      fail(ErrorCode::bad_pattern, place + ": the flight from " + text::exact(begin) + " s to " +
-                                       text::exact(phase.until) + " s needs a key of cog " +
-                                       (axis == 2   ? "height"
-                                        : axis == 0 ? "x"
-                                                    : "y") +
-                                       " at lift-off and at touchdown" +
-                                       (track ? "" : " and one on the ground before and after") +
-                                       "; the motion between them is the parabola");
+      const std::string quantity = axis == 2 ? "the COG height" : axis == 0 ? "COG x" : "COG y";
+      fail(ErrorCode::bad_pattern,
+           place + ": in the flight from " + text::exact(begin) + " s to " +
+               text::exact(phase.until) + " s the COG follows a parabola; give a key of " +
+               quantity + " at lift-off and one at touchdown" +
+               (track ? "" : ", and one on the ground before and one after the flight"));
     }
   }
 }

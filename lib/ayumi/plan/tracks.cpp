@@ -208,7 +208,8 @@ void read_table(const RobotModel& model, const Pattern& pattern, KeyReader& read
   for (size_t j = 0; j < table.joints.size(); ++j) {
     const int dof = find_joint(model, table.joints[j], in_file(pattern, "table " + table.file));
     if (!reader.joints[dof].empty())
-      complain_table(pattern, "joint '" + table.joints[j] + "' is also keyed; keep one");
+      complain_table(
+          pattern, "the joint '" + table.joints[j] + "' has keys too; keep the keys or the column");
     tracks.joints[dof] = table_track(table.dt, rows, [&](size_t k) {
       return table.theta(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j));
     });

@@ -94,16 +94,17 @@ void refuse_viip_phases(const Pattern& pattern, const std::string& done) {
     if (pattern.phases[i].viip)
       fail(ErrorCode::bad_pattern,
            in_file(pattern, "phases/" + std::to_string(i)) +
-               ": in a phase with a goal the controller decides the motion, so it "
-               "cannot be " +
-               done + "; simulate it and use its tables");
+               ": the controller decides the motion of a phase with a goal, so the pattern cannot "
+               "be " +
+               done + "; simulate it and use the tables of the run");
 }
 
 Pattern without_viip_phases(const Pattern& pattern) {
   if (pattern.table)
-    fail(ErrorCode::bad_pattern, in_file(pattern, "table") +
-                                     ": a sampled motion and phases with \"viip\" cannot share a "
-                                     "pattern; keep one");
+    fail(ErrorCode::bad_pattern,
+         in_file(pattern, "table") +
+             ": a pattern cannot have both a sampled motion and phases with "
+             "\"viip\"; keep one of them");
   const std::vector<Cut> cuts = cuts_of(pattern);
   Pattern result = pattern;
   result.correction.reset();

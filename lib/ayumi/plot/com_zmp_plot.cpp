@@ -237,10 +237,10 @@ void draw_pushes(Drawing& drawing, const Axes& axes, const std::vector<PushRecor
 std::string range_note(const std::vector<LociRun>& runs) {
   const auto fell = [](const LociRun& run) { return has_fallen(*run.log); };
   if (std::none_of(runs.begin(), runs.end(), fell)) return "";
-  return std::string("Ranges follow the command and ") +
-         (std::all_of(runs.begin(), runs.end(), fell) ? "what comes before the fall"
+  return std::string("The axes fit the command and ") +
+         (std::all_of(runs.begin(), runs.end(), fell) ? "the time before the fall"
                                                       : "the runs that stand") +
-         "; falls are cut off there (cross: the instant of the fall).";
+         "; curves of a fall are cut off at their edge. A cross marks the fall.";
 }
 
 void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,

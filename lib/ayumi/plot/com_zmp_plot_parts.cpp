@@ -37,7 +37,7 @@ bool has_fallen(const SimulationLog& log) { return log.result.outcome == Outcome
 Interval time_range(const std::vector<LociRun>& runs, const LociOptions& options) {
   if (runs.empty()) fail(ErrorCode::usage, "plot: no run to draw");
   if (runs.size() > kMostRuns)
-    fail(ErrorCode::usage, "plot: " + std::to_string(runs.size()) + " runs, at most " +
+    fail(ErrorCode::usage, "plot: " + std::to_string(runs.size()) + " runs are too many; at most " +
                                std::to_string(kMostRuns) + " can be told apart in one plot");
   double last = 0;
   for (const LociRun& run : runs) last = std::max(last, duration(*run.log));

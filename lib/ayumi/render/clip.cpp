@@ -31,28 +31,29 @@ void check(const RobotModel& model, const SimulationLog& log, const ClipOptions&
   };
   need(log.samples.front().state.theta.size() == model.dof_count(),
        "the run has " + std::to_string(log.samples.front().state.theta.size()) +
-           " joints, the robot " + model.name() + " has " + std::to_string(model.dof_count()) +
+           " joints, but the robot " + model.name() + " has " + std::to_string(model.dof_count()) +
            "; name the robot of the run");
   if (options.ghost.log) {
     duration(*options.ghost.log);
     need(options.ghost.log->joints == log.joints,
-         "ghost: the joints of the other run differ, so it is of another robot");
+         "ghost: the other run has other joints, so it is a run of another robot");
   }
   need(!options.ghost.command || log.samples.front().command_theta.size() == model.dof_count(),
        "ghost: the log does not hold the commanded posture; simulate again");
-  need(options.fps > 0 && options.fps <= 1000,
-       "fps: " + text::exact(options.fps) + " is not between 0 and 1000");
+  need(
+      options.fps > 0 && options.fps <= 1000,
+      "fps: " + text::exact(options.fps) + " is not possible; give a number above 0, at most 1000");
   need(options.speed > 0 && std::isfinite(options.speed),
        "speed: " + text::exact(options.speed) + " is not possible; give a number above 0");
-  need(options.begin >= 0 && options.begin <= last, "begin: " + text::exact(options.begin) +
-                                                        " s is outside the run (0 to " +
-                                                        text::brief(last) + " s)");
-  need(options.end < 0 || options.end >= options.begin, "end: " + text::exact(options.end) +
-                                                            " s is before the beginning at " +
-                                                            text::exact(options.begin) + " s");
-  need(options.at >= 0 && options.at <= last + 1e-9, "at: " + text::exact(options.at) +
-                                                         " s is outside the run (0 to " +
-                                                         text::brief(last) + " s)");
+  need(options.begin >= 0 && options.begin <= last,
+       "the first time, " + text::exact(options.begin) + " s, is outside the run (0 to " +
+           text::brief(last) + " s)");
+  need(options.end < 0 || options.end >= options.begin,
+       "the last time, " + text::exact(options.end) + " s, is before the first time, " +
+           text::exact(options.begin) + " s");
+  need(options.at >= 0 && options.at <= last + 1e-9,
+       "the time of the picture, " + text::exact(options.at) + " s, is outside the run (0 to " +
+           text::brief(last) + " s)");
 }
 
 double robot_height(const std::vector<BodySurface>& surface, const RobotModel& model,
@@ -300,7 +301,7 @@ Image ClipRenderer::frame(double t) {
 }
 
 Image ClipRenderer::exposures(const std::vector<double>& times) {
-  if (times.empty()) fail(ErrorCode::usage, "a picture needs at least one instant");
+  if (times.empty()) fail(ErrorCode::usage, "a picture needs at least one time");
   Overlay overlay;
   Scene scene = scene_at(times.back(), overlay);
   scene.exposures.clear();

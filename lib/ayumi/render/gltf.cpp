@@ -204,7 +204,7 @@ void check(const RobotModel& model, const Motion& motion) {
     fail(ErrorCode::usage, "the motion " + motion.name + " has " +
                                std::to_string(motion.theta.rows()) + " joints, the robot " +
                                model.name() + " has " + std::to_string(model.dof_count()) +
-                               ": they do not belong together");
+                               ": the motion is not one of this robot");
 }
 
 }  // namespace

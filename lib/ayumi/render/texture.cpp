@@ -154,17 +154,17 @@ std::string texture_bytes(const std::string& file, std::vector<std::string>& not
   if (!fs::is_regular_file(path, ignored)) {
     const fs::path other = by_another_case(path);
     if (other.empty()) {
-      notes.push_back("texture " + file + ": there is no such file; drawn white");
+      notes.push_back("texture " + file + ": there is no such file; the surface is drawn white");
       return "";
     }
     notes.push_back("texture " + file + ": taken from " + other.filename().string() +
-                    ", whose name differs by case");
+                    ", whose name differs in upper and lower case");
     path = other;
   }
   try {
     return read_file(path, size_t{256} << 20);
   } catch (const Error& error) {
-    notes.push_back(std::string("texture ") + error.what() + "; drawn white");
+    notes.push_back(std::string("texture ") + error.what() + "; the surface is drawn white");
     return "";
   }
 }
@@ -183,7 +183,7 @@ Texture read_texture(const std::string& file, std::vector<std::string>& notes) {
   if (!texture) {
     const bool embedded = file.starts_with(kEmbedded);
     notes.push_back("texture " + (embedded ? "inside a mesh file" : file) +
-                    ": is no PNG or JPEG that can be read; drawn white");
+                    ": this file cannot be read as PNG or JPEG; the surface is drawn white");
     return {};
   }
   while (std::max(texture->width, texture->height) > kLargestTexture) *texture = halved(*texture);

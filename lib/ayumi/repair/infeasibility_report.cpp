@@ -75,8 +75,8 @@ std::string window_text(const Finding& f) {
 
 std::string violation_text(const Finding& f, double violation) {
   if (const auto text = spec_of(f.kind).infeasibility) return text(f, violation);
-  return std::string(name_of(f.kind)) + " of " + f.where + " is " + text::brief(f.worst) +
-         " against " + text::brief(f.limit) + " " + f.unit;
+  return std::string(name_of(f.kind)) + " of " + f.where + " is " + text::brief(f.worst) + " " +
+         f.unit + ", but the limit is " + text::brief(f.limit) + " " + f.unit;
 }
 
 }  // namespace
@@ -103,9 +103,9 @@ namespace {
 
 std::string remedy(const InfeasibilityCause& cause) {
   if (cause.time_factor > 1)
-    return "make this window " + text::fixed(std::ceil(10 * cause.time_factor - 1e-9) / 10, 1) +
-           " times longer";
-  return (is_matter_of_time(cause.finding) ? "a slower motion there does not help: " : "") +
+    return "stretch this window to " +
+           text::fixed(std::ceil(10 * cause.time_factor - 1e-9) / 10, 1) + " times its length";
+  return (is_matter_of_time(cause.finding) ? "a slower motion does not help; " : "") +
          cause.finding.remedy;
 }
 
@@ -113,7 +113,7 @@ std::string remedy(const InfeasibilityCause& cause) {
 std::string time_lock(const Finding& f, const RepairOptions& options) {
   std::string posture;
   for (const auto& [begin, end] : options.locked_windows) {
-    if (begin < end && f.at >= begin && f.at <= end) return "that window is locked";
+    if (begin < end && f.at >= begin && f.at <= end) return "this window is locked";
     if (begin == end && is_of_posture(f) && f.begin <= begin && f.end >= begin)
       posture = "the posture at " + text::brief(begin) + " s is locked";
   }
@@ -164,9 +164,9 @@ std::vector<InfeasibilityCause> infeasibility_report(const RobotModel& model,
     cause.text =
         violation_text(cause.finding, cause.violation) + " " + window_text(cause.finding) + ": ";
     if (at_locked_joint(cause.finding, options))
-      cause.text += cause.finding.where + " is locked; unlock it. Otherwise: ";
+      cause.text += cause.finding.where + " is locked; unlock the joint. Otherwise: ";
     else if (const std::string lock = time_lock(cause.finding, options); !lock.empty())
-      cause.text += lock + "; unlock it. Otherwise: ";
+      cause.text += lock + "; remove the lock. Otherwise: ";
     cause.text += remedy(cause);
     result.push_back(std::move(cause));
   }
@@ -185,13 +185,15 @@ void solve_relaxed(RepairState& state) {
   options.max_iterations = std::min(options.max_iterations, policy::infeasible::kMostIterations);
   options.least_violating = nullptr;
   const NlpSolution solution =
-      solve(relaxed, options, state.progress, "repair, what is in the way");
+      solve(relaxed, options, state.progress, "repair, search for the reasons");
   const double violation = state.result.constraint_violation;
   note_work(state, relaxed, solution);
   state.result.constraint_violation = violation;
-  // The motion nearby that violates least still violates a limit: nothing passes.
-  if (solution.status != NlpStatus::failed) state.status = NlpStatus::infeasible;
   state.relaxation_cut_short = solution.status == NlpStatus::iteration_limit;
+  // The motion nearby that violates least still violates a limit: nothing passes. A search that
+  // stopped before its end does not show this.
+  if (solution.status != NlpStatus::failed)
+    state.status = state.relaxation_cut_short ? NlpStatus::iteration_limit : NlpStatus::infeasible;
   take(state, problem.track(solution.x.head(problem.variable_count())));
   // A search that stopped before its end has errors of its own making: then those of the given
   // motion show what stands in the way.

@@ -49,11 +49,13 @@ void give_reasons(RepairState& state) {
   const size_t count = result.causes.size();
   const size_t named = std::min(count, policy::infeasible::kMostReasons);
   for (size_t i = 0; i < named; ++i) result.reasons.push_back(result.causes[i].text);
-  if (count > named) result.reasons.push_back(std::to_string(count - named) + " more like these");
+  if (count > named)
+    result.reasons.push_back(std::to_string(count - named) +
+                             (count - named == 1 ? " more error" : " more errors"));
   if (state.relaxation_cut_short)
     result.reasons.push_back(
-        "the search for a nearer motion stopped at its limit of iterations: the "
-        "errors listed are those of the motion itself; a repair may still exist");
+        "the search stopped at its limit of iterations, so it is not known whether a "
+        "repair exists; the errors above are those of the given motion");
 }
 
 void measure_change(RepairState& state) {

@@ -53,8 +53,9 @@ VectorXd weight_factors(const RobotModel& model, const std::map<std::string, dou
                                  "' has no such joint" +
                                  text::suggestion(joint, model.dof_names()));
     if (!(factor > 0) || !std::isfinite(factor))
-      fail(ErrorCode::usage, "weight of joint '" + joint + "': " + text::exact(factor) +
-                                 " must be above 0 (lock the joint to keep it still)");
+      fail(ErrorCode::usage,
+           "weight of joint '" + joint + "': " + text::exact(factor) +
+               "; a weight must be above 0 (to keep the joint still, lock the joint)");
     factors[dof] = factor;
   }
   return factors;

@@ -250,7 +250,7 @@ Report make_report(const RobotModel& model, const ReportInput& input, const Repo
     if (made.html.size() <= options.max_bytes) return made;
     if (!reduce(plan, allowed)) {
       caps.push_back("the page is larger than " + size_words(options) +
-                     ": verdict, tables, loci and one picture stay");
+                     ", although only verdict, tables, curves and one picture are left");
       return {page(model, input, pieces, plan, caps), caps};
     }
     report(progress, {"report", 0.8, "smaller page"});

@@ -58,9 +58,9 @@ double shape_factor(const Push& push, long i, long n) {
 double level(const Push& push, const Disturbance& d, double time) {
   const double value = push.kind == PushKind::impulse ? push.magnitude / time : push.magnitude;
   if (!(std::abs(value) < kLargestNumber))
-    fail(ErrorCode::bad_pattern, "scenario: the push at " + text::brief(d.at) + " s has " +
-                                     text::brief(value) +
-                                     " N (N m); give a smaller one than 1e6 or a longer duration");
+    fail(ErrorCode::bad_pattern,
+         "scenario: the push at " + text::brief(d.at) + " s has the size " + text::brief(value) +
+             " N (or N m); it must be below 1e6; make it smaller or longer");
   return value;
 }
 
@@ -108,7 +108,7 @@ struct Words {
            on_joint(d.joint);
   }
   std::string operator()(const GainLoss& d) const {
-    return "servo gain less by " + text::fixed(100 * d.share, 0) + " %" + on_joint(d.joint);
+    return "servo gain reduced by " + text::fixed(100 * d.share, 0) + " %" + on_joint(d.joint);
   }
 
  private:

@@ -203,12 +203,12 @@ void check_options(const PushOptions& options, const CommandSeries& series) {
   if (options.directions < 1 || options.directions > 360)
     refuse("directions: " + std::to_string(options.directions) + "; give 1 to 360");
   if (!(options.step > 0) || !(options.cap >= options.step))
-    refuse("the search step must be positive and not above the cap");
+    refuse("the resolution of the search must be above 0 and at most the largest push (--cap)");
   if (options.replicas < 0) refuse("the number of replicas must not be negative");
   for (const PushPhase& phase : options.phases)
     if (!phase.standing && !(phase.at >= options.time_spread + series.dt &&
                              phase.at + options.duration <= series.duration()))
-      refuse("time " + text::brief(phase.at) + " s is outside the pattern (" +
+      refuse("time " + text::brief(phase.at) + " s is outside the pattern (0 to " +
              text::brief(series.duration()) + " s)");
 }
 

@@ -171,7 +171,7 @@ void check(const TuneOptions& options, const CommandSeries& series, const Gains&
   for (const PushPhase& phase : options.phases)
     if (!phase.standing &&
         !(phase.at >= kBranchLead && phase.at + options.duration <= series.duration()))
-      refuse("time " + text::brief(phase.at) + " s is outside the pattern (" +
+      refuse("time " + text::brief(phase.at) + " s is outside the pattern (0 to " +
              text::brief(series.duration()) + " s)");
 }
 

@@ -91,6 +91,7 @@ World stairs(const RobotModel& model, const WalkParameters& p) {
 
 void check_parameters(const RobotModel& model, const WalkParameters& p) {
   const double leg = leg_length(model);
+  if (p.rise != 0) check_stairs(model, p);
   require_range("walk", "steps", p.steps, 1, 10000, "");
   require_range("walk", "stride", p.stride, -0.6 * leg, 0.6 * leg, " m");
   require_range("walk", "period", p.period, 0.2, 10, " s");
@@ -100,7 +101,6 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   require_range("walk", "turn", p.turn * 180 / M_PI, -0.6 * 180 / M_PI, 0.6 * 180 / M_PI, " deg");
   if (p.cog_height != 0)
     require_range("walk", "cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
-  if (p.rise != 0) check_stairs(model, p);
 }
 
 ZmpKey::Place place_of(Side side) {

@@ -28,9 +28,10 @@ double to_tenth_millimetre(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
 void require_range(const char* pattern, const char* name, double value, double low, double high,
                    const char* unit) {
   if (value >= low && value <= high) return;
+  const auto bound = [](double x) { return x >= 1e3 ? text::fixed(x, 0) : text::brief(x); };
   fail(ErrorCode::usage, std::string(pattern) + ": " + name + " " + text::exact(value) + unit +
-                             " is out of range; it may be from " + text::brief(low) + " to " +
-                             text::brief(high) + unit);
+                             " is out of range; it may be from " + bound(low) + " to " +
+                             bound(high) + unit);
 }
 
 double leg_length(const RobotModel& model) {

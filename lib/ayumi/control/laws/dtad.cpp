@@ -65,7 +65,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
                  ErrorCode code = ErrorCode::usage) {
     if (!std::isfinite(value) || value < 0)
       fail(code, where + ": gain " + name + " is " + text::brief(value) +
-                     "; gains are finite and not negative");
+                     "; a gain must be a finite number that is not negative");
     if (name == "k")
       p.k = value;
     else if (name == "d")
@@ -84,25 +84,28 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
     q_given |= name == "q";
   }
   if (p.k.has_value() != p.d.has_value())
-    fail(ErrorCode::usage, "controller gains: k and d are given together or not at all");
+    fail(ErrorCode::usage, "controller gains: k and d must be given together");
   if (p.k && q_given)
-    fail(ErrorCode::usage, "controller gains: q determines K and D; give either q, or k and d");
+    fail(ErrorCode::usage,
+         "controller gains: q already determines k and d; give either q, or k and d");
   if (p.k && (*p.k <= 1 || *p.d <= 0))
-    fail(ErrorCode::usage, "controller gains: k = " + text::brief(*p.k) +
-                               ", d = " + text::brief(*p.d) +
-                               " never bring the COG back; (18)(19) need K > 1 and D > 0");
+    fail(ErrorCode::usage,
+         "controller gains: k = " + text::brief(*p.k) + ", d = " + text::brief(*p.d) +
+             " never bring the COG back; equations (18)(19) need K > 1 and D > 0");
   if (!p.k && p.pole_ratio <= 0)
     fail(ErrorCode::usage, "controller gains: q must be positive (K = 1 + q must exceed 1)");
   if (p.zmp_filter <= 0) fail(ErrorCode::usage, "controller gains: tau_z must be positive");
   if (p.as_printed != 0 && p.as_printed != 1)
-    fail(ErrorCode::usage, "controller gains: as_printed is 0 or 1");
+    fail(ErrorCode::usage, "controller gains: as_printed must be 0 or 1");
   if (p.step_share > 1)
     fail(ErrorCode::usage,
-         "controller gains: step is a share, 0 to 1, of what footholds take; it is " +
+         "controller gains: step must be from 0 to 1 (the part of an error that new footholds "
+         "absorb); it is " +
              text::brief(p.step_share));
   if (p.time_scale_limit < 1)
     fail(ErrorCode::usage,
-         "controller gains: hurry is the fastest clock of the pattern, at least 1; it is " +
+         "controller gains: hurry must be at least 1 (the largest factor on the speed of the "
+         "pattern); it is " +
              text::brief(p.time_scale_limit));
   p.literal = spec.type.demonstration == Demonstration::literal;
   return p;

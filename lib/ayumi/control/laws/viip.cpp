@@ -108,7 +108,7 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
                  ErrorCode code = ErrorCode::usage) {
     if (!std::isfinite(value) || value < 0)
       fail(code, where + ": gain " + name + " is " + text::brief(value) +
-                     "; gains are finite and not negative");
+                     "; a gain must be a finite number that is not negative");
     const auto found = fields.find(name);
     if (found == fields.end())
       fail(code, where + ": viip has no gain '" + name + "'" + text::suggestion(name, names) +
@@ -123,9 +123,10 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
     if (!(*fields.at(name) > 0))
       fail(ErrorCode::usage, std::string("controller gains: ") + name + " must be positive");
   if (p.height_damping < 1 - 1e-9)
-    fail(ErrorCode::usage, "controller gains: dz = " + text::brief(p.height_damping) +
-                               " overshoots; (25) asks for K_Dz^2 >= 4 m K_Pz, dz >= 1");
-  if (p.recovery > 1) fail(ErrorCode::usage, "controller gains: hold is a share, at most 1");
+    fail(ErrorCode::usage, "controller gains: with dz = " + text::brief(p.height_damping) +
+                               " the COG height overshoots; dz must be at least 1 (equation (25): "
+                               "K_Dz^2 >= 4 m K_Pz)");
+  if (p.recovery > 1) fail(ErrorCode::usage, "controller gains: hold must be at most 1");
   p.landings = spec.type.demonstration != Demonstration::no_feedback;
   p.feedback = p.landings && spec.type.demonstration != Demonstration::landings_only;
   return p;

@@ -175,7 +175,7 @@ class Reader {
         found = &layout;
     if (!found)
       fail(ErrorCode::bad_file,
-           file_ + (fraction_ ? ": the values are no whole numbers" : ": the values are counts") +
+           file_ + (fraction_ ? ": the values are not whole numbers" : ": the values are counts") +
                ", but no layout of this robot without an interval has " + std::to_string(columns) +
                " columns in " + (fraction_ ? "radians" : "counts"));
     result_.layout = *found;
@@ -208,16 +208,21 @@ class Reader {
 
 // Dof of each device of a layout, in device order.
 std::vector<int> dofs_by_device(const RobotModel& model, const SequenceLayout& layout) {
-  const std::string need = "; the layout '" + layout.name + "' needs each of the devices 1 to " +
-                           std::to_string(layout.motors) + " once, with counts per degree";
+  const std::string need =
+      layout.motors == 0 ? std::string(
+                               "; give the joints devices and counts per degree in "
+                               "\"encoders\" of the sidecar")
+                         : "; the layout '" + layout.name + "' needs each of the devices 1 to " +
+                               std::to_string(layout.motors) + " once, with counts per degree";
   std::vector<int> dofs(static_cast<size_t>(layout.motors), -1);
   for (int dof = 0; dof < model.dof_count(); ++dof) {
     const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
     const int device = joint.encoder.device;
     if (device < 1 || device > layout.motors || dofs[static_cast<size_t>(device - 1)] >= 0 ||
         joint.encoder.counts_per_degree == 0)
-      fail(ErrorCode::bad_model, "robot '" + model.name() + "': joint '" + joint.name +
-                                     "' has encoder device " + std::to_string(device) + need);
+      fail(ErrorCode::bad_model,
+           "robot '" + model.name() + "': joint '" + joint.name + "' has " +
+               (device < 1 ? "no encoder" : "encoder device " + std::to_string(device)) + need);
     dofs[static_cast<size_t>(device - 1)] = dof;
   }
   for (size_t m = 0; m < dofs.size(); ++m)
@@ -243,7 +248,7 @@ int interval_of(double dt) {
   const int interval = static_cast<int>(std::round(ms));
   if (interval < 1 || std::abs(ms - interval) > 1e-6)
     fail(ErrorCode::bad_pattern,
-         "a HOAP sequence needs a whole number of milliseconds between rows, the table has " +
+         "a HOAP sequence needs a whole number of milliseconds between rows, but the table has " +
              text::brief(ms) + " ms");
   return interval;
 }

@@ -60,8 +60,9 @@ void say_largest_step(const HoapFile& sequence, std::vector<std::string>& filled
   }
   if (device > 0)
     filled.push_back("device " + std::to_string(device) + " jumps by " + text::brief(worst) +
-                     " counts/ms to row " + std::to_string(row + 1) + " (motor boards pass on " +
-                     text::brief(limit) + "): rows may be missing there");
+                     " counts/ms before row " + std::to_string(row + 1) +
+                     ", but motor boards allow at most " + text::brief(limit) +
+                     " counts/ms; rows may be missing there");
 }
 
 /// Joints whose angles leave their position limits somewhere.
@@ -99,8 +100,8 @@ void apply_signs(const RobotModel& model, bool encoder_signs, ImportedMotion& re
         "the signs of the encoders)");
   const std::vector<std::string> beyond = beyond_limits(model, result.motion.theta);
   if (beyond.size() > beyond_limits(model, other).size())
-    result.filled.push_back("with these signs " + text::join(beyond, ", ") +
-                            " leave their position limits; with --signs " +
+    result.filled.push_back("with these signs, angles of " + text::join(beyond, ", ") +
+                            " exceed the position limits; with --signs " +
                             (encoder_signs ? "joint" : "encoder") + " fewer joints do");
 }
 
@@ -108,7 +109,7 @@ void say_bare_rate(const HoapFile& sequence, double rate, ImportedMotion& result
   if (rate > 0) result.motion.dt = 1 / rate;
   result.filled.push_back(std::string(sequence.layout.radians ? "angles in radians" : "counts") +
                           " without intervals: " + text::brief(1000 * result.motion.dt) +
-                          " ms from row to row" + (rate > 0 ? "" : " (--rate HZ for another)"));
+                          " ms from row to row" + (rate > 0 ? "" : " (--rate HZ changes this)"));
 }
 
 }  // namespace
@@ -127,8 +128,9 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
   else
     say_bare_rate(sequence, rate, result);
   if (!sequence.even)
-    result.filled.push_back("the intervals change: rows are interpolated linearly, every " +
-                            std::to_string(sequence.tick_ms) + " ms");
+    result.filled.push_back(
+        "the intervals change, so the rows are interpolated linearly, one every " +
+        std::to_string(sequence.tick_ms) + " ms");
   if (sequence.general_commands > 0)
     result.filled.push_back(
         std::to_string(sequence.general_commands) +
@@ -147,7 +149,8 @@ ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& fil
   for (const Dof& dof : model.dofs())
     if (dof.encoder.device < 1 || dof.encoder.device > sequence.layout.motors)
       result.filled.push_back(
-          dof.name + ": the file does not have this joint; it keeps its angle of the home posture");
+          dof.name +
+          ": the file has no angles of this joint; the joint keeps its angle of the home posture");
   if (sequence.layout.radians) apply_signs(model, encoder_signs, result);
   return result;
 }

@@ -37,10 +37,11 @@ std::string line_and_column(const std::string& bytes, size_t offset) {
   return std::to_string(line) + ":" + std::to_string(column);
 }
 
-// "[json.exception...] parse error at line 1, column 2: what" -> "what"
+// "[json.exception...] parse error at line 1, column 2: what" -> "what"; "[...] what" -> "what"
 std::string reason_of(const std::string& message) {
   const size_t at = message.find("column ");
-  const size_t colon = message.find(": ", at == std::string::npos ? 0 : at);
+  if (at == std::string::npos) return message.substr(message.find("] ") + 2);
+  const size_t colon = message.find(": ", at);
   return colon == std::string::npos ? message : message.substr(colon + 2);
 }
 
@@ -143,7 +144,7 @@ void JsonNode::only_keys(const std::vector<std::string>& known) const {
     const std::string hint = text::suggestion(key, known);
     child(key, value)
         .complain("unknown key" +
-                  (hint.empty() ? "; known here: " + text::join(known, ", ") : hint));
+                  (hint.empty() ? "; the keys allowed here are " + text::join(known, ", ") : hint));
   }
 }
 
@@ -192,9 +193,10 @@ std::string JsonNode::one_of(const std::vector<std::string>& allowed) const {
   const std::string value = string();
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
     complain("'" + value + "'" +
-             (allowed.size() == 1 ? " is not possible; only '" + allowed.front() + "' is"
-                                  : " is not one of " + text::join(allowed, ", ")) +
-             text::suggestion(value, allowed));
+             (allowed.size() == 1
+                  ? " is not allowed; the only allowed value is '" + allowed.front() + "'"
+                  : " is not one of " + text::join(allowed, ", ")) +
+             (allowed.size() == 1 ? "" : text::suggestion(value, allowed)));
   return value;
 }
 

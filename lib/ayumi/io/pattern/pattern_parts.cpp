@@ -26,7 +26,7 @@ Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
   if (supports(support, swing.foot))
     node.at("foot").complain("the " + std::string(name_of(swing.foot)) +
                              " foot carries the robot in this phase (support " + name_of(support) +
-                             "); it cannot swing");
+                             "), so this foot cannot swing");
   swing.to = read_foothold(node.at("to"), scope);
   if (const auto lift = node.find("lift")) swing.lift = read_number(*lift, scope, 0, 10);
   return swing;
@@ -150,7 +150,7 @@ CorrectionTrack read_correction(const JsonNode& node) {
   CorrectionTrack track;
   track.begin = read_number(node.at("begin"), scope, -kLongestPattern, kLongestPattern);
   track.spacing = read_number(node.at("spacing"), scope);
-  if (track.spacing <= 0) node.at("spacing").complain("must be above 0");
+  if (track.spacing <= 0) node.at("spacing").complain("this value must be above 0");
   static const std::vector<std::string> base = {"base.x[m]",    "base.y[m]",    "base.z[m]",
                                                 "base.rx[rad]", "base.ry[rad]", "base.rz[rad]"};
   const std::vector<JsonNode> columns = node.at("columns").items();

@@ -36,13 +36,13 @@ void read_rectangle(const JsonNode& node, PatternScope& scope, Vector2d& low, Ve
 
 double read_positive(const JsonNode& node, PatternScope& scope, double upper) {
   const double value = read_number(node, scope, 0, upper);
-  if (!(value > 0)) node.complain("must be above 0");
+  if (!(value > 0)) node.complain("this value must be above 0");
   return value;
 }
 
 double read_tilt(const JsonNode& node, PatternScope& scope) {
   const double angle = read_angle(node, scope);
-  if (std::abs(angle) > 1) node.complain("a slope above 1 rad is not a ground");
+  if (std::abs(angle) > 1) node.complain("a slope must be at most 1 rad (57 deg)");
   return angle;
 }
 
@@ -84,10 +84,10 @@ HeightField read_field(const JsonNode& node, PatternScope& scope) {
       field.heights.resize(static_cast<Eigen::Index>(rows.size()),
                            static_cast<Eigen::Index>(row.size()));
     if (static_cast<Eigen::Index>(row.size()) != field.heights.cols())
-      rows[i].complain(std::to_string(row.size()) + " heights, the first row has " +
+      rows[i].complain(std::to_string(row.size()) + " heights, but the first row has " +
                        std::to_string(field.heights.cols()));
     for (size_t j = 0; j < row.size(); ++j) {
-      if (std::abs(row[j]) > kHighest) rows[i].complain("a height is beyond 10 m");
+      if (std::abs(row[j]) > kHighest) rows[i].complain("a height must be at most 10 m");
       field.heights(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[j];
     }
   }
@@ -104,14 +104,15 @@ FloorMotion read_motion(const JsonNode& node, PatternScope& scope) {
                                  : MotionShape::half_sine;
   motion.at = read_time(node.at("at"), scope);
   motion.duration = read_time(node.at("duration"), scope);
-  if (!(motion.duration > 0)) node.at("duration").complain("a motion of the floor takes time");
+  if (!(motion.duration > 0))
+    node.at("duration").complain("a motion of the floor needs a duration above 0 s");
   if (path.shape == MotionShape::sine)
     path.frequency = read_positive(node.at("frequency"), scope, 100);
   else if (const auto frequency = node.find("frequency"))
-    frequency->complain("only a sine has a frequency");
+    frequency->complain("only a sine has a frequency; remove this key");
   read_tilts(node, scope, path.tilt);
   if (const auto shift = node.find("shift")) path.shift = read_vector3(*shift, scope);
-  if (path.shift.norm() > kHighest) node.at("shift").complain("a shift beyond 10 m");
+  if (path.shift.norm() > kHighest) node.at("shift").complain("the shift must be at most 10 m");
   if (path.tilt.isZero(0) && path.shift.isZero(0))
     node.complain("the floor does not move: give roll, pitch or shift");
   return motion;
@@ -126,7 +127,7 @@ What read_push(const JsonNode& node, PatternScope& scope) {
   if (const auto on = node.find("on")) push.on = on->string();
   if (const auto point = node.find("point")) {
     if (push.on == "cog")
-      point->complain("a point needs a link to be on: set \"on\" to a link name");
+      point->complain("a push at a point needs a link: set \"on\" to a link name");
     push.point = read_vector3(*point, scope);
   }
   if (const auto frame = node.find("frame"))
@@ -203,7 +204,7 @@ What read_encoder(const JsonNode& node, PatternScope& scope) {
 What read_joint_friction(const JsonNode& node, PatternScope& scope) {
   JointFriction friction{.joint = read_joint(node)};
   if (!node.has("coulomb") && !node.has("viscous"))
-    node.complain("joint friction needs coulomb or viscous");
+    node.complain("joint friction needs \"coulomb\" or \"viscous\"");
   if (const auto coulomb = node.find("coulomb"))
     friction.coulomb = read_number(*coulomb, scope, 0, kLargestNumber);
   if (const auto viscous = node.find("viscous"))
@@ -259,8 +260,8 @@ const DisturbanceFormat& read_format(const JsonNode& node) {
   for (const auto& [key, value] : node.members())
     if (key != "type" && key != "at" && key != "duration" &&
         std::find(format.keys.begin(), format.keys.end(), key) == format.keys.end())
-      value.complain("the type is \"" + type + "\", which takes " + text::join(format.keys, ", ") +
-                     " only");
+      value.complain("the type \"" + type + "\" does not have this key; its keys are " +
+                     text::join(format.keys, ", "));
   return format;
 }
 

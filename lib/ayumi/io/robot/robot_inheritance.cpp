@@ -147,7 +147,7 @@ class BaseReader {
     std::vector<std::string> circle;
     for (auto each = again; each != open_.end(); ++each) circle.push_back(each->string());
     base.complain(circle.size() == 1 ? "'" + name + "' is this file itself; name another robot"
-                                     : "bases in a circle: " + text::join(circle, ", ") +
+                                     : "the bases form a circle: " + text::join(circle, ", ") +
                                            " and the first again; one of them must have no base");
   }
 

@@ -42,10 +42,11 @@ constexpr Bounds kRate = {0, kMostRate, "rad/s"};
 constexpr Bounds kExponent = {0.1, 10, ""};
 constexpr Bounds kPlay = {0, kMostPlay, "rad", "; in degrees the key ends in _deg"};
 constexpr Bounds kPlayDeg = {0, kMostPlay / kRadPerDegree, "deg"};
-constexpr Bounds kOffset = {-kMostOffset, kMostOffset, "rad",
-                            "; in degrees the key ends in _deg. Beyond it, mount the horn anew"};
+constexpr Bounds kOffset = {
+    -kMostOffset, kMostOffset, "rad",
+    "; in degrees the key ends in _deg. For a larger offset, mount the horn in another position"};
 constexpr Bounds kOffsetDeg = {-kMostOffset / kRadPerDegree, kMostOffset / kRadPerDegree, "deg",
-                               "; beyond it, mount the horn anew"};
+                               "; for a larger offset, mount the horn in another position"};
 constexpr Bounds kPositionGain = {0, 1e5, "1/s"};
 constexpr Bounds kTorqueConstant = {0, kMostTorque, "N m/A"};
 constexpr Bounds kResistance = {0, 1e6, "ohm"};
@@ -70,7 +71,7 @@ double within(const JsonNode& node, const Bounds& bounds) {
 
 double positive(const JsonNode& node, const Bounds& bounds) {
   const double value = within(node, bounds);
-  if (value == 0) node.complain("it must be above 0");
+  if (value == 0) node.complain("this value must be above 0");
   return value;
 }
 

@@ -186,9 +186,12 @@ void read_columns(const JsonNode& node, SequenceLayout& layout) {
   if (side == &layout.before) node.complain("the column 'motors' is missing");
   if (!layout.has_interval()) return;
   if (layout.before.size() != 2 || layout.before[1] != "2")
-    node.complain("after 'interval' comes \"2\", the code of a row of targets, then 'motors'");
+    node.complain(
+        "after 'interval' must come \"2\", the code of a row of targets, and then 'motors'");
   if (contains(layout.after, "*"))
-    node.complain("'*' is only for layouts without 'interval', because it cannot be written");
+    node.complain(
+        "'*' (any text) is possible only in layouts without 'interval', because Ayumi cannot write "
+        "it");
 }
 
 void read_layouts(const JsonNode& node, RobotDescription& robot) {
@@ -208,7 +211,8 @@ void read_layouts(const JsonNode& node, RobotDescription& robot) {
     if (const auto unit = item.find("unit"))
       layout.radians = unit->one_of({"counts", "rad"}) == "rad";
     if (layout.radians && layout.has_interval())
-      item.at("unit").complain("rows with an interval are targets, which are counts");
+      item.at("unit").complain(
+          "a layout with 'interval' holds servo targets, and their unit must be counts");
     if (const auto intervals = item.find("intervals_ms"))
       for (const JsonNode& interval : intervals->items()) {
         layout.intervals_ms.push_back(interval.integer());
@@ -394,8 +398,8 @@ std::filesystem::path find_urdf(const JsonNode& node,
   for (const std::filesystem::path& folder : folders)
     for (const std::filesystem::path& path : {folder / name, folder / "urdf" / name})
       if (std::filesystem::exists(path, ignored)) return path;
-  node.complain("there is no file " + beside.string() + ", and no folder of --robot-path has " +
-                name.string() + ", itself or in urdf/");
+  node.complain("there is no file " + beside.string() + ", and the folders of --robot-path have " +
+                name.string() + " neither directly nor in urdf/");
 }
 
 }  // namespace

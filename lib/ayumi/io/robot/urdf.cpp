@@ -121,11 +121,12 @@ std::string resolve_mesh(const RobotDescription& robot, const fs::path& urdf,
       complain_urdf(robot, "link " + link + ": mesh " + name + ": " +
                                file.lexically_normal().string() + " is a folder; name its file");
     const fs::path other = with_other_capitals(file.lexically_normal());
-    complain_urdf(robot, "link " + link + ": mesh " + name + ": there is no file " +
-                             file.lexically_normal().string() +
-                             (other.empty() ? "; add it or correct the name"
-                                            : ", but " + other.string() +
-                                                  "; capitals count, correct the name"));
+    complain_urdf(robot,
+                  "link " + link + ": mesh " + name + ": there is no file " +
+                      file.lexically_normal().string() +
+                      (other.empty() ? "; add it or correct the name"
+                                     : ", but there is " + other.string() +
+                                           "; upper and lower case must match, correct the name"));
   }
   return file.lexically_normal().string();
 }

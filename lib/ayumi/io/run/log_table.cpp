@@ -33,9 +33,10 @@ void require_robot(const RobotModel& model, const SimulationLog& log, const std:
   RobotData data(model);
   update_positions(model, log.samples.front().state, data);
   if (!((data.cog - log.samples.front().cog).norm() < kSameRobot))
-    fail(ErrorCode::bad_file, file + ": the COG of robot '" + model.name() +
-                                  "' is not that of the log in the same posture; it is another "
-                                  "robot, or it has changed: run the pattern again");
+    fail(ErrorCode::bad_file,
+         file + ": the COG of robot '" + model.name() +
+             "' differs from the COG in the log at the same posture; this is another "
+             "robot, or it has changed: run the pattern again");
 }
 
 // A joint vector is listed for revolute joints; a prismatic joint has another unit.

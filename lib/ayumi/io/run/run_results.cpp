@@ -109,7 +109,7 @@ std::vector<PushThreshold> read_push_thresholds(const std::filesystem::path& fil
   const JsonNode root = root_of(document, file.string(), ErrorCode::bad_file);
   root.expect_object();
   if (root.at("format").string() != "ayumi.push/1")
-    root.at("format").complain("is not the results file of a push study (ayumi.push/1)");
+    root.at("format").complain("this is not the results file of a push study (ayumi.push/1)");
   std::vector<std::string> controllers;
   for (const JsonNode& controller : root.at("study").at("controllers").items())
     controllers.push_back(controller.at("type").string());

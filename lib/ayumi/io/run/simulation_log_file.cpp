@@ -208,18 +208,19 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   };
   if (bytes.empty()) stop("the file is empty, a simulation log is needed");
   if (bytes.size() < kPrefix || bytes.compare(0, 8, kMagic) != 0)
-    stop("this is not a simulation log (it does not begin with AYUMILOG)");
+    stop("this is not a simulation log; name a run folder or one of its .bin files");
   const std::uint32_t version_of_file = word_at(bytes, 8);
   if (version_of_file != kPlain && version_of_file != kCompressed)
-    stop("log version " + std::to_string(version_of_file) + " is not readable here; this " +
-         "version reads " + std::to_string(kPlain) + " and " + std::to_string(kCompressed));
+    stop("log version " + std::to_string(version_of_file) + " cannot be read; this " +
+         "version of Ayumi reads " + std::to_string(kPlain) + " and " +
+         std::to_string(kCompressed));
   const size_t begin = kPrefix + (version_of_file == kCompressed ? kChecksum : 0);
   const size_t length = word_at(bytes, 12);
   if (bytes.size() < begin || length > bytes.size() - begin)
     stop("truncated: the header is cut off");
   const std::string text = bytes.substr(begin, length);
   if (version_of_file == kCompressed && word_at(bytes, kPrefix) != crc32_of(text))
-    stop("damaged: the header has another checksum than the one that was written with it");
+    stop("damaged: the checksum of the header is wrong");
   const std::string place = file + " (header)";
   const Json document = parse_json(text, place, ErrorCode::bad_file);
   const JsonNode header = root_of(document, place, ErrorCode::bad_file);
@@ -227,11 +228,12 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   read_header(header, log);
   const std::vector<std::string> columns = columns_of(log.joints);
   if (header.at("columns").strings() != columns)
-    header.at("columns").complain("are not those of this version; simulate again");
+    header.at("columns").complain(
+        "these are not the columns of this version of Ayumi; simulate again");
   const auto rows = static_cast<size_t>(header.at("rows").unsigned_integer());
   const size_t row_bytes = columns.size() * sizeof(double);
   if (rows > kMostBytes / row_bytes)
-    header.at("rows").complain("are more than a log may have (" +
+    header.at("rows").complain("this is more than a log may have (" +
                                std::to_string(kMostBytes / row_bytes) + ")");
   std::string_view values = std::string_view(bytes).substr(begin + length);
   std::string decompressed;
@@ -241,8 +243,8 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   }
   if (rows * row_bytes != values.size())
     stop((rows * row_bytes > values.size() ? "truncated: " : "damaged: ") +
-         std::to_string(values.size()) + " bytes of samples where the header says " +
-         std::to_string(rows) + " rows of " + std::to_string(row_bytes));
+         std::to_string(values.size()) + " bytes of samples, but the header announces " +
+         std::to_string(rows) + " rows of " + std::to_string(row_bytes) + " bytes");
   const char* at = values.data();
   log.samples.resize(rows);
   for (SimulationSample& sample : log.samples)

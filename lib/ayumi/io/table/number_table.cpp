@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 
@@ -98,9 +99,8 @@ class CsvParser {
   }
 
   std::string width_message(std::string_view line) const {
-    return std::to_string(std::count(line.begin(), line.end(), ',') + 1) +
-           " values in the row, but the head row names " + std::to_string(table_.columns.size()) +
-           " columns";
+    return text::counted(std::count(line.begin(), line.end(), ',') + 1, "value") +
+           " in the row, but the head row names " + text::counted(table_.columns.size(), "column");
   }
 
   std::string_view rest_;

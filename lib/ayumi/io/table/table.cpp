@@ -271,11 +271,13 @@ void require_joints(const ReferenceTrajectory& reference, const std::vector<std:
                     const std::string& file) {
   if (reference.joints.size() != joints.size())
     fail(ErrorCode::bad_file, file + ": the table has " + std::to_string(reference.joints.size()) +
-                                  " joints, the robot " + std::to_string(joints.size()));
+                                  " joints, but the robot has " + std::to_string(joints.size()) +
+                                  "; name the robot of the table");
   for (size_t i = 0; i < joints.size(); ++i)
     if (reference.joints[i] != joints[i])
       fail(ErrorCode::bad_file, file + ": joint " + std::to_string(i + 1) + " of the table is '" +
-                                    reference.joints[i] + "', of the robot '" + joints[i] + "'");
+                                    reference.joints[i] + "', but joint " + std::to_string(i + 1) +
+                                    " of the robot is '" + joints[i] + "'");
 }
 
 std::string theta_sha256(const DenseTable& table) {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_reader.hpp"
@@ -45,7 +46,7 @@ void require_known(const std::string& column, const std::string& file) {
     return;
   const std::string hint = text::suggestion(column, known);
   stop(file, "unknown column '" + column + "'" +
-                 (hint.empty() ? "; known are " + text::join(known, ", ") : hint));
+                 (hint.empty() ? "; the known columns are " + text::join(known, ", ") : hint));
 }
 
 // Header values of a JSON table as text, objects flattened: robot.name, provenance.pattern, ...
@@ -79,8 +80,8 @@ NumberTable parse_json_table(const std::string& bytes, const std::string& file) 
   for (size_t r = 0; r < rows.size(); ++r) {
     rows[r].expect_array();
     if (rows[r].size() != table.columns.size())
-      rows[r].complain(std::to_string(rows[r].size()) +
-                       " values in the row, but \"columns\" names " +
+      rows[r].complain(text::counted(rows[r].size(), "value") +
+                       " in the row, but \"columns\" names " +
                        std::to_string(table.columns.size()));
     for (Eigen::Index c = 0; c < width; ++c) {
       const Json& cell = rows[r].value()[static_cast<size_t>(c)];

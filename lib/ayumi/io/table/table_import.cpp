@@ -106,7 +106,9 @@ void even_out(NumberTable& table, std::vector<std::string>& filled, const std::s
   const int at = table.find("t[s]");
   const Eigen::Index rows = table.values.rows();
   Eigen::VectorXd t = table.values.col(at);
-  if (t[0] != 0) filled.push_back("time counts from the first row, at " + text::brief(t[0]) + " s");
+  if (t[0] != 0)
+    filled.push_back("the pattern begins at the first row; its time in the file is " +
+                     text::brief(t[0]) + " s");
   t.array() -= t[0];
   std::vector<double> steps;
   for (Eigen::Index k = 1; k < rows; ++k) {
@@ -127,8 +129,9 @@ void even_out(NumberTable& table, std::vector<std::string>& filled, const std::s
     even = std::abs(t[k] - static_cast<double>(k) * dt) < 1e-3 * dt;
   auto values = table.values;
   if (!even) {
-    filled.push_back("rows are not evenly spaced: they are interpolated linearly, every " +
-                     text::brief(dt) + " s");
+    filled.push_back(
+        "the rows are not evenly spaced, so they are interpolated linearly, one every " +
+        text::brief(dt) + " s");
     values.resize(count, table.values.cols());
     Eigen::Index r = 0;
     for (Eigen::Index k = 0; k < count; ++k) {
@@ -201,7 +204,7 @@ void fill_theta(const NumberTable& table, const TableLayout& layout, const Robot
     if (!in_file[static_cast<size_t>(dof)])
       result.filled.push_back(
           model.dofs()[dof].name +
-          ": the file does not have this joint; it keeps its angle of the home posture");
+          ": the file has no angles of this joint; the joint keeps its angle of the home posture");
 }
 
 void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
@@ -312,7 +315,8 @@ ImportedMotion read_motion(const std::string& given, const std::string& file,
   smooth_angles(model, options, result);
   if (result.motion.support.empty()) result.filled.push_back("contacts: detected from the motion");
   if (result.motion.base.empty())
-    result.filled.push_back("base: computed from the feet that carry, level on the ground");
+    result.filled.push_back(
+        "base: computed from the supporting feet, which stand level on the ground");
   return result;
 }
 
