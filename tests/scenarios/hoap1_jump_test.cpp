@@ -124,7 +124,7 @@ TEST(Hoap1Jump, AGoalIsJudgedByItsKeyedJump) {
   EXPECT_EQ(actuator_need(hoap1(), goals, options).text, "");
   options.profile = "hoap1";
   const ActuatorNeed need = actuator_need(hoap1(), goals, options);
-  EXPECT_NE(need.text.find("VIIP jump at 0.50 s: profile hoap1 is not enough"), std::string::npos)
+  EXPECT_NE(need.text.find("VIIP jump at 0.50 s: profile hoap1 is too weak"), std::string::npos)
       << need.text;
 }
 
