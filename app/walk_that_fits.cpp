@@ -14,7 +14,8 @@ namespace ayumi::app {
 
 namespace {
 
-// No joint beyond its limits, no bodies that meet, feet in their places and within reach.
+// No joint and no servo target beyond its limits, no bodies that meet, feet in their places and
+// within reach.
 bool posture_fits(const RobotModel& model, const WalkParameters& walk) {
   // Sample period [s]. Chosen: only postures are judged, 45 of them in a swing of 0.45 s.
   constexpr double kTick = 0.01;
@@ -22,7 +23,8 @@ bool posture_fits(const RobotModel& model, const WalkParameters& walk) {
     const ConsistencyReport report =
         check_consistency(model, sample(model, walk_pattern(model, walk), {.dt = kTick}));
     return std::none_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
-      return f.severity == Severity::error && is_of_posture(f);
+      return f.severity == Severity::error &&
+             (is_of_posture(f) || f.kind == FindingKind::table_position);
     });
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal) throw;

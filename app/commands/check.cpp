@@ -44,14 +44,32 @@ bool has_encoders(const RobotModel& model) {
   return std::any_of(dofs.begin(), dofs.end(), [](const Dof& d) { return d.encoder.device > 0; });
 }
 
+bool is_of_table(const Finding& f) {
+  return f.kind == FindingKind::table_step || f.kind == FindingKind::table_position ||
+         f.kind == FindingKind::table_rest;
+}
+
 // What the robot's own actuators, by which a table for it is judged, lack where the pattern assumes
-// others.
-ActuatorNeed own_need(const Task& input, CheckOptions judged) {
+// others; where they are strong enough, why `export` refuses the table nevertheless.
+std::string own_need(const Task& input, CheckOptions judged) {
   const std::string own = input.robot.limits().name;
-  if (judged.profile.empty() || judged.profile == own) return {};
+  if (judged.profile.empty() || judged.profile == own) return "";
   judged.profile = own;
-  return actuator_need(input.robot, input.series, judged,
-                       check_consistency(input.robot, input.series, judged));
+  const ConsistencyReport report = check_consistency(input.robot, input.series, judged);
+  const ActuatorNeed need = actuator_need(input.robot, input.series, judged, report);
+  if (!need.text.empty()) return need.text;
+  const auto found = std::find_if(report.findings.begin(), report.findings.end(), is_of_table);
+  return found == report.findings.end() ? "" : found->hint;
+}
+
+// Why `export` refuses the pattern, the findings apart.
+std::string refusal_words(const Task& input, const Judgement& judgement) {
+  std::vector<std::string> reasons = export_refusals(input, judgement);
+  std::erase(reasons, judgement.reason());
+  std::string words;
+  for (const std::string& reason : reasons)
+    words += "  `export` refuses the table: " + reason + "\n";
+  return words;
 }
 
 Json check_one(const Context& context, const CheckCommand& options, const std::string& file) {
@@ -61,25 +79,27 @@ Json check_one(const Context& context, const CheckCommand& options, const std::s
   const Judgement judgement = judge(input, judged);
   const ConsistencyReport& report = judgement.report;
   const ActuatorNeed& need = judgement.need();
-  const ActuatorNeed own = own_need(input, judged);
+  const std::string own = own_need(input, judged);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   context.print(file + ": " + (report.consistent ? "consistent" : "INCONSISTENT") + ", " +
                 text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
                 (need.text.empty() ? "" : "  " + need.text + "\n") +
-                (own.text.empty() ? ""
-                                  : "  the robot's own motors: " + own.text +
-                                        (has_encoders(input.robot)
-                                             ? " (`export --format hoap` judges by this profile)"
-                                             : "") +
-                                        "\n") +
-                check_table(report) + origin_words(input.series.origin));
+                (own.empty() ? ""
+                             : "  the robot's own motors: " + own +
+                                   (has_encoders(input.robot)
+                                        ? " (`export --format hoap` judges by this profile)"
+                                        : "") +
+                                   "\n") +
+                refusal_words(input, judgement) + check_table(report) +
+                origin_words(input.series.origin));
   Json json = {{"pattern", file}};
   json.update(Json::parse(check_json(report)));
   json["actuators"] = {{"enough", need.text.empty()},
                        {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
                        {"sufficient_profiles", need.sufficient},
-                       {"own", own.text.empty() ? Json(nullptr) : Json(own.text)}};
+                       {"own", own.empty() ? Json(nullptr) : Json(own)}};
+  json["export_refuses"] = export_refusals(input, judgement);
   json["sampled_from"] = input.series.origin;
   json["wall_s"] = wall;
   return json;

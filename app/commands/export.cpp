@@ -10,15 +10,15 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/table_safety.hpp"
 #include "ayumi/control/laws/dtad.hpp"
 #include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/formats/sign_test.hpp"
-#include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/kept_rows.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/table.hpp"
+#include "ayumi/limits/table_safety.hpp"
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "ayumi/task/servo_table.hpp"
@@ -47,12 +47,6 @@ struct ExportOptions {
   bool pushed = false, force_unsafe = false, sign_test = false;
 };
 
-/// An imported sequence whose motion is unchanged: its rows are written as they were.
-struct KeptRows {
-  HoapFile file;
-  std::string bytes;
-};
-
 struct Source {
   RobotModel model;
   ReferenceTrajectory reference;
@@ -64,36 +58,14 @@ struct Source {
   double interval = 0;  ///< from row to row of the file that was imported; 0: none was [s]
 };
 
-// Whether the pattern still moves as the table that was imported.
-bool moves_as_imported(const Task& task) {
-  constexpr double kSame = 1e-6;  // Chosen: a hundredth of a count [rad]
-  const DenseTable& table = *task.pattern.table;
-  if (theta_sha256(table) != table.sequence->theta_sha256) return false;
-  const CommandSeries& series = task.series;
-  const double rows = series.duration() / table.dt + 1;
-  if (std::abs(rows - static_cast<double>(table.theta.rows())) > 0.5) return false;
-  for (size_t k = 0; k < series.samples.size(); ++k) {
-    const double row = static_cast<double>(k) * series.dt / table.dt;
-    if (std::abs(row - std::round(row)) > 1e-6 || std::lround(row) >= table.theta.rows()) continue;
-    for (size_t i = 0; i < table.joints.size(); ++i) {
-      const int dof = task.robot.find_dof(table.joints[i]);
-      const double angle = table.theta(std::lround(row), static_cast<Eigen::Index>(i));
-      if (dof < 0 || std::abs(series.samples[k].state.theta[dof] - angle) > kSame) return false;
-    }
-  }
-  return true;
-}
-
 /// Takes the rows of an imported sequence as they were, unless the motion was changed.
 void take_kept_rows(const Task& task, const ExportOptions& options, Source& source) {
   if (!task.pattern.table) return;
-  const DenseTable& table = *task.pattern.table;
-  source.interval = 0.001 * table.interval_ms;
-  if (!table.sequence || !options.servo.empty() || !moves_as_imported(task)) return;
-  std::string bytes = kept_sequence(table);
-  HoapFile file =
-      parse_hoap(plain_table_text(bytes, table.sequence->file), table.sequence->file, task.robot);
-  ReferenceTrajectory targets = hoap_targets(task.robot, file);
+  source.interval = 0.001 * task.pattern.table->interval_ms;
+  if (!options.servo.empty()) return;
+  source.kept = kept_rows(task);
+  if (!source.kept) return;
+  ReferenceTrajectory targets = source.kept->targets;
   const ReferenceTrajectory planned = resampled(source.reference, targets.dt);
   for (size_t k = 0; k < targets.rows.size(); ++k) {
     Eigen::VectorXd theta = std::move(targets.rows[k].theta);
@@ -102,7 +74,6 @@ void take_kept_rows(const Task& task, const ExportOptions& options, Source& sour
   }
   targets.provenance = source.reference.provenance;  // nothing is known of its servo
   source.reference = std::move(targets);
-  source.kept = {std::move(file), std::move(bytes)};
 }
 
 /// What goes to the robot is judged by its own actuators, and made for them, not by those a study
@@ -130,10 +101,7 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
       load_pattern(context, options.input,
                    {.set = options.set, .profile = {}, .robot = options.robot}, draws(options));
   if (!input.series.viip.empty())
-    fail(ErrorCode::bad_pattern,
-         options.input +
-             ": phases: the pattern has VIIP goals, so its joint angles are "
-             "known only after a simulation; run it (ayumi run), then export the RUN");
+    fail(ErrorCode::bad_pattern, options.input + ": phases: " + refusal_of_goals());
   Source source{input.robot,
                 table_of_series(input.robot, profile_of(options, input.robot, input.profile),
                                 input.series, content_of(options)),
@@ -363,8 +331,7 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
   const std::string& disturbances = source.disturbances;
   if (!options.force_unsafe) reasons = source.unfit;
   if (!disturbances.empty() && !options.pushed)
-    reasons.push_back("the table is from a run with disturbances (" + disturbances +
-                      ") and contains the reactions to them; --pushed exports it nevertheless");
+    reasons.push_back(refusal_of_disturbances(disturbances));
   if (!safe.report.safe && !options.force_unsafe) reasons.emplace_back("the table is unsafe");
   return reasons;
 }
@@ -500,11 +467,6 @@ std::string as_json(const ExportOptions& options, const Source& source, const Sa
   return json.dump(2);
 }
 
-// Time over which the speed at both ends of a table of whole counts is judged [s]. Chosen: one
-// count in it is 0.004 rad/s, far below the limit of 0.1 rad/s; from row to row one count is
-// 0.08 rad/s. At half and at twice the value the recorded HOAP-3 motions begin and end at rest too.
-constexpr double kRestWindow = 0.02;
-
 /// One file per joint, and the sheet. The folder is made where needed; nothing in it is replaced
 /// without --force.
 void export_sign_test(const ExportOptions& options, Context& context) {
@@ -575,9 +537,7 @@ void export_table(ExportOptions options, Context& context) {
   if (options.format == "gltf") return export_gltf(options, context);
   Source source = source_of(options, context);
   set_rate(options, source);
-  // An imported sequence is complete as it is.
-  if (source.kept) options.safety.ramp = options.safety.hold = 0;
-  if (source.kept) options.safety.rest_window = kRestWindow;
+  if (source.kept) options.safety = as_it_is(options.safety);
   if (options.ramp) options.safety.ramp = *options.ramp;
   if (options.hold) options.safety.hold = *options.hold;
   options.safety.profile = profile_of(options, source.model, source.reference.provenance.profile);

@@ -42,7 +42,6 @@ SOURCES = ["repair/policy.hpp", "limits", "check", "demand", "control", "sim", "
 LEFT_OUT = {
     "kWhole": "a law, namely the full value of a limit",
     "kFindingKindCount": "a count",
-    "kServoTarget": "an identifier",
     "kRows": "the size of a matrix",
     "kReserved": "reserves memory, changes no result",
     "Keys": "an identifier",

@@ -4,7 +4,7 @@
 //   load_task      robot and pattern from files                          io/task_file.hpp
 //   judge          is the pattern physically consistent?                 task/task.hpp
 //   simulate       closed loop with scripted disturbances                task/task.hpp
-//   make_safe      a joint table with ramp and hold, judged for a robot  check/table_safety.hpp
+//   make_safe      a joint table with ramp and hold, judged for a robot  limits/table_safety.hpp
 //   write_table    the table as a file, written whole or not at all      io/table/table.hpp
 //
 // Repair (ayumi::repair), pictures (ayumi::render), reports (ayumi::report) and studies have

@@ -65,7 +65,7 @@ inline std::string room_of(const std::string& path) {
 
 /// Headers of the rooms that compute which hold results and options.
 inline const std::set<std::string>& data_headers() {
-  static const std::set<std::string> headers = {"check/consistency.hpp", "check/table_safety.hpp",
+  static const std::set<std::string> headers = {"check/consistency.hpp", "limits/table_safety.hpp",
                                                 "repair/repair.hpp", "sim/simulate.hpp",
                                                 "sim/simulation_log.hpp"};
   return headers;

@@ -288,7 +288,7 @@ TEST(Consistency, TolerancesAreCheckedByName) {
   EXPECT_EQ(
       find(check_consistency(limited_biped(), good_walk(), options), "support_margin").severity,
       Severity::warning);
-  EXPECT_EQ(finding_specs().size(), 23u);
+  EXPECT_EQ(finding_specs().size(), 26u);
 }
 
 TEST(Consistency, SameReportTwice) {

@@ -1,10 +1,10 @@
-// What servos receive leads the posture: the check warns of its steps where export refuses them.
+// What servos receive leads the posture: the check finds what export refuses.
 
 #include <gtest/gtest.h>
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/check/table_safety.hpp"
+#include "ayumi/limits/table_safety.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/check_report.hpp"
@@ -13,65 +13,103 @@
 namespace ayumi::test {
 namespace {
 
-// The table as export makes it of a pattern, without rounding to counts.
-double largest_step_of_export(const CommandSeries& series) {
-  const Eigen::VectorXd lead = velocity_lead(hoap1().limits()), limit = hoap1().limits().speed;
-  double ratio = 0;
-  Eigen::VectorXd before;
-  for (const CommandSample& s : series.samples) {
-    const Eigen::VectorXd target = s.state.theta + lead.cwiseProduct(s.state.dtheta);
-    if (before.size() > 0)
-      ratio =
-          std::max(ratio, (target - before).cwiseAbs().cwiseQuotient(series.dt * limit).maxCoeff());
-    before = target;
-  }
-  return ratio;
-}
-
-TEST(ServoTarget, StepsBeyondTheSpeedLimitAreToldAsExportTellsThem) {
-  for (const double period : {0.40, 0.43, 0.55}) {
-    Pattern pattern = walk_pattern(hoap1(), {.steps = 3, .period = period});
-    pattern.robot = "hoap1";
-    const CommandSeries series = sample(hoap1(), pattern);
-    const double most = largest_step_of_export(series);
-    double told = 0;
-    for (const Finding& f : report_of(hoap1(), pattern).findings) {
-      EXPECT_NE(f.severity, Severity::error) << name_of(f.kind);
-      if (f.kind != FindingKind::servo_step) continue;
-      EXPECT_EQ(f.severity, Severity::warning);
-      EXPECT_NE(f.hint.find("`export` will refuse"), std::string::npos) << f.hint;
-      told = std::max(told, std::abs(f.worst / f.limit));
-    }
-    if (most > 1.005)
-      EXPECT_NEAR(told, most, 1e-12) << period;
-    else
-      EXPECT_EQ(told, 0) << period;
-    EXPECT_EQ(most > 1.005, period < 0.42);
-    ReferenceTrajectory table;
-    table.dt = series.dt;
-    table.joints = hoap1().dof_names();
-    for (const CommandSample& s : series.samples) {
-      ReferenceRow row;
-      row.theta = s.state.theta + velocity_lead(hoap1().limits()).cwiseProduct(s.state.dtheta);
-      row.base = s.state.base;
-      table.rows.push_back(row);
-    }
-    EXPECT_EQ(make_safe(hoap1(), table).report.safe, told == 0) << period;
-  }
-}
-
-// A joint that is too fast by itself is one error, not a warning beside it.
-TEST(ServoTarget, OfAJointThatIsTooFastIsNotToldTwice) {
-  Pattern pattern = walk_pattern(hoap1(), {.steps = 2, .period = 0.8, .lift = 0.045});
+Pattern walk_with_period(double period, double lift = WalkParameters().lift) {
+  Pattern pattern = walk_pattern(hoap1(), {.steps = 3, .period = period, .lift = lift});
   pattern.robot = "hoap1";
-  const ConsistencyReport r = report_of(hoap1(), pattern);
+  return pattern;
+}
+
+SafetyReport report_of_export(const CommandSeries& series, const std::string& profile = "") {
+  const Eigen::VectorXd lead = velocity_lead(hoap1().limits(profile));
+  SafetyOptions options;
+  options.profile = profile;
+  return make_safe(hoap1(), leading_targets(hoap1(), series, lead), options).report;
+}
+
+ConsistencyReport check_with(const CommandSeries& series, double tolerance) {
+  CheckOptions options;
+  options.tolerances = {{"table_step", tolerance}};
+  return check_consistency(hoap1(), series, options);
+}
+
+bool is_of_table(const Finding& f) {
+  return f.kind == FindingKind::table_step || f.kind == FindingKind::table_position ||
+         f.kind == FindingKind::table_rest;
+}
+
+// Of the largest step in the table, with the lead that the servo at hand has.
+TEST(ServoTarget, TheCheckFindsWhatExportRefuses) {
+  int refused = 0;
+  for (const double period : {0.40, 0.41, 0.42, 0.43, 0.55}) {
+    const Pattern pattern = walk_with_period(period);
+    const SafetyReport table = report_of_export(sample(hoap1(), pattern));
+    const ConsistencyReport check = report_of(hoap1(), pattern);
+    EXPECT_EQ(check.summary[FindingKind::table_step], table.max_step_ratio) << period;
+    EXPECT_TRUE(table.safe || !check.consistent) << period;
+    for (const SafetyViolation& v : table.violations) {
+      ++refused;
+      const auto same = [&](const Finding& f) {
+        return is_of_table(f) && f.where == v.joint && f.worst == v.value && f.limit == v.limit &&
+               std::abs(f.at - (v.t - v.begin)) < 1e-9;
+      };
+      EXPECT_TRUE(std::any_of(check.findings.begin(), check.findings.end(), same))
+          << period << text_of(v);
+      EXPECT_FALSE(check.consistent) << period;
+    }
+    for (const Finding& f : check.findings) EXPECT_FALSE(is_of_table(f) && table.safe) << f.hint;
+  }
+  EXPECT_GT(refused, 0);
+}
+
+// Of another profile than the robot's own, a table is no reason against the motion.
+TEST(ServoTarget, OfAStudyTheCheckOnlyWarns) {
+  const Pattern pattern = walk_with_period(0.40);
+  const CommandSeries series = sample(hoap1(), pattern);
+  int refused = 0;
+  for (const std::string& profile : hoap1().profile_names()) {
+    if (profile == hoap1().limits().name) continue;
+    CheckOptions options;
+    options.profile = profile;
+    const ConsistencyReport check = check_consistency(hoap1(), series, options);
+    const bool safe = report_of_export(series, profile).safe;
+    int found = 0;
+    for (const Finding& f : check.findings) {
+      if (!is_of_table(f)) continue;
+      ++found;
+      EXPECT_EQ(f.severity, Severity::warning) << profile;
+      EXPECT_NE(f.hint.find("`export` refuses the table"), std::string::npos) << f.hint;
+    }
+    EXPECT_EQ(found == 0, safe) << profile;
+    refused += safe ? 0 : 1;
+  }
+  EXPECT_GT(refused, 0);
+}
+
+// A joint that is too fast by itself is one error, and its table follows from it.
+TEST(ServoTarget, OfAJointThatIsTooFastFollowsFromIt) {
+  const ConsistencyReport r = report_of(hoap1(), walk_with_period(0.8, 0.045));
+  EXPECT_FALSE(r.consistent);
+  int followed = 0;
   for (const Finding& speed : r.findings)
     for (const Finding& step : r.findings)
-      if (speed.kind == FindingKind::joint_speed && step.kind == FindingKind::servo_step &&
-          speed.where == step.where) {
-        EXPECT_TRUE(step.at < speed.begin || step.at > speed.end) << step.at;
+      if (speed.kind == FindingKind::joint_speed && step.kind == FindingKind::table_step &&
+          speed.where == step.where && step.begin <= speed.end && speed.begin <= step.end) {
+        EXPECT_EQ(step.severity, Severity::warning);
+        EXPECT_FALSE(step.follows_from.empty());
+        ++followed;
       }
-  EXPECT_FALSE(r.consistent);
+  EXPECT_GT(followed, 0);
+}
+
+// A larger tolerance does not make export accept more.
+TEST(ServoTarget, TolerancesAreAtMostThoseOfExport) {
+  const CommandSeries series = sample(hoap1(), walk_with_period(0.55));
+  ASSERT_TRUE(check_consistency(hoap1(), series).consistent);
+  const double most = report_of_export(series).max_step_ratio;
+  EXPECT_FALSE(check_with(series, 0.9 * most).consistent);
+  const CommandSeries fast = sample(hoap1(), walk_with_period(0.40));
+  ASSERT_GT(report_of_export(fast).max_step_ratio, 1);
+  EXPECT_FALSE(check_with(fast, 2).consistent);
 }
 
 }  // namespace

@@ -63,11 +63,27 @@ TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {
   EXPECT_EQ(json.at("sampled_from").at("zmp").get<std::string>().find("keys"), 0u);
 }
 
+TEST_F(CheckRepair, ReasonsOfExportAreListed) {
+  const Json accepted = Json::parse(ayumi({"check", kWalk, "-q", "--json"}).out);
+  EXPECT_TRUE(accepted.at("export_refuses").empty()) << accepted.dump();
+  const std::string goals = AYUMI_SOURCE_DIR "/patterns/hoap1_viip_walk.json";
+  const Output checked = ayumi({"check", goals, "-q", "--json"});
+  EXPECT_EQ(checked.exit_code, 0);
+  const Json json = Json::parse(checked.out);
+  ASSERT_EQ(json.at("export_refuses").size(), 1u) << json.dump();
+  const std::string reason = json.at("export_refuses")[0];
+  EXPECT_NE(ayumi({"check", goals}).out.find("`export` refuses the table: " + reason),
+            std::string::npos);
+  const Output refused = ayumi({"export", goals, "--format", "hoap", "-o", "t.csv"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find(reason), std::string::npos) << refused.err;
+}
+
 TEST_F(CheckRepair, TolerancesAreListedAndSet) {
   const Output people = ayumi({"check", "--tolerances"});
   EXPECT_EQ(people.exit_code, 0);
-  EXPECT_EQ(line_count(people.out), 23);
-  EXPECT_EQ(Json::parse(ayumi({"check", "--tolerances", "--json"}).out)["tolerances"].size(), 23u);
+  EXPECT_EQ(line_count(people.out), 26);
+  EXPECT_EQ(Json::parse(ayumi({"check", "--tolerances", "--json"}).out)["tolerances"].size(), 26u);
   const Output strict = ayumi({"check", kWalk, "--tolerance", "joint_speed=0.5", "--json"});
   EXPECT_EQ(strict.exit_code, 1);
   EXPECT_EQ(Json::parse(strict.out)["findings"][0]["kind"], "joint_speed");

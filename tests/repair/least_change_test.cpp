@@ -124,7 +124,7 @@ class LeastChange : public testing::Test {
       judge(track, "share " + std::to_string(share));
     }
     Random random(17);
-    for (int i = 0; others < 20 && i < (stricter ? 9 : 45); ++i) {
+    for (int i = 0; others < 20 && i < (stricter ? 9 : 60); ++i) {
       const double size = i % 3 == 0 ? 1e-3 : i % 3 == 1 ? 2e-4 : 2e-5;
       judge(with_noise(repaired.correction, size, random), "noise " + std::to_string(size));
     }

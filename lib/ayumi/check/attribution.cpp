@@ -578,6 +578,28 @@ void mark_consequences(JudgedMotion& motion, std::vector<FindingWindow>& windows
     if (w.cause >= 0) w.worst.severity = Severity::warning;
 }
 
+void add_table_findings(JudgedMotion& motion, std::vector<FindingWindow>& windows) {
+  const attribution::Scene scene = {motion, windows};
+  std::vector<std::pair<int, Interval>> reached;
+  for (int i = 0; i < scene.count(); ++i) {
+    if (!scene.open(i)) continue;
+    reached.emplace_back(i, attribution::influence_of(scene, i));
+    const Violation& v = scene.of(i);
+    if (attribution::is_class(v, LimitClass::rate) || attribution::is_force(v))
+      reached.emplace_back(i, motion_around(motion, v.sample));
+  }
+  std::vector<FindingWindow> found = motion.table.finish();
+  for (FindingWindow& w : found) {
+    if (w.worst.severity != Severity::error) continue;
+    const auto cause = std::find_if(reached.begin(), reached.end(),
+                                    [&](const auto& r) { return r.second.touches(w); });
+    if (cause == reached.end()) continue;
+    w.cause = cause->first;
+    w.worst.severity = Severity::warning;
+  }
+  windows.insert(windows.end(), found.begin(), found.end());
+}
+
 std::vector<std::array<std::string, 4>> attribution_table() {
   std::vector<std::array<std::string, 4>> table;
   for (const attribution::Rule& rule : attribution::rules())

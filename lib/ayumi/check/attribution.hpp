@@ -15,6 +15,11 @@ namespace ayumi {
 /// error stays where there was one.
 void mark_consequences(JudgedMotion& motion, std::vector<FindingWindow>& windows);
 
+/// Adds what `export` would refuse of the table (JudgedMotion::table). A table finding follows from
+/// an error of the motion itself that reaches it: within the influence interval of the error, or
+/// between the same two rests where the error is of a rate or a force.
+void add_table_findings(JudgedMotion& motion, std::vector<FindingWindow>& windows);
+
 /// The rows in their order: cause, what follows from it, in which interval, under which condition.
 std::vector<std::array<std::string, 4>> attribution_table();
 

@@ -78,8 +78,7 @@ ConsistencyReport report_of(JudgedMotion& motion) {
   std::vector<FindingWindow> windows = motion.windows.finish();
   excuse_spikes(motion, windows);
   mark_consequences(motion, windows);
-  const std::vector<FindingWindow> targets = motion.targets.finish();
-  windows.insert(windows.end(), targets.begin(), targets.end());
+  add_table_findings(motion, windows);
   ConsistencyReport report;
   report.profile = motion.limits.name;
   report.summary = motion.summary;

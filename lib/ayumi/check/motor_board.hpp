@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/check/table_safety.hpp"
+#include "ayumi/limits/table_safety.hpp"
 
 namespace ayumi {
 

@@ -1,11 +1,26 @@
 #include "ayumi/io/task_file.hpp"
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/io/kept_rows.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 
 namespace ayumi {
+
+namespace {
+
+// What `export` would write. A kept sequence that is missing or was changed is its error, and no
+// other command's.
+std::optional<ReferenceTrajectory> kept_targets(const Task& task) {
+  try {
+    if (std::optional<KeptRows> kept = kept_rows(task)) return std::move(kept->targets);
+  } catch (const Error&) {
+  }
+  return {};
+}
+
+}  // namespace
 
 Task load_task(Pattern pattern, const TaskOptions& options, const Progress& progress) {
   const std::string name = options.robot.empty() ? robot_of(pattern) : options.robot;
@@ -21,6 +36,7 @@ Task load_task(Pattern pattern, const TaskOptions& options, const Progress& prog
   Task task = make_task(std::move(pattern), std::move(robot), options.profile, progress);
   task.robot_name = name;
   task.caution = std::move(caution);
+  task.series.kept = kept_targets(task);
   return task;
 }
 

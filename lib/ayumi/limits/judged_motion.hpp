@@ -61,7 +61,7 @@ struct JudgedMotion {
   const double weight;  ///< [N]
 
   FindingWindows windows;
-  FindingWindows targets;  ///< warnings that are neither cause nor consequence of anything
+  FindingWindows table;  ///< of the table that a robot would receive
   CheckSummary summary;
 
   // What the samples demand, as far as limits of the whole motion and attribution ask for it.

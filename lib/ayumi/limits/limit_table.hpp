@@ -28,6 +28,9 @@
   line(joint_torque, joint_torque)              \
   line(continuous_torque, heat)                 \
   line(servo_step, servo_step)                  \
+  line(table_step, exported_table)              \
+  line(table_position, exported_table)          \
+  line(table_rest, exported_table)              \
   line(self_collision, clearance)               \
   line(landing_speed, swing_foot)
 // clang-format on

@@ -55,11 +55,13 @@ struct SoleRows {
 
 enum class JointQuantity { angle, speed, acceleration, motor_torque };
 
-/// One row: scale times a quantity of one joint, [rad] or [m], per [s], [s^2], or [N m], [N].
+/// One row: scale times a quantity of one joint, [rad] or [m], per [s], [s^2], or [N m], [N]. An
+/// angle or a speed may lead: its own rate times a time is added, as for servo targets.
 struct JointRow {
   JointQuantity of = JointQuantity::angle;
   int dof = 0;
   double scale = 1;
+  double lead = 0;  ///< [s]
 };
 
 /// The clearance_points() of two shapes [m].

@@ -1,14 +1,11 @@
 // A servo receives one target in each of its periods T, and its motor follows no step that is
 // larger than the speed limit allows: |theta(k) - theta(k - T)| <= speed limit T. Where the joint's
 // planned speed is too large itself, that is joint_speed; a step beyond it is a jump between
-// samples. The target is the posture led by the servo's lag (delay + kd/kp) times its rate
-// (motion/servo_feedforward.hpp). It may step by more than the posture; then `export` refuses the
-// table, and a warning says so.
+// samples. The target, which leads the posture, is judged by exported_table.
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
-#include "ayumi/motion/servo_feedforward.hpp"
 
 namespace ayumi {
 
@@ -46,35 +43,6 @@ void judge_servo_steps(JudgedMotion& motion) {
   }
 }
 
-// A joint that is itself too fast is a finding of its own.
-void judge_servo_targets(JudgedMotion& motion) {
-  const double dt = motion.series.dt;
-  const int ticks = servo_ticks(motion);
-  const Eigen::VectorXd lead = velocity_lead(motion.limits);
-  const double most = motion.tolerance(FindingKind::servo_step);
-  const auto target = [&](int k, int i) {
-    const RobotState& s = motion.series.samples[k].state;
-    return s.theta[i] + lead[i] * s.dtheta[i];
-  };
-  for (int k = ticks; k < motion.count(); ++k) {
-    for (int i = 0; i < motion.model.dof_count(); ++i) {
-      const double limit = motion.limits.speed[i], allowed = most * limit * ticks * dt;
-      if (!std::isfinite(allowed) ||
-          std::abs(motion.series.samples[k].state.dtheta[i]) > most * limit)
-        continue;
-      const double step = target(k, i) - target(k - ticks, i), ratio = std::abs(step) / allowed;
-      if (ratio > kMeanSpeedSpare)
-        motion.targets.add(
-            {FindingKind::servo_step, i, k, Severity::warning, step, allowed, ratio, kServoTarget});
-    }
-  }
-}
-
-void judge_servos(JudgedMotion& motion) {
-  judge_servo_steps(motion);
-  judge_servo_targets(motion);
-}
-
 bool servo_step_holds(JudgedMotion&, const Violation& v, double pace) {
   return std::abs(v.value) * pace <= std::abs(v.limit);
 }
@@ -83,18 +51,8 @@ const char* step_unit(const JudgedMotion& motion, const Violation& v) {
   return joint_unit(motion, v, "rad", "m");
 }
 
-Advice target_advice(const JudgedMotion& motion, const Violation& v) {
-  const Dof& dof = motion.model.dofs()[v.item];
-  return dof.name + "'s servo target, which leads the posture by the servo's lag of " +
-         text::brief(1e3 * motion.limits.servo[v.item].lag(), 3) + " ms, moves " +
-         text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) +
-         " % faster than the speed limit, so that `export` will refuse the table: accelerate " +
-         dof.name + " more gently here";
-}
-
 Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  if (v.detail == kServoTarget) return target_advice(motion, v);
   const Dof& dof = motion.model.dofs()[v.item];
   return dof.name + " jumps by " +
          (dof.prismatic ? in_mm(v.value) : text::brief(v.value * 180 / EIGEN_PI, 3) + " deg") +
@@ -117,8 +75,7 @@ const Limit& servo_step_limit() {
                     .tolerance = kWholeStep,
                     .meaning = "change of the joint angle per servo period, divided by the change "
                                "that the speed limit allows; reported where the joint speed does "
-                               "not show it; a warning where only the servo target changes by "
-                               "more",
+                               "not show it",
                     .figure = {.key = "max_servo_step_ratio",
                                .label = "largest step in a servo period",
                                .unit = "% of what the speed limit allows",
@@ -131,7 +88,7 @@ const Limit& servo_step_limit() {
                     .advice = step_advice,
                     .infeasibility = step_infeasibility,
                     .holds_at = servo_step_holds}},
-      .judge_motion = judge_servos};
+      .judge_motion = judge_servo_steps};
   return limit;
 }
 

@@ -24,10 +24,6 @@ struct Violation {
 /// The foot of a violation whose item is one.
 inline Side foot_of(const Violation& v) { return static_cast<Side>(v.item); }
 
-/// Definition: detail of a servo step of the servo's target, which leads the posture, not of the
-/// posture.
-inline constexpr int kServoTarget = 1;
-
 /// Item of a support_margin: whose ZMP it is.
 enum ZmpOf { kMotionZmp = 0, kCommandZmp = 1 };
 

@@ -5,10 +5,12 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ayumi/motion/pattern.hpp"
+#include "ayumi/motion/reference_trajectory.hpp"
 
 namespace ayumi {
 
@@ -42,6 +44,9 @@ struct CommandSeries {
   /// What the servos receive in open loop in place of the command with its feedforward, dof x
   /// samples [rad]; the last column holds after the end. Empty: nothing takes its place.
   Eigen::MatrixXd targets = {};
+  /// The rows of an imported sequence, which a robot receives as they were; none: its table is
+  /// computed of the samples.
+  std::optional<ReferenceTrajectory> kept = {};
 
   double duration() const { return dt * static_cast<double>(samples.size() - 1); }
 };

@@ -102,6 +102,7 @@ CommandSeries apply_correction(const RobotModel& model, const CommandSeries& ser
                                        joint + "'" + text::suggestion(joint, model.dof_names()));
   }
   CommandSeries result = series;
+  result.kept.reset();
   RobotData data(model);
   for (size_t k = 0; k < result.samples.size(); ++k) {
     CommandSample& sample = result.samples[k];

@@ -35,4 +35,23 @@ DenseTable postures_of(const RobotModel& model, const ActuatorLimits& actuators,
   return table;
 }
 
+ReferenceTrajectory leading_targets(const RobotModel& model, const CommandSeries& series,
+                                    const Eigen::VectorXd& lead) {
+  ReferenceTrajectory reference;
+  reference.dt = series.dt;
+  reference.joints = model.dof_names();
+  reference.rows.reserve(series.samples.size());
+  for (const CommandSample& sample : series.samples) {
+    ReferenceRow row;
+    row.theta = sample.state.theta + lead.cwiseProduct(sample.state.dtheta);
+    row.base = sample.state.base;
+    row.cog = sample.cog;
+    row.zmp = sample.zmp;
+    row.fz = sample.fz;
+    row.contact = {supports(sample.support, Side::left), supports(sample.support, Side::right)};
+    reference.rows.push_back(std::move(row));
+  }
+  return reference;
+}
+
 }  // namespace ayumi

@@ -4,7 +4,7 @@
 // functions convert in both directions.
 
 #include "ayumi/model/robot_model.hpp"
-#include "ayumi/motion/pattern.hpp"
+#include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
 
@@ -16,5 +16,9 @@ Eigen::VectorXd velocity_lead(const ActuatorLimits& actuators);
 /// removed, exactly for targets that are linear between rows and rest at the first row. Joints that
 /// the model does not have keep their values.
 DenseTable postures_of(const RobotModel& model, const ActuatorLimits& actuators, DenseTable table);
+
+/// The targets that lead the postures of a series by `lead` [s, dof], one row per sample.
+ReferenceTrajectory leading_targets(const RobotModel& model, const CommandSeries& series,
+                                    const Eigen::VectorXd& lead);
 
 }  // namespace ayumi

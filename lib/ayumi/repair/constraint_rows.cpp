@@ -179,11 +179,12 @@ struct Values {
   }
 
   double quantity(const JointRow& row) const {
+    const RobotState& motion = state.motion.state;
     switch (row.of) {
       case JointQuantity::angle:
-        return state.motion.state.theta[row.dof];
+        return motion.theta[row.dof] + row.lead * motion.dtheta[row.dof];
       case JointQuantity::speed:
-        return state.motion.state.dtheta[row.dof];
+        return motion.dtheta[row.dof] + row.lead * state.motion.acceleration[6 + row.dof];
       case JointQuantity::acceleration:
         return state.motion.acceleration[6 + row.dof];
       default:
@@ -210,9 +211,13 @@ struct ByCorrection {
       for (int k = 0; k < 3; ++k) by[k] = row.scale * state.torque_by[k].row(row.dof);
       return by;
     }
-    MatrixXd& by_order = by[static_cast<size_t>(row.of)];
-    by_order = MatrixXd::Zero(1, model.velocity_count());
-    by_order(0, 6 + row.dof) = row.scale;
+    const auto order = static_cast<size_t>(row.of);
+    const auto set = [&](size_t of, double factor) {
+      by[of] = MatrixXd::Zero(1, model.velocity_count());
+      by[of](0, 6 + row.dof) = factor;
+    };
+    set(order, row.scale);
+    if (row.lead > 0) set(order + 1, row.scale * row.lead);
     return by;
   }
   Derivatives operator()(const ClearanceRows& rows) const {

@@ -22,7 +22,6 @@ CorrectionSpec at_check_limits(const CorrectionSpec& spec, const CorrectionSpec&
   limits.limit_share = 1 - policy::kRounding;
   limits.least_normal_force = spec.tolerance[FindingKind::unilateral];
   if (robustness > 0) return limits;
-  limits.joint_margin = policy::kRounding - spec.tolerance[FindingKind::joint_position];
   limits.least_normal_force = policy::kRounding;
   limits.clearance = policy::kRounding;
   limits.swing_goals = false;

@@ -144,7 +144,7 @@ class PaceSearch {
     const Finding* shown = nullptr;
     for (const Finding& f : check.findings) {
       if (f.severity != Severity::error) continue;
-      if (f.kind == FindingKind::joint_speed)
+      if (f.kind == FindingKind::joint_speed || f.kind == FindingKind::table_step)
         trial.too_quick = std::max(trial.too_quick, std::abs(f.worst) / f.limit);
       if (!shown || (is_of_posture(f) && !trial.of_posture)) shown = &f;
       trial.of_posture = is_of_posture(*shown);

@@ -50,24 +50,12 @@ ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& 
   const ActuatorLimits& limits = model.limits(profile);
   Eigen::VectorXd lead = velocity_lead(limits);
   if (content == ServoContent::ideal) lead.setZero();
-  Eigen::MatrixXd sag = Eigen::MatrixXd::Zero(model.dof_count(), 1);
-  if (content == ServoContent::lead_and_sag) sag = torque_feedforward(model, limits, series);
-  ReferenceTrajectory reference;
-  reference.dt = series.dt;
-  reference.joints = model.dof_names();
+  ReferenceTrajectory reference = leading_targets(model, series, lead);
   reference.servo = table_servo(model, profile, content);
-  for (size_t k = 0; k < series.samples.size(); ++k) {
-    const CommandSample& sample = series.samples[k];
-    ReferenceRow row;
-    row.theta = sample.state.theta + lead.cwiseProduct(sample.state.dtheta) +
-                lead_at(sag, static_cast<long>(k));
-    row.base = sample.state.base;
-    row.cog = sample.cog;
-    row.zmp = sample.zmp;
-    row.fz = sample.fz;
-    row.contact = {supports(sample.support, Side::left), supports(sample.support, Side::right)};
-    reference.rows.push_back(std::move(row));
-  }
+  if (content != ServoContent::lead_and_sag) return reference;
+  const Eigen::MatrixXd sag = torque_feedforward(model, limits, series);
+  for (size_t k = 0; k < reference.rows.size(); ++k)
+    reference.rows[k].theta += lead_at(sag, static_cast<long>(k));
   return reference;
 }
 

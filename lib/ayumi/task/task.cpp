@@ -149,4 +149,25 @@ std::vector<std::string> unfit_reasons(const Judgement& judgement, const Simulat
   return unfit_reasons(judgement.reason(), log);
 }
 
+std::string refusal_of_goals() {
+  return "the pattern has VIIP goals, so its joint angles are known only after a simulation; run "
+         "it "
+         "(ayumi run), then export the RUN";
+}
+
+std::string refusal_of_disturbances(const std::string& disturbances) {
+  return "the table is from a run with disturbances (" + disturbances +
+         ") and contains the reactions to them; --pushed exports it nevertheless";
+}
+
+std::vector<std::string> export_refusals(const Task& task, const Judgement& judgement) {
+  std::vector<std::string> reasons;
+  if (!task.caution.unfit.empty()) reasons.push_back(task.caution.unfit);
+  if (!judgement.good()) reasons.push_back(judgement.reason());
+  if (!task.series.viip.empty()) reasons.push_back(refusal_of_goals());
+  if (!task.caution.disturbances.empty())
+    reasons.push_back(refusal_of_disturbances(task.caution.disturbances));
+  return reasons;
+}
+
 }  // namespace ayumi

@@ -9,7 +9,7 @@
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/check/judge.hpp"
-#include "ayumi/check/table_safety.hpp"
+#include "ayumi/limits/table_safety.hpp"
 #include "ayumi/motion/command_series.hpp"
 #include "ayumi/motion/pattern.hpp"
 #include "ayumi/motion/table_caution.hpp"
@@ -68,5 +68,15 @@ SimulationLog simulate(const Task& task, const SimulateOptions& options,
 std::vector<std::string> unfit_reasons(const std::string& inconsistent, const SimulationLog& log,
                                        const SimulationLog* undisturbed = nullptr);
 std::vector<std::string> unfit_reasons(const Judgement& judgement, const SimulationLog& log);
+
+/// Why the table of a pattern with goals of VIIP, or with a table from a run with disturbances, is
+/// refused by `export`, in the words of its messages.
+std::string refusal_of_goals();
+std::string refusal_of_disturbances(const std::string& disturbances);
+
+/// Why `export` refuses the pattern's own table for the profile of the task: it is inconsistent
+/// (`judgement` is its own), or it is from a run that no robot should repeat, or has no table yet.
+/// Empty: the table is accepted.
+std::vector<std::string> export_refusals(const Task& task, const Judgement& judgement);
 
 }  // namespace ayumi

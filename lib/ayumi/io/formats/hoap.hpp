@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ayumi/check/table_safety.hpp"
+#include "ayumi/limits/table_safety.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/reference_trajectory.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/check/table_safety.hpp"
+#include "ayumi/limits/table_safety.hpp"
 #include "ayumi/repair/repair.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 

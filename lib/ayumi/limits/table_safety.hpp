@@ -12,14 +12,20 @@
 namespace ayumi {
 
 struct SafetyOptions {
-  std::string profile;        ///< actuator profile of the speed limits; "" = default
-  double ramp = 2.0;          ///< least duration of the approach [s]; 0: no ramp
-  std::string from = "home";  ///< named posture the robot stands in; "first" = the first row
-  double hold = 0.5;          ///< the last row is repeated this long [s]
-  double counts_per_ms = 57;  ///< the motor board's own speed cap
-  double rest_speed = 0.1;    ///< start and end count as rest below this [rad/s]
-  double rest_window = 0;     ///< mean over so long; 0: from one row to the next [s]
+  std::string profile;         ///< actuator profile of the speed limits; "" = default
+  double ramp = 2.0;           ///< least duration of the approach [s]; 0: no ramp
+  std::string from = "home";   ///< named posture the robot stands in; "first" = the first row
+  double hold = 0.5;           ///< the last row is repeated this long [s]
+  double counts_per_ms = 57;   ///< the motor board's own speed cap
+  double step_share = 1;       ///< of the largest step that may be used
+  double beyond_range = 1e-9;  ///< a target may be beyond the soft limits by this [rad], [m]
+  double rest_speed = 0.1;     ///< start and end count as rest below this [rad/s]
+  double rest_window = 0;      ///< mean over so long; 0: from one row to the next [s]
 };
+
+/// The same for an imported sequence whose rows are kept, which is complete as it is: no ramp and
+/// no hold, and its speed at both ends is a mean, because its rows are whole counts.
+SafetyOptions as_it_is(SafetyOptions options);
 
 /// One way in which a table is unsafe: its worst instant.
 struct SafetyViolation {
@@ -41,15 +47,16 @@ std::string text_of(const SafetyViolation& violation);
 
 struct SafetyReport {
   bool safe = true;
-  double ramp = 0, hold = 0;              ///< as laid around the motion [s]
-  double motion = 0;                      ///< duration of the motion between them [s]
-  double max_step_ratio = 0;              ///< step / what one tick allows
-  std::string worst_joint;                ///< of max_step_ratio
-  double worst_at = 0;                    ///< [s]
-  double min_limit_margin = 0;            ///< to the soft position limits [rad]
-  std::string margin_joint;               ///< of min_limit_margin
-  double start_speed = 0, end_speed = 0;  ///< fastest joint at the ends [rad/s]
-  std::vector<SafetyViolation> violations;
+  double ramp = 0, hold = 0;                ///< as laid around the motion [s]
+  double motion = 0;                        ///< duration of the motion between them [s]
+  double max_step_ratio = 0;                ///< step / what one tick allows
+  std::string worst_joint;                  ///< of max_step_ratio
+  double worst_at = 0;                      ///< [s]
+  double min_limit_margin = 0;              ///< to the soft position limits [rad]
+  std::string margin_joint;                 ///< of min_limit_margin
+  double start_speed = 0, end_speed = 0;    ///< fastest joint at the ends [rad/s]
+  std::vector<SafetyViolation> violations;  ///< the worst of each kind and joint
+  std::vector<SafetyViolation> rows;        ///< every row, by joint and time, torques apart
 };
 
 struct SafeTable {
@@ -88,5 +95,9 @@ Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajector
 /// Largest step per tick by dof in counts: the least of the motor board's cap and the profile's
 /// speed limit; infinite for joints without an encoder.
 Eigen::VectorXd count_step_limits(const RobotModel& model, double dt, const SafetyOptions& options);
+
+/// The same for every joint in [rad] or [m]; where the joint has no encoder, by the profile's speed
+/// limit alone.
+Eigen::VectorXd largest_steps(const RobotModel& model, double dt, const SafetyOptions& options);
 
 }  // namespace ayumi

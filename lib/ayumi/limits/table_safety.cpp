@@ -1,7 +1,7 @@
 // Counts are theta [deg] x counts_per_degree. With a real step s <= cap there is always a choice of
 // neighbours whose whole step is <= cap: upwards floor(x + s) - floor(x) <= cap, downwards by
 // ceilings; so rounding never breaks a limit that the motion keeps.
-#include "ayumi/check/table_safety.hpp"
+#include "ayumi/limits/table_safety.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,13 @@ constexpr double kDegreesPerRadian = 180 / EIGEN_PI;  // Definition
 // precision is far smaller, and a servo sees whole counts only. No measured case changes from half
 // to twice (constants.md).
 constexpr double kCountSlack = 1e-6;
+// Definition: rounding of a step over its limit.
+constexpr double kStepSlack = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Time over which the speed at both ends of a table of whole counts is judged [s]. Chosen: one
+// count in it is 0.004 rad/s, far below the limit of 0.1 rad/s; from row to row one count is
+// 0.08 rad/s. At half and at twice the value the recorded HOAP-3 motions begin and end at rest too.
+constexpr double kRestWindow = 0.02;
 constexpr int kLargestCount = 32767;  // Source: docs/formats.md, signed numbers of 16 bits
 
 double counts_per_radian(const Dof& dof) {
@@ -74,10 +80,12 @@ int nearest_count(double x, const Range& range, double previous, double step) {
   return static_cast<int>(std::clamp(nearest, -1e9, 1e9));
 }
 
-// Keeps the worst of each kind and joint.
+// Keeps the worst of each kind and joint, and all of them.
 class Violations {
  public:
   void add(const SafetyViolation& found) {
+    every_.push_back(found);
+    every_.back().rows = 1;
     for (SafetyViolation& known : list_) {
       if (known.kind != found.kind || known.joint != found.joint) continue;
       const int rows = known.rows + 1;
@@ -88,10 +96,11 @@ class Violations {
     list_.push_back(found);
     list_.back().rows = 1;
   }
-  std::vector<SafetyViolation> list() const { return list_; }
+  const std::vector<SafetyViolation>& list() const { return list_; }
+  const std::vector<SafetyViolation>& every() const { return every_; }
 
  private:
-  std::vector<SafetyViolation> list_;
+  std::vector<SafetyViolation> list_, every_;
 };
 
 // Judges one joint of a finished table.
@@ -101,9 +110,10 @@ class JointJudge {
       : dof_(model.dofs()[static_cast<size_t>(dof)]),
         soft_(soft_limits(model, dof_)),
         scale_(std::abs(counts_per_radian(dof_))),
-        dt_(dt),
+        beyond_(options.beyond_range),
+        share_(options.step_share),
         step_(scale_ > 0 ? count_step_limits(model, dt, options)[dof]
-                         : model.limits(options.profile).speed[dof] * dt) {}
+                         : largest_steps(model, dt, options)[dof]) {}
 
   void position(double theta, double t, SafetyReport& report, Violations& violations) const {
     const double margin = std::min(theta - soft_.lower, soft_.upper - theta);
@@ -112,7 +122,7 @@ class JointJudge {
       report.margin_joint = dof_.name;
     }
     const double limit = theta < soft_.lower ? soft_.lower : soft_.upper;
-    if (margin < -1e-9) violations.add({"position", dof_.name, t, theta, limit, "rad", 0});
+    if (margin < -beyond_) violations.add({"position", dof_.name, t, theta, limit, "rad", 0});
   }
 
   /// `change` in counts where the joint has an encoder, else in rad.
@@ -123,9 +133,9 @@ class JointJudge {
       report.worst_joint = dof_.name;
       report.worst_at = t;
     }
-    if (ratio > 1 + 1e-9)
-      violations.add(
-          {"step", dof_.name, t, std::abs(change), step_, scale_ > 0 ? "counts" : "rad", 0});
+    if (ratio > share_ + kStepSlack)
+      violations.add({"step", dof_.name, t, std::abs(change), share_ * step_,
+                      scale_ > 0 ? "counts" : "rad", 0});
   }
 
   void range(int count, double t, Violations& violations) const {
@@ -136,14 +146,14 @@ class JointJudge {
 
   bool has_encoder() const { return scale_ > 0; }
   const std::string& name() const { return dof_.name; }
-  double dt() const { return dt_; }
 
  private:
   const Dof& dof_;
   Range soft_;
-  double scale_;  // counts per rad, 0 without encoder
-  double dt_;
-  double step_;  // per tick, counts or rad
+  double scale_;   // counts per rad, 0 without encoder
+  double beyond_;  // [rad]
+  double share_;   // of step_
+  double step_;    // per tick, counts or rad
 };
 
 void judge_ends(const ReferenceTrajectory& motion, const SafetyOptions& options,
@@ -220,6 +230,12 @@ Eigen::VectorXd speed_limits(const RobotModel& model, const std::vector<Eigen::I
 
 }  // namespace
 
+SafetyOptions as_it_is(SafetyOptions options) {
+  options.ramp = options.hold = 0;
+  options.rest_window = kRestWindow;
+  return options;
+}
+
 std::string on_both_clocks(double t, double begin, double end) {
   constexpr double kSlack = 1e-9;  // Definition: rounding of whole multiples of a tick [s]
   const std::string pattern = t < begin - kSlack ? "ramp"
@@ -268,6 +284,16 @@ Eigen::VectorXd count_step_limits(const RobotModel& model, double dt,
     limits[dof] = scale > 0 ? std::floor(cap + 1e-3) : kInfinity;
   }
   return limits;
+}
+
+Eigen::VectorXd largest_steps(const RobotModel& model, double dt, const SafetyOptions& options) {
+  const Eigen::VectorXd counts = count_step_limits(model, dt, options);
+  Eigen::VectorXd steps = dt * model.limits(options.profile).speed;
+  for (int dof = 0; dof < model.dof_count(); ++dof) {
+    const double scale = std::abs(counts_per_radian(model.dofs()[static_cast<size_t>(dof)]));
+    if (scale > 0) steps[dof] = counts[dof] / scale;
+  }
+  return steps;
 }
 
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
@@ -327,6 +353,7 @@ SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& referenc
   judge_rows(model, result.table, options, report, violations);
   judge_ends(reference, options, report, violations);
   add_violations(result, violations.list());
+  report.rows = violations.every();
   return result;
 }
 

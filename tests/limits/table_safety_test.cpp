@@ -1,4 +1,4 @@
-#include "ayumi/check/table_safety.hpp"
+#include "ayumi/limits/table_safety.hpp"
 
 #include <gtest/gtest.h>
 

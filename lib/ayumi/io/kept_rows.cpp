@@ -1,0 +1,46 @@
+#include "ayumi/io/kept_rows.hpp"
+
+#include <cmath>
+
+#include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/table/csv_dialect.hpp"
+#include "ayumi/io/table/table.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Whether the pattern still moves as the table that was imported.
+bool moves_as_imported(const Task& task) {
+  constexpr double kSame = 1e-6;  // Chosen: a hundredth of a count [rad]
+  const DenseTable& table = *task.pattern.table;
+  if (theta_sha256(table) != table.sequence->theta_sha256) return false;
+  const CommandSeries& series = task.series;
+  const double rows = series.duration() / table.dt + 1;
+  if (std::abs(rows - static_cast<double>(table.theta.rows())) > 0.5) return false;
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const double row = static_cast<double>(k) * series.dt / table.dt;
+    if (std::abs(row - std::round(row)) > 1e-6 || std::lround(row) >= table.theta.rows()) continue;
+    for (size_t i = 0; i < table.joints.size(); ++i) {
+      const int dof = task.robot.find_dof(table.joints[i]);
+      const double angle = table.theta(std::lround(row), static_cast<Eigen::Index>(i));
+      if (dof < 0 || std::abs(series.samples[k].state.theta[dof] - angle) > kSame) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<KeptRows> kept_rows(const Task& task) {
+  if (!task.pattern.table) return {};
+  const DenseTable& table = *task.pattern.table;
+  if (!table.sequence || !moves_as_imported(task)) return {};
+  std::string bytes = kept_sequence(table);
+  HoapFile file =
+      parse_hoap(plain_table_text(bytes, table.sequence->file), table.sequence->file, task.robot);
+  ReferenceTrajectory targets = hoap_targets(task.robot, file);
+  return KeptRows{std::move(file), std::move(bytes), std::move(targets)};
+}
+
+}  // namespace ayumi

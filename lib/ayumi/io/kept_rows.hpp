@@ -1,0 +1,23 @@
+#pragma once
+// A pattern that was imported from a sequence and still moves as it: `export` writes the rows of
+// the sequence as they were, in place of rows computed of the motion.
+
+#include <optional>
+#include <string>
+
+#include "ayumi/io/formats/hoap.hpp"
+#include "ayumi/task/task.hpp"
+
+namespace ayumi {
+
+struct KeptRows {
+  HoapFile file;
+  std::string bytes;            ///< of the file
+  ReferenceTrajectory targets;  ///< what the servos receive
+};
+
+/// The rows of the sequence that the pattern was imported from; nothing where there was none or the
+/// motion was changed. Throws Error(bad_file) where the kept sequence is missing or was changed.
+std::optional<KeptRows> kept_rows(const Task& task);
+
+}  // namespace ayumi

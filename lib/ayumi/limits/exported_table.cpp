@@ -1,0 +1,226 @@
+// What a robot receives is a table of servo targets, theta + L dtheta with the lag L of the servo
+// (motion/servo_feedforward), one row per sample, in whole encoder counts where the joint has an
+// encoder; or the rows of an imported sequence that is unchanged. `export` refuses a table whose
+// targets step too far from row to row, leave the soft limits of the joint, or do not begin and end
+// at rest. This limit lays the same ramp and hold around the same table and asks the same function
+// (limits/table_safety), so that a motion without a finding is one whose table is accepted. For
+// another profile than the robot's own it only warns: such a profile is for studies. A motion with
+// goals of VIIP has no table before it is simulated.
+//
+// The rows of a repair keep, at every point,
+//   |dtheta + L ddtheta| <= largest step / dt   and   lower + m <= theta + L dtheta <= upper - m.
+#include <algorithm>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/limits/row_site.hpp"
+#include "ayumi/limits/table_safety.hpp"
+#include "ayumi/motion/servo_feedforward.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Definition: the tolerances are those of `export`, so that a larger one has no effect.
+const SafetyOptions kExport;
+
+// Definition: details of a violation, the unit of its value.
+constexpr int kInCounts = 1, kInJointUnit = 0;
+
+FindingKind kind_of(const SafetyViolation& violation) {
+  if (violation.kind == "step") return FindingKind::table_step;
+  if (violation.kind == "position" || violation.kind == "range") return FindingKind::table_position;
+  return FindingKind::table_rest;
+}
+
+void judge_table(JudgedMotion& motion) {
+  if (!motion.series.viip.empty()) return;
+  const auto least = [&](FindingKind kind, double of_export) {
+    return std::min(motion.tolerance(kind), of_export);
+  };
+  SafetyOptions options;
+  options.profile = motion.limits.name;
+  options.step_share = least(FindingKind::table_step, kExport.step_share);
+  options.beyond_range = least(FindingKind::table_position, kExport.beyond_range);
+  options.rest_speed = least(FindingKind::table_rest, kExport.rest_speed);
+  const std::optional<ReferenceTrajectory>& kept = motion.series.kept;
+  const SafeTable safe =
+      kept ? make_safe(motion.model, *kept, as_it_is(options))
+           : make_safe(motion.model,
+                       leading_targets(motion.model, motion.series, velocity_lead(motion.limits)),
+                       options);
+  motion.raise(FindingKind::table_step, safe.report.max_step_ratio);
+  const bool own = motion.limits.name == motion.model.limits().name;
+  for (const SafetyViolation& v : safe.report.rows) {
+    const long row = std::lround((v.t - safe.report.ramp) / motion.series.dt);
+    const int k = static_cast<int>(std::clamp<long>(row, 0, motion.count() - 1));
+    motion.table.add({kind_of(v), motion.model.find_dof(v.joint), k,
+                      own ? Severity::error : Severity::warning, v.value, v.limit,
+                      std::abs(v.value - v.limit), v.unit == "counts" ? kInCounts : kInJointUnit});
+  }
+}
+
+const RowKind kStepRows = {.name = "table_step", .order = {3, 4}};
+const RowKind kTargetRows = {
+    .name = "table_position", .unit = &RowPrices::angle, .beyond_check = true, .order = {3, 5}};
+
+void place_step_rows(RowSite& site, int dof, double lead, double largest) {
+  const RowSettings& settings = site.settings;
+  for (int point = 0; point < site.count(); ++point) {
+    const double used = site.most(point, [&](const CommandSample& s) {
+      return std::abs(s.state.dtheta[dof] + lead * s.acceleration[6 + dof]) / largest;
+    });
+    if (used <= settings.watched_share) continue;
+    site.add(kStepRows, point, dof, JointRow{JointQuantity::speed, dof, 1 / largest, lead}, 1,
+             -settings.limit_share, settings.limit_share)
+        .active = settings.active;
+  }
+}
+
+void place_target_rows(RowSite& site, int dof, double lead) {
+  const Dof& joint = site.model.dofs()[dof];
+  const RowSettings& settings = site.settings;
+  // A tolerance below 0 asks for a margin.
+  const double margin =
+      site.model.description().soft_limit_margin +
+      std::max({settings.joint_margin, 0.0, -site.tolerance(FindingKind::table_position)});
+  const double lower = joint.lower + margin, upper = joint.upper - margin;
+  const double middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
+  if (!joint.limited || !(half > 0)) return;
+  for (int point = 0; point < site.count(); ++point) {
+    const double used = site.most(point, [&](const CommandSample& s) {
+      return std::abs(s.state.theta[dof] + lead * s.state.dtheta[dof] - middle) / half;
+    });
+    if (used <= settings.watched_share) continue;
+    site.add(kTargetRows, point, dof, JointRow{JointQuantity::angle, dof, 1, lead}, 1, lower, upper)
+        .active = settings.active;
+  }
+}
+
+void place_table_rows(RowSite& site) {
+  if (site.actuators.name != site.model.limits().name || !site.series.viip.empty()) return;
+  const Eigen::VectorXd lead = velocity_lead(site.actuators);
+  SafetyOptions options;
+  options.profile = site.actuators.name;
+  const Eigen::VectorXd largest = largest_steps(site.model, site.series.dt, options);
+  const double share = std::min(site.tolerance(FindingKind::table_step), kExport.step_share);
+  for (int i = 0; i < site.model.dof_count(); ++i) {
+    if (site.is_locked(i)) continue;
+    if (std::isfinite(largest[i]))
+      place_step_rows(site, i, lead[i], share * largest[i] / site.series.dt);
+    if (lead[i] > 0) place_target_rows(site, i, lead[i]);
+  }
+}
+
+bool step_holds(JudgedMotion&, const Violation& v, double pace) {
+  return std::abs(v.value) * pace <= std::abs(v.limit);
+}
+
+const char* table_unit(const JudgedMotion& motion, const Violation& v) {
+  return v.detail == kInCounts ? "counts" : joint_unit(motion, v, "rad", "m");
+}
+
+const char* rest_unit(const JudgedMotion& motion, const Violation& v) {
+  return joint_unit(motion, v, "rad/s", "m/s");
+}
+
+/// "`export` refuses the table: the servo target of l_knee, which leads the posture by 3.6 ms,"
+std::string refused_text(const JudgedMotion& motion, const Violation& v) {
+  const double lag = velocity_lead(motion.limits)[v.item];
+  return "`export` refuses the table: the servo target of " + motion.model.dofs()[v.item].name +
+         (lag > 0 ? ", which leads the posture by " + text::brief(1e3 * lag, 3) + " ms," : "");
+}
+
+Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
+  const Violation& v = window.worst;
+  return {refused_text(motion, v) + " moves " +
+              text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) + " % further in " +
+              text::brief(1e3 * motion.series.dt, 3) + " ms than the motor follows: move " +
+              motion.model.dofs()[v.item].name + " more slowly, or accelerate it more gently here",
+          kOrRepair};
+}
+
+Advice position_advice(const JudgedMotion& motion, const FindingWindow& window) {
+  const Violation& v = window.worst;
+  const Dof& dof = motion.model.dofs()[v.item];
+  const double beyond = std::abs(v.value - v.limit);
+  const std::string amount = v.detail == kInCounts ? text::brief(beyond) + " counts"
+                             : dof.prismatic       ? text::brief(1e3 * beyond, 3) + " mm"
+                                             : text::brief(beyond * 180 / EIGEN_PI, 3) + " deg";
+  return {refused_text(motion, v) + " is " + amount + " beyond its range: move " + dof.name +
+              " back by as much, or let it turn round more gently",
+          kOrRepair};
+}
+
+Advice rest_advice(const JudgedMotion& motion, const FindingWindow& window) {
+  const Violation& v = window.worst;
+  return {refused_text(motion, v) + (window.first == 0 ? " begins" : " ends") +
+          " while it moves: " + motion.model.dofs()[v.item].name + " has to " +
+          (window.first == 0 ? "start" : "stop") +
+          " at rest and gently, for example by a segment with minimum_jerk"};
+}
+
+std::string step_infeasibility(const Finding& f, double violation) {
+  return "the servo target of " + f.where + " steps by " + ratio_text(violation) +
+         " of what `export` accepts";
+}
+
+std::string position_infeasibility(const Finding& f, double) {
+  return "the servo target of " + f.where + " reaches " + text::brief(f.worst, 6) + " " + f.unit +
+         ", and `export` accepts " + text::brief(f.limit, 6);
+}
+
+std::string rest_infeasibility(const Finding& f, double) {
+  return "the servo target of " + f.where + " has " + text::brief(f.worst, 3) + " " + f.unit +
+         " at an end of the motion, and `export` accepts " + text::brief(f.limit, 3);
+}
+
+}  // namespace
+
+const Limit& exported_table_limit() {
+  static const Limit limit = {
+      .findings = {{.kind = FindingKind::table_step,
+                    .limit_class = LimitClass::rate,
+                    .unit = "1",
+                    .tolerance = kExport.step_share,
+                    .meaning = "step of the servo target from row to row of the table, divided by "
+                               "the step that `export` accepts; a larger tolerance has no effect",
+                    .figure = {.key = "max_table_step_ratio",
+                               .label = "largest step of the exported table",
+                               .unit = "% of what the robot takes",
+                               .scale = 100,
+                               .line = 22},
+                    .repair = {.is_of_one_joint = true},
+                    .finding_unit = table_unit,
+                    .place = joint_place,
+                    .advice = step_advice,
+                    .infeasibility = step_infeasibility,
+                    .holds_at = step_holds},
+                   {.kind = FindingKind::table_position,
+                    .limit_class = LimitClass::rate,
+                    .unit = "rad",
+                    .tolerance = kExport.beyond_range,
+                    .meaning = "servo target beyond the range of the joint, which `export` "
+                               "refuses; a larger tolerance has no effect",
+                    .repair = {.is_of_one_joint = true},
+                    .finding_unit = table_unit,
+                    .place = joint_place,
+                    .advice = position_advice,
+                    .infeasibility = position_infeasibility},
+                   {.kind = FindingKind::table_rest,
+                    .limit_class = LimitClass::rate,
+                    .unit = "rad/s",
+                    .tolerance = kExport.rest_speed,
+                    .meaning = "speed of the servo target at the ends of the table, which has to "
+                               "begin and end at rest; a larger tolerance has no effect",
+                    .repair = {.is_of_one_joint = true},
+                    .finding_unit = rest_unit,
+                    .place = joint_place,
+                    .advice = rest_advice,
+                    .infeasibility = rest_infeasibility}},
+      .judge_motion = judge_table,
+      .place_rows = place_table_rows};
+  return limit;
+}
+
+}  // namespace ayumi
