@@ -2,7 +2,7 @@
 set(ayumi_slow_suites
   check.Consequence check.Consistency check.FaultsOnPatterns check.PlantedFault check.SecondRoute
   check.SecondRouteOfClearance cli.BrokenInput cli.CheckRepair cli.Edit cli.ExplainCommand
-  cli.Export cli.GainsCommand cli.Infeasible cli.NewJump cli.NewViip cli.NewWalk cli.PushCommand
+  cli.Export cli.GainsCommand cli.Infeasible cli.NewJump cli.NewViip cli.NewWalk cli.OneSet cli.PushCommand
   cli.Repeat cli.RobotPath cli.Run cli.TuneCommand control.FootholdShift docs.CommandsOfPage
   model.Diagnose plan.Sample plant_mujoco.MujocoDisturbance plant_mujoco.MujocoJump
   plant_mujoco.MujocoPlant plant_mujoco.MujocoWalk plant_mujoco.PushAgreement
