@@ -14,6 +14,7 @@
 #include "ayumi/io/run/simulation_log_file.hpp"
 #include "ayumi/render/robot_surface.hpp"
 #include "ayumi/render/simplify.hpp"
+#include "pattern_input.hpp"
 #include "run_robot.hpp"
 
 namespace ayumi::app {

@@ -34,6 +34,7 @@ struct NewOptions {
   double turn_deg = 0;
   std::string first = "right";
   double duration = 3.0;
+  double scale = 1;  // of the amplitudes of an excitation
   // Left out: HOAP-1's, scaled to the robot.
   std::vector<double> cog, velocity;  // goals of VIIP
   int viip_steps = 0;
@@ -226,6 +227,20 @@ void new_stand(const Context& context, const NewOptions& options) {
             {"Standing on both feet in the home posture."});
 }
 
+// Amplitudes shrink until the check finds the pattern consistent.
+void new_excite(const Context& context, const NewOptions& options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  double scale = options.scale;
+  while (model.has_soles() && scale > 0.2 * options.scale) {
+    Task task = make_task(excite_pattern(model, scale), model, "", context.progress());
+    if (judge(task).good()) break;
+    scale *= 0.8;
+  }
+  write_new(context, model, excite_pattern(model, scale), options,
+            {"Slow sweeps, chirps and steps of every joint, on both feet: for `ayumi identify`.",
+             "Amplitudes are " + text::brief(100 * scale, 3) + " % of the generator's own."});
+}
+
 // Options that several generators share.
 void add_scaled(CLI::App& command, const char* name, std::optional<double>& value,
                 const std::string& text, double hoap1, const char* type) {
@@ -359,7 +374,7 @@ void add_squat(CLI::App& command, NewOptions& options) {
 
 void add_new(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
-      "new", "write a pattern to edit: walk, step, stand, sway, squat, jump, viip");
+      "new", "write a pattern to edit: walk, step, stand, sway, squat, jump, viip, excite");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  ayumi new walk -o walk.json\n"
@@ -398,6 +413,15 @@ void add_new(CLI::App& app, Context& context) {
       ->capture_default_str()
       ->type_name("S");
   stand->callback([shared, &context] { new_stand(context, *shared); });
+  CLI::App* excite = command->add_subcommand(
+      "excite", "slow sweeps, chirps and steps of every joint, for identify");
+  excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
+  add_common(*excite, options);
+  excite->add_option("ROBOT", options.robot, "The robot, as --robot.");
+  excite->add_option("--scale", options.scale, "Factor on all amplitudes.")
+      ->check(number_within(0.05, 2.0))
+      ->capture_default_str();
+  excite->callback([shared, &context] { new_excite(context, *shared); });
 }
 
 }  // namespace ayumi::app

@@ -40,6 +40,7 @@ inline const std::map<std::string, Room>& rooms() {
       {"repair", {8, {}, {"control"}, false}},
       {"sim", {8, {}, {"check", "limits"}, false}},
       {"study", {9, {}, {}, false}},
+      {"identify", {9, {"study"}, {"repair"}, false}},
       {"task", {9, {}, {"repair"}, false}},
       {"sim/plant_mujoco", {9, {}, {"check", "limits", "control", "repair"}, false}},
       {"io", {10, {}, {}, true}},
@@ -104,6 +105,7 @@ inline const std::vector<ThirdParty>& third_parties() {
   static const std::vector<ThirdParty> table = {
       {"Eigen", std::regex("(unsupported/)?Eigen/.*"), {}},
       {"Ipopt", std::regex("Ip[A-Z].*|coin(-or)?/.*"), {"repair"}},
+      {"Ceres", std::regex("ceres/.*"), {"identify"}},
       {"dynamic loader", std::regex("dlfcn\\.h"), {"repair"}},
       {"urdfdom", std::regex("(urdf|console_bridge|tinyxml).*"), {"io"}},
       {"assimp", std::regex("assimp/.*"), {"io"}},

@@ -9,8 +9,8 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kDegreesPerRadian = 180 / EIGEN_PI;           // Definition
-constexpr double kLeastCount = -32768, kLargestCount = 32767;  // Definition: 16 bits, signed
+constexpr double kBoardDegrees = 180 / EIGEN_PI;               // Definition
+constexpr double kFewestCounts = -32768, kMostCounts = 32767;  // Definition: 16 bits, signed
 constexpr double kWhole = 1e-6;  // Chosen: rounding of degrees and radians, in counts
 
 // Keeps the worst of each kind for one joint.
@@ -53,7 +53,7 @@ BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& t
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];
     const double counts =
-        dof.encoder.device > 0 ? dof.encoder.counts_per_degree * kDegreesPerRadian : 0;
+        dof.encoder.device > 0 ? dof.encoder.counts_per_degree * kBoardDegrees : 0;
     const double scale = counts != 0 ? counts : 1;
     double lower = -1e300, upper = 1e300, step = model.limits(options.profile).speed[j] * result.dt;
     if (dof.limited) {
@@ -76,7 +76,7 @@ BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& t
       if (counts != 0)
         asked = std::abs(x - std::round(x)) < kWhole ? std::round(x) : rounded(row, j);
       const double t = static_cast<double>(k) * result.dt;
-      const double fits = counts != 0 ? std::clamp(asked, kLeastCount, kLargestCount) : asked;
+      const double fits = counts != 0 ? std::clamp(asked, kFewestCounts, kMostCounts) : asked;
       const double inside = std::clamp(fits, lower, upper);
       board = k == 0 ? inside : std::clamp(inside, board - step, board + step);
       watch.note("range", asked - fits, t);

@@ -138,6 +138,21 @@ struct SoleDescription {
   double damping_time = 0;  ///< contact damping / stiffness [s]; 0: default
 };
 
+/// How recorded readings of a robot's load cells become forces. Polynomials begin with the highest
+/// power.
+struct LoadCells {
+  std::vector<int> columns;                ///< of a recording without head row, from 1
+  std::vector<std::vector<double>> cells;  ///< load of each cell by its reading, any unit
+  std::vector<double> force;               ///< force [N] by the sum of the cells' loads
+};
+
+/// The same for a sensor with three axes: value = scale (reading - zero).
+struct AxisReadings {
+  std::vector<int> columns;  ///< of x, y, z, from 1; empty: the recording has none
+  Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< [m/s^2, rad/s per reading]
+};
+
 struct SensorDescription {
   std::string imu_link;                                    ///< empty: the root link
   Eigen::Vector3d imu_position = Eigen::Vector3d::Zero();  ///< in that link [m]
@@ -148,6 +163,8 @@ struct SensorDescription {
   double force_noise = 0;                                  ///< per load cell [N]
   double force_resolution = 0;                             ///< per load cell [N]
   bool encoder_quantisation = false;                       ///< round joint angles to counts
+  std::map<std::string, LoadCells> load_cells;             ///< "left", "right"
+  AxisReadings accelerometer, gyro;
 };
 
 /// Controller defaults of this robot for values that a pattern does not set. Dimensionless as in
@@ -168,6 +185,7 @@ struct RobotDescription {
   std::map<std::string, SoleDescription> soles;  ///< "left", "right"
   std::map<std::string, std::map<std::string, double>> postures;  ///< [rad]; "home" at least
   std::map<std::string, ServoDescription> servos;                 ///< by joint name
+  bool servos_inferred = false;                                   ///< the files state none
   std::vector<ActuatorProfile> profiles;                          ///< the first is the default
   std::map<std::string, EncoderDescription> encoders;
   std::vector<SequenceLayout> layouts;  ///< the first with an interval is the one that is written

@@ -176,8 +176,9 @@ std::string page(const RobotModel& model, const ReportInput& input, const Pieces
   return head + html::verdict_section(input) +
          html::section("replay", plan.with_replay ? "Replay" : "Picture", scene) + pieces.loci +
          html::findings_section(input) + html::thresholds_section(input) +
-         (plan.with_snapshots ? pieces.snapshots : "") + html::events_section(input) +
-         html::provenance_section(input, caps) + "</main>\n" + script + "</body>\n</html>\n";
+         html::comparison_section(input) + (plan.with_snapshots ? pieces.snapshots : "") +
+         html::events_section(input) + html::provenance_section(input, caps) + "</main>\n" +
+         script + "</body>\n</html>\n";
 }
 
 /// Makes the plan smaller; false when nothing is left to reduce.

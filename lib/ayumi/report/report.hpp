@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
+#include "ayumi/identify/compare.hpp"
 #include "ayumi/io/run/run_results.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/sim/simulation_log.hpp"
@@ -23,6 +24,7 @@ struct ReportInput {
   std::vector<ReportRun> runs;  ///< at least one; the last is judged and replayed
   RunResults results;
   std::vector<PushThreshold> thresholds;  ///< empty: no study
+  const Comparison* comparison = nullptr;  ///< with a recording; must outlive the call
 };
 
 struct ReportOptions {

@@ -5,6 +5,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/plot/compare_plot.hpp"
 #include "ayumi/render/log_reading.hpp"
 #include "ayumi/report/html.hpp"
 
@@ -185,6 +186,36 @@ std::string thresholds_section(const ReportInput& input) {
                          text::fixed(t.open_loop, 2), text::fixed(t.bound, 2),
                          t.bound > 0 ? text::fixed(t.impulse / t.bound, 2) : "none"});
   return section("thresholds", "Push thresholds", table(rows));
+}
+
+std::string comparison_section(const ReportInput& input) {
+  if (!input.comparison) return "";
+  const Comparison& found = *input.comparison;
+  constexpr double kDegree = M_PI / 180;
+  Table rows = {"Measured values beside the run. The recording begins " +
+                    text::fixed(found.shift, 3) + " s after the run.",
+                {"curve", "mean", "largest", "at [s]", "behind [ms]", "correlation"},
+                {}};
+  for (const auto* curves : {&found.joints, &found.loads, &found.imu})
+    for (const ComparedCurve& curve : *curves) {
+      const double unit = curve.unit == "rad" ? kDegree : 1;
+      const std::string name = curve.unit == "rad" ? "deg" : curve.unit;
+      rows.rows.push_back({escaped(curve.name + (name.empty() ? "" : " [" + name + "]")),
+                           text::brief(curve.mean / unit, 3), text::brief(curve.largest / unit, 3),
+                           text::fixed(curve.largest_at, 3), text::fixed(1000 * curve.lag, 1),
+                           text::fixed(curve.correlation, 3)});
+    }
+  std::string words = table(rows);
+  for (const std::string& note : found.notes) words += "<p>" + escaped(note) + "</p>\n";
+  if (!found.landings.empty()) {
+    Table landings = {"Landings", {"foot", "run [s]", "measured later by [ms]"}, {}};
+    for (const ComparedLanding& landing : found.landings)
+      landings.rows.push_back({ayumi::name_of(landing.foot), text::fixed(landing.simulated, 3),
+                               text::fixed(1000 * (landing.measured - landing.simulated), 0)});
+    words += table(landings);
+  }
+  return section("comparison", "Comparison with a recording",
+                 words + to_svg(draw_comparison(found, "Measured and simulated")));
 }
 
 std::string events_section(const ReportInput& input) {

@@ -10,6 +10,7 @@ namespace ayumi::html {
 std::string verdict_section(const ReportInput& input);
 std::string findings_section(const ReportInput& input);    ///< empty without a check
 std::string thresholds_section(const ReportInput& input);  ///< empty without a study
+std::string comparison_section(const ReportInput& input);  ///< empty without a recording
 std::string events_section(const ReportInput& input);
 std::string provenance_section(const ReportInput& input, const std::vector<std::string>& caps);
 

@@ -1,6 +1,6 @@
 #pragma once
 // Generators of patterns, which a person can edit afterwards: `ayumi new walk`, `step`, `stand`,
-// `sway`, `squat`, `jump`.
+// `sway`, `squat`, `jump`, `excite`.
 
 #include "ayumi/motion/pattern.hpp"
 
@@ -58,6 +58,11 @@ SquatParameters squat_defaults(const RobotModel& model);
 
 /// COG height keys; the horizontal COG is solved. Throws as walk_pattern.
 Pattern squat_pattern(const RobotModel& model, const SquatParameters& parameters);
+
+/// Slow sweeps, chirps and steps of every joint within its limits, by which `identify` tells the
+/// constants of servos apart; the robot stands on both feet. `scale` of all amplitudes. Throws as
+/// walk_pattern.
+Pattern excite_pattern(const RobotModel& model, double scale = 1);
 
 /// Stoop, lift-off, flight, touchdown and settling, `times` times without a rest between.
 struct JumpParameters {

@@ -131,6 +131,7 @@ void infer_servos(const RobotModel& model, RobotDescription& robot) {
   servo.kd = 0.13 * std::sqrt(z / kGravity) * servo.kp;
   servo.rotor_inertia = 0.009 * mass * z * z;
   bool sliders = false;
+  robot.servos_inferred = true;
   for (const Dof& dof : model.dofs()) {
     sliders |= dof.prismatic;
     const auto joint =

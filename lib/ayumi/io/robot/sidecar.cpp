@@ -224,10 +224,46 @@ void read_layouts(const JsonNode& node, RobotDescription& robot) {
   }
 }
 
+std::vector<int> column_numbers(const JsonNode& node) {
+  std::vector<int> columns;
+  for (const JsonNode& item : node.items()) {
+    columns.push_back(item.integer());
+    if (columns.back() < 1) item.complain("columns are counted from 1");
+  }
+  return columns;
+}
+
+void read_load_cells(const JsonNode& node, std::map<std::string, LoadCells>& feet) {
+  node.only_keys({"left", "right"});
+  for (const auto& [side, foot] : node.members()) {
+    foot.only_keys({"columns", "cells", "force"});
+    LoadCells cells;
+    cells.columns = column_numbers(foot.at("columns"));
+    for (const JsonNode& cell : foot.at("cells").items()) cells.cells.push_back(cell.numbers());
+    if (cells.cells.size() != cells.columns.size())
+      foot.at("cells").complain("there are " + std::to_string(cells.cells.size()) +
+                                " polynomials for " + std::to_string(cells.columns.size()) +
+                                " columns; give one for each");
+    cells.force = foot.at("force").numbers();
+    feet[side] = cells;
+  }
+}
+
+void read_axes(const JsonNode& node, AxisReadings& axes) {
+  node.only_keys({"columns", "zero", "scale"});
+  axes.columns = column_numbers(node.at("columns"));
+  if (axes.columns.size() != 3) node.at("columns").complain("expected the columns of x, y and z");
+  if (const auto zero = node.find("zero")) axes.zero = zero->vector3();
+  if (const auto scale = node.find("scale")) axes.scale = scale->vector3();
+}
+
 void read_sensors(const JsonNode& node, SensorDescription& sensors) {
   node.only_keys({"imu_link", "imu_position", "latency", "attitude_noise", "attitude_bias",
                   "gyro_noise", "accelerometer_noise", "force_noise", "force_resolution",
-                  "encoder_quantisation"});
+                  "encoder_quantisation", "load_cells", "accelerometer", "gyro"});
+  if (const auto cells = node.find("load_cells")) read_load_cells(*cells, sensors.load_cells);
+  if (const auto axes = node.find("accelerometer")) read_axes(*axes, sensors.accelerometer);
+  if (const auto axes = node.find("gyro")) read_axes(*axes, sensors.gyro);
   if (const auto link = node.find("imu_link")) sensors.imu_link = link->string();
   if (const auto position = node.find("imu_position")) sensors.imu_position = position->vector3();
   read_not_negative(node, "latency", sensors.latency);

@@ -1,0 +1,246 @@
+// Servo constants of a robot from a recording, as a sidecar over that of the robot.
+
+#include "ayumi/identify/identify.hpp"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/table/recording.hpp"
+#include "option_checks.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double kIdentifiedDegree = M_PI / 180;
+
+struct IdentifyCommand {
+  std::string robot, command, measured, loads, out, per = "joint", stand = "auto";
+  RecordingOptions reading;
+};
+
+// Digits that the interval of a value leaves, one more.
+double sidecar_number(double value) { return std::stod(text::brief(value, 5)); }
+
+// "3.61 (3.52..3.70) ms"
+std::string estimate_words(const ServoEstimate& e, double unit, int digits,
+                           const std::string& name) {
+  const auto number = [&](double x) {
+    return std::isfinite(x) ? text::fixed(x / unit, digits) : std::string("inf");
+  };
+  return number(e.value) + " (" + number(e.lower) + ".." + number(e.upper) + ") " + name;
+}
+
+std::string joint_words(const IdentifiedJoint& j) {
+  std::string words = "  " + j.joint + ": ";
+  if (!j.moved)
+    return words + "stands still; " + text::fixed(j.offset.value / kIdentifiedDegree, 3) +
+           " deg from its command\n";
+  words += "delay " + estimate_words(j.delay, 1e-3, 2, "ms");
+  words += j.kp.known ? ", kp " + estimate_words(j.kp, 1, 0, "N m/rad")
+                      : ", kp above " + text::brief(j.kp.lower, 3) + " N m/rad";
+  if (j.damping.known) words += ", kd + viscous " + estimate_words(j.damping, 1, 2, "N m s/rad");
+  if (j.coulomb.known) words += ", Coulomb " + estimate_words(j.coulomb, 1, 3, "N m");
+  if (j.backlash.value > 0)
+    words += ", backlash " + estimate_words(j.backlash, kIdentifiedDegree, 3, "deg");
+  words += ", offset " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
+  if (j.has_sag)
+    words += ", sag " + text::fixed(j.sag / kIdentifiedDegree, 3) + " deg from swing to stance";
+  words += "; left over " + text::fixed(j.mean_error / kIdentifiedDegree, 3) +
+           " deg in the mean, " + text::fixed(j.largest_error / kIdentifiedDegree, 3) + " at " +
+           text::fixed(j.largest_at, 3) + " s\n";
+  for (const std::string& line : j.confounded) words += "    " + line + "\n";
+  return words;
+}
+
+Json json_of(const ServoEstimate& e) {
+  return {{"value", e.value},
+          {"lower", e.lower},
+          {"upper", std::isfinite(e.upper) ? Json(e.upper) : Json(nullptr)},
+          {"known", e.known}};
+}
+
+Json json_of(const IdentifiedJoint& j) {
+  Json json = {{"joint", j.joint}, {"type", j.type}, {"moved", j.moved}};
+  json["offset_rad"] = json_of(j.offset);
+  json["command_error_mean_rad"] = j.command_error;
+  if (!j.moved) return json;
+  json["delay_s"] = json_of(j.delay);
+  json["lag_s"] = j.lag;
+  json["kp"] = json_of(j.kp);
+  json["kd_and_viscous"] = json_of(j.damping);
+  json["viscous"] = json_of(j.viscous);
+  json["coulomb"] = json_of(j.coulomb);
+  json["backlash_rad"] = json_of(j.backlash);
+  json["sag_rad"] = j.has_sag ? Json(j.sag) : Json(nullptr);
+  json["error_mean_rad"] = j.mean_error;
+  json["error_max_rad"] = j.largest_error;
+  json["error_max_at_s"] = j.largest_at;
+  json["confounded"] = j.confounded;
+  return json;
+}
+
+// The robot as a sidecar in the folder of `out` names it: bundled names stay.
+std::string base_name(const IdentifyCommand& options) {
+  std::error_code ignored;
+  if (!fs::exists(options.robot, ignored)) return options.robot;
+  const fs::path folder = fs::absolute(options.out).parent_path();
+  const fs::path base = fs::relative(fs::absolute(options.robot), folder, ignored);
+  return base.empty() ? fs::absolute(options.robot).string() : base.generic_string();
+}
+
+// What a joint's servo is in the simulation: that of `source`, with the joint's own offset. A
+// stiffness that is not determined is at least the lower end of its interval, which is written.
+Json servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source, double kd) {
+  Json group = {{"joints", {joint.joint}}};
+  group["offset"] = sidecar_number(joint.offset.value);
+  if (!source.moved) return group;
+  const double kp = source.kp.known ? source.kp.value : source.kp.lower;
+  const double share = kp / source.kp.value;
+  group["kp"] = sidecar_number(kp);
+  group["kd"] = sidecar_number(share * kd);
+  group["viscous"] = sidecar_number(share * source.viscous.value);
+  group["coulomb"] = sidecar_number(share * source.coulomb.value);
+  group["delay"] = sidecar_number((joint.moved ? joint : source).delay.value);
+  if (source.backlash.value > 0) group["backlash"] = sidecar_number(source.backlash.value);
+  return group;
+}
+
+std::string sidecar_text(const RobotModel& model, const IdentifyCommand& options,
+                         const Identification& found) {
+  Json groups = Json::array();
+  std::map<std::string, const IdentifiedJoint*> of_type;
+  for (const IdentifiedJoint& joint : found.joints) {
+    const IdentifiedJoint*& best = of_type[joint.type];
+    const auto width = [](const IdentifiedJoint& each) {
+      return each.moved && each.kp.known ? (each.kp.upper - each.kp.lower) / each.kp.value
+                                         : HUGE_VAL;
+    };
+    if (!best || width(joint) < width(*best) || (joint.moved && !best->moved)) best = &joint;
+  }
+  for (const IdentifiedJoint& joint : found.joints) {
+    const IdentifiedJoint& source = joint.moved && joint.kp.known ? joint : *of_type.at(joint.type);
+    const double kd = std::max(0.0, source.damping.value - source.viscous.value);
+    groups.push_back(servo_group(joint, source, kd));
+  }
+  Json json = {{"format", "ayumi.robot/1"},
+               {"base", base_name(options)},
+               {"name", model.name() + " (" + fs::path(options.out).stem().string() + ")"},
+               {"servos", groups},
+               {"assumptions",
+                {"servos: identified from " + fs::path(options.measured).filename().string() +
+                 " as the answer to " + fs::path(options.command).filename().string()}}};
+  return json.dump(2) + "\n";
+}
+
+void identify_servos(const Context& context, const IdentifyCommand& options) {
+  if (!options.out.empty()) refuse_overwriting(context, options.out);
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  RecordedMotion motion;
+  motion.command =
+      read_angles(read_input(options.command), options.command, model, options.reading);
+  // Rows without time answer the rows of the command.
+  RecordingOptions measured = options.reading;
+  if (measured.rate <= 0) measured.rate = 1 / motion.command.dt;
+  motion.measured = read_angles(read_input(options.measured), options.measured, model, measured);
+  if (!options.loads.empty())
+    motion.sensors = read_sensors_table(read_input(options.loads), options.loads, model, measured);
+  IdentifyOptions how;
+  how.per_type = options.per == "type";
+  how.stand = options.stand == "fixed" || (options.stand == "auto" && !model.has_soles())
+                  ? RobotStand::fixed
+                  : RobotStand::feet;
+  if (how.stand == RobotStand::feet && !model.has_soles())
+    fail(ErrorCode::bad_model,
+         options.robot +
+             ": the robot has no soles; add \"soles\" to its sidecar, or use --stand "
+             "fixed");
+  how.threads = context.threads;
+  const Identification found = identify(model, motion, how, options.measured, context.progress());
+  std::string words = options.measured + ": " + text::fixed(found.seconds, 3) + " s, " +
+                      std::to_string(found.joints.size()) +
+                      " joints; values with their 95 % intervals\n";
+  Json joints = Json::array();
+  bool advice = false;
+  for (const IdentifiedJoint& joint : found.joints) {
+    words += joint_words(joint);
+    joints.push_back(json_of(joint));
+    advice = advice || !joint.confounded.empty();
+  }
+  if (advice)
+    words += "  `ayumi new excite --robot " + options.robot +
+             " -o excite.json` writes motions that tell these constants apart\n";
+  if (!options.out.empty()) {
+    write_file(options.out, sidecar_text(model, options, found));
+    words += options.out + ": written\n";
+  }
+  context.print(words);
+  context.print_json(Json{
+      {"output", options.out.empty() ? Json(nullptr) : Json(options.out)},
+      {"seconds", found.seconds},
+      {"stand", how.stand == RobotStand::feet ? "feet" : "fixed"},
+      {"joints", joints}}.dump(2));
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app, Context& context) {
+  CLI::App* command =
+      app.add_subcommand("identify", "find the servo constants of a robot from a recording");
+  command->footer(
+      "Examples:\n  ayumi identify hoap1 --command sent.csv --measured encoders.csv -o mine.json\n"
+      "  ayumi identify hoap1 --command sent.csv --measured encoders.csv --loads sensors.csv "
+      "--per type --json");
+  static IdentifyCommand options;
+  static std::string unit = "rad";
+  command->add_option("ROBOT", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
+      ->required();
+  command
+      ->add_option("--command", options.command,
+                   "What the robot was sent: HOAP sequence, counts, or a table with joint columns.")
+      ->required()
+      ->type_name("F");
+  command
+      ->add_option("--measured", options.measured,
+                   "What its encoders measured: rows of counts, or a table with joint columns.")
+      ->required()
+      ->type_name("F");
+  command
+      ->add_option("--loads", options.loads,
+                   "Recorded load cells of the feet: readings (calibration in the sidecar), or a "
+                   "table with fz.left[N] and fz.right[N].")
+      ->type_name("F");
+  command->add_option("-o,--out", options.out, "Sidecar to write, with ROBOT as its base.")
+      ->type_name("F");
+  command
+      ->add_option("--per", options.per,
+                   "Find one set of constants for each joint, or for each motor type.")
+      ->check(CLI::IsMember({"joint", "type"}))
+      ->capture_default_str();
+  command
+      ->add_option("--stand", options.stand,
+                   "What carries the robot: its feet on level ground, or a fixture that holds its "
+                   "root upright (default: feet if it has soles).")
+      ->check(CLI::IsMember({"auto", "feet", "fixed"}));
+  command->add_option("--unit", unit, "Unit of columns whose names are bare joint names.")
+      ->check(CLI::IsMember({"rad", "deg"}))
+      ->capture_default_str();
+  command
+      ->add_option("--rate", options.reading.rate,
+                   "Rate of rows without time [1/s] (default: 1000; that of the command).")
+      ->check(number_within(1.0, 1e5))
+      ->type_name("HZ");
+  command->callback([&context] {
+    options.reading.degrees = unit == "deg";
+    identify_servos(context, options);
+  });
+}
+
+}  // namespace ayumi::app

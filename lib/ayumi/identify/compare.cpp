@@ -1,0 +1,284 @@
+#include "ayumi/identify/compare.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/identify/joint_loads.hpp"
+#include "ayumi/identify/recording_checks.hpp"
+#include "ayumi/model/gravity.hpp"
+
+namespace ayumi {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+// Longest shift that is looked for [s]. Chosen: recorders are started by hand.
+constexpr double kReach = 10;
+
+// Loads and accelerations are smoothed to this frequency before they are compared [Hz], both alike.
+// Chosen: weight goes from foot to foot in 0.1 s or more.
+constexpr double kLoadBand = 15;
+
+// Share of the load at which a foot has landed, and below which it was in the air, for at least
+// this time [s]. Chosen: beyond the noise of load cells.
+constexpr double kLanded = 0.15, kInAir = 0.05, kAirTime = 0.05;
+
+// Landings further apart than this are not the same [s]. Chosen: a third of a quick step.
+constexpr double kSameLanding = 0.15;
+
+double interpolated(const VectorXd& values, double dt, double t) {
+  const double at = t / dt;
+  const Index last = values.size() - 1;
+  if (at <= 0) return values[0];
+  const auto k = static_cast<Index>(at);
+  if (k >= last) return values[last];
+  const double u = at - static_cast<double>(k);
+  return (1 - u) * values[k] + u * values[k + 1];
+}
+
+AngleTable angles_of(const RobotModel& model, const SimulationLog& log) {
+  AngleTable table;
+  table.dt = log.dt;
+  table.theta.resize(static_cast<Index>(log.samples.size()), model.dof_count());
+  for (size_t k = 0; k < log.samples.size(); ++k)
+    table.theta.row(static_cast<Index>(k)) = log.samples[k].state.theta.transpose();
+  table.has.assign(static_cast<size_t>(model.dof_count()), 1);
+  table.resolution = VectorXd::Zero(model.dof_count());
+  return table;
+}
+
+void summarize(ComparedCurve& curve, const std::vector<double>& times) {
+  const size_t n = times.size();
+  double sum = 0, m = 0, s = 0, mm = 0, ss = 0, ms = 0;
+  double by_rate = 0, rate_square = 0, mean_error = 0;
+  for (size_t k = 0; k < n; ++k) mean_error += curve.measured[k] - curve.simulated[k];
+  mean_error /= static_cast<double>(n);
+  for (size_t k = 0; k < n; ++k) {
+    const double a = curve.measured[k], b = curve.simulated[k], e = a - b;
+    sum += std::abs(e);
+    if (std::abs(e) > curve.largest) curve.largest = std::abs(e), curve.largest_at = times[k];
+    m += a, s += b, mm += a * a, ss += b * b, ms += a * b;
+    if (k == 0 || k + 1 >= n) continue;
+    const double rate =
+        (curve.simulated[k + 1] - curve.simulated[k - 1]) / (times[k + 1] - times[k - 1]);
+    by_rate += (e - mean_error) * rate;
+    rate_square += rate * rate;
+  }
+  curve.mean = sum / static_cast<double>(n);
+  const auto count = static_cast<double>(n);
+  const double va = mm - m * m / count, vb = ss - s * s / count;
+  const double range = *std::max_element(curve.simulated.begin(), curve.simulated.end()) -
+                       *std::min_element(curve.simulated.begin(), curve.simulated.end());
+  if (va > 0 && vb > 0) curve.correlation = (ms - m * s / count) / std::sqrt(va * vb);
+  if (rate_square > 0 && range > least_motion()) curve.lag = -by_rate / rate_square;
+}
+
+ComparedCurve curve_of(const std::string& name, const std::string& unit, const VectorXd& measured,
+                       double measured_dt, const VectorXd& simulated, double dt,
+                       const Comparison& at) {
+  ComparedCurve curve{name, unit, {}, {}};
+  for (const double t : at.times) {
+    curve.measured.push_back(interpolated(measured, measured_dt, t - at.shift));
+    curve.simulated.push_back(interpolated(simulated, dt, t));
+  }
+  summarize(curve, at.times);
+  return curve;
+}
+
+// Times at which a foot takes load after it was in the air.
+std::vector<double> landings_of(const VectorXd& share, double dt) {
+  std::vector<double> found;
+  double air = 0;
+  bool flying = false;
+  for (Index k = 0; k < share.size(); ++k) {
+    air = share[k] < kInAir ? air + dt : 0;
+    if (air >= kAirTime) flying = true;
+    if (!flying || share[k] < kLanded) continue;
+    found.push_back(dt * static_cast<double>(k));
+    flying = false;
+  }
+  return found;
+}
+
+void match_landings(Side foot, const std::vector<double>& measured,
+                    const std::vector<double>& simulated, Comparison& result) {
+  const auto within = [&](double t) { return t >= result.begin && t <= result.end; };
+  std::vector<char> used(simulated.size(), 0);
+  for (const double row : measured) {
+    const double t = row + result.shift;
+    if (!within(t)) continue;
+    size_t best = simulated.size();
+    for (size_t i = 0; i < simulated.size(); ++i)
+      if (!used[i] && std::abs(simulated[i] - t) < kSameLanding &&
+          (best == simulated.size() || std::abs(simulated[i] - t) < std::abs(simulated[best] - t)))
+        best = i;
+    if (best == simulated.size()) {
+      ++result.unmatched_landings;
+      continue;
+    }
+    used[best] = 1;
+    result.landings.push_back({foot, t, simulated[best]});
+  }
+  for (size_t i = 0; i < simulated.size(); ++i)
+    if (!used[i] && within(simulated[i])) ++result.unmatched_landings;
+}
+
+VectorXd share_of(const VectorXd& left, const VectorXd& right) {
+  VectorXd share(left.size());
+  const double least = 0.1 * std::max(0.0, (left + right).mean());
+  for (Index k = 0; k < left.size(); ++k) {
+    const double sum = left[k] + right[k];
+    share[k] = sum > least ? std::clamp(left[k] / sum, 0.0, 1.0) : 0.5;
+  }
+  return share;
+}
+
+void compare_loads(const SimulationLog& log, const SensorTable& sensors, Comparison& result) {
+  const auto count = static_cast<Index>(log.samples.size());
+  std::array<VectorXd, 2> simulated = {VectorXd(count), VectorXd(count)}, measured;
+  for (Index k = 0; k < count; ++k)
+    for (const size_t foot : {0u, 1u})
+      simulated[foot][k] = log.samples[static_cast<size_t>(k)].foot_force[foot].z();
+  for (const size_t foot : {0u, 1u}) {
+    simulated[foot] = low_pass(simulated[foot], log.dt, kLoadBand);
+    measured[foot] =
+        low_pass(sensors.foot_load.col(static_cast<Index>(foot)), sensors.dt, kLoadBand);
+    result.loads.push_back(curve_of(foot == 0 ? "left" : "right", "N", measured[foot], sensors.dt,
+                                    simulated[foot], log.dt, result));
+  }
+  const VectorXd measured_share = share_of(measured[0], measured[1]),
+                 simulated_share = share_of(simulated[0], simulated[1]);
+  result.loads.push_back(
+      curve_of("left share", "", measured_share, sensors.dt, simulated_share, log.dt, result));
+  for (const Side foot : {Side::left, Side::right}) {
+    const auto share = [&](const VectorXd& left) {
+      return foot == Side::left ? left : VectorXd(1 - left.array());
+    };
+    match_landings(foot, landings_of(share(measured_share), sensors.dt),
+                   landings_of(share(simulated_share), log.dt), result);
+  }
+  std::sort(result.landings.begin(), result.landings.end(),
+            [](const auto& a, const auto& b) { return a.simulated < b.simulated; });
+}
+
+void compare_imu(const RobotModel& model, const SimulationLog& log, const SensorTable& sensors,
+                 Comparison& result) {
+  const SensorDescription& description = model.description().sensors;
+  const int link = description.imu_link.empty() ? 0 : model.find_link(description.imu_link);
+  const auto count = static_cast<Index>(log.samples.size());
+  MatrixXd velocity(count, 3), gyro(count, 3), acceleration(count, 3);
+  std::vector<Eigen::Matrix3d> rotation;
+  RobotData data(model);
+  for (Index k = 0; k < count; ++k) {
+    const RobotState& state = log.samples[static_cast<size_t>(k)].state;
+    update_velocities(model, state, data);
+    const Eigen::Isometry3d pose = link_pose(model, data, link);
+    const int body = model.links()[static_cast<size_t>(link)].body;
+    velocity.row(k) = point_velocity(data, body, pose * description.imu_position).transpose();
+    gyro.row(k) =
+        (pose.linear().transpose() * data.angular_velocity[static_cast<size_t>(body)]).transpose();
+    rotation.push_back(pose.linear());
+  }
+  for (Index k = 0; k < count; ++k) {
+    const Index a = std::max<Index>(0, k - 1), b = std::min(count - 1, k + 1);
+    const Vector3d change = (velocity.row(b) - velocity.row(a)).transpose() /
+                            (log.dt * static_cast<double>(std::max<Index>(1, b - a)));
+    acceleration.row(k) =
+        (rotation[static_cast<size_t>(k)].transpose() * (change + Vector3d(0, 0, kGravity)))
+            .transpose();
+  }
+  const auto add = [&](const char* name, const char* unit, const MatrixXd& measured,
+                       const MatrixXd& simulated) {
+    if (measured.size() == 0) return;
+    for (Index i = 0; i < 3; ++i)
+      result.imu.push_back(curve_of(std::string(name) + "." + "xyz"[i], unit,
+                                    low_pass(measured.col(i), sensors.dt, kLoadBand), sensors.dt,
+                                    low_pass(simulated.col(i), log.dt, kLoadBand), log.dt, result));
+  };
+  add("acc", "m/s^2", sensors.acceleration, acceleration);
+  add("gyro", "rad/s", sensors.gyro, gyro);
+}
+
+}  // namespace
+
+Comparison compare(const RobotModel& model, const SimulationLog& log,
+                   const std::optional<AngleTable>& measured, const SensorTable& sensors,
+                   const CompareOptions& options, const std::string& file) {
+  const AngleTable simulated = angles_of(model, log);
+  Comparison result;
+  double lasts = 0, interval = log.dt;
+  if (measured) {
+    lasts = measured->duration();
+    interval = std::max(interval, measured->dt);
+    result.shift =
+        options.shift ? *options.shift : -time_shift(model, simulated, *measured, kReach);
+    if (std::abs(measured->dt - log.dt) > 1e-6)
+      result.notes.push_back("the recording has " + text::brief(1 / measured->dt) +
+                             " rows per second, the run " + text::brief(1 / log.dt) +
+                             ": both are compared at the slower rate");
+  } else {
+    result.shift = options.shift.value_or(0);
+    if (!options.shift)
+      result.notes.push_back(
+          "without joint angles the time shift is not found; both begin at 0 (--shift)");
+  }
+  const Index sensor_rows = std::max(
+      {sensors.foot_load.rows(), sensors.acceleration.rows(), sensors.gyro.rows(), Index{0}});
+  if (sensor_rows > 0 && !measured) lasts = sensors.dt * static_cast<double>(sensor_rows - 1);
+  result.begin = std::max({0.0, result.shift, options.begin});
+  result.end = std::min({simulated.duration(), lasts + result.shift, options.end});
+  if (result.end - result.begin < 10 * interval)
+    fail(ErrorCode::bad_file,
+         file + ": the recording lasts from " + text::fixed(result.shift, 3) + " to " +
+             text::fixed(result.shift + lasts, 3) + " s of the run, which lasts " +
+             text::fixed(simulated.duration(), 3) + " s; they have no time in common");
+  for (Index k = 0;; ++k) {
+    const double t = result.begin + interval * static_cast<double>(k);
+    if (t > result.end) break;
+    result.times.push_back(t);
+  }
+  if (measured) {
+    for (const std::string& line :
+         motion_complaints(model, simulated, *measured, -result.shift, result.begin, result.end))
+      result.notes.push_back(line);
+    std::string missing;
+    for (int j = 0; j < model.dof_count(); ++j) {
+      const std::string& name = model.dofs()[static_cast<size_t>(j)].name;
+      if (!measured->has[static_cast<size_t>(j)]) {
+        missing += (missing.empty() ? "" : ", ") + name;
+        continue;
+      }
+      result.joints.push_back(
+          curve_of(name, model.dofs()[static_cast<size_t>(j)].prismatic ? "m" : "rad",
+                   measured->theta.col(j), measured->dt, simulated.theta.col(j), log.dt, result));
+    }
+    if (!missing.empty()) result.notes.push_back("the recording does not have " + missing);
+  }
+  if (sensors.foot_load.rows() > 0 && model.has_soles()) compare_loads(log, sensors, result);
+  if (sensors.acceleration.rows() > 0 || sensors.gyro.rows() > 0)
+    compare_imu(model, log, sensors, result);
+  return result;
+}
+
+SimulationLog measured_log(const SimulationLog& log, const RobotModel& model,
+                           const AngleTable& measured, double shift) {
+  SimulationLog result = log;
+  for (size_t k = 0; k < result.samples.size(); ++k) {
+    const double t = log.dt * static_cast<double>(k) - shift;
+    if (t < 0 || t > measured.duration()) continue;
+    for (int j = 0; j < model.dof_count(); ++j)
+      if (measured.has[static_cast<size_t>(j)])
+        result.samples[k].state.theta[j] = interpolated(measured.theta.col(j), measured.dt, t);
+  }
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,61 @@
+#pragma once
+// Servo constants from a recording: the command of each joint, the angle that it measured and the
+// torque that it carried. The output-error method: the constants with which the simulated servo
+// (identify/servo_response.hpp) comes nearest to the measured angle, by least squares.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/identify/joint_loads.hpp"
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+struct IdentifyOptions {
+  bool per_type = false;  ///< one set of constants for all joints of one motor type
+  RobotStand stand = RobotStand::feet;
+  double longest_delay = 0.1;  ///< [s]
+  int threads = 0;             ///< 0: all cores
+};
+
+/// A value with its 95 % interval.
+struct ServoEstimate {
+  double value = 0, lower = 0, upper = 0;
+  bool known = false;  ///< the recording determines it to better than half its value
+};
+
+/// What was found for one joint.
+struct IdentifiedJoint {
+  std::string joint, type;
+  bool moved = false;      ///< false: only the offset is found
+  ServoEstimate delay;     ///< [s]
+  ServoEstimate kp;        ///< [N m/rad]
+  ServoEstimate damping;   ///< kd + viscous [N m s/rad]
+  ServoEstimate viscous;   ///< damping less the robot's kd [N m s/rad]
+  ServoEstimate coulomb;   ///< [N m]
+  ServoEstimate backlash;  ///< [rad]
+  ServoEstimate offset;    ///< of the measured angle against the command [rad]
+  double lag = 0;          ///< by which the angle is behind a slow command [s]
+  double sag = 0;          ///< change of the angle from the unloaded to the loaded foot [rad]
+  bool has_sag = false;
+  double mean_error = 0, largest_error = 0, largest_at = 0;  ///< measured - simulated [rad], [s]
+  double command_error = 0;                                  ///< mean |measured - command| [rad]
+  std::vector<std::string> confounded;  ///< what could not be told apart, and what would
+};
+
+struct Identification {
+  std::vector<IdentifiedJoint> joints;  ///< in the robot's order; those the recording has
+  double seconds = 0;                   ///< length of the recording [s]
+};
+
+/// Throws Error(bad_file) "`place`: what" for a recording that cannot be of this command: a joint
+/// that does not follow, counters that wrap, all zeros, an answer that comes too late or too early.
+Identification identify(const RobotModel& model, const RecordedMotion& motion,
+                        const IdentifyOptions& options, const std::string& place,
+                        const Progress& progress = {});
+
+/// Motor types: joints with the same limits and servo, by dof. Named by their first joint.
+std::vector<std::string> motor_types(const RobotModel& model);
+
+}  // namespace ayumi

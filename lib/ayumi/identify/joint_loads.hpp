@@ -1,0 +1,32 @@
+#pragma once
+// The torque that each joint has to carry along a recorded motion: inverse dynamics of the rigid
+// tree, with the ground's load shared between the feet.
+
+#include "ayumi/identify/recorded_motion.hpp"
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+/// What carries the robot while it moves.
+enum class RobotStand {
+  feet,  ///< it stands or walks on level ground; from the joint angles
+  fixed  ///< its root is held upright and at rest: on a stand, or a robot without feet
+};
+
+struct JointLoads {
+  Eigen::MatrixXd torque;   ///< rows x dof: of gravity, inertia and ground on the joint [N m, N]
+  Eigen::MatrixXd inertia;  ///< rows x dof: of what the joint moves, root held [kg m^2, kg]
+  Eigen::MatrixXd rate, acceleration;  ///< rows x dof, of the smoothed motion
+  Eigen::VectorXd left_share;          ///< of the ground's load on the left foot; empty when fixed
+};
+
+/// Rows as those of `motion.measured`; joints that it does not have keep the home posture. Angles
+/// are smoothed first (kLoadCutoff). While both feet support, the left foot's share is that of
+/// `motion.sensors.foot_load` where the file has it, else what the ZMP asks for.
+JointLoads joint_loads(const RobotModel& model, const RecordedMotion& motion, RobotStand stand);
+
+/// x without what is faster than `cutoff` [Hz], not delayed: a Butterworth filter of second order
+/// forwards and backwards.
+Eigen::VectorXd low_pass(const Eigen::VectorXd& x, double dt, double cutoff);
+
+}  // namespace ayumi

@@ -1,0 +1,33 @@
+#pragma once
+// What a robot was sent and what it measured, by joint, on one clock.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace ayumi {
+
+/// Joint angles at a fixed rate. Row k is at time k dt.
+struct AngleTable {
+  double dt = 0.001;      ///< [s]
+  Eigen::MatrixXd theta;  ///< rows x dof [rad, m]
+  std::vector<char> has;  ///< by dof: the file has this joint
+  /// Step of the values of each dof, 0 where they are not rounded [rad, m].
+  Eigen::VectorXd resolution;
+
+  double duration() const { return dt * static_cast<double>(theta.rows() - 1); }
+};
+
+/// What a robot measured beside its joints. Vectors that the file does not have are empty.
+struct SensorTable {
+  double dt = 0.001;                   ///< [s]
+  Eigen::MatrixXd foot_load;           ///< rows x (left, right) [N], of the file's own calibration
+  Eigen::MatrixXd acceleration, gyro;  ///< rows x (x, y, z) [m/s^2, rad/s]
+};
+
+struct RecordedMotion {
+  AngleTable command, measured;
+  SensorTable sensors;
+};
+
+}  // namespace ayumi

@@ -1,0 +1,227 @@
+#include "ayumi/identify/recording_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+// Range of a command below which its joint stands still [rad, m]. Chosen: a hundred counts of a
+// small servo.
+constexpr double kMoves = 0.5 * kDegree;
+
+// A recording may end this much earlier or later than its command, in parts of it, and in seconds.
+// Chosen: recorders start and stop by hand.
+constexpr double kLengthShare = 0.02, kLengthTime = 0.25;
+
+// Squared correlation with the command: from the first on, slope and sign have a meaning; below the
+// second, the joint does not follow. Chosen.
+constexpr double kFollows = 0.8, kUnrelated = 0.5;
+
+// A joint may move by this factor more or less than its command. Chosen: a soft servo in a quick
+// motion moves less.
+constexpr double kScale = 1.5;
+
+// Mean distance from the command that no zero offset explains [rad]. Chosen: more than a
+// tooth of a servo's horn.
+constexpr double kAway = 8 * kDegree;
+
+// Counts after which a counter of 16 bits begins again. Definition.
+constexpr double kCounterRange = 65536;
+
+// Steps of the search for a time shift [s], and how much better a shift has to fit before it is
+// believed. Chosen: a wrong shift fits many times worse.
+constexpr double kShiftStep = 0.01, kShiftGain = 0.25;
+
+// Time that a recording and its command must share, in parts of the shorter. Chosen: a
+// short end without motion fits anywhere.
+constexpr double kLeastOverlap = 0.5;
+
+double value_at(const AngleTable& table, Index dof, double t) {
+  const double at = t / table.dt;
+  const Index last = table.theta.rows() - 1;
+  if (at <= 0) return table.theta(0, dof);
+  const auto k = static_cast<Index>(at);
+  if (k >= last) return table.theta(last, dof);
+  const double u = at - static_cast<double>(k);
+  return (1 - u) * table.theta(k, dof) + u * table.theta(k + 1, dof);
+}
+
+double range(const AngleTable& table, Index dof) {
+  return table.theta.col(dof).maxCoeff() - table.theta.col(dof).minCoeff();
+}
+
+// Joints of both tables whose command moves, the liveliest first.
+std::vector<Index> moving(const AngleTable& command, const AngleTable& measured) {
+  std::vector<Index> dofs;
+  for (Index j = 0; j < command.theta.cols(); ++j)
+    if (command.has[static_cast<size_t>(j)] && measured.has[static_cast<size_t>(j)] &&
+        range(command, j) > kMoves)
+      dofs.push_back(j);
+  std::stable_sort(dofs.begin(), dofs.end(),
+                   [&](Index a, Index b) { return range(command, a) > range(command, b); });
+  return dofs;
+}
+
+// Distance of the joints' movements when `measured` is `shift` behind, in parts of these movements;
+// means are taken off, since zero offsets are no matter here. Infinite where both have too little
+// time in common.
+double distance(const AngleTable& command, const AngleTable& measured,
+                const std::vector<Index>& dofs, double shift, double step) {
+  const double begin = std::max(0.0, shift),
+               end = std::min(measured.duration(), command.duration() + shift);
+  if (end - begin < kLeastOverlap * std::min(measured.duration(), command.duration()))
+    return HUGE_VAL;
+  double total = 0;
+  for (const Index j : dofs) {
+    double m = 0, c = 0, mm = 0, cc = 0, mc = 0, n = 0;
+    for (double t = begin; t <= end; t += step) {
+      const double x = value_at(measured, j, t), y = value_at(command, j, t - shift);
+      m += x, c += y, mm += x * x, cc += y * y, mc += x * y, ++n;
+    }
+    const double vm = mm - m * m / n, vc = cc - c * c / n, both = mc - m * c / n;
+    total += vm + vc > 0 ? (vm + vc - 2 * both) / (vm + vc) : 1;
+  }
+  return total;
+}
+
+struct Relation {
+  double slope = 0, square = 0;  // squared correlation
+  double away = 0;               // mean distance
+};
+Relation relation(const AngleTable& command, const AngleTable& measured, Index dof, double shift,
+                  double begin, double end) {
+  double x = 0, y = 0, xx = 0, yy = 0, xy = 0, away = 0;
+  double n = 0;
+  for (Index k = 0; k < measured.theta.rows(); ++k) {
+    const double at = measured.dt * static_cast<double>(k) - shift;
+    if (at < std::max(0.0, begin) || at > std::min(command.duration(), end)) continue;
+    ++n;
+    const double c = value_at(command, dof, at);
+    const double m = measured.theta(k, dof);
+    x += c, y += m, xx += c * c, yy += m * m, xy += c * m, away += m - c;
+  }
+  n = std::max(1.0, n);
+  const double sxx = xx - x * x / n, syy = yy - y * y / n, sxy = xy - x * y / n;
+  Relation r;
+  r.slope = sxx > 0 ? sxy / sxx : 0;
+  r.square = sxx > 0 && syy > 0 ? sxy * sxy / (sxx * syy) : 0;
+  r.away = std::abs(away / n);
+  return r;
+}
+
+}  // namespace
+
+double least_motion() { return kMoves; }
+
+double time_shift(const RobotModel&, const AngleTable& command, const AngleTable& measured,
+                  double reach) {
+  std::vector<Index> dofs = moving(command, measured);
+  if (dofs.size() > 4) dofs.resize(4);
+  if (dofs.empty()) return 0;
+  double best = 0, least = distance(command, measured, dofs, 0, kShiftStep);
+  const auto search = [&](double from, double to, double step, double sampling) {
+    for (double shift = from; shift <= to + 1e-9; shift += step) {
+      const double d = distance(command, measured, dofs, shift, sampling);
+      if (d < least) least = d, best = shift;
+    }
+  };
+  search(-reach, reach, kShiftStep, kShiftStep);
+  const double fine = std::max(command.dt, measured.dt);
+  least = distance(command, measured, dofs, best, fine);
+  search(best - kShiftStep, best + kShiftStep, std::min(0.001, fine), fine);
+  return best;
+}
+
+namespace {
+
+// What is wrong with sign or unit of a joint that follows; empty: nothing.
+std::string wrong_sign_or_unit(const Relation& r) {
+  if (r.square < kFollows) return "";
+  const double factor = std::abs(r.slope);
+  if (r.slope < 0) return "moves against its command; change the sign of its encoder";
+  const std::string times = "moves " + text::brief(factor, 3) + " times as far as its command; ";
+  if (std::abs(factor * kDegree - 1) < 0.2 || std::abs(factor / kDegree - 1) < 0.2)
+    return times + "one of them is in degrees (--unit deg)";
+  if (factor > kScale || factor < 1 / kScale)
+    return times + "is this the recording of another robot, or are its counts per degree wrong?";
+  return "";
+}
+
+}  // namespace
+
+std::vector<std::string> motion_complaints(const RobotModel& model, const AngleTable& command,
+                                           const AngleTable& measured, double shift, double begin,
+                                           double end) {
+  std::vector<std::string> complaints;
+  for (const Index j : moving(command, measured)) {
+    const Relation r = relation(command, measured, j, shift, begin, end);
+    std::string wrong = wrong_sign_or_unit(r);
+    if (range(measured, j) <= 0)
+      wrong = "stays at " + text::brief(measured.theta(0, j) / kDegree, 4) +
+              " deg while its command moves by " + text::brief(range(command, j) / kDegree, 3) +
+              " deg";
+    else if (wrong.empty() && r.square < kUnrelated)
+      wrong = "does not follow its command (correlation " + text::fixed(std::sqrt(r.square), 2) +
+              "); is this the recording of another command or of another robot?";
+    else if (wrong.empty() && r.away > kAway &&
+             std::abs(r.away - kCounterRange * measured.resolution[j]) < kAway)
+      wrong = "is " + text::brief(r.away / kDegree, 3) +
+              " deg away from its command, which is 65536 counts: its counter wrapped";
+    else if (wrong.empty() && r.away > kAway)
+      wrong = "is " + text::brief(r.away / kDegree, 3) +
+              " deg away from its command in the mean; is this the recording of another robot?";
+    if (!wrong.empty())
+      complaints.push_back(model.dofs()[static_cast<size_t>(j)].name + " " + wrong);
+  }
+  return complaints;
+}
+
+void require_answer(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
+                    double longest_delay, const std::string& file) {
+  const auto complain = [&](const std::string& what) {
+    fail(ErrorCode::bad_file, file + ": " + what);
+  };
+  std::vector<Index> dofs = moving(command, measured);
+  if (dofs.empty())
+    complain("no joint of this recording moves by " + text::brief(kMoves / kDegree) +
+             " deg in its command; record a motion");
+  const double lasts = measured.duration(), asked = command.duration();
+  if (std::abs(lasts - asked) > kLengthShare * asked + kLengthTime)
+    complain("lasts " + text::fixed(lasts, 3) + " s, but its command lasts " +
+             text::fixed(asked, 3) +
+             " s; it is cut, of another rate (--rate), or the answer to another command");
+  for (const Index j : dofs) {
+    const std::string wrong =
+        wrong_sign_or_unit(relation(command, measured, j, 0, 0, command.duration()));
+    if (!wrong.empty()) complain(model.dofs()[static_cast<size_t>(j)].name + " " + wrong);
+  }
+  const double reach = std::min(5.0, 0.3 * asked);
+  const double shift = time_shift(model, command, measured, reach);
+  // One row earlier than its command is how recorders count.
+  if (shift > longest_delay || shift < -2 * measured.dt) {
+    std::vector<Index> few = dofs;
+    if (few.size() > 4) few.resize(4);
+    double near = distance(command, measured, few, 0, kShiftStep);
+    near = std::min(near, distance(command, measured, few, longest_delay, kShiftStep));
+    if (distance(command, measured, few, shift, kShiftStep) < kShiftGain * near)
+      complain("the angles are " + text::fixed(1000 * std::abs(shift), 0) + " ms " +
+               (shift > 0 ? "behind" : "ahead of") +
+               " their command; the recording is shifted, so let both begin at the same time");
+  }
+  const std::vector<std::string> wrong = motion_complaints(
+      model, command, measured, std::clamp(shift, 0.0, longest_delay), 0, command.duration());
+  if (!wrong.empty()) complain(wrong.front());
+}
+
+}  // namespace ayumi

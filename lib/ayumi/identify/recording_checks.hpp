@@ -1,0 +1,32 @@
+#pragma once
+// Whether a recording can be the answer to a command.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/identify/recorded_motion.hpp"
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+/// Range of a command below which its joint stands still [rad, m].
+double least_motion();
+
+/// Time by which `measured` is behind `command` [s], from the joints that move most, within
+/// -`reach`..`reach`, in steps of the slower of both.
+double time_shift(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
+                  double reach);
+
+/// What is wrong with the joints of `measured`, which is `shift` [s] behind, from `begin` to `end`
+/// of the command's time: another sign or unit, or a joint that does not follow. One line each.
+std::vector<std::string> motion_complaints(const RobotModel& model, const AngleTable& command,
+                                           const AngleTable& measured, double shift, double begin,
+                                           double end);
+
+/// Throws Error(bad_file) "`file`: what" for the first of these, and where `measured` is of another
+/// length than the command, comes earlier or later than `longest_delay` [s], or has no joint that
+/// moves.
+void require_answer(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
+                    double longest_delay, const std::string& file);
+
+}  // namespace ayumi

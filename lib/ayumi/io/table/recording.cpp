@@ -1,0 +1,509 @@
+#include "ayumi/io/table/recording.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string_view>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/table/comma_cells.hpp"
+#include "ayumi/io/table/csv_dialect.hpp"
+#include "ayumi/io/table/table_columns.hpp"
+
+namespace ayumi {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kRadPerDegree = M_PI / 180;
+
+// Speed of a joint, in its motor's limit, above which a step between two rows is no motion. Chosen:
+// commands may step, and measured angles then move at most twice as fast as the motor's limit.
+constexpr double kJumpSpeed = 5;
+
+// The same speed where the robot's files give no limit [rad/s]. Chosen: five times that of quick
+// hobby servos.
+constexpr double kJumpRate = 50;
+
+// Steps of so few counts are never jumps. Chosen: two degrees of a coarse encoder are one step of
+// it.
+constexpr double kJumpCounts = 4;
+
+// A time step this far from the usual one, in parts of it, is a gap. Chosen: half a sample.
+constexpr double kGap = 0.5;
+
+// Movement of a device without a joint that is no motion [counts]. Chosen: 0.05 degrees.
+constexpr double kStillCounts = 10;
+
+[[noreturn]] void complain(const std::string& file, const std::string& what) {
+  fail(ErrorCode::bad_file, file + ": " + what);
+}
+
+[[noreturn]] void complain(const std::string& file, size_t line, const std::string& what) {
+  fail(ErrorCode::bad_file, file + ":" + std::to_string(line) + ": " + what);
+}
+
+std::optional<double> number_of(std::string_view cell) {
+  double value = 0;
+  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (cell.empty() || error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+  return value;
+}
+
+// A file that was put together from two has lines of both kinds.
+void require_one_line_end(const std::string& bytes, const std::string& file) {
+  bool with = false, without = false;
+  size_t line = 0;
+  for (size_t at = bytes.find('\n'); at != std::string::npos; at = bytes.find('\n', at + 1)) {
+    ++line;
+    (at > 0 && bytes[at - 1] == '\r' ? with : without) = true;
+    if (with && without)
+      complain(file, line,
+               std::string("this line ends with ") +
+                   (bytes[at - 1] == '\r' ? "CR LF, those before with LF"
+                                          : "LF, those before with CR LF") +
+                   "; the file may be put together from two, so give it one kind of line end");
+  }
+}
+
+// Rows of numbers without names; `line` of each.
+struct BareRows {
+  std::vector<std::vector<double>> rows;
+  std::vector<size_t> lines;
+  double dt = 0;  // [s], 0: not in the file
+};
+
+std::vector<double> numbers_of(const std::vector<std::string_view>& cells, size_t begin, size_t end,
+                               const std::string& file, size_t line) {
+  std::vector<double> values;
+  for (size_t c = begin; c < end; ++c) {
+    const auto value = number_of(cells[c]);
+    if (!value || !std::isfinite(*value))
+      complain(file, line,
+               "column " + std::to_string(c + 1) + ": '" + std::string(cells[c].substr(0, 24)) +
+                   "' is not a" + (value ? " finite" : "") + " number");
+    values.push_back(*value);
+  }
+  return values;
+}
+
+bool is_sequence(const std::vector<std::string_view>& cells) {
+  return std::any_of(cells.begin(), cells.end(), [](std::string_view c) { return c == "R"; });
+}
+
+// A sequence: interval, 2, targets, words and requests. Only the devices of the robot are read.
+BareRows sequence_rows(std::string_view rest, const std::string& file, size_t devices) {
+  struct Row {
+    int at;
+    std::vector<double> counts;
+    size_t line;
+  };
+  std::vector<Row> rows;
+  size_t line = 0, columns = 0;
+  int now = 0, tick = 0;
+  while (!rest.empty()) {
+    const std::string_view text = take_line(rest);
+    ++line;
+    if (text.empty()) continue;
+    const std::vector<std::string_view> cells = cells_of(text);
+    const auto interval = number_of(cells[0]);
+    if (cells.size() < 3 || !interval || *interval < 1 || *interval != std::round(*interval) ||
+        (cells[1] != "2" && cells[1] != "3"))
+      complain(file, line,
+               "expected an interval [ms], then 2 (targets) or 3 (a command to a device)");
+    if (cells[1] == "2") {
+      if (columns != 0 && cells.size() != columns)
+        complain(file, line,
+                 std::to_string(cells.size()) + " columns, but the rows before have " +
+                     std::to_string(columns));
+      columns = cells.size();
+      if (columns < 2 + devices)
+        complain(file, line,
+                 std::to_string(columns) + " columns are too few for the robot's " +
+                     std::to_string(devices) + " devices");
+      if (!rows.empty()) tick = std::gcd(tick, now - rows.back().at);
+      rows.push_back({now, numbers_of(cells, 2, 2 + devices, file, line), line});
+    }
+    now += static_cast<int>(*interval);
+  }
+  if (rows.size() < 2) complain(file, "fewer than two rows with targets");
+  BareRows result;
+  result.dt = 0.001 * tick;
+  for (size_t r = 0; r + 1 < rows.size(); ++r)
+    for (int t = rows[r].at; t < rows[r + 1].at; t += tick) {
+      const double u = static_cast<double>(t - rows[r].at) / (rows[r + 1].at - rows[r].at);
+      std::vector<double> counts = rows[r].counts;
+      for (size_t c = 0; c < counts.size(); ++c)
+        counts[c] += u * (rows[r + 1].counts[c] - counts[c]);
+      result.rows.push_back(counts);
+      result.lines.push_back(rows[r].line);
+    }
+  result.rows.push_back(rows.back().counts);
+  result.lines.push_back(rows.back().line);
+  return result;
+}
+
+BareRows bare_rows(const std::string& bytes, const std::string& file, size_t needed,
+                   const std::string& what) {
+  BareRows result;
+  std::string_view rest = bytes;
+  size_t line = 0, columns = 0;
+  while (!rest.empty()) {
+    const std::string_view text = take_line(rest);
+    ++line;
+    if (text.empty()) continue;
+    const std::vector<std::string_view> cells = cells_of(text);
+    if (columns == 0) columns = cells.size();
+    if (cells.size() != columns)
+      complain(file, line,
+               std::to_string(cells.size()) + " columns, but the rows before have " +
+                   std::to_string(columns));
+    if (columns < needed)
+      complain(file, line,
+               std::to_string(columns) + " columns, but " + what + " needs " +
+                   std::to_string(needed) + "; is this a recording of another robot?");
+    result.rows.push_back(numbers_of(cells, 0, columns, file, line));
+    result.lines.push_back(line);
+  }
+  if (result.rows.size() < 2) complain(file, "fewer than two rows");
+  return result;
+}
+
+double jump_limit(const RobotModel& model, int dof, double dt, double resolution) {
+  const double speed = model.limits().speed[dof];
+  const double rate = std::isfinite(speed) && speed > 0 ? kJumpSpeed * speed : kJumpRate;
+  return std::max(rate * dt, kJumpCounts * resolution);
+}
+
+void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
+                    const RobotModel& model, const std::string& file) {
+  bool any = false;
+  for (int j = 0; j < model.dof_count(); ++j) {
+    if (!table.has[static_cast<size_t>(j)]) continue;
+    const VectorXd theta = table.theta.col(j);
+    any = any || theta.cwiseAbs().maxCoeff() > 0;
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    const double limit = jump_limit(model, j, table.dt, table.resolution[j]);
+    for (Index k = 1; k < theta.size(); ++k)
+      if (std::abs(theta[k] - theta[k - 1]) > limit)
+        complain(file, lines[static_cast<size_t>(k)],
+                 dof.name + " jumps by " +
+                     text::brief(std::abs(theta[k] - theta[k - 1]) / kRadPerDegree, 3) +
+                     " deg from the row before, which no motor does (limit " +
+                     text::brief(limit / kRadPerDegree, 3) +
+                     " deg): samples are missing, or the counter wrapped");
+    if (!dof.prismatic && theta.cwiseAbs().maxCoeff() > 2 * M_PI)
+      complain(file, dof.name + " reaches " + text::brief(theta.cwiseAbs().maxCoeff(), 4) +
+                         " rad, more than a turn: is the unit degrees? (--unit deg)");
+  }
+  if (!any) complain(file, "every angle is 0; the robot or its recorder was not running");
+}
+
+AngleTable empty_table(const RobotModel& model, Index rows, double dt) {
+  AngleTable table;
+  table.dt = dt;
+  table.theta = MatrixXd::Zero(rows, model.dof_count());
+  table.has.assign(static_cast<size_t>(model.dof_count()), 0);
+  table.resolution = VectorXd::Zero(model.dof_count());
+  return table;
+}
+
+AngleTable angles_of(const BareRows& bare, const RobotModel& model, const std::string& file,
+                     size_t first, double dt) {
+  AngleTable table = empty_table(model, static_cast<Index>(bare.rows.size()), dt);
+  std::vector<char> used(bare.rows.front().size(), 0);
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const EncoderDescription& encoder = model.dofs()[static_cast<size_t>(j)].encoder;
+    if (encoder.device < 1) continue;
+    const size_t column = first + static_cast<size_t>(encoder.device) - 1;
+    used[column] = 1;
+    table.has[static_cast<size_t>(j)] = 1;
+    table.resolution[j] = kRadPerDegree / std::abs(encoder.counts_per_degree);
+    for (size_t k = 0; k < bare.rows.size(); ++k)
+      table.theta(static_cast<Index>(k), j) =
+          bare.rows[k][column] * kRadPerDegree / encoder.counts_per_degree;
+  }
+  require_motion(table, bare.lines, model, file);
+  return table;
+}
+
+size_t device_count(const RobotModel& model, const std::string& file) {
+  int devices = 0;
+  for (const Dof& dof : model.dofs()) devices = std::max(devices, dof.encoder.device);
+  if (devices == 0)
+    complain(file, "the rows are counts, but the robot '" + model.name() +
+                       "' has no encoders; add \"encoders\" to its sidecar");
+  return static_cast<size_t>(devices);
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// Times of a table with names: the column and its unit in seconds.
+struct TimeColumn {
+  int column = -1;
+  double unit = 1;
+};
+TimeColumn time_of(const NumberTable& table) {
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    const std::string name = lower(table.columns[c]);
+    const int at = static_cast<int>(c);
+    if (name == "t" || name == "time" || name == "t[s]" || name == "time[s]" || name == "time_s")
+      return {at, 1};
+    if (name == "t[ms]" || name == "time[ms]" || name == "time_ms" || name == "t_ms")
+      return {at, 0.001};
+  }
+  return {};
+}
+
+// Rows are numbered from the first data row, since the lines of a plain table are not known here.
+double interval_of(const NumberTable& table, const RecordingOptions& options,
+                   const std::string& file) {
+  const Index rows = table.values.rows();
+  if (rows < 2) complain(file, "fewer than two rows");
+  const TimeColumn time = time_of(table);
+  if (time.column < 0) return options.rate > 0 ? 1 / options.rate : 0.001;
+  const VectorXd t = time.unit * table.values.col(time.column);
+  std::vector<double> steps;
+  for (Index k = 1; k < rows; ++k) steps.push_back(t[k] - t[k - 1]);
+  std::vector<double> sorted = steps;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
+  const double usual = sorted[sorted.size() / 2];
+  if (!(usual > 0)) complain(file, "time does not increase");
+  for (size_t k = 0; k < steps.size(); ++k) {
+    const std::string at = "after t = " + text::exact(t[static_cast<Index>(k)]) + " s (data row " +
+                           std::to_string(k + 1) + ") ";
+    if (!(steps[k] > 0)) complain(file, at + "time does not increase");
+    if (steps[k] > (1 + kGap) * usual)
+      complain(file, at + std::to_string(std::max(1L, std::lround(steps[k] / usual) - 1)) +
+                         " samples are missing: " + text::brief(1000 * steps[k]) +
+                         " ms to the next row, usually " + text::brief(1000 * usual) + " ms");
+  }
+  return (t[rows - 1] - t[0]) / static_cast<double>(rows - 1);
+}
+
+// The joint of a column and the factor to radians; `has_unit` when the name says the unit.
+struct JointColumn {
+  int dof = -1;
+  double factor = 1;
+  bool counts = false;
+};
+JointColumn joint_column(const std::string& column, const RobotModel& model, bool degrees,
+                         const std::string& file) {
+  std::string name = column, unit;
+  if (name.starts_with("theta.")) name = name.substr(6);
+  if (const size_t open = name.find('['); open != std::string::npos && name.back() == ']') {
+    unit = lower(name.substr(open + 1, name.size() - open - 2));
+    name = std::string(trimmed(name.substr(0, open)));
+  }
+  JointColumn result;
+  result.dof = model.find_dof(name);
+  if (result.dof < 0) return result;
+  const Dof& dof = model.dofs()[static_cast<size_t>(result.dof)];
+  if (unit.empty()) unit = dof.prismatic ? "m" : degrees ? "deg" : "rad";
+  if (unit == "deg" && !dof.prismatic) {
+    result.factor = kRadPerDegree;
+  } else if (unit == "counts" || unit == "pulses") {
+    if (dof.encoder.device < 1)
+      complain(file, "column '" + column + "': the joint has no encoder in the sidecar");
+    result.factor = kRadPerDegree / dof.encoder.counts_per_degree;
+    result.counts = true;
+  } else if (unit != (dof.prismatic ? "m" : "rad")) {
+    complain(file, "column '" + column + "': the unit '" + unit + "' is not rad, deg or counts");
+  }
+  return result;
+}
+
+AngleTable named_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
+                        const RecordingOptions& options) {
+  const NumberTable table = number_table(plain_table_text(bytes, file), file);
+  const double dt = interval_of(table, options, file);
+  AngleTable result = empty_table(model, table.values.rows(), dt);
+  bool any = false;
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    const JointColumn column = joint_column(table.columns[c], model, options.degrees, file);
+    if (column.dof < 0) continue;
+    const auto at = static_cast<size_t>(column.dof);
+    if (result.has[at])
+      complain(file, "column '" + table.columns[c] + "': the joint has a column before already");
+    any = true;
+    result.has[at] = 1;
+    result.theta.col(column.dof) = column.factor * table.values.col(static_cast<Index>(c));
+    if (column.counts) result.resolution[column.dof] = std::abs(column.factor);
+  }
+  if (!any)
+    complain(file, "no column is a joint of '" + model.name() + "'; its joints are " +
+                       text::join(model.dof_names(), ", ") +
+                       ". Is this a recording of another robot?");
+  std::vector<size_t> lines(static_cast<size_t>(table.values.rows()));
+  std::iota(lines.begin(), lines.end(), size_t{2} + table.header.size());
+  require_motion(result, lines, model, file);
+  return result;
+}
+
+double polynomial(const std::vector<double>& coefficients, double x) {
+  double value = 0;
+  for (const double c : coefficients) value = value * x + c;
+  return value;
+}
+
+MatrixXd axes_of(const BareRows& bare, const AxisReadings& axes) {
+  if (axes.columns.empty()) return {};
+  MatrixXd values(static_cast<Index>(bare.rows.size()), 3);
+  for (size_t k = 0; k < bare.rows.size(); ++k)
+    for (Index i = 0; i < 3; ++i)
+      values(static_cast<Index>(k), i) =
+          axes.scale[i] *
+          (bare.rows[k][static_cast<size_t>(axes.columns[static_cast<size_t>(i)] - 1)] -
+           axes.zero[i]);
+  return values;
+}
+
+SensorTable bare_sensors(const std::string& bytes, const std::string& file, const RobotModel& model,
+                         const RecordingOptions& options) {
+  const SensorDescription& sensors = model.description().sensors;
+  const bool cells = sensors.load_cells.contains("left") && sensors.load_cells.contains("right");
+  if (!cells && sensors.accelerometer.columns.empty() && sensors.gyro.columns.empty())
+    complain(file, "the rows are readings without names, but the sidecar of '" + model.name() +
+                       "' does not say what they are; add \"load_cells\" to its \"sensors\"");
+  int needed = 1;
+  for (const AxisReadings* axes : {&sensors.accelerometer, &sensors.gyro})
+    for (const int column : axes->columns) needed = std::max(needed, column);
+  for (const auto& [side, foot] : sensors.load_cells)
+    for (const int column : foot.columns) needed = std::max(needed, column);
+  const BareRows bare =
+      bare_rows(bytes, file, static_cast<size_t>(needed), "the sidecar's calibration");
+  SensorTable table;
+  table.dt = options.rate > 0 ? 1 / options.rate : 0.001;
+  table.acceleration = axes_of(bare, sensors.accelerometer);
+  table.gyro = axes_of(bare, sensors.gyro);
+  if (!cells) return table;
+  table.foot_load.resize(static_cast<Index>(bare.rows.size()), 2);
+  bool any = false;
+  for (size_t k = 0; k < bare.rows.size(); ++k)
+    for (const int side : {0, 1}) {
+      const LoadCells& foot = sensors.load_cells.at(side == 0 ? "left" : "right");
+      double sum = 0;
+      for (size_t c = 0; c < foot.columns.size(); ++c) {
+        const double reading = bare.rows[k][static_cast<size_t>(foot.columns[c] - 1)];
+        any = any || reading != 0;
+        sum += polynomial(foot.cells[c], reading);
+      }
+      table.foot_load(static_cast<Index>(k), side) = polynomial(foot.force, sum);
+    }
+  if (!any) complain(file, "every reading of the load cells is 0; the sensors were not running");
+  return table;
+}
+
+MatrixXd named_axes(const NumberTable& table, const std::string& name, const std::string& unit) {
+  MatrixXd values(table.values.rows(), 3);
+  Index i = 0;
+  for (const char* axis : {"x", "y", "z"}) {
+    int column = table.find(name + "." + axis + "[" + unit + "]");
+    if (column < 0) column = table.find(name + "_" + axis);
+    if (column < 0) return {};
+    values.col(i++) = table.values.col(column);
+  }
+  return values;
+}
+
+SensorTable named_sensors(const std::string& bytes, const std::string& file,
+                          const RecordingOptions& options) {
+  const NumberTable table = number_table(plain_table_text(bytes, file), file);
+  SensorTable result;
+  result.dt = interval_of(table, options, file);
+  std::array<int, 2> foot = {-1, -1};
+  for (const int side : {0, 1}) {
+    const std::string name = side == 0 ? "left" : "right";
+    for (const std::string& each : {"fz." + name + "[N]", name + "[N]", name, "fz_" + name})
+      if (foot[static_cast<size_t>(side)] < 0) foot[static_cast<size_t>(side)] = table.find(each);
+  }
+  if (foot[0] >= 0 && foot[1] >= 0) {
+    result.foot_load.resize(table.values.rows(), 2);
+    for (const int side : {0, 1})
+      result.foot_load.col(side) = table.values.col(foot[static_cast<size_t>(side)]);
+    if (result.foot_load.cwiseAbs().maxCoeff() <= 0)
+      complain(file, "every load of the feet is 0; the sensors were not running");
+  }
+  result.acceleration = named_axes(table, "acc", "m/s^2");
+  result.gyro = named_axes(table, "gyro", "rad/s");
+  if (result.foot_load.size() == 0 && result.acceleration.size() == 0 && result.gyro.size() == 0)
+    complain(
+        file,
+        "no column is a sensor; known are fz.left[N] with fz.right[N], acc.x[m/s^2] with y and "
+        "z, gyro.x[rad/s] with y and z");
+  return result;
+}
+
+}  // namespace
+
+bool is_bare_table(const std::string& bytes) {
+  std::string_view rest = bytes;
+  std::string_view line;
+  while (!rest.empty() && line.empty()) line = take_line(rest);
+  const std::vector<std::string_view> cells = cells_of(line);
+  return cells.size() > 1 && number_of(cells[0]).has_value();
+}
+
+AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
+                       const RecordingOptions& options) {
+  if (trimmed(bytes).empty()) complain(file, "the file is empty");
+  require_one_line_end(bytes, file);
+  if (!is_bare_table(bytes)) return named_angles(bytes, file, model, options);
+  const size_t devices = device_count(model, file);
+  std::string_view rest = bytes;
+  std::string_view line;
+  while (!rest.empty() && line.empty()) line = take_line(rest);
+  if (is_sequence(cells_of(line))) {
+    const BareRows rows = sequence_rows(bytes, file, devices);
+    return angles_of(rows, model, file, 0, rows.dt);
+  }
+  const BareRows rows = bare_rows(bytes, file, devices, "the robot '" + model.name() + "'");
+  for (size_t r = 0; r < rows.rows.size(); ++r)
+    for (size_t c = devices; c < rows.rows[r].size(); ++c)
+      if (rows.rows[r][c] != 0)
+        complain(file, rows.lines[r],
+                 "column " + std::to_string(c + 1) + " is " + text::brief(rows.rows[r][c]) +
+                     ", but the robot '" + model.name() + "' has " + std::to_string(devices) +
+                     " devices; is this a recording of another robot?");
+  return angles_of(rows, model, file, 0, options.rate > 0 ? 1 / options.rate : 0.001);
+}
+
+bool holds_sensors(const std::string& bytes, const std::string& file, const RobotModel& model) {
+  if (!is_bare_table(bytes)) {
+    const NumberTable table = number_table(plain_table_text(bytes, file), file);
+    for (const std::string& column : table.columns)
+      if (joint_column(column, model, false, file).dof >= 0) return false;
+    return true;
+  }
+  std::string_view rest = bytes;
+  std::string_view line;
+  while (!rest.empty() && line.empty()) line = take_line(rest);
+  const std::vector<std::string_view> cells = cells_of(line);
+  int devices = 0;
+  for (const Dof& dof : model.dofs()) devices = std::max(devices, dof.encoder.device);
+  const SensorDescription& sensors = model.description().sensors;
+  const bool calibrated = !sensors.load_cells.empty() || !sensors.accelerometer.columns.empty() ||
+                          !sensors.gyro.columns.empty();
+  return calibrated && !is_sequence(cells) && cells.size() > static_cast<size_t>(devices) + 2;
+}
+
+SensorTable read_sensors_table(const std::string& bytes, const std::string& file,
+                               const RobotModel& model, const RecordingOptions& options) {
+  if (trimmed(bytes).empty()) complain(file, "the file is empty");
+  require_one_line_end(bytes, file);
+  return is_bare_table(bytes) ? bare_sensors(bytes, file, model, options)
+                              : named_sensors(bytes, file, options);
+}
+
+}  // namespace ayumi

@@ -1,0 +1,40 @@
+#pragma once
+// Recordings of a robot: the angles that it was sent, those that it measured, and its load cells
+// and IMU. HOAP files (counts without a head row) and tables with column names.
+
+#include <string>
+
+#include "ayumi/identify/recorded_motion.hpp"
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+struct RecordingOptions {
+  bool degrees = false;  ///< unit of joint columns whose names have none
+  double rate = 0;       ///< of rows without time [1/s]; 0: 1000
+};
+
+/// Joint angles: a HOAP sequence (interval, 2, counts, ...), rows of counts (one column for each
+/// device, further columns are 0), or a table with a head row: t[s] or time[s], and joints as
+/// theta.<joint>[rad], <joint>, <joint>[rad], <joint>[deg] or <joint>[counts]; other columns are
+/// ignored. Throws Error(bad_file) "file:line: ..." or "file: column '...': ..." for text that is
+/// no such table, line ends of two kinds, values that are no numbers, gaps in time, jumps that no
+/// motor makes (samples that are missing, counters that wrap), angles in another unit, a device
+/// that moves without a joint, and where no value differs from zero.
+AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
+                       const RecordingOptions& options = {});
+
+/// Whether the first row of a file is numbers, as HOAP files are.
+bool is_bare_table(const std::string& bytes);
+
+/// Whether a file holds load cells or an IMU and no angles: named columns of these, or bare rows
+/// with more than two columns beyond the robot's devices where the sidecar says how to read them.
+bool holds_sensors(const std::string& bytes, const std::string& file, const RobotModel& model);
+
+/// Load cells and IMU: rows of readings, which the sidecar's `load_cells`, `accelerometer` and
+/// `gyro` make forces and rates, or a table with a head row and the columns fz.left[N] and
+/// fz.right[N] (or left and right), acc.x[m/s^2], gyro.x[rad/s], .... Throws as read_angles().
+SensorTable read_sensors_table(const std::string& bytes, const std::string& file,
+                               const RobotModel& model, const RecordingOptions& options = {});
+
+}  // namespace ayumi

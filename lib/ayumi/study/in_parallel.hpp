@@ -1,0 +1,39 @@
+#pragma once
+// Independent jobs on several threads.
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace ayumi {
+
+/// Runs job(0..count-1) on threads. The first exception stops all jobs and is thrown again.
+template <typename Job>
+void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
+  std::atomic<size_t> next = 0;
+  std::exception_ptr error;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (size_t i = next++; i < count && !stop; i = next++) {
+      try {
+        job(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!error) error = std::current_exception();
+        stop = true;
+      }
+    }
+  };
+  const size_t all = threads > 0 ? static_cast<size_t>(threads)
+                                 : std::max(1u, std::thread::hardware_concurrency());
+  std::vector<std::thread> pool;
+  for (size_t i = 1; i < std::min(all, count); ++i) pool.emplace_back(work);
+  work();
+  for (std::thread& thread : pool) thread.join();
+  if (error) std::rethrow_exception(error);
+}
+
+}  // namespace ayumi

@@ -1,0 +1,160 @@
+// The constants of servos from recordings. The synthetic servos are simulated by other means than
+// those of the estimator (synthetic_servo.hpp).
+
+#include "ayumi/identify/identify.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/identify/recording_checks.hpp"
+#include "ayumi/study/in_parallel.hpp"
+#include "tests/identify/synthetic_servo.hpp"
+
+namespace ayumi::test {
+namespace {
+
+constexpr double kNoise = 2e-4, kCount = 8.35e-5;  // [rad]: 0.011 deg, 209 counts per degree
+
+IdentifyOptions held_root() {
+  IdentifyOptions options;
+  options.stand = RobotStand::fixed;
+  options.threads = 1;
+  return options;
+}
+
+IdentifiedJoint found(const SyntheticServo& servo, const Eigen::VectorXd& theta,
+                      std::uint64_t seed) {
+  const RobotModel model(pendulum_robot(servo));
+  return identify(model, recorded(theta, kNoise, kCount, seed, excitation), held_root(), "m.csv")
+      .joints.at(0);
+}
+
+bool covers(const ServoEstimate& estimate, double truth) {
+  return estimate.lower <= truth && truth <= estimate.upper;
+}
+
+struct Truth {
+  const char* name;
+  SyntheticServo servo;
+};
+SyntheticServo soft() { return {}; }
+SyntheticServo stiff() {
+  SyntheticServo servo;
+  servo.kp = 3000;
+  servo.kd = 4;
+  servo.viscous = 2;
+  servo.coulomb = 0.5;
+  servo.delay = 0.0021;
+  return servo;
+}
+
+// Six seconds with noise and counts: the delay to half a millisecond, the others to 10 %.
+TEST(Identify, FindsTheConstantsOfASyntheticServo) {
+  for (const SyntheticServo& servo : {soft(), stiff()}) {
+    const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
+    const IdentifiedJoint joint = found(servo, theta, 7);
+    EXPECT_NEAR(joint.delay.value, servo.delay, 0.0005);
+    EXPECT_NEAR(joint.kp.value, servo.kp, 0.1 * servo.kp);
+    EXPECT_NEAR(joint.viscous.value, servo.viscous, 0.1 * servo.viscous);
+    EXPECT_NEAR(joint.coulomb.value, servo.coulomb, 0.1 * servo.coulomb);
+    EXPECT_NEAR(joint.offset.value, servo.offset, 2e-4);
+    EXPECT_TRUE(joint.kp.known && joint.viscous.known && joint.coulomb.known);
+    EXPECT_TRUE(joint.confounded.empty());
+  }
+}
+
+// The intervals are those of 95 %: of a hundred noises, at most seven may lead them astray.
+TEST(IdentifyIntervals, CoverTheTruth) {
+  const SyntheticServo servo = soft();
+  const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
+  constexpr int kSeeds = 100;
+  std::atomic<int> delay = 0, kp = 0, viscous = 0, coulomb = 0, offset = 0;
+  std::atomic<bool> stop = false;
+  in_parallel(kSeeds, 2, stop, [&](size_t i) {
+    const IdentifiedJoint joint = found(servo, theta, 100 + i);
+    delay += covers(joint.delay, servo.delay);
+    kp += covers(joint.kp, servo.kp);
+    viscous += covers(joint.viscous, servo.viscous);
+    coulomb += covers(joint.coulomb, servo.coulomb);
+    offset += covers(joint.offset, servo.offset);
+  });
+  EXPECT_GE(delay, 93);
+  EXPECT_GE(kp, 93);
+  EXPECT_GE(viscous, 93);
+  EXPECT_GE(coulomb, 93);
+}
+
+// Neither a load that changes nor quick motion: what cannot be told apart is named.
+TEST(Identify, NamesWhatItCannotTellApart) {
+  const SyntheticServo servo = stiff();
+  const auto slow = [](double t) { return 0.05 * std::sin(2 * M_PI * 0.4 * t); };
+  const Eigen::VectorXd theta = simulated_angles(servo, 6, slow);
+  const RobotModel model(pendulum_robot(servo));
+  const IdentifiedJoint joint =
+      identify(model, recorded(theta, kNoise, kCount, 1, slow), held_root(), "m.csv").joints.at(0);
+  ASSERT_FALSE(joint.confounded.empty());
+  EXPECT_NE(joint.confounded[0].find("delay and damping are confounded"), std::string::npos)
+      << joint.confounded[0];
+  EXPECT_NEAR(joint.lag, servo.delay + (servo.kd + servo.viscous) / servo.kp, 0.001);
+}
+
+TEST(Identify, TheSameForAnyNumberOfThreads) {
+  const SyntheticServo servo = soft();
+  const Eigen::VectorXd theta = simulated_angles(servo, 3, excitation);
+  const RobotModel model(pendulum_robot(servo));
+  const RecordedMotion motion = recorded(theta, kNoise, kCount, 3, excitation);
+  IdentifyOptions options = held_root();
+  const IdentifiedJoint one = identify(model, motion, options, "m").joints.at(0);
+  options.threads = 4;
+  const IdentifiedJoint four = identify(model, motion, options, "m").joints.at(0);
+  EXPECT_EQ(one.kp.value, four.kp.value);
+  EXPECT_EQ(one.delay.upper, four.delay.upper);
+}
+
+std::string answer_error(const std::function<void(RecordedMotion&)>& spoil) {
+  const SyntheticServo servo = soft();
+  static const Eigen::VectorXd theta = simulated_angles(soft(), 6, excitation);
+  const RobotModel model(pendulum_robot(servo));
+  RecordedMotion motion = recorded(theta, kNoise, kCount, 1, excitation);
+  spoil(motion);
+  try {
+    require_answer(model, motion.command, motion.measured, 0.1, "m.csv");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_file);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
+  const auto said = [](const std::string& message, const std::string& words) {
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+  };
+  EXPECT_EQ(answer_error([](RecordedMotion&) {}), "");
+  said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(3000, 1); }),
+       "m.csv: lasts 2.999 s, but its command lasts 6.000 s");
+  said(answer_error([](RecordedMotion& m) {
+         const Eigen::MatrixXd old = m.measured.theta;
+         m.measured.theta.topRows(800).setConstant(old(0, 0));
+         m.measured.theta.bottomRows(old.rows() - 800) = old.topRows(old.rows() - 800);
+       }),
+       "ms behind their command; the recording is shifted");
+  said(answer_error([](RecordedMotion& m) { m.measured.theta *= -1; }),
+       "arm_joint moves against its command");
+  said(answer_error([](RecordedMotion& m) { m.measured.theta *= 180 / M_PI; }),
+       "one of them is in degrees");
+  said(answer_error([](RecordedMotion& m) { m.measured.theta.setConstant(0.3); }),
+       "arm_joint stays at");
+  said(answer_error([](RecordedMotion& m) {
+         for (Eigen::Index k = 0; k < m.measured.theta.rows(); ++k)
+           m.measured.theta(k, 0) = 0.3 * std::sin(0.0047 * static_cast<double>(k));
+       }),
+       "arm_joint does not follow its command");
+  said(answer_error([](RecordedMotion& m) { m.command.theta.setConstant(0.1); }),
+       "no joint of this recording moves");
+}
+
+}  // namespace
+}  // namespace ayumi::test

@@ -1,0 +1,111 @@
+// Recordings of robots: what is read, and one line for what cannot be read.
+
+#include "ayumi/io/table/recording.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "tests/support/hoap1.hpp"
+
+namespace ayumi::test {
+namespace {
+
+std::string recording_error(const std::string& text, const RecordingOptions& options = {}) {
+  try {
+    read_angles(text, "m.csv", hoap1(), options);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_file);
+    return error.what();
+  }
+  return "";
+}
+
+std::string counts_row(int knee, int columns = 22) {
+  std::string row;
+  for (int c = 0; c < columns; ++c)
+    row += (c ? "," : "") + std::to_string(c == 3 ? knee : c == 0 ? 5 : 0);
+  return row;
+}
+
+TEST(Recording, ReadsCountsSequencesAndNamedColumns) {
+  const int knee = hoap1().find_dof("r_knee");
+  const double degree = M_PI / 180;
+  const AngleTable counts =
+      read_angles(counts_row(2090) + "\n" + counts_row(2100) + "\n", "m.csv", hoap1());
+  EXPECT_EQ(counts.dt, 0.001);
+  EXPECT_NEAR(counts.theta(0, knee), 10 * degree, 1e-12);
+  EXPECT_TRUE(counts.has[static_cast<size_t>(knee)]);
+  const std::string sequence =
+      "2,2," + counts_row(2090, 20) + ", R,R,R\r\n" + "2,2," + counts_row(2100, 20) + ",R,R,R\r\n";
+  const AngleTable sent = read_angles(sequence, "c.csv", hoap1());
+  EXPECT_EQ(sent.dt, 0.002);
+  EXPECT_NEAR(sent.theta(1, knee), 2100 / 209.0 * degree, 1e-12);
+  const AngleTable named = read_angles(
+      "time_ms;r_knee[deg];theta.l_knee[rad];note\n0;10,5;0,1;0\n5;10,6;0,1;0\n", "t.csv", hoap1());
+  EXPECT_NEAR(named.dt, 0.005, 1e-12);
+  EXPECT_NEAR(named.theta(0, knee), 10.5 * degree, 1e-12);
+  EXPECT_NEAR(named.theta(1, hoap1().find_dof("l_knee")), 0.1, 1e-12);
+  EXPECT_FALSE(named.has[static_cast<size_t>(hoap1().find_dof("l_elbow"))]);
+}
+
+TEST(Recording, WhatIsNoRecordingGetsOneLine) {
+  const std::string a = counts_row(2090), b = counts_row(2091);
+  EXPECT_EQ(recording_error(""), "m.csv: the file is empty");
+  EXPECT_EQ(recording_error(a + "\n" + b + "\r\n" + a + "\n"),
+            "m.csv:2: this line ends with CR LF, those before with LF; the file may be put "
+            "together from two, so give it one kind of line end");
+  EXPECT_EQ(recording_error(a + "\n" + b.substr(0, 20) + "\n"),
+            "m.csv:2: 9 columns, but the rows before have 22");
+  EXPECT_EQ(recording_error(a + "\nnan" + b.substr(1) + "\n"),
+            "m.csv:2: column 1: 'nan' is not a finite number");
+  EXPECT_EQ(recording_error(a + "\n" + counts_row(2090 - 65536) + "\n"),
+            "m.csv:2: r_knee jumps by 314 deg from the row before, which no motor does (limit "
+            "1.36 deg): samples are missing, or the counter wrapped");
+  EXPECT_EQ(recording_error("0,0,0,0,0,0\n0,0,0,0,0,0\n"),
+            "m.csv:1: 6 columns, but the robot 'hoap1' needs 20; is this a recording of another "
+            "robot?");
+  EXPECT_EQ(recording_error(a + ",7\n" + b + ",7\n"),
+            "m.csv:1: column 23 is 7, but the robot 'hoap1' has 20 devices; is this a recording of "
+            "another robot?");
+  std::string zeros;
+  for (int c = 0; c < 23; ++c) zeros += c ? ",0" : "0";
+  EXPECT_EQ(recording_error(zeros + "\n" + zeros + "\n"),
+            "m.csv: every angle is 0; the robot or its recorder was not running");
+}
+
+TEST(Recording, ATableWithGapsOrOtherUnitsGetsOneLine) {
+  EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n0.001,0.1\n0.002,0.1\n0.010,0.1\n0.011,0.1\n"),
+            "m.csv: after t = 0.002 s (data row 3) 7 samples are missing: 8 ms to the next row, "
+            "usually 1 ms");
+  EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n0,0.2\n0.002,0.1\n0.003,0.1\n0.004,0.1\n"),
+            "m.csv: after t = 0 s (data row 1) time does not increase");
+  EXPECT_EQ(recording_error("t,r_knee\n0,45\n0.001,45\n0.002,45\n"),
+            "m.csv: r_knee reaches 45 rad, more than a turn: is the unit degrees? (--unit deg)");
+  EXPECT_EQ(recording_error("t,r_knee[mm]\n0,45\n0.001,45\n"),
+            "m.csv: column 'r_knee[mm]': the unit 'mm' is not rad, deg or counts");
+  EXPECT_TRUE(recording_error("t,knee\n0,0.1\n0.001,0.1\n")
+                  .starts_with("m.csv: no column is a joint of 'hoap1'; its joints are r_hip_yaw"));
+}
+
+TEST(Recording, LoadCellsNeedACalibrationOrNames) {
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      read_sensors_table(text, "s.csv", hoap1());
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message("1,2,3\n1,2,3\n"),
+            "s.csv: the rows are readings without names, but the sidecar of 'hoap1' does not say "
+            "what they are; add \"load_cells\" to its \"sensors\"");
+  const SensorTable table =
+      read_sensors_table("t,fz.left[N],fz.right[N]\n0,30,34\n0.001,31,33\n", "s.csv", hoap1());
+  EXPECT_EQ(table.foot_load(1, 0), 31);
+  EXPECT_EQ(table.foot_load(1, 1), 33);
+  EXPECT_EQ(message("t,left,right\n0,0,0\n0.001,0,0\n"),
+            "s.csv: every load of the feet is 0; the sensors were not running");
+}
+
+}  // namespace
+}  // namespace ayumi::test
