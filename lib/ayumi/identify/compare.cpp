@@ -34,7 +34,7 @@ constexpr double kLanded = 0.15, kInAir = 0.05, kAirTime = 0.05;
 // Landings further apart than this are not the same [s]. Chosen: a third of a quick step.
 constexpr double kSameLanding = 0.15;
 
-double interpolated(const VectorXd& values, double dt, double t) {
+double interpolated(const Eigen::Ref<const VectorXd>& values, double dt, double t) {
   const double at = t / dt;
   const Index last = values.size() - 1;
   if (at <= 0) return values[0];

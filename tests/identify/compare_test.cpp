@@ -1,0 +1,174 @@
+// A recording made from a run by known changes: compare finds these changes and nothing else.
+
+#include "ayumi/identify/compare.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/sim/simulate.hpp"
+#include "tests/support/hoap1.hpp"
+#include "tests/support/hoap1_walk.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kDegree = M_PI / 180;
+
+const SimulationLog& walk_log() {
+  static const SimulationLog log = [] {
+    SimulateOptions options;
+    options.controller.type = ControllerKind::none;
+    return simulate(hoap1(), hoap1_walk(), options);
+  }();
+  return log;
+}
+
+Index rows_of(const SimulationLog& log) { return static_cast<Index>(log.samples.size()); }
+
+/// The angles of the run from its row `first` on, each of them `late` rows old.
+AngleTable angles_from(Index first, Index late = 0) {
+  const SimulationLog& log = walk_log();
+  AngleTable table;
+  table.dt = log.dt;
+  table.theta.resize(rows_of(log) - first, hoap1().dof_count());
+  for (Index k = 0; k < table.theta.rows(); ++k)
+    table.theta.row(k) = log.samples[static_cast<size_t>(std::max<Index>(0, first + k - late))]
+                             .state.theta.transpose();
+  table.has.assign(static_cast<size_t>(hoap1().dof_count()), 1);
+  table.resolution = Eigen::VectorXd::Zero(hoap1().dof_count());
+  return table;
+}
+
+/// The loads of the feet from row `first` on, each `late` rows old.
+SensorTable loads_from(Index first, Index late) {
+  const SimulationLog& log = walk_log();
+  SensorTable table;
+  table.dt = log.dt;
+  table.foot_load.resize(rows_of(log) - first, 2);
+  for (Index k = 0; k < table.foot_load.rows(); ++k)
+    for (const size_t foot : {0u, 1u})
+      table.foot_load(k, static_cast<Index>(foot)) =
+          log.samples[static_cast<size_t>(std::max<Index>(0, first + k - late))]
+              .foot_force[foot]
+              .z();
+  return table;
+}
+
+Comparison compared(const AngleTable& measured, const SensorTable& sensors = {},
+                    const CompareOptions& options = {}) {
+  return compare(hoap1(), walk_log(), measured, sensors, options, "m.csv");
+}
+
+bool notes_hold(const Comparison& found, const std::string& words) {
+  for (const std::string& note : found.notes)
+    if (note.find(words) != std::string::npos) return true;
+  return false;
+}
+
+std::string all_notes(const Comparison& found) {
+  std::string all;
+  for (const std::string& note : found.notes) all += note + "\n";
+  return all;
+}
+
+TEST(Compare, FindsWhenTheRecordingBegan) {
+  const Comparison found = compared(angles_from(730));
+  EXPECT_NEAR(found.shift, 0.730, 2e-4);
+  EXPECT_NEAR(found.begin, 0.730, 2e-3);
+  EXPECT_LT(found.largest_joint(), 0.01 * kDegree);
+  EXPECT_TRUE(found.notes.empty()) << all_notes(found);
+}
+
+TEST(Compare, NamesSizeTimeAndLagOfADifference) {
+  AngleTable measured = angles_from(0, 6);
+  const int knee = hoap1().find_dof("l_knee"), elbow = hoap1().find_dof("r_elbow");
+  measured.theta(3000, knee) += 2 * kDegree;
+  measured.theta.col(elbow).array() += 0.5 * kDegree;
+  const Comparison found = compared(measured, {}, {.shift = 0});
+  ASSERT_EQ(found.joints.size(), static_cast<size_t>(hoap1().dof_count()));
+  const ComparedCurve& bent = found.joints[static_cast<size_t>(knee)];
+  EXPECT_EQ(bent.name, "l_knee");
+  EXPECT_NEAR(bent.lag, 0.006, 5e-4);
+  EXPECT_NEAR(bent.largest_at, 3.0, 1e-9);
+  EXPECT_NEAR(bent.largest, 2 * kDegree, 1 * kDegree);
+  EXPECT_NEAR(found.joints[static_cast<size_t>(elbow)].mean, 0.5 * kDegree, 0.01 * kDegree);
+}
+
+TEST(Compare, LandingsAndLoadsOfTheFeetComeLate) {
+  const Comparison found = compared(angles_from(0), loads_from(0, 9), {.shift = 0});
+  ASSERT_EQ(found.loads.size(), 3u);
+  EXPECT_EQ(found.loads[2].name, "left share");
+  EXPECT_GT(found.loads[2].correlation, 0.9);
+  EXPECT_LT(found.loads[2].correlation, 0.9999);
+  ASSERT_GE(found.landings.size(), 8u);
+  EXPECT_EQ(found.unmatched_landings, 0);
+  for (const ComparedLanding& landing : found.landings)
+    EXPECT_NEAR(landing.measured - landing.simulated, 0.009, 0.0011);
+  const Comparison same = compared(angles_from(0), loads_from(0, 0), {.shift = 0});
+  EXPECT_NEAR(same.loads[2].correlation, 1, 1e-9);
+}
+
+TEST(Compare, TheImuOfARobotThatStandsFeelsItsWeight) {
+  SensorTable sensors;
+  sensors.dt = walk_log().dt;
+  sensors.acceleration = Eigen::MatrixXd::Zero(rows_of(walk_log()), 3);
+  sensors.acceleration.col(2).setConstant(9.80665);
+  sensors.gyro = Eigen::MatrixXd::Zero(rows_of(walk_log()), 3);
+  const Comparison found =
+      compared(angles_from(0), sensors, {.shift = 0, .begin = 0.1, .end = 0.6});
+  ASSERT_EQ(found.imu.size(), 6u);
+  EXPECT_EQ(found.imu[2].name, "acc.z");
+  EXPECT_LT(found.imu[2].mean, 0.05);  // it stands upright in this time
+  EXPECT_LT(found.imu[3].mean, 0.01);
+}
+
+TEST(Compare, SaysInOneLineWhatIsNotAsItShouldBe) {
+  const int knee = hoap1().find_dof("l_knee");
+  AngleTable turned = angles_from(0);
+  turned.theta.col(knee) *= -1;
+  EXPECT_TRUE(notes_hold(compared(turned, {}, {.shift = 0}), "l_knee"));
+  AngleTable degrees = angles_from(0);
+  degrees.theta.col(knee) /= kDegree;
+  EXPECT_TRUE(notes_hold(compared(degrees, {}, {.shift = 0}), "l_knee"));
+  AngleTable without = angles_from(0);
+  without.has[static_cast<size_t>(knee)] = 0;
+  const Comparison found = compared(without, {}, {.shift = 0});
+  EXPECT_TRUE(notes_hold(found, "l_knee"));
+  EXPECT_EQ(found.joints.size(), static_cast<size_t>(hoap1().dof_count()) - 1);
+  AngleTable slow = angles_from(0);
+  slow.dt = 0.002;
+  Eigen::MatrixXd every_other((slow.theta.rows() + 1) / 2, slow.theta.cols());
+  for (Index k = 0; k < every_other.rows(); ++k) every_other.row(k) = slow.theta.row(2 * k);
+  slow.theta = every_other;
+  const Comparison at_half = compared(slow, {}, {.shift = 0});
+  EXPECT_TRUE(notes_hold(at_half, "500 rows per second")) << all_notes(at_half);
+  EXPECT_LT(at_half.largest_joint(), 0.05 * kDegree);
+}
+
+TEST(Compare, ARecordingOfAnotherTimeIsRefused) {
+  try {
+    compared(angles_from(0), {}, {.shift = 100});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_file);
+    EXPECT_NE(std::string(error.what()).find("no time in common"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Compare, TheGhostMovesAsMeasured) {
+  AngleTable measured = angles_from(1000);
+  const int knee = hoap1().find_dof("l_knee");
+  measured.theta.col(knee).array() += 0.1;
+  const SimulationLog ghost = measured_log(walk_log(), hoap1(), measured, 1.0);
+  EXPECT_EQ(ghost.samples[500].state.theta, walk_log().samples[500].state.theta);
+  EXPECT_NEAR(ghost.samples[2000].state.theta[knee],
+              walk_log().samples[2000].state.theta[knee] + 0.1, 1e-12);
+}
+
+}  // namespace
+}  // namespace ayumi::test
