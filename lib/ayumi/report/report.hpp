@@ -23,7 +23,7 @@ struct ReportInput {
   std::string title;            ///< of the pattern
   std::vector<ReportRun> runs;  ///< at least one; the last is judged and replayed
   RunResults results;
-  std::vector<PushThreshold> thresholds;  ///< empty: no study
+  std::vector<PushThreshold> thresholds;   ///< empty: no study
   const Comparison* comparison = nullptr;  ///< with a recording; must outlive the call
 };
 
