@@ -9,6 +9,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/io/bundled_data.hpp"
 #include "help.hpp"
 #include "option_checks.hpp"
 #include "signals.hpp"
@@ -191,11 +192,7 @@ void Context::print_json(const std::string& object) const {
 
 fs::path data_folder(const std::string& name) {
   std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path beside = program.parent_path().parent_path() / "share" / "ayumi" / name;
-  for (const fs::path& folder : {beside, fs::path(AYUMI_SOURCE_DIR) / name})
-    if (fs::is_directory(folder, ignored)) return folder;
-  return fs::path(AYUMI_INSTALLED_DATA) / name;
+  return bundled_data(fs::read_symlink("/proc/self/exe", ignored), name);
 }
 
 RobotSearch robot_search(const Context& context) {

@@ -7,8 +7,6 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/motion/repair_preferences.hpp"
-#include "ayumi/plan/sample.hpp"
 
 namespace ayumi::app {
 
@@ -75,29 +73,6 @@ void read_locks(const std::vector<std::string>& words, const Pattern& pattern, d
     else
       options.locked_joints.push_back(word);
   }
-}
-
-RepairOptions wished_options(const Pattern& pattern) {
-  const RepairPreferences wishes = without_keyframes(pattern);
-  RepairOptions options;
-  options.locked_joints = wishes.joints;
-  options.locked_feet = wishes.feet;
-  options.locked_windows = wishes.windows;
-  options.joint_weights = wishes.weights;
-  options.trust = wishes.trust.value_or(options.trust);
-  options.zmp_margin = wishes.margin;
-  options.safety = wishes.safety.value_or(options.safety);
-  return options;
-}
-
-RepairResult repair_input(const Context& context, const Task& input, const RepairOptions& options) {
-  RepairResult result = repair(input.robot, input.series, options, context.progress());
-  if (result.status == RepairStatus::already_consistent || !input.pattern.correction) return result;
-  Pattern plain = input.pattern;
-  plain.correction.reset();
-  const CommandSeries series =
-      sample(input.robot, plain, {.dt = input.series.dt}, context.progress());
-  return repair(input.robot, series, options, context.progress());
 }
 
 bool write_with_companions(const Context& context, const std::string& from, const std::string& to,

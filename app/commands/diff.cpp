@@ -48,7 +48,7 @@ std::string side_words(const std::string& file, const Task& input,
 // Weighed as a repair of A would.
 WeightedChange weighted(const DiffCommand& options, const Task& a, const Task& b,
                         const ConsistencyReport& check_a) {
-  RepairOptions repair = wished_options(a.pattern);
+  RepairOptions repair = preferred_options(a.pattern);
   repair.check = check_options(a);
   for (const auto& [joint, factor] : read_pairs(options.weights, "--weight"))
     repair.joint_weights[joint] = factor;

@@ -4,13 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/control/capture_bound.hpp"
-#include "ayumi/control/gain_design.hpp"
-#include "ayumi/model/gravity.hpp"
-#include "ayumi/plan/sample.hpp"
+#include "ayumi/study/gain_study.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 
@@ -21,8 +17,6 @@ namespace {
 using Complex = std::complex<double>;
 using Json = nlohmann::ordered_json;
 
-// Largest ka up to which the edge of stability is searched. Chosen: twenty times the default.
-constexpr double kMostKa = 20;
 // Decays below this share of omega are not shown as modes. Chosen: they last longer than any
 // motion.
 constexpr double kShown = 1e-3;
@@ -34,21 +28,6 @@ struct GainsCommand {
   GainWishes wishes;
   std::vector<std::string> gains;
   std::optional<double> latency;
-};
-
-/// How far the DCM may be from the plan, and the impulse that brings it there, along one direction.
-struct Reach {
-  std::string support, direction;
-  double dcm = 0, impulse = 0;  // [m], [N s]
-};
-
-struct Design {
-  double omega = 0;
-  LoopModel loop;
-  DtadParams params;
-  LoopAnalysis analysis;
-  double most_ka = 0;
-  std::vector<Reach> reaches;
 };
 
 void read_wishes(GainsCommand& options) {
@@ -76,70 +55,6 @@ void read_wishes(GainsCommand& options) {
   }
 }
 
-/// Standing on both feet, and on the left one with the COG over its middle.
-std::vector<Reach> reaches(const RobotModel& model) {
-  CommandSeries both = sample(model, stand_pattern(model, 0.01));
-  CommandSeries left = both;
-  for (CommandSample& s : left.samples) {
-    s.support = Support::left;
-    const Eigen::Vector2d c = model.sole(Side::left).center;
-    s.zmp = s.feet[0] * Eigen::Vector3d(c.x(), c.y(), 0);
-    s.cog.head<2>() = s.zmp.head<2>();
-  }
-  std::vector<Reach> result;
-  for (const bool one : {false, true}) {
-    const CaptureRegion region = capture_region(model, one ? left : both, 0);
-    for (const auto& [name, x, y] :
-         {std::tuple{"forward", 1.0, 0.0}, std::tuple{"back", -1.0, 0.0},
-          std::tuple{"left", 0.0, 1.0}, std::tuple{"right", 0.0, -1.0}}) {
-      const double impulse = capture_bound(region, {x, y});
-      result.push_back(
-          {one ? "left foot" : "both feet", name, impulse / region.impulse_per_length, impulse});
-    }
-  }
-  return result;
-}
-
-Design design(const RobotModel& model, GainsCommand options) {
-  read_wishes(options);
-  Design d;
-  const CommandSample first = sample(model, stand_pattern(model, 0.01)).samples.front();
-  const double z = first.cog.z() - first.zmp.z();
-  d.omega = std::sqrt(kGravity / z);
-  ControllerSpec spec;
-  for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
-    spec.gains.emplace_back(name, value);
-  d.params = design_gains(d.omega, options.wishes, dtad_params(model, spec));
-  d.loop = single_support_loop(model, model.limits(), z, model.description().servo_period);
-  if (options.latency) d.loop.delay += *options.latency - model.description().sensors.latency;
-  d.analysis = analyze_loop(d.loop, d.params);
-  d.most_ka = largest_stable_ka(d.loop, d.params, kMostKa);
-  d.reaches = reaches(model);
-  refuse_unstable(d.loop, d.params);
-  return d;
-}
-
-std::vector<std::pair<std::string, double>> gain_list(const DtadParams& p) {
-  std::vector<std::pair<std::string, double>> list;
-  if (p.k)
-    list = {{"k", *p.k}, {"d", *p.d}};
-  else
-    list = {{"q", p.pole_ratio}};
-  for (const auto& entry : std::vector<std::pair<std::string, double>>{{"ka", p.zmp_gain},
-                                                                       {"ks", p.pull_rate},
-                                                                       {"kd", p.pull_damping},
-                                                                       {"tau_z", p.zmp_filter},
-                                                                       {"margin", p.margin},
-                                                                       {"washout", p.offset_time},
-                                                                       {"kz", p.height_stiffness},
-                                                                       {"dz", p.height_damping},
-                                                                       {"kaz", p.fz_gain},
-                                                                       {"ankle", p.ankle_share},
-                                                                       {"conform", p.compliance}})
-    list.push_back(entry);
-  return list;
-}
-
 std::string mode_text(const Complex& pole) {
   std::string line = "  decays with the time constant " + text::brief(-1 / pole.real()) + " s";
   if (std::abs(pole.imag()) > 1e-6)
@@ -147,7 +62,7 @@ std::string mode_text(const Complex& pole) {
   return line + "\n";
 }
 
-std::string report(const RobotModel& model, const Design& d) {
+std::string report(const RobotModel& model, const GainStudy& d) {
   const DtadParams& p = d.params;
   const double w = d.omega;
   std::string out = model.name() + ": COG " + text::fixed(d.loop.height, 3) +
@@ -170,8 +85,8 @@ std::string report(const RobotModel& model, const Design& d) {
   out += "loop on one foot: ankle stiffness " + text::brief(d.loop.stiffness) +
          " N m/rad, delay of sensors and servos " + text::brief(1e3 * d.loop.delay) +
          " ms; the loop is stable, and stays stable " +
-         (d.most_ka >= kMostKa ? "beyond ka = " + text::brief(kMostKa)
-                               : "up to ka = " + text::fixed(d.most_ka, 2)) +
+         (d.largest_ka >= GainStudy::kMostKa ? "beyond ka = " + text::brief(GainStudy::kMostKa)
+                                             : "up to ka = " + text::fixed(d.largest_ka, 2)) +
          "; slowest modes:\n";
   int shown = 0;
   for (const Complex& pole : d.analysis.poles)
@@ -183,7 +98,7 @@ std::string report(const RobotModel& model, const Design& d) {
   return out;
 }
 
-Json json_of(const RobotModel& model, const Design& d) {
+Json json_of(const RobotModel& model, const GainStudy& d) {
   Json gains = Json::object(), poles = Json::array(), reach = Json::array();
   for (const auto& [name, value] : gain_list(d.params)) gains[name] = value;
   for (const Complex& pole : d.analysis.poles) poles.push_back({pole.real(), pole.imag()});
@@ -200,14 +115,18 @@ Json json_of(const RobotModel& model, const Design& d) {
           {"stable", d.analysis.stable},
           {"decay_1_s", d.analysis.decay},
           {"frequency_Hz", d.analysis.frequency},
-          {"largest_stable_ka", d.most_ka},
+          {"largest_stable_ka", d.largest_ka},
           {"poles_1_s", poles},
           {"recoverable", reach}};
 }
 
-void print_gains(Context& context, const GainsCommand& options) {
+void print_gains(Context& context, GainsCommand& options) {
+  read_wishes(options);
   const RobotModel model = load_robot(options.robot, robot_search(context));
-  const Design d = design(model, options);
+  const auto gains = read_pairs(options.gains, "--gain");
+  const GainStudy d =
+      study_gains(model, options.wishes, {gains.begin(), gains.end()}, options.latency);
+  refuse_unstable(d.loop, d.params);
   context.print(report(model, d));
   context.print_json(json_of(model, d).dump(2));
 }

@@ -115,45 +115,11 @@ std::string ratio_text(const PushLimit& limit, double bound) {
   return text::fixed(bound > 0 ? limit.impulse / bound : 0, 2) + (limit.capped ? "+" : "");
 }
 
-/// What stands beside the laws: open loop, or VIIP's pendulum without feedback.
-std::string baseline(const CommandSeries& series) {
-  return series.viip.empty() ? "open loop" : "no feedback";
-}
-
-/// What the robot does in the phases that are not its standing in the first posture.
-std::string motion_of(const CommandSeries& series) {
-  const auto one = [](const CommandSample& s) {
-    return s.support == Support::left || s.support == Support::right;
-  };
-  const auto steps = [](const ViipSpan& s) { return std::holds_alternative<StepGoal>(s.goal); };
-  const bool walks = std::any_of(series.samples.begin(), series.samples.end(), one) ||
-                     std::any_of(series.viip.begin(), series.viip.end(), steps);
-  return walks ? "walking" : "during the pattern";
-}
-
-std::vector<std::string> summary_lines(const std::vector<PushCase>& cases, const PushOptions& push,
-                                       const CommandSeries& series) {
-  const std::string open = baseline(series), motion = motion_of(series);
-  std::vector<std::string> lines;
-  for (size_t k = 0; k < push.controllers.size(); ++k)
-    for (const bool standing : {false, true}) {
-      const PushSummary s = summarize(cases, k, standing, push.step);
-      if (s.cases == 0) continue;
-      lines.push_back((standing ? "standing" : motion) + ": " + name_of(push.controllers[k].type) +
-                      " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
-                      " B; " + open + " worst " + text::fixed(s.open_worst, 2) + " B, mean " +
-                      text::fixed(s.open_mean, 2) + " B; " + name_of(push.controllers[k].type) +
-                      " survives less than " + open + " in " + std::to_string(s.below_open) +
-                      " of " + text::counted(s.cases, "case"));
-    }
-  return lines;
-}
-
 /// One block per phase: the limits of every law in N s, B, and the limits as multiples of B; one
 /// column per direction.
 std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
                   const CommandSeries& series) {
-  const std::string open = baseline(series);
+  const std::string open = push_baseline(series);
   constexpr size_t kLabel = 16, kCell = 7;  // widths of columns [characters]
   const size_t directions = static_cast<size_t>(push.directions);
   std::string out;
@@ -177,38 +143,10 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
       line(name_of(push.controllers[k].type) + " / B",
            [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
   }
-  for (const std::string& line : summary_lines(cases, push, series)) out += line + "\n";
+  for (const std::string& line : push_summary_lines(cases, push, series)) out += line + "\n";
   return out +
          "B = largest push that a point mass could absorb; + = the largest push that was tried, "
          "survived\n";
-}
-
-PushMap push_map(const Task& input, const std::vector<PushCase>& cases, const PushOptions& push) {
-  PushMap map;
-  map.title = input.pattern.name + ", " + input.robot.name() +
-              (input.profile.empty() ? "" : ", actuators " + input.profile) + ": pushes of " +
-              text::fixed(1e3 * push.duration, 0) + " ms";
-  for (const ControllerSpec& c : push.controllers) map.laws.push_back(name_of(c.type));
-  map.baseline = baseline(input.series);
-  map.remarks = summary_lines(cases, push, input.series);
-  const size_t directions = static_cast<size_t>(push.directions);
-  for (size_t p = 0; p < cases.size(); p += directions) {
-    PushMapPhase phase;
-    phase.name = cases[p].phase.name;
-    phase.curves.resize(push.controllers.size() + 1);
-    for (size_t i = p; i < p + directions; ++i) {
-      const PushCase& c = cases[i];
-      phase.direction.push_back(c.direction);
-      phase.bound.push_back(c.bound);
-      for (size_t k = 0; k < phase.curves.size(); ++k) {
-        const PushLimit& limit = k == 0 ? c.open_loop : c.limits[k - 1];
-        phase.curves[k].impulse.push_back(limit.impulse);
-        phase.curves[k].capped.push_back(limit.capped);
-      }
-    }
-    map.phases.push_back(phase);
-  }
-  return map;
 }
 
 Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, double wall) {
@@ -259,7 +197,10 @@ void find_limits(Context& context, const PushCommand& options) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   context.print(table(cases, push, input.series));
   if (!options.map.empty()) {
-    write_push_map(push_map(input, cases, push), options.map);
+    write_push_map(
+        push_map(push_map_title(input.pattern.name, input.robot.name(), input.profile, push), cases,
+                 push, input.series),
+        options.map);
     context.print("  drawn in " + options.map + "\n");
   }
   if (!options.out.empty()) context.print("  written to " + options.out + "\n");

@@ -1,7 +1,5 @@
 // The nearest consistent pattern by Ipopt, written as the author's file with a correction track.
 
-#include "ayumi/repair/repair.hpp"
-
 #include <chrono>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -14,6 +12,7 @@
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/run/results_json.hpp"
+#include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/repair/weighted_change.hpp"
 #include "check_table.hpp"
 #include "motion_words.hpp"
@@ -201,7 +200,7 @@ Trust trust_of(const std::string& word) {
 
 // The pattern's wishes, with the command line's locks beside them and its other words over them.
 RepairOptions repair_options(const RepairCommand& options, const Task& input) {
-  RepairOptions repair = wished_options(input.pattern);
+  RepairOptions repair = preferred_options(input.pattern);
   repair.check = check_options(input, options.tolerances);
   if (!options.trust.empty()) repair.trust = trust_of(options.trust);
   if (options.margin) repair.zmp_margin = options.margin;
@@ -250,7 +249,8 @@ void repair_pattern(Context& context, RepairCommand options) {
   const Task input = load(context, options);
   options.repair = repair_options(options, input);
   const auto begin = std::chrono::steady_clock::now();
-  const RepairResult result = repair_input(context, input, options.repair);
+  const RepairResult result =
+      repair(input.robot, input.pattern, input.series, options.repair, context.progress());
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   context.exit_code = exit_code_of(result);

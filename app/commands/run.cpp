@@ -21,7 +21,7 @@
 #include "ayumi/limits/table_safety.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/render/snapshots.hpp"
-#include "ayumi/repair/repair.hpp"
+#include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/task/servo_table.hpp"
 #include "pattern_input.hpp"
 #include "repairing.hpp"
@@ -133,9 +133,10 @@ void MainJob::check(Task& input) {
 }
 
 void MainJob::repair_pattern(Task& input, bool goals_reachable) {
-  RepairOptions options = wished_options(input.pattern);
+  RepairOptions options = preferred_options(input.pattern);
   options.check = check_options(input);
-  const RepairResult result = repair_input(context_, input, options);
+  const RepairResult result =
+      repair(input.robot, input.pattern, input.series, options, context_.progress());
   say("repair", std::string(name_of(result.status)) + ": " + std::to_string(result.iterations) +
                     " iterations, joints moved by at most " +
                     text::fixed(result.max_joint_change * 180 / EIGEN_PI, 2) + " deg, COG by " +

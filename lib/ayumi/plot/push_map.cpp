@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/plot/axes.hpp"
@@ -203,6 +204,76 @@ Drawing draw_push_map(const PushMap& map) {
 
 void write_push_map(const PushMap& map, const std::filesystem::path& path) {
   write_drawing(path, draw_push_map(map), 2);
+}
+
+namespace {
+
+/// What the robot does in the phases that are not its standing in the first posture.
+std::string motion_of(const CommandSeries& series) {
+  const auto one = [](const CommandSample& s) {
+    return s.support == Support::left || s.support == Support::right;
+  };
+  const auto steps = [](const ViipSpan& s) { return std::holds_alternative<StepGoal>(s.goal); };
+  const bool walks = std::any_of(series.samples.begin(), series.samples.end(), one) ||
+                     std::any_of(series.viip.begin(), series.viip.end(), steps);
+  return walks ? "walking" : "during the pattern";
+}
+
+}  // namespace
+
+std::string push_baseline(const CommandSeries& series) {
+  return series.viip.empty() ? "open loop" : "no feedback";
+}
+
+std::vector<std::string> push_summary_lines(const std::vector<PushCase>& cases,
+                                            const PushOptions& push, const CommandSeries& series) {
+  const std::string open = push_baseline(series), motion = motion_of(series);
+  std::vector<std::string> lines;
+  for (size_t k = 0; k < push.controllers.size(); ++k)
+    for (const bool standing : {false, true}) {
+      const PushSummary s = summarize(cases, k, standing, push.step);
+      if (s.cases == 0) continue;
+      lines.push_back((standing ? "standing" : motion) + ": " + name_of(push.controllers[k].type) +
+                      " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
+                      " B; " + open + " worst " + text::fixed(s.open_worst, 2) + " B, mean " +
+                      text::fixed(s.open_mean, 2) + " B; " + name_of(push.controllers[k].type) +
+                      " survives less than " + open + " in " + std::to_string(s.below_open) +
+                      " of " + text::counted(s.cases, "case"));
+    }
+  return lines;
+}
+
+std::string push_map_title(const std::string& pattern, const std::string& robot,
+                           const std::string& profile, const PushOptions& push) {
+  return pattern + ", " + robot + (profile.empty() ? "" : ", actuators " + profile) +
+         ": pushes of " + text::fixed(1e3 * push.duration, 0) + " ms";
+}
+
+PushMap push_map(const std::string& title, const std::vector<PushCase>& cases,
+                 const PushOptions& push, const CommandSeries& series) {
+  PushMap map;
+  map.title = title;
+  for (const ControllerSpec& c : push.controllers) map.laws.push_back(name_of(c.type));
+  map.baseline = push_baseline(series);
+  map.remarks = push_summary_lines(cases, push, series);
+  const size_t directions = static_cast<size_t>(push.directions);
+  for (size_t p = 0; p < cases.size(); p += directions) {
+    PushMapPhase phase;
+    phase.name = cases[p].phase.name;
+    phase.curves.resize(push.controllers.size() + 1);
+    for (size_t i = p; i < p + directions; ++i) {
+      const PushCase& c = cases[i];
+      phase.direction.push_back(c.direction);
+      phase.bound.push_back(c.bound);
+      for (size_t k = 0; k < phase.curves.size(); ++k) {
+        const PushLimit& limit = k == 0 ? c.open_loop : c.limits[k - 1];
+        phase.curves[k].impulse.push_back(limit.impulse);
+        phase.curves[k].capped.push_back(limit.capped);
+      }
+    }
+    map.phases.push_back(phase);
+  }
+  return map;
 }
 
 }  // namespace ayumi

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/motion/command_series.hpp"
 #include "ayumi/plot/drawing.hpp"
+#include "ayumi/study/push.hpp"
 
 namespace ayumi {
 
@@ -30,6 +32,22 @@ struct PushMap {
   std::vector<PushMapPhase> phases;
   std::vector<std::string> remarks;  ///< lines below, e.g. the figures over all cases
 };
+
+/// What a push study has beside the laws: "open loop", or "no feedback" for VIIP's pendulum.
+std::string push_baseline(const CommandSeries& series);
+
+/// One line for each law, and for walking and standing: its worst and mean limit in capture bounds
+/// beside those of the baseline.
+std::vector<std::string> push_summary_lines(const std::vector<PushCase>& cases,
+                                            const PushOptions& push, const CommandSeries& series);
+
+/// "walk, hoap1, actuators hoap1: pushes of 20 ms"
+std::string push_map_title(const std::string& pattern, const std::string& robot,
+                           const std::string& profile, const PushOptions& push);
+
+/// The map of a study of `series`.
+PushMap push_map(const std::string& title, const std::vector<PushCase>& cases,
+                 const PushOptions& push, const CommandSeries& series);
 
 /// One polar panel per phase, all with the same radius. Throws Error(usage) when there is no phase,
 /// a curve has another length than its directions, or more than four laws.

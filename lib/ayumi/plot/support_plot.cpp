@@ -11,15 +11,15 @@ using namespace plot;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-struct Foothold {
+struct PlacedSole {
   Side side;
   std::vector<Vector2d> corners;
 };
 
 /// The soles where the plan puts them down, at the middle of each planned contact.
-std::vector<Foothold> footholds(const RobotModel& model, const SimulationLog& log,
-                                const Interval& time) {
-  std::vector<Foothold> out;
+std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& log,
+                                  const Interval& time) {
+  std::vector<PlacedSole> out;
   if (!model.has_soles()) return out;
   const auto first = static_cast<size_t>(std::max(0.0, std::round(time.low / log.dt)));
   const auto last =
@@ -36,7 +36,7 @@ std::vector<Foothold> footholds(const RobotModel& model, const SimulationLog& lo
         const Sole& sole = model.sole(side);
         const Eigen::Isometry3d frame =
             body_poses(model, middle.state)[size_t(sole.body)] * sole.frame;
-        Foothold foothold = {side, {}};
+        PlacedSole foothold = {side, {}};
         for (const Vector2d& corner : sole.polygon)
           foothold.corners.push_back((frame * Vector3d(corner.x(), corner.y(), 0)).head<2>());
         out.push_back(foothold);
@@ -60,9 +60,9 @@ std::vector<Vector2d> path_of(const SimulationLog& log, const Interval& time,
 
 /// Both axes to one scale, around everything that stands or was planned.
 Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const Interval& time,
-               const std::vector<Foothold>& feet, double top) {
+               const std::vector<PlacedSole>& feet, double top) {
   Eigen::AlignedBox2d box;
-  for (const Foothold& foot : feet)
+  for (const PlacedSole& foot : feet)
     for (const Vector2d& corner : foot.corners) box.extend(corner);
   for (const LociRun& run : runs)
     for (const auto quantity : {&SimulationSample::cog, &SimulationSample::zmp})
@@ -88,7 +88,7 @@ Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const I
   return axes;
 }
 
-void draw_foothold(Drawing& drawing, const Axes& axes, const Foothold& foot) {
+void draw_foothold(Drawing& drawing, const Axes& axes, const PlacedSole& foot) {
   const Eigen::Vector4f color = foot.side == Side::left ? Eigen::Vector4f(0.20f, 0.45f, 0.75f, 1)
                                                         : Eigen::Vector4f(0.80f, 0.50f, 0.10f, 1);
   DrawnPath outline = {.closed = true, .stroke = color, .fill = color, .width = 1.2};
@@ -130,11 +130,11 @@ Drawing draw_support(const RobotModel& model, const std::vector<LociRun>& runs,
   entries.emplace_back("COG command", kCommandStyle);
   entries.emplace_back("reference ZMP", kReferenceStyle);
   const SimulationLog& last = *runs.back().log;
-  const std::vector<Foothold> feet = footholds(model, last, time);
+  const std::vector<PlacedSole> feet = footholds(model, last, time);
   const double top = draw_legend(drawing, entries, 44) + 12;
   const Axes axes = make_axes(drawing, runs, time, feet, top);
   draw_axes(drawing, axes, "y [m]", true);
-  for (const Foothold& foot : feet) draw_foothold(drawing, axes, foot);
+  for (const PlacedSole& foot : feet) draw_foothold(drawing, axes, foot);
   for (size_t i = 0; i < runs.size(); ++i) {
     draw_line(drawing, axes, path_of(*runs[i].log, time, &SimulationSample::zmp),
               entries[2 * i + 1].second);

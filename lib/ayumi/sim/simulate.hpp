@@ -12,6 +12,7 @@
 namespace ayumi {
 
 class PlantInterface;
+struct Estimate;
 
 /// The plant that moves the robot.
 struct PlantKind {
@@ -19,6 +20,12 @@ struct PlantKind {
   /// Empty: Ayumi's own plant. The model must outlive the plant.
   std::function<PlantInterface(const RobotModel&, const ActuatorLimits&, const World&)> make = {};
 };
+
+/// Servo targets in place of those of the control law, tick by tick: what the law would send at `t`
+/// [s], the estimate that it had, and its plan. The size stays that of `targets` [rad, m]. Copies
+/// of a simulator share the state of the function.
+using TargetFunction = std::function<Eigen::VectorXd(
+    double t, const Estimate& estimate, const CommandSample& plan, const Eigen::VectorXd& targets)>;
 
 struct SimulateOptions {
   ControllerSpec controller;
@@ -31,6 +38,7 @@ struct SimulateOptions {
   bool sensor_noise = false;  ///< use the sidecar's noise, bias and latency
   std::uint64_t seed = 1;
   PlantKind plant;
+  TargetFunction targets = {};  ///< empty: the servos receive the targets of the control law
 };
 
 /// Throws Error(bad_model) when the robot has no soles or servos, Error(bad_pattern) for a

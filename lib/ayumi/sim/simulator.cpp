@@ -64,6 +64,8 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       saturated_(static_cast<size_t>(model.dof_count())) {
   model.sole(Side::left);  // throws when the robot has no soles
   set_scenario(options.scenario);
+  if (options.targets)
+    events_.push_back({0, "controller", "the servo targets are those of the caller's function"});
   planned_ = end_ =
       static_cast<long>(series.samples.size()) + std::lround(options.settle / series.dt);
   plant_.set_state(controller_.start());
@@ -122,6 +124,17 @@ void Simulator::replace_estimate_by_truth() {
     }
   estimate_.fz = fz;
   if (fz > kZmpMinLoad * model_->mass() * kGravity) estimate_.zmp = moment / fz;
+}
+
+const ControlOutput& Simulator::with_targets_of_caller(double t, const ControlOutput& law) {
+  changed_ = law;
+  changed_.target = options_.targets(t, estimate_, plan_, law.target);
+  if (changed_.target.size() != law.target.size())
+    fail(ErrorCode::usage, "the targets at t = " + text::fixed(t, 3) +
+                               " s: " + std::to_string(changed_.target.size()) +
+                               " values, but the robot has " + std::to_string(law.target.size()) +
+                               " joints");
+  return changed_;
 }
 
 /// Fills last_ from the plant, the plan and the controller's output; its lists keep their memory.
@@ -205,7 +218,8 @@ void Simulator::step_once() {
     estimate_.zmp = zmp_before;  // keeps its value in flight
     replace_estimate_by_truth();
   }
-  const ControlOutput& out = controller_.update(estimate_);
+  const ControlOutput& law = controller_.update(estimate_);
+  const ControlOutput& out = options_.targets ? with_targets_of_caller(t, law) : law;
   take_sample(cmd, estimate_, out);
   if (!last_.state.theta.allFinite() || !last_.state.base.position.allFinite())
     fail(ErrorCode::internal,

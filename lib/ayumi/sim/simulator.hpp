@@ -55,6 +55,7 @@ class Simulator {
   void step_once();
   double energy() const;
   void replace_estimate_by_truth();
+  const ControlOutput& with_targets_of_caller(double t, const ControlOutput& law);
   void take_sample(const CommandSample& cmd, const Estimate& estimate, const ControlOutput& out);
   void take_forces(const CommandSample& cmd);
   void note(double t, const std::vector<std::string>& texts);
@@ -71,7 +72,8 @@ class Simulator {
   Schedule schedule_;
   StepInput input_;
   Controller controller_;
-  CommandSample plan_;  // of the last tick done
+  ControlOutput changed_;  // the law's with the targets of the caller; empty where there are none
+  CommandSample plan_;     // of the last tick done
   StepReport report_;
   Eigen::Vector3d zmp_ = Eigen::Vector3d::Zero();
   std::set<std::string> noted_;

@@ -1,0 +1,18 @@
+#pragma once
+// The repair of a pattern: the options that the pattern itself asks for, and a series that may
+// already have a correction.
+
+#include "ayumi/motion/pattern.hpp"
+#include "ayumi/repair/repair.hpp"
+
+namespace ayumi {
+
+/// The author's preferences as options; those of the check are left as they are by default.
+RepairOptions preferred_options(const Pattern& pattern);
+
+/// repair() of `series`, which `pattern` samples to. Where the pattern has a correction that is not
+/// enough, the motion without it is repaired. Throws as repair() and sample().
+RepairResult repair(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
+                    const RepairOptions& options, const Progress& progress = {});
+
+}  // namespace ayumi
