@@ -47,7 +47,8 @@ inline const std::map<std::string, Room>& rooms() {
       {"render", {10, {}, {}, true}},
       {"plot", {10, {"render"}, {}, true}},
       {"report", {11, {}, {}, true}},
-      {"app", {12, {}, {}, false}}};
+      {"app", {12, {}, {}, false}},
+      {"python", {12, {}, {}, false}}};
   return table;
 }
 
@@ -118,6 +119,7 @@ inline const std::vector<ThirdParty>& third_parties() {
       {"cairo", std::regex("cairo.*"), {"render", "plot"}},
       {"libjpeg", std::regex("jpeglib\\.h"), {"render"}},
       {"CLI11", std::regex("CLI/.*"), {"app"}},
+      {"pybind11", std::regex("pybind11/.*"), {"python"}},
       {"MuJoCo", std::regex("mujoco/.*"), {"sim/plant_mujoco"}},
       {"POSIX",
        std::regex("sys/.*|(unistd|fcntl|signal|spawn|poll|termios|pthread)\\.h"),
@@ -173,19 +175,19 @@ inline std::vector<std::string> file_violations(const fs::path& file, const std:
       rule = room_rule(room, header.substr(6));
     else if (match[1] == "<")
       rule = third_party_rule(room, public_header, header);
-    else if (room != "app")
+    else if (room != "app" && room != "python")
       rule = "\"" + header + "\": write the path from ayumi/";
     if (!rule.empty()) found.push_back(shown + ":" + std::to_string(number) + ": " + rule);
   }
   return found;
 }
 
-/// Every break of the rules in lib/ayumi and app below `root`, sorted.
+/// Every break of the rules in lib/ayumi, lib/python and app below `root`, sorted.
 inline std::vector<std::string> layering_violations(const fs::path& root) {
   static const std::set<std::string> forbidden = {"util",   "utils",   "common",  "core",
                                                   "helper", "helpers", "manager", "managers"};
   std::vector<std::string> found;
-  for (const fs::path& top : {fs::path("lib/ayumi"), fs::path("app")}) {
+  for (const fs::path& top : {fs::path("lib/ayumi"), fs::path("lib/python"), fs::path("app")}) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const fs::path inside = fs::relative(entry.path(), root / top);
@@ -194,9 +196,10 @@ inline std::vector<std::string> layering_violations(const fs::path& root) {
       if (entry.is_directory() && forbidden.contains(inside.filename()))
         found.push_back(shown + ": no such folder name");
       if (extension != ".cpp" && extension != ".hpp") continue;
-      if (top != "app" && !inside.has_parent_path()) continue;  // ayumi.hpp gathers the rooms
-      const std::string room = top == "app" ? "app" : room_of(inside.generic_string());
-      const bool public_header = top != "app" && public_headers().contains(inside.generic_string());
+      const bool library = top == "lib/ayumi";
+      if (library && !inside.has_parent_path()) continue;  // ayumi.hpp gathers the rooms
+      const std::string room = library ? room_of(inside.generic_string()) : top.filename().string();
+      const bool public_header = library && public_headers().contains(inside.generic_string());
       const auto breaks = file_violations(entry.path(), shown, room, public_header);
       found.insert(found.end(), breaks.begin(), breaks.end());
     }

@@ -27,6 +27,8 @@ const NotRun kNotRun[] = {
     {"valgrind ", "measures the benchmarks, which are built by hand"},
     {"sudo ", "installs packages"},
     {"git ", "needs the network or a repository"},
+    {"PYTHONPATH=", "needs the Python module: tests/python"},
+    {"python3 examples/python/", "needs the Python module: tests/python runs these examples"},
     {"PATH=", "the program is on the PATH already"},
 };
 

@@ -1,0 +1,931 @@
+# Written by tests/python/write_stubs.py from the module; do not edit.
+from os import PathLike
+from pathlib import Path
+from typing import Any, Callable, Optional, Union
+
+import numpy
+
+__version__: str
+__all__: list[str]
+
+class Actuators:
+    """Limits of the motors of one profile, by joint."""
+
+    @property
+    def name(self) -> str:
+        """Name of the profile."""
+
+    @property
+    def speed(self) -> numpy.ndarray:
+        """Largest speeds [rad/s, m/s], shape (dof,); inf where there is no limit."""
+
+    @property
+    def peak_torque(self) -> numpy.ndarray:
+        """Largest torques [N m, N], shape (dof,)."""
+
+    @property
+    def continuous_torque(self) -> numpy.ndarray:
+        """Torques that may last [N m, N], shape (dof,)."""
+
+class Command:
+    """The plan of one tick."""
+
+    @property
+    def state(self) -> RobotState:
+        """Planned base and joints."""
+
+    @property
+    def cog(self) -> numpy.ndarray:
+        """COG [m], shape (3,)."""
+
+    @property
+    def dcog(self) -> numpy.ndarray:
+        """Its velocity [m/s], shape (3,)."""
+
+    @property
+    def zmp(self) -> numpy.ndarray:
+        """ZMP [m], shape (3,)."""
+
+    @property
+    def fz(self) -> float:
+        """Vertical ground force [N]."""
+
+    @property
+    def support(self) -> str:
+        """'both', 'left', 'right' or 'none'."""
+
+class Error(Exception):
+    """What is wrong with a call, a file, a robot or a pattern. `code` is one of 'usage', 'bad_file', 'bad_model', 'bad_pattern', 'solver' and 'internal'; `place` is the file and the place in it, '' where there is none. An inconsistent pattern, a fall and a solver that did not converge are results, not errors."""
+
+    code: str
+
+    place: str
+
+class Estimate:
+    """What the sensors tell a controller, in the frame of the plan."""
+
+    @property
+    def state(self) -> RobotState:
+        """Estimated state of the robot."""
+
+    @property
+    def cog(self) -> numpy.ndarray:
+        """COG [m], shape (3,)."""
+
+    @property
+    def dcog(self) -> numpy.ndarray:
+        """Its velocity [m/s], shape (3,)."""
+
+    @property
+    def zmp(self) -> numpy.ndarray:
+        """ZMP [m], shape (3,); held in flight."""
+
+    @property
+    def fz(self) -> float:
+        """Vertical ground force [N]."""
+
+    @property
+    def foot_fz(self) -> tuple:
+        """Vertical force on the left and the right foot [N]."""
+
+    @property
+    def contact(self) -> bool:
+        """Whether the ground carries the robot."""
+
+class Event:
+    """Something that happened in a run."""
+
+    @property
+    def t(self) -> float:
+        """Time [s]."""
+
+    @property
+    def kind(self) -> str:
+        """'push', 'touchdown', 'fell', ..."""
+
+    @property
+    def text(self) -> str:
+        """In words."""
+
+class Finding:
+    """One thing that the check says about a motion."""
+
+    @property
+    def kind(self) -> str:
+        """Kind: 'support_margin', 'joint_torque', ..."""
+
+    @property
+    def severity(self) -> str:
+        """'error', 'warning' or 'info'."""
+
+    @property
+    def begin(self) -> float:
+        """Begin of the window [s]."""
+
+    @property
+    def end(self) -> float:
+        """End of the window [s]."""
+
+    @property
+    def at(self) -> float:
+        """Time of the worst sample [s]."""
+
+    @property
+    def worst(self) -> float:
+        """Value there, in `unit`."""
+
+    @property
+    def limit(self) -> float:
+        """The limit, in `unit`."""
+
+    @property
+    def unit(self) -> str:
+        """Unit of both."""
+
+    @property
+    def where(self) -> str:
+        """Joint, foot, axis, support or bodies."""
+
+    @property
+    def hint(self) -> str:
+        """What to do about it."""
+
+class GainStudy:
+    """Gains of DTAD and what follows from them."""
+
+    @property
+    def omega(self) -> float:
+        """Of the pendulum [1/s]."""
+
+    @property
+    def gains(self) -> dict[str, float]:
+        """The gains by their names in patterns and sidecars."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether the linear loop on one foot is stable."""
+
+    @property
+    def poles(self) -> list[complex]:
+        """Its poles [1/s], the slowest decay first."""
+
+    @property
+    def decay(self) -> float:
+        """Of the slowest mode [1/s]; negative when it grows."""
+
+    @property
+    def largest_ka(self) -> float:
+        """Largest short-term gain with which the loop is stable."""
+
+    @property
+    def reaches(self) -> list:
+        """(support, direction, error of the DCM that needs no step [m], its impulse [N s])."""
+
+class Interrupted(Exception):
+    """Long work was stopped because its progress callback gave False."""
+
+class Log:
+    """A run with one sample per tick. log['cog'] is an array, log.units('cog') has its units. docs/formats.md describes the quantities."""
+
+    def __len__(self) -> int:
+        """Number of samples."""
+
+    def __getitem__(self, name: str) -> numpy.ndarray:
+        """The quantity of this name as a view that cannot be written: one row per sample, shape (n,) for a number, (n, 3) for a vector, (n, 4) for a unit quaternion x y z w, (n, dof) for joints, (n, 4, 4) for a pose."""
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the quantities, the keys of []."""
+
+    def parts(self, name: str) -> list[str]:
+        """Names of the columns of a quantity: 'x', or a joint."""
+
+    def units(self, name: str) -> list[str]:
+        """Units of the columns of a quantity; '1' where there is none."""
+
+    @property
+    def joints(self) -> list[str]:
+        """Names of the joints, the columns of theta."""
+
+    @property
+    def dt(self) -> float:
+        """Time between two samples [s]."""
+
+    @property
+    def t(self) -> numpy.ndarray:
+        """Times of the samples [s], shape (n,), computed as k dt."""
+
+    @property
+    def outcome(self) -> str:
+        """'stands', 'unsettled' or 'fell'."""
+
+    @property
+    def fell_at(self) -> float:
+        """Time of the fall [s]; negative when there was none."""
+
+    @property
+    def max_tilt(self) -> float:
+        """Largest tilt of the trunk [rad]."""
+
+    @property
+    def final_cog_error(self) -> float:
+        """Of the COG relative to the feet, horizontal [m]."""
+
+    @property
+    def zmp_tracking_rms(self) -> float:
+        """Measured ZMP against reference ZMP [m]."""
+
+    @property
+    def max_torque_ratio(self) -> float:
+        """Largest torque as a share of its limit."""
+
+    @property
+    def max_speed_ratio(self) -> float:
+        """Largest joint speed as a share of its limit."""
+
+    @property
+    def events(self) -> list[Event]:
+        """What happened, by time."""
+
+    @property
+    def controller(self) -> Optional[str]:
+        """Name of the control law."""
+
+    @property
+    def plant(self) -> str:
+        """'ayumi', 'mujoco' or 'python'."""
+
+    @property
+    def hash(self) -> str:
+        """SHA-256 of the motion; the same for the same run."""
+
+    def to_dict(self) -> Any:
+        """The keys of `ayumi simulate --json`."""
+
+    def write(self, path: Union[str, PathLike[str]]) -> None:
+        """Writes the log as one binary file, whole or not at all."""
+
+class Pace:
+    """The result of fastest_pace()."""
+
+    @property
+    def found(self) -> bool:
+        """Whether a scale passes the check."""
+
+    @property
+    def scale(self) -> float:
+        """Smallest factor on all times that passes."""
+
+    @property
+    def bounded(self) -> bool:
+        """False: even the fastest scale passes."""
+
+    @property
+    def limited_by(self) -> str:
+        """First error at the scale just below, in words."""
+
+    @property
+    def evaluations(self) -> int:
+        """Number of scales tried."""
+
+class Pattern:
+    """A motion pattern as its author writes it: keyframes, phases, controller and scenario. docs/formats.md describes its file."""
+
+    @property
+    def name(self) -> str:
+        """Name of the motion."""
+
+    @name.setter
+    def name(self, value: str) -> None: ...
+
+    @property
+    def robot(self) -> str:
+        """Name or path of the robot."""
+
+    @robot.setter
+    def robot(self, value: str) -> None: ...
+
+    @property
+    def profile(self) -> str:
+        """Actuator profile; '' is the default of the robot."""
+
+    @profile.setter
+    def profile(self, value: str) -> None: ...
+
+    @property
+    def file(self) -> str:
+        """File that it was read from; '' for none."""
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Declared parameters with their values."""
+
+    @property
+    def duration(self) -> float:
+        """End of the last phase or key [s]."""
+
+    @property
+    def repaired(self) -> bool:
+        """Whether the pattern has the correction of a repair."""
+
+    def text(self) -> str:
+        """The text of a pattern file, which is JSON."""
+
+    def to_dict(self) -> Any:
+        """The keys of the pattern file; parse_pattern(json.dumps(...)) reads them back."""
+
+    def write(self, path: Union[str, PathLike[str]]) -> None:
+        """Writes the pattern file, whole or not at all."""
+
+class Plant:
+    """Ayumi's own plant, also as the part of a plant that is written in Python."""
+
+    def __init__(self, robot: Robot, profile: str = '', world: World = ...) -> None:
+        ...
+
+    @property
+    def state(self) -> RobotState:
+        """The state of the robot."""
+
+    def set_state(self, state: RobotState) -> None:
+        """Puts the robot in this state and forgets the contacts."""
+
+    def step(self, targets: numpy.ndarray, input: StepInput, dt: float) -> StepReport:
+        """Advances by `dt` [s] with the servo targets [rad, m], shape (dof,), held."""
+
+class PushCase:
+    """The limits of one phase and direction."""
+
+    @property
+    def phase(self) -> str:
+        """Name of the phase."""
+
+    @property
+    def at(self) -> float:
+        """Time of the push [s]."""
+
+    @property
+    def standing(self) -> bool:
+        """Whether the robot stands in the first posture."""
+
+    @property
+    def direction(self) -> float:
+        """Of the push, from forward anticlockwise [rad]."""
+
+    @property
+    def bound(self) -> float:
+        """Capture bound: the largest push that a point mass could absorb [N s]."""
+
+    @property
+    def open_loop(self) -> float:
+        """Largest push that open loop survives [N s]."""
+
+    @property
+    def limits(self) -> list[float]:
+        """Largest push that each controller survives [N s]."""
+
+    @property
+    def capped(self) -> list[bool]:
+        """Whether the largest push that was tried is survived, by controller."""
+
+class PushStudy:
+    """The result of push()."""
+
+    @property
+    def cases(self) -> list[PushCase]:
+        """Phase by phase, in each direction by direction."""
+
+    @property
+    def controllers(self) -> list[str]:
+        """The laws, in the order of PushCase.limits."""
+
+    @property
+    def summary(self) -> list[str]:
+        """One line for each law, and for walking and standing."""
+
+    def picture(self, scale: float = 1.5) -> bytes:
+        """The limits from above as the bytes of a PNG file."""
+
+class Repair:
+    """What a repair found."""
+
+    @property
+    def status(self) -> str:
+        """'already_consistent', 'repaired', 'infeasible' or 'not_converged'."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether the motion of `task` is consistent."""
+
+    @property
+    def task(self) -> Task:
+        """The task with the correction in its pattern; without one where the repair found none."""
+
+    @property
+    def max_joint_change(self) -> float:
+        """Largest change of a joint [rad]."""
+
+    @property
+    def max_cog_change(self) -> float:
+        """Largest change of the COG [m]."""
+
+    @property
+    def where(self) -> str:
+        """The joint that moved most."""
+
+    @property
+    def at(self) -> float:
+        """The time at which it did [s]."""
+
+    @property
+    def iterations(self) -> int:
+        """Iterations of the solver."""
+
+    @property
+    def reasons(self) -> list[str]:
+        """Why there is no repair, in words."""
+
+    def to_dict(self) -> Any:
+        """The keys of `ayumi repair --json`."""
+
+class Robot:
+    """A robot: a tree of links with soles, motors and named postures."""
+
+    @property
+    def name(self) -> str:
+        """Name of the robot."""
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+
+    @property
+    def joints(self) -> list[str]:
+        """Names of the joints, the order of all joint vectors."""
+
+    @property
+    def links(self) -> list[str]:
+        """Names of the links."""
+
+    @property
+    def lower(self) -> numpy.ndarray:
+        """Lower position limits [rad, m], shape (dof,); -inf without a limit."""
+
+    @property
+    def upper(self) -> numpy.ndarray:
+        """Upper position limits [rad, m], shape (dof,); inf without a limit."""
+
+    @property
+    def profiles(self) -> list[str]:
+        """Names of the actuator profiles."""
+
+    def actuators(self, profile: str = '') -> Actuators:
+        """Limits of the motors of a profile; '' is the default one."""
+
+    def posture(self, name: str = 'home') -> numpy.ndarray:
+        """Joint angles of a named posture [rad, m], shape (dof,)."""
+
+    def rest_state(self, posture: str = 'home') -> RobotState:
+        """The robot at rest in a named posture, its base at the origin."""
+
+    @property
+    def servo_period(self) -> float:
+        """Time between two targets of the servos [s]."""
+
+    @property
+    def assumptions(self) -> list[str]:
+        """What the files of the robot do not say and was inferred."""
+
+    def cog(self, state: RobotState) -> numpy.ndarray:
+        """Centre of gravity in the world [m], shape (3,)."""
+
+    def link_pose(self, state: RobotState, link: str) -> numpy.ndarray:
+        """Pose of a link in the world [m], shape (4, 4)."""
+
+    def sole_pose(self, state: RobotState, foot: str) -> numpy.ndarray:
+        """Pose of a sole, 'left' or 'right', in the world [m], shape (4, 4)."""
+
+class RobotState:
+    """State of a robot: base pose and velocity in the world, joint angles and rates."""
+
+    def __init__(self, theta: numpy.ndarray, dtheta: Optional[numpy.ndarray] = None, position: numpy.ndarray = ..., attitude: numpy.ndarray = ..., velocity: numpy.ndarray = ..., angular_velocity: numpy.ndarray = ...) -> None:
+        ...
+
+    @property
+    def theta(self) -> numpy.ndarray:
+        """Joint angles [rad], lengths [m], shape (dof,)."""
+
+    @property
+    def dtheta(self) -> numpy.ndarray:
+        """Joint rates [rad/s, m/s], shape (dof,)."""
+
+    @property
+    def position(self) -> numpy.ndarray:
+        """Position of the base in the world [m], shape (3,)."""
+
+    @property
+    def attitude(self) -> numpy.ndarray:
+        """Attitude of the base in the world, unit quaternion x y z w, shape (4,)."""
+
+    @property
+    def velocity(self) -> numpy.ndarray:
+        """Velocity of the base, world axes [m/s], shape (3,)."""
+
+    @property
+    def angular_velocity(self) -> numpy.ndarray:
+        """Angular velocity of the base, world axes [rad/s], shape (3,)."""
+
+class SafeTable:
+    """A table with ramp and hold, judged for a robot."""
+
+    @property
+    def table(self) -> Table:
+        """Ramp, motion and hold."""
+
+    @property
+    def safe(self) -> bool:
+        """Whether the robot may receive the table."""
+
+    @property
+    def violations(self) -> list[str]:
+        """Why it may not, in words."""
+
+    def to_dict(self) -> Any:
+        """All figures of the judgement."""
+
+class Series:
+    """The command at the servo period of the robot: posture, COG, ZMP, vertical force and sole poses of every sample. series['theta'] is an array, series.units('theta') has its units."""
+
+    def __len__(self) -> int:
+        """Number of samples."""
+
+    def __getitem__(self, name: str) -> numpy.ndarray:
+        """The quantity of this name as a view that cannot be written: one row per sample, shape (n,) for a number, (n, 3) for a vector, (n, 4) for a unit quaternion x y z w, (n, dof) for joints, (n, 4, 4) for a pose."""
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the quantities, the keys of []."""
+
+    def parts(self, name: str) -> list[str]:
+        """Names of the columns of a quantity: 'x', or a joint."""
+
+    def units(self, name: str) -> list[str]:
+        """Units of the columns of a quantity; '1' where there is none."""
+
+    @property
+    def joints(self) -> list[str]:
+        """Names of the joints, the columns of theta."""
+
+    @property
+    def dt(self) -> float:
+        """Time between two samples [s]."""
+
+    @property
+    def t(self) -> numpy.ndarray:
+        """Times of the samples [s], shape (n,), computed as k dt."""
+
+    @property
+    def origin(self) -> dict[str, str]:
+        """Source of each track, in words."""
+
+    @property
+    def support(self) -> list[str]:
+        """Planned support of every sample: 'both', 'left', 'right' or 'none'."""
+
+class SoleForce:
+    """Ground force at one vertex of a sole."""
+
+    def __init__(self, position: numpy.ndarray, force: numpy.ndarray, gap: float = 0.0) -> None:
+        ...
+
+    @property
+    def position(self) -> numpy.ndarray:
+        """World [m], shape (3,)."""
+
+    @property
+    def force(self) -> numpy.ndarray:
+        """On the robot, world [N], shape (3,)."""
+
+    @property
+    def gap(self) -> float:
+        """Distance to the ground, negative inside [m]."""
+
+class StepInput:
+    """What acts on the robot from outside during one step."""
+
+    def __init__(self) -> None:
+        ...
+
+    @property
+    def wrenches(self) -> list[Wrench]:
+        """Forces and couples."""
+
+    @property
+    def friction(self) -> Optional[float]:
+        """Coefficient of the whole ground in place of the world's; None: the world's."""
+
+class StepReport:
+    """Forces of a step, means over its duration."""
+
+    def __init__(self, torque: numpy.ndarray, left: list[SoleForce], right: list[SoleForce], body_contact: bool = False) -> None:
+        ...
+
+    @property
+    def torque(self) -> numpy.ndarray:
+        """Of the servos [N m, N], shape (dof,)."""
+
+    @property
+    def left(self) -> list[SoleForce]:
+        """Forces on the left sole."""
+
+    @property
+    def right(self) -> list[SoleForce]:
+        """Forces on the right sole."""
+
+    @property
+    def body_contact(self) -> bool:
+        """Whether a body that is no sole touches the ground."""
+
+class Table:
+    """Servo targets row by row, with the quantities that they were computed from."""
+
+    def __len__(self) -> int:
+        """Number of samples."""
+
+    def __getitem__(self, name: str) -> numpy.ndarray:
+        """The quantity of this name as a view that cannot be written: one row per sample, shape (n,) for a number, (n, 3) for a vector, (n, 4) for a unit quaternion x y z w, (n, dof) for joints, (n, 4, 4) for a pose."""
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the quantities, the keys of []."""
+
+    def parts(self, name: str) -> list[str]:
+        """Names of the columns of a quantity: 'x', or a joint."""
+
+    def units(self, name: str) -> list[str]:
+        """Units of the columns of a quantity; '1' where there is none."""
+
+    @property
+    def joints(self) -> list[str]:
+        """Names of the joints, the columns of theta."""
+
+    @property
+    def dt(self) -> float:
+        """Time between two samples [s]."""
+
+    @property
+    def t(self) -> numpy.ndarray:
+        """Times of the samples [s], shape (n,), computed as k dt."""
+
+    def csv(self) -> str:
+        """The text of a CSV file, with a head that says what the table is from."""
+
+    def json(self) -> str:
+        """The same as JSON text."""
+
+    def hoap(self, robot: Robot) -> str:
+        """The text of a HOAP sequence: encoder counts of every motor."""
+
+    def write(self, path: Union[str, PathLike[str]]) -> None:
+        """Writes CSV, or JSON where the name ends in .json; whole or not at all."""
+
+    def resampled(self, dt: float) -> Table:
+        """The table at another rate, straight between its rows; `dt` in s."""
+
+    @property
+    def unfit(self) -> str:
+        """Why no robot should receive the table; '' where nothing is known against it."""
+
+    @property
+    def disturbances(self) -> str:
+        """The disturbances of the run that the table is from; '' where there were none."""
+
+class Task:
+    """One pattern for one robot, sampled at the servo period of the robot."""
+
+    @property
+    def pattern(self) -> Pattern:
+        """The pattern."""
+
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+
+    @property
+    def profile(self) -> str:
+        """Name of the actuator profile."""
+
+    @property
+    def series(self) -> Series:
+        """The command, sample by sample."""
+
+class TuneFigures:
+    """The objective of tune() and its parts."""
+
+    @property
+    def objective(self) -> float:
+        """Dimensionless, smaller is better."""
+
+    @property
+    def recovery(self) -> float:
+        """Part of the pushes that are survived."""
+
+    @property
+    def unpushed(self) -> float:
+        """Part of the run without a push."""
+
+    @property
+    def falls(self) -> int:
+        """Number of falls."""
+
+    @property
+    def pushes(self) -> int:
+        """Number of pushes."""
+
+class Tuning:
+    """The result of tune()."""
+
+    @property
+    def start(self) -> dict[str, float]:
+        """Gains at the start, by name."""
+
+    @property
+    def gains(self) -> dict[str, float]:
+        """The best gains, by name."""
+
+    @property
+    def before(self) -> TuneFigures:
+        """Figures at the start."""
+
+    @property
+    def after(self) -> TuneFigures:
+        """Figures of the best gains."""
+
+    @property
+    def choices(self) -> int:
+        """Number of choices of gains tried."""
+
+    @property
+    def refused(self) -> int:
+        """Choices that were skipped because their loop is unstable."""
+
+class Verdict:
+    """Whether a pattern is physically consistent, and why not."""
+
+    @property
+    def consistent(self) -> bool:
+        """Whether motion and goals keep every limit."""
+
+    def __bool__(self) -> bool:
+        ...
+
+    @property
+    def reason(self) -> str:
+        """Why it is inconsistent, in one line; '' when it is not."""
+
+    @property
+    def findings(self) -> list[Finding]:
+        """The findings, errors first."""
+
+    @property
+    def summary(self) -> dict[str, float]:
+        """The worst value of every kind of finding, in the unit of the kind."""
+
+    @property
+    def profile(self) -> str:
+        """Actuator profile that the motion was judged by."""
+
+    @property
+    def need(self) -> str:
+        """What the actuators lack, in words; '' where they suffice."""
+
+    def to_dict(self) -> Any:
+        """The keys of `ayumi check --json`."""
+
+class World:
+    """The ground under the robot."""
+
+    def __init__(self) -> None:
+        ...
+
+    @property
+    def friction(self) -> float:
+        """Coulomb coefficient."""
+
+    @friction.setter
+    def friction(self, value: float) -> None: ...
+
+class Wrench:
+    """A force or a couple from outside during one step."""
+
+    @property
+    def body(self) -> int:
+        """Index of the body; -1: through the COG."""
+
+    @property
+    def point(self) -> numpy.ndarray:
+        """World [m], shape (3,)."""
+
+    @property
+    def force(self) -> numpy.ndarray:
+        """World [N], shape (3,)."""
+
+    @property
+    def torque(self) -> numpy.ndarray:
+        """World [N m], shape (3,)."""
+
+def check(task: Task, *, tolerances: dict[str, float] = {}) -> Verdict:
+    """The verdict on a pattern. `tolerances` by kind of finding, over those of the pattern."""
+
+def controllers() -> list[str]:
+    """Names of the control laws."""
+
+def data_folder(name: str) -> Path:
+    """Folder of the bundled data: 'robots', 'patterns' or 'examples'."""
+
+def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Callable[[str, float, str], Any]] = None) -> Pace:
+    """The fastest uniform time scaling of the pattern that passes the check."""
+
+def gains(robot: Robot, *, poles: Optional[list[complex[2]]] = None, absorb: Optional[float] = None, return_time: Optional[float] = None, zmp_filter: Optional[float] = None, forget: Optional[float] = None, set: dict[str, float] = {}, latency: Optional[float] = None) -> GainStudy:
+    """Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, times [s] of the return to the command, of the filter of the ZMP and of a lasting offset; `set` gives gains by name, `latency` [s] that of the sensors."""
+
+def jump_pattern(robot: Robot, *, height: Optional[float] = None, stoop: Optional[float] = None, cog_height: Optional[float] = None, forward: Optional[float] = None, times: Optional[int] = None) -> Pattern:
+    """Stoop, lift-off, flight, touchdown and settling; all lengths in m."""
+
+def load_robot(name: str, path: list[Union[str, PathLike[str]]] = [], meshes: bool = True) -> Robot:
+    """The robot of this name, folder, sidecar or URDF. `meshes`: read what only pictures need."""
+
+def load_task(pattern: Union[Pattern, Union[str, PathLike[str]]], *, set: dict[str, float] = {}, profile: str = '', robot: str = '', path: list[Union[str, PathLike[str]]] = [], meshes: bool = True, progress: Optional[Callable[[str, float, str], Any]] = None) -> Task:
+    """Reads a pattern (a file, or a Pattern) and its robot, and samples the motion. `set` gives values to declared parameters of a file, `robot` is a name or path in place of the pattern's, `path` lists folders with robots. `meshes`: read what only pictures need."""
+
+def loci(robot: Robot, logs: dict[str, Log], *, title: str = '', scale: float = 1.5) -> bytes:
+    """COG, ZMP and vertical force of runs against time as the bytes of a PNG file. `logs`: runs by the label that the legend has."""
+
+def loci_svg(robot: Robot, logs: dict[str, Log], *, title: str = '') -> str:
+    """The same as the text of an SVG file."""
+
+def make_safe(task: Task, table: Table, log: Log = None, *, ramp: float = 2.0, hold: float = 0.5, start: str = 'home') -> SafeTable:
+    """Lays an approach of `ramp` s from the posture `start` and a hold of `hold` s around a table and judges what the servos would receive; with a log the torques of that run too."""
+
+def mirrored(robot: Robot, pattern: Pattern) -> Pattern:
+    """The pattern with left and right exchanged."""
+
+def parse_pattern(text: str, path: Union[str, PathLike[str]] = 'pattern.json', set: dict[str, float] = {}) -> Pattern:
+    """The pattern of the text of a file; `path` names it in messages, and what it names is looked for beside it."""
+
+def picture(robot: Robot, log: Log, *, at: float = 0.0, width: int = 1280, height: int = 720, view: str = 'iso', zoom: float = 1.0, title: str = '') -> bytes:
+    """The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', 'back' or 'top'; `width` and `height` in pixels."""
+
+def push(task: Task, *, controllers: list[str] = [], gains: dict[str, float] = {}, times: list[float] = [], directions: int = 8, step: float = 0.06, cap: float = 2.4, replicas: int = 2, duration: float = 0.02, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> PushStudy:
+    """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the pattern's when none is named). `times` [s] in place of the default phases; `step` and `cap` as multiples of the capture bound; `replicas`: small variations of every push, all of which must be survived; `duration` of a push [s]; `threads`: 0 for all, results do not depend on it."""
+
+def read_log(path: Union[str, PathLike[str]], name: str = '') -> Log:
+    """The log of a file or of the folder that `ayumi run` wrote: 'open_loop', 'closed_loop' (the default) or 'undisturbed'."""
+
+def read_pattern(path: Union[str, PathLike[str]], set: dict[str, float] = {}) -> Pattern:
+    """Reads a pattern file. `set` gives values to parameters that the pattern declares."""
+
+def read_table(path: Union[str, PathLike[str]]) -> Table:
+    """Reads a table that Ayumi wrote, CSV or JSON."""
+
+def repair(task: Task, *, lock_joints: list[str] = [], lock_feet: list[str] = [], lock_windows: list[tuple[float, float]] = [], weights: dict[str, float] = {}, trust: Optional[str] = None, safety: Optional[float] = None, zmp_margin: Optional[float] = None, max_iterations: Optional[int] = None, progress: Optional[Callable[[str, float, str], Any]] = None) -> Repair:
+    """The nearest consistent motion. Locked joints, feet ('left', 'right') and windows (begin, end) [s] do not move; `weights` are factors on the cost of a joint; `trust` is 'posture', 'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. What is not given is the pattern's own preference."""
+
+def retimed(robot: Robot, pattern: Pattern, scale: float) -> Pattern:
+    """The pattern with all times multiplied by `scale`."""
+
+def robots(path: list[Union[str, PathLike[str]]] = []) -> list[str]:
+    """Names of the robots in the folders of `path` and of the bundled ones."""
+
+def sample(pattern: Pattern, robot: Robot, *, profile: str = '', progress: Optional[Callable[[str, float, str], Any]] = None) -> Task:
+    """Samples a pattern for a robot that was loaded."""
+
+def simulate(task: Task, *, controller: Optional[str] = None, gains: dict[str, float] = {}, scenario: Optional[Union[bool, Union[str, PathLike[str]]]] = None, noise: bool = False, true_state: bool = False, substeps: int = 1, seed: int = 1, plant: Union[str, Callable[..., Any]] = 'ayumi', targets: Optional[Callable[..., Any]] = None, allow_unstable: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> Log:
+    """The closed loop of plant, sensors and controller. `controller` is a name of controllers(), None the pattern's; `gains` by name. `scenario`: False for no disturbances, or a pattern file whose scenario takes the place of the pattern's. `noise`: sensors with noise, bias and latency. `true_state`: the controller gets the true state. `substeps` of the integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. `targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], shape (dof,), in place of those of the controller; with controller='none' it is the whole controller. A plant or a controller in Python is called in every tick and slows the run several times. `progress`: a function (stage, fraction, detail); the run stops when it returns False."""
+
+def squat_pattern(robot: Robot, *, depth: Optional[float] = None, period: Optional[float] = None, hold: Optional[float] = None, cycles: Optional[int] = None) -> Pattern:
+    """The COG moves down by `depth` m and up again; `hold` s at the lowest point."""
+
+def stand_pattern(robot: Robot, duration: float) -> Pattern:
+    """Standing in the home posture for `duration` s."""
+
+def strip(robot: Robot, log: Log, *, times: list[float] = [], count: int = 8, columns: int = 4, width: int = 640, height: int = 480, view: str = 'iso', zoom: float = 1.0, title: str = '') -> bytes:
+    """Snapshots side by side as the bytes of a PNG file, at `times` [s] or at `count` telling instants."""
+
+def support_plot(robot: Robot, logs: dict[str, Log], *, title: str = '', scale: float = 1.5) -> bytes:
+    """The ground from above, with soles, COG and ZMP, as the bytes of a PNG file."""
+
+def sway_pattern(robot: Robot, *, side: Optional[float] = None, forward: Optional[float] = None, period: Optional[float] = None, cycles: Optional[int] = None) -> Pattern:
+    """The COG moves to and fro over both feet by `side` and `forward` m, one cycle in `period` s."""
+
+def table(task: Task, log: Log = None, *, content: str = 'lead') -> Table:
+    """The table of a run, or without a log of the pattern itself. `content`: 'ideal' (the posture), 'lead' (ahead by the lag of the servos) or 'lead+sag'."""
+
+def tune(task: Task, *, start: dict[str, float] = {}, times: list[float] = [], directions: int = 4, level: float = 0.9, gains: Optional[list[str]] = None, rounds: int = 3, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Tuning:
+    """Searches better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; `level` of a push in capture bounds; `gains`: names of those that are changed."""
+
+def walk_pattern(robot: Robot, *, steps: Optional[int] = None, stride: Optional[float] = None, period: Optional[float] = None, double_support: Optional[float] = None, lift: Optional[float] = None, cog_height: Optional[float] = None, turn: Optional[float] = None, side: Optional[float] = None, rise: Optional[float] = None) -> Pattern:
+    """A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) in m, period in s, double_support as a share of the period, turn in rad per step, left positive. What is not given follows from the size of the robot."""
+
+def write_clip(robot: Robot, log: Log, path: Union[str, PathLike[str]], *, width: int = 1280, height: int = 720, view: str = 'iso', fps: float = 30.0, speed: float = 1.0, title: str = '', threads: int = 1, progress: Optional[Callable[[str, float, str], Any]] = None) -> int:
+    """Writes the run as a film (.mp4, .webm, .gif); needs the program ffmpeg. Returns the number of frames."""

@@ -1,0 +1,439 @@
+"""The Python module: its values against the program's, its arrays, errors, progress and Ctrl-C, and
+plants and controllers that are written in Python."""
+
+import copy
+import gc
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+
+import numpy as np
+
+import ayumi
+
+WALK = ayumi.data_folder("patterns") / "hoap1_walk.json"
+PROGRAM = os.environ["AYUMI_PROGRAM"]
+
+
+def walk(**options):
+    return ayumi.load_task(WALK, meshes=False, **options)
+
+
+def short_stand(seconds=0.2):
+    robot = ayumi.load_robot("hoap1", meshes=False)
+    return ayumi.sample(ayumi.stand_pattern(robot, seconds), robot)
+
+
+def program(*words):
+    """The JSON object that the program prints."""
+    done = subprocess.run([PROGRAM, *map(str, words), "--json", "-q"], capture_output=True)
+    return json.loads(done.stdout)
+
+
+class Values(unittest.TestCase):
+    """The module is the library of the program: the same input gives the same figures."""
+
+    def test_check_is_that_of_the_program(self):
+        said = program("check", WALK)
+        found = ayumi.check(walk())
+        self.assertEqual(found.to_dict()["verdict"], said["verdict"])
+        self.assertEqual(found.to_dict()["summary"], said["summary"])
+        self.assertTrue(found)
+        self.assertEqual(found.reason, "")
+
+    def test_a_tolerance_changes_the_verdict(self):
+        self.assertFalse(ayumi.check(walk(), tolerances={"joint_torque": 0.1}))
+        with self.assertRaises(ayumi.Error):
+            ayumi.check(walk(), tolerances={"no_such_kind": 1})
+
+    def test_simulation_is_that_of_the_program(self):
+        said = program("simulate", WALK)
+        log = ayumi.simulate(walk())
+        self.assertEqual(log.hash, said["log_hash"])
+        self.assertEqual(log.outcome, said["outcome"])
+        self.assertEqual(log.max_tilt, said["max_tilt_rad"])
+
+    def test_repair_makes_a_pattern_consistent(self):
+        robot = ayumi.load_robot("hoap1", meshes=False)
+        # So fast that a knee and the motor boards cannot follow.
+        task = ayumi.sample(ayumi.squat_pattern(robot, period=0.7, depth=0.04, cycles=1), robot)
+        self.assertIn("table_step", ayumi.check(task).reason)
+        found = ayumi.repair(task, lock_joints=["l_elbow"])
+        self.assertEqual(found.status, "repaired")
+        self.assertTrue(ayumi.check(found.task))
+        self.assertGreater(found.max_joint_change, 1e-4)
+        elbow = robot.joints.index("l_elbow")
+        np.testing.assert_array_equal(found.task.series["theta"][:, elbow],
+                                      task.series["theta"][:, elbow])
+        # What is written reads back as the same repaired motion.
+        again = ayumi.sample(ayumi.parse_pattern(found.task.pattern.text()), robot)
+        np.testing.assert_allclose(again.series["theta"], found.task.series["theta"], atol=1e-12)
+
+    def test_the_fastest_pace_passes_and_is_bounded(self):
+        robot = ayumi.load_robot("hoap1", meshes=False)
+        task = ayumi.sample(ayumi.squat_pattern(robot, cycles=1), robot)
+        pace = ayumi.fastest_pace(task)
+        self.assertTrue(pace.found and pace.bounded)
+        self.assertLess(pace.scale, 1)
+        self.assertTrue(ayumi.check(ayumi.sample(
+            ayumi.retimed(robot, task.pattern, pace.scale), robot)))
+
+    def test_gains_are_those_of_the_program(self):
+        said = program("gains", "hoap1")
+        study = ayumi.gains(ayumi.load_robot("hoap1", meshes=False))
+        self.assertEqual(study.gains, said["gains"])
+        self.assertEqual(study.omega, said["omega_1_s"])
+        self.assertEqual([[p.real, p.imag] for p in study.poles], said["poles_1_s"])
+        self.assertTrue(study.stable)
+        self.assertFalse(ayumi.gains(ayumi.load_robot("hoap1", meshes=False),
+                                     set={"ka": 3 * study.largest_ka}).stable)
+
+    def test_push_limits_are_those_of_the_program(self):
+        options = ["--times", "3.1", "--directions", "2", "--replicas", "0", "--cap", "0.6"]
+        said = program("push", WALK, *options)
+        study = ayumi.push(walk(), times=[3.1], directions=2, replicas=0, cap=0.6)
+        self.assertEqual([case.limits[0] for case in study.cases],
+                         [t["impulse_Ns"] for t in said["thresholds"]
+                          if t["controller"] == study.controllers[0]])
+        self.assertTrue(study.picture().startswith(b"\x89PNG"))
+
+
+class Arrays(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.task = walk()
+        cls.log = ayumi.simulate(cls.task, scenario=False)
+
+    def test_every_array_has_parts_and_units(self):
+        for samples in (self.log, self.task.series, ayumi.table(self.task, self.log)):
+            for name in samples.names:
+                array = samples[name]
+                self.assertEqual(array.shape[0], len(samples), name)
+                if array.ndim == 2:
+                    self.assertEqual(len(samples.units(name)), array.shape[1], name)
+                    self.assertEqual(len(samples.parts(name)), array.shape[1], name)
+        self.assertEqual(self.log.units("cog"), ["m", "m", "m"])
+        self.assertEqual(self.log.parts("theta"), self.task.robot.joints)
+        self.assertEqual(self.log.units("torque")[0], "N m")
+        with self.assertRaises(KeyError):
+            self.log["no such quantity"]
+
+    def test_arrays_are_views(self):
+        log = self.log
+        self.assertIs(log["cog"].base, log)
+        # Number and vector are read where the sample has them: one stride for both.
+        self.assertEqual(log["cog"].strides[0], log["fz"].strides[0])
+        self.assertEqual(log["theta"].ctypes.data, log["theta"].ctypes.data)
+        for name in log.names:
+            self.assertFalse(log[name].flags.owndata, name)
+            with self.assertRaises(ValueError):
+                log[name][0] = 0
+        self.assertIs(self.task.robot.lower.base.__class__, ayumi.Robot)
+        self.assertFalse(self.task.robot.actuators().speed.flags.owndata)
+
+    def test_an_array_keeps_its_owner(self):
+        task = short_stand()
+        theta = task.series["theta"]
+        cog = task.series["cog"]
+        before = theta.copy(), cog.copy()
+        robot_limits = task.robot.upper
+        upper = robot_limits.copy()
+        del task
+        gc.collect()
+        junk = [short_stand(0.05) for _ in range(3)]
+        np.testing.assert_array_equal(theta, before[0])
+        np.testing.assert_array_equal(cog, before[1])
+        np.testing.assert_array_equal(robot_limits, upper)
+        del junk
+
+    def test_values_agree_with_the_exported_columns(self):
+        with tempfile.TemporaryDirectory() as folder:
+            table = ayumi.table(self.task, self.log)
+            path = pathlib.Path(folder) / "table.csv"
+            table.write(path)
+            again = ayumi.read_table(path)
+            for name in table.names:
+                np.testing.assert_array_equal(again[name], table[name])
+            self.assertEqual(again.csv(), table.csv())
+            lines = path.read_text().splitlines()
+            head = next(line for line in lines if not line.startswith("#")).split(",")
+            column = head.index("cog.z[m]")
+            first = lines[lines.index(",".join(head)) + 1].split(",")
+            self.assertEqual(float(first[column]), table["cog"][0, 2])
+
+    def test_a_log_is_read_back(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "run.bin"
+            self.log.write(path)
+            again = ayumi.read_log(path)
+            self.assertEqual(again.hash, self.log.hash)
+            np.testing.assert_array_equal(again["torque"], self.log["torque"])
+
+    def test_series_agrees_with_kinematics(self):
+        series, robot = self.task.series, self.task.robot
+        for k in (0, len(series) // 3, len(series) - 1):
+            state = ayumi.RobotState(series["theta"][k], position=series["base.position"][k],
+                                     attitude=series["base.attitude"][k])
+            # 1e-6 m: the inverse kinematics of the plan.
+            np.testing.assert_allclose(robot.sole_pose(state, "left"), series["left.sole"][k],
+                                       atol=1e-6)
+            np.testing.assert_allclose(robot.cog(state), series["cog"][k], atol=1e-6)
+
+
+class Tables(unittest.TestCase):
+    def test_the_table_of_a_fallen_run_says_so(self):
+        task = walk()
+        fallen = ayumi.simulate(task, controller="none",
+                                scenario=self.hard_push())
+        self.assertEqual(fallen.outcome, "fell")
+        self.assertIn("fell", ayumi.table(task, fallen).unfit)
+        self.assertIn("fell", ayumi.table(task, fallen).csv())
+        good = ayumi.table(task)
+        self.assertEqual(good.unfit, "")
+        self.assertIn(task.robot.joints[0], good.csv())
+
+    def hard_push(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        pattern = ayumi.stand_pattern(ayumi.load_robot("hoap1", meshes=False), 1.0).to_dict()
+        pattern["scenario"] = [{"type": "impulse", "at": 0.5, "duration": 0.02, "on": "cog",
+                                "impulse": 20.0, "direction": [0, 1, 0]}]
+        path = pathlib.Path(folder.name) / "push.json"
+        path.write_text(json.dumps(pattern))
+        return path
+
+    def test_ramp_and_hold(self):
+        task = walk()
+        safe = ayumi.make_safe(task, ayumi.table(task))
+        self.assertTrue(safe.safe, safe.violations)
+        self.assertGreater(len(safe.table), len(task.series))
+        # Encoder counts, one line per row.
+        self.assertGreaterEqual(len(safe.table.hoap(task.robot).splitlines()), len(safe.table))
+
+
+class Errors(unittest.TestCase):
+    def test_code_and_place(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "bad.json"
+            text = json.loads(ayumi.read_pattern(WALK).text())
+            text["phases"][2]["until"] = "soon"
+            path.write_text(json.dumps(text))
+            with self.assertRaises(ayumi.Error) as caught:
+                ayumi.load_task(path)
+        self.assertEqual(caught.exception.code, "bad_pattern")
+        self.assertTrue(caught.exception.place.startswith(str(path)), caught.exception.place)
+        self.assertIn("/phases/2/until", caught.exception.place)
+        self.assertIn(caught.exception.place, str(caught.exception))
+
+    def test_a_file_that_is_not_there(self):
+        with self.assertRaises(ayumi.Error) as caught:
+            ayumi.read_pattern("/nowhere/walk.json")
+        self.assertEqual(caught.exception.code, "bad_file")
+        with self.assertRaises(ayumi.Error) as caught:
+            ayumi.load_robot("no_such_robot")
+        self.assertEqual(caught.exception.code, "bad_file")
+
+    def test_wrong_calls(self):
+        task = short_stand()
+        with self.assertRaises(ayumi.Error) as caught:
+            ayumi.simulate(task, controller="magic")
+        self.assertEqual(caught.exception.code, "usage")
+        with self.assertRaises(ayumi.Error) as caught:
+            ayumi.simulate(task, gains={"ka": 50})
+        self.assertIn("allow_unstable", str(caught.exception))
+        with self.assertRaises(TypeError):
+            ayumi.simulate(task, no_such_option=1)
+
+
+class LongWork(unittest.TestCase):
+    def test_progress_is_heard_and_can_stop(self):
+        heard = []
+        ayumi.simulate(short_stand(), progress=lambda *event: heard.append(event))
+        self.assertTrue(heard)
+        stage, fraction, _ = heard[-1]
+        self.assertEqual(stage, "simulate")
+        self.assertTrue(0 <= fraction <= 1)
+        with self.assertRaises(ayumi.Interrupted):
+            ayumi.simulate(short_stand(), progress=lambda *event: False)
+
+    def test_what_a_callback_raises_comes_out(self):
+        def fails(*_):
+            raise ValueError("from the callback")
+
+        task = short_stand()
+        with self.assertRaisesRegex(ValueError, "from the callback"):
+            ayumi.simulate(task, progress=fails)
+        with self.assertRaisesRegex(ValueError, "from the callback"):
+            ayumi.push(task, times=[0.1], directions=2, threads=2, progress=fails)
+
+    def test_ctrl_c_stops_a_simulation(self):
+        task = walk()
+        timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+        begin = time.monotonic()
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            while time.monotonic() < begin + 60:
+                ayumi.simulate(task, substeps=20)
+        timer.join()
+
+    def test_other_threads_run_during_a_simulation(self):
+        task = walk()
+        counted = [0]
+        done = threading.Event()
+
+        def count():
+            while not done.is_set():
+                counted[0] += 1
+                time.sleep(0.001)
+
+        other = threading.Thread(target=count)
+        other.start()
+        before = counted[0]
+        ayumi.simulate(task, substeps=4)
+        during = counted[0] - before
+        done.set()
+        other.join()
+        # A simulation takes more than 0.1 s here; with the lock held the other thread stands still.
+        self.assertGreater(during, 20)
+
+
+class OffsetPlant:
+    """Ayumi's own plant, with a constant error on the targets of one joint."""
+
+    def __init__(self, robot, profile, world, offset):
+        self.inner = ayumi.Plant(robot, profile, world)
+        self.offset = offset
+        self.steps = 0
+
+    @property
+    def state(self):
+        return self.inner.state
+
+    def set_state(self, state):
+        self.inner.set_state(state)
+
+    def step(self, targets, input, dt):
+        self.steps += 1
+        changed = targets.copy()
+        changed[0] += self.offset
+        return self.inner.step(changed, input, dt)
+
+
+class InTheLoop(unittest.TestCase):
+    def setUp(self):
+        self.task = short_stand()
+        self.caught = warnings.catch_warnings(record=True)
+        self.warned = self.caught.__enter__()
+        warnings.simplefilter("always")
+
+    def tearDown(self):
+        self.caught.__exit__(None, None, None)
+
+    def test_a_plant_in_python_that_is_ayumis_gives_the_same_run(self):
+        own = ayumi.simulate(self.task)
+        log = ayumi.simulate(self.task, plant=lambda *about: OffsetPlant(*about, 0.0))
+        np.testing.assert_array_equal(log["theta"], own["theta"])
+        np.testing.assert_array_equal(log["fz"], own["fz"])
+        self.assertEqual(log.plant, "python")
+        self.assertTrue(any("several times as long" in str(w.message) for w in self.warned))
+
+    def test_a_plant_in_python_moves_the_robot(self):
+        own = ayumi.simulate(self.task)
+        log = ayumi.simulate(self.task, plant=lambda *about: OffsetPlant(*about, 0.05))
+        # The servo of the joint settles near its offset target [rad].
+        self.assertGreater(abs(log["theta"][-1, 0] - own["theta"][-1, 0]), 0.03)
+
+    def test_copies_of_a_plant_are_independent(self):
+        robot = self.task.robot
+        plant = OffsetPlant(robot, "", ayumi.World(), 0.0)
+        plant.set_state(robot.rest_state())
+        height = plant.state.position[2]
+        twin = copy.deepcopy(plant)
+        plant.step(np.array(robot.posture()), ayumi.StepInput(), 0.001)
+        self.assertEqual((plant.steps, twin.steps), (1, 0))
+        self.assertEqual(twin.state.position[2], height)
+        self.assertNotEqual(plant.state.position[2], height)
+
+    def test_a_controller_function_sees_estimate_and_plan(self):
+        seen = []
+
+        def hold(t, estimate, plan, targets):
+            seen.append((t, estimate.fz, plan.support))
+            return targets
+
+        own = ayumi.simulate(self.task, controller="none")
+        log = ayumi.simulate(self.task, controller="none", targets=hold)
+        np.testing.assert_array_equal(log["theta"], own["theta"])
+        self.assertEqual(len(seen), len(log))
+        self.assertEqual(seen[0][2], "both")
+        self.assertGreater(seen[-1][1], 10)  # the robot's weight is on its feet [N]
+        self.assertTrue(any(event.kind == "controller" for event in log.events))
+
+    def test_a_controller_function_moves_the_robot(self):
+        arm = self.task.robot.joints.index("l_elbow")
+
+        def wave(t, estimate, plan, targets):
+            targets = targets.copy()
+            targets[arm] -= 0.2
+            return targets
+
+        own = ayumi.simulate(self.task)
+        log = ayumi.simulate(self.task, targets=wave)
+        # 1e-4 rad: the arm moves the COG, to which the controller answers a little.
+        np.testing.assert_allclose(log["target"][:, arm], own["target"][:, arm] - 0.2, atol=1e-4)
+        self.assertLess(log["theta"][-1, arm], own["theta"][-1, arm] - 0.1)
+
+    def test_wrong_sizes_and_errors(self):
+        with self.assertRaisesRegex(ayumi.Error, "joints"):
+            ayumi.simulate(self.task, targets=lambda *_: np.zeros(3))
+
+        def fails(*_):
+            raise ValueError("from the controller")
+
+        with self.assertRaisesRegex(ValueError, "from the controller"):
+            ayumi.simulate(self.task, targets=fails)
+
+
+class Pictures(unittest.TestCase):
+    def test_png_bytes(self):
+        task = ayumi.load_task(WALK)
+        log = ayumi.simulate(task, scenario=False)
+        shot = ayumi.picture(task.robot, log, at=1.0, width=320, height=240)
+        self.assertTrue(shot.startswith(b"\x89PNG"))
+        self.assertEqual(int.from_bytes(shot[16:20], "big"), 320)
+        for plot in (ayumi.loci(task.robot, {"walk": log}),
+                     ayumi.support_plot(task.robot, {"walk": log})):
+            self.assertTrue(plot.startswith(b"\x89PNG"))
+        self.assertIn("<svg", ayumi.loci_svg(task.robot, {"walk": log}))
+
+
+class Authoring(unittest.TestCase):
+    def test_generated_patterns_are_consistent(self):
+        robot = ayumi.load_robot("hoap1", meshes=False)
+        for pattern in (ayumi.walk_pattern(robot, steps=2), ayumi.stand_pattern(robot, 0.5),
+                        ayumi.sway_pattern(robot, cycles=1), ayumi.squat_pattern(robot, cycles=1)):
+            verdict = ayumi.check(ayumi.sample(pattern, robot))
+            self.assertTrue(verdict, f"{pattern.name}: {verdict.reason}")
+
+    def test_mirrored_twice_is_the_same(self):
+        robot = ayumi.load_robot("hoap1", meshes=False)
+        pattern = ayumi.walk_pattern(robot, steps=2)
+        twice = ayumi.mirrored(robot, ayumi.mirrored(robot, pattern))
+        self.assertEqual(twice.text(), pattern.text())
+
+    def test_text_is_read_back(self):
+        pattern = ayumi.read_pattern(WALK)
+        self.assertEqual(ayumi.parse_pattern(pattern.text()).text(), pattern.text())
+        self.assertAlmostEqual(ayumi.retimed(ayumi.load_robot("hoap1", meshes=False), pattern,
+                                             2).duration, 2 * pattern.duration)
+
+
+if __name__ == "__main__":
+    unittest.main()
