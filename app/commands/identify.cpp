@@ -2,6 +2,7 @@
 
 #include "ayumi/identify/identify.hpp"
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -44,13 +45,15 @@ std::string joint_words(const IdentifiedJoint& j) {
     return words + "stands still; " + text::fixed(j.offset.value / kIdentifiedDegree, 3) +
            " deg from its command\n";
   words += "delay " + estimate_words(j.delay, 1e-3, 2, "ms");
-  words += j.kp.known ? ", kp " + estimate_words(j.kp, 1, 0, "N m/rad")
-                      : ", kp above " + text::brief(j.kp.lower, 3) + " N m/rad";
+  if (j.kp.known)
+    words += ", kp " + estimate_words(j.kp, 1, 0, "N m/rad");
+  else if (j.kp.lower > 0)
+    words += ", kp above " + text::brief(j.kp.lower, 3) + " N m/rad";
   if (j.damping.known) words += ", kd + viscous " + estimate_words(j.damping, 1, 2, "N m s/rad");
   if (j.coulomb.known) words += ", Coulomb " + estimate_words(j.coulomb, 1, 3, "N m");
   if (j.backlash.value > 0)
     words += ", backlash " + estimate_words(j.backlash, kIdentifiedDegree, 3, "deg");
-  words += ", offset " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
+  words += ", from its command " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
   if (j.has_sag)
     words += ", sag " + text::fixed(j.sag / kIdentifiedDegree, 3) + " deg from swing to stance";
   words += "; left over " + text::fixed(j.mean_error / kIdentifiedDegree, 3) +
@@ -73,6 +76,7 @@ Json json_of(const IdentifiedJoint& j) {
   json["command_error_mean_rad"] = j.command_error;
   if (!j.moved) return json;
   json["delay_s"] = json_of(j.delay);
+  json["delay_is_lag"] = j.delay_is_lag;
   json["lag_s"] = j.lag;
   json["kp"] = json_of(j.kp);
   json["kd_and_viscous"] = json_of(j.damping);
@@ -96,19 +100,30 @@ std::string base_name(const IdentifyCommand& options) {
   return base.empty() ? fs::absolute(options.robot).string() : base.generic_string();
 }
 
-// What a joint's servo is in the simulation: that of `source`, with the joint's own offset. A
-// stiffness that is not determined is at least the lower end of its interval, which is written.
-Json servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source, double kd) {
+// What a joint's servo is in the simulation: that of `source`. A stiffness that is not determined
+// is at least the lower end of its interval, which is written; where there is none, the robot keeps
+// its own. A delay that stands for the damping too is written as damping, because a servo without
+// any would let the joint oscillate. A joint's distance from its command is no error of its
+// encoder, so it is not written.
+Json servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
+                 const ServoDescription& own) {
   Json group = {{"joints", {joint.joint}}};
-  group["offset"] = sidecar_number(joint.offset.value);
-  if (!source.moved) return group;
-  const double kp = source.kp.known ? source.kp.value : source.kp.lower;
+  const bool has_kp = source.kp.known || source.kp.lower > 0;
+  const double kp = source.kp.known ? source.kp.value : has_kp ? source.kp.lower : own.kp;
   const double share = kp / source.kp.value;
-  group["kp"] = sidecar_number(kp);
-  group["kd"] = sidecar_number(share * kd);
-  group["viscous"] = sidecar_number(share * source.viscous.value);
-  group["coulomb"] = sidecar_number(share * source.coulomb.value);
-  group["delay"] = sidecar_number((joint.moved ? joint : source).delay.value);
+  const double lag = (joint.moved ? joint : source).lag;
+  if (has_kp) group["kp"] = sidecar_number(kp);
+  if (source.delay_is_lag || !has_kp) {
+    group["kd"] = sidecar_number(kp * lag);
+    group["viscous"] = 0;
+    group["delay"] = 0;
+  } else {
+    group["kd"] = sidecar_number(share * (source.damping.value - source.viscous.value));
+    group["viscous"] = sidecar_number(share * source.viscous.value);
+    group["delay"] =
+        sidecar_number((joint.moved && !joint.delay_is_lag ? joint : source).delay.value);
+  }
+  if (has_kp) group["coulomb"] = sidecar_number(share * source.coulomb.value);
   if (source.backlash.value > 0) group["backlash"] = sidecar_number(source.backlash.value);
   return group;
 }
@@ -127,8 +142,9 @@ std::string sidecar_text(const RobotModel& model, const IdentifyCommand& options
   }
   for (const IdentifiedJoint& joint : found.joints) {
     const IdentifiedJoint& source = joint.moved && joint.kp.known ? joint : *of_type.at(joint.type);
-    const double kd = std::max(0.0, source.damping.value - source.viscous.value);
-    groups.push_back(servo_group(joint, source, kd));
+    if (!source.moved) continue;
+    const auto dof = static_cast<size_t>(model.find_dof(joint.joint));
+    groups.push_back(servo_group(joint, source, model.limits().servo[dof]));
   }
   Json json = {{"format", "ayumi.robot/1"},
                {"base", base_name(options)},
@@ -180,6 +196,10 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   if (!options.out.empty()) {
     write_file(options.out, sidecar_text(model, options, found));
     words += options.out + ": written\n";
+    if (std::any_of(found.joints.begin(), found.joints.end(),
+                    [](const IdentifiedJoint& joint) { return joint.delay_is_lag; }))
+      words +=
+          "  a delay that stands for the damping too is written as damping: kd = kp times delay\n";
   }
   context.print(words);
   context.print_json(Json{

@@ -237,7 +237,8 @@ void new_excite(const Context& context, const NewOptions& options) {
     scale *= 0.8;
   }
   write_new(context, model, excite_pattern(model, scale), options,
-            {"Slow sweeps, chirps and steps of every joint, on both feet: for `ayumi identify`.",
+            {"Slow sweeps, chirps and steps of every joint, of the legs on one foot: for `ayumi "
+             "identify`.",
              "Amplitudes are " + text::brief(100 * scale, 3) + " % of the generator's own."});
 }
 

@@ -33,17 +33,33 @@ constexpr double kConfounded = 0.9;
 // value and its double are then apart. It changes the words of a result, and not its numbers.
 constexpr double kKnown = 0.5;
 
-// What a law with inertia and damping has to leave of the error of a mere delay, before the
-// recording is said to show them. Chosen: a wrong law bends every constant a little, and more
-// constants always fit better. A recording with steps or a chirp leaves less than a tenth.
-constexpr double kClearlyLess = 0.6;
+// What a constant has to change, in what the law of the servo leaves over beside noise, before the
+// recording is said to show it. Chosen: a wrong law bends every constant a little. The recorded
+// walk of a HOAP-3 gives 1.2 for damping, and simulated recordings with a chirp give 3.4 or more.
+constexpr double kBeyondErrors = 2;
+
+// Uncertainty of the torque that loads a joint beside that share [N m]. Chosen: cables and bearings
+// of a small joint. A joint that carries much less of a changing load does not show its stiffness.
+constexpr double kLoadError = 0.01;
+
+// Uncertainty of a rotor's inertia, in parts of it. Chosen: it is calculated from data sheets, and
+// gears add to it. The stiffness of a joint that carries little is seen only beside its inertia.
+constexpr double kRotorShare = 0.25;
+
+// Compliance below which a joint does not show any [rad/(N m)]. Chosen: far stiffer than the servos
+// of small humanoids, which have 1e-4 or more.
+constexpr double kLeastCompliance = 1e-6;
+
+// Time for which the load of a joint has to be known [s], or its stiffness is not looked for.
+// Chosen: the single supports of two steps.
+constexpr double kLeastKnown = 1;
 
 // Torque that puts a gear on one of its flanks [N m]. Chosen: the friction of a small gear.
 constexpr double kFlankTorque = 0.05;
 
-// Ratio of what two laws of a servo leave over below which the recording shows which of them holds.
-// Chosen: far outside of chance for the thousands of rows of a recording.
-constexpr double kHoldSeen = 0.97;
+// Twice the logarithm of the likelihood ratio of two laws of a servo above which the recording
+// shows which of them holds. Chosen: five standard deviations, squared.
+constexpr double kLawSeen = 25;
 
 struct TypeFit {
   ServoFit fit;
@@ -51,6 +67,8 @@ struct TypeFit {
   bool has_backlash = false;
   /// What the delay is less, and its uncertainty, for what a servo does between two commands [s].
   double hold = 0;
+  double step = 0;  ///< as much for the damping: the simulator's step was neither seen nor excluded
+  ServoConstants heavier;  ///< with a rotor that is heavier by its uncertainty
 };
 
 double rms_between(const ServoFit& a, const ServoFit& b) {
@@ -67,10 +85,10 @@ double deviation(const ServoFit& fit, Constant which) {
   return std::sqrt(fit.covariance(i, i));
 }
 
-// Whether a constant that `with` has and `without` does not changes the angle by more than what the
-// servo's law leaves over anyhow, and is not zero within its interval.
+// Whether a constant that `with` has and `without` does not changes the angle by far more than what
+// the servo's law leaves over anyhow, and is not zero within its interval.
 bool is_seen(const ServoFit& with, const ServoFit& without, double value, Constant which) {
-  return rms_between(with, without) > with.model_error &&
+  return rms_between(with, without) > kBeyondErrors * with.model_error &&
          value > with.t_factor * deviation(with, which);
 }
 
@@ -85,73 +103,105 @@ bool load_changes_sign(const std::vector<JointRecording>& joints) {
   });
 }
 
+// Whether the recording shows that `a` holds, and not `b`.
+bool fits_better(const ServoFit& a, const ServoFit& b) {
+  return 2 * a.independent * std::log(b.rms / a.rms) > kLawSeen;
+}
+
 // Whether the recording shows inertia and damping.
 bool shows_damping(const ServoFit& damped, const ServoFit& simple) {
-  return damped.rms < kClearlyLess * simple.rms &&
+  return fits_better(damped, simple) && damped.constants[0].compliance > kLeastCompliance &&
          is_seen(damped, simple, damped.constants[0].damping, Constant::damping);
 }
 
-TypeFit fit_with(std::vector<JointRecording> joints, double longest_delay) {
-  std::vector<ServoConstants> start = first_guess(joints, longest_delay);
-  for (ServoConstants& each : start) each.damping = 0;
-  for (JointRecording& joint : joints) joint.at_once = true;
-  TypeFit result;
-  result.fit = fit_servo(joints, start, holding(true, true), longest_delay);
-  start = result.fit.constants;
-  for (ServoConstants& each : start) {
-    each.damping = 0.5 * std::min(each.delay, 0.002);
-    each.delay -= each.damping;
-  }
-  for (JointRecording& joint : joints) joint.at_once = false;
-  ServoFit damped = fit_servo(joints, start, holding(false, true), longest_delay);
-  result.delay_takes_damping = !shows_damping(damped, result.fit);
-  if (!result.delay_takes_damping) result.fit = std::move(damped);
-  if (!load_changes_sign(joints)) return result;
-  for (JointRecording& joint : joints) joint.at_once = result.delay_takes_damping;
-  start = result.fit.constants;
-  for (ServoConstants& each : start) each.backlash = 1e-4;
-  ServoFit play =
-      fit_servo(joints, start, holding(result.delay_takes_damping, false), longest_delay);
-  result.has_backlash = is_seen(play, result.fit, play.constants[0].backlash, Constant::backlash);
-  if (result.has_backlash) result.fit = std::move(play);
-  return result;
+void set_law(std::vector<JointRecording>& joints, CommandLaw law, bool at_once) {
+  for (JointRecording& joint : joints) joint.law = law, joint.at_once = at_once;
 }
 
-// Root of the mean squared error of these constants [rad].
-double rms_of(const std::vector<JointRecording>& joints,
-              const std::vector<ServoConstants>& constants) {
-  double sum = 0, count = 0;
-  VectorXd theta;
-  for (size_t j = 0; j < joints.size(); ++j) {
-    servo_response(joints[j], constants[j], theta);
-    const Index rows = theta.size() - first_compared(joints[j]);
-    sum += (joints[j].measured - theta).tail(rows).squaredNorm();
-    count += static_cast<double>(rows);
-  }
-  return std::sqrt(sum / count);
+// Time by which a servo of this law is behind one that goes from one command to the next.
+double behind(CommandLaw law, const JointRecording& joint) {
+  if (law == CommandLaw::linear) return 0;
+  return 0.5 * joint.command_dt + (law == CommandLaw::stepped ? 0.5 * joint.dt : 0.0);
+}
+
+// The servo with inertia and damping that comes nearest, by the law of `joints`. The error has many
+// minima over its constants, so the best of a grid is the start.
+ServoFit damped_fit(const std::vector<JointRecording>& joints, const ServoFit& simple,
+                    const std::vector<ServoConstants>& guess, double longest_delay) {
+  const double lag = std::max(0.0, simple.constants[0].delay - behind(joints[0].law, joints[0]));
+  std::vector<ServoConstants> start = guess, best = guess;
+  double least = HUGE_VAL;
+  for (const double share : {0.2, 0.5, 0.8})
+    for (const double dry : {0.0, 1e-4, 4e-4, 1.5e-3})
+      for (const double compliance : {guess[0].compliance, 2e-4, 7e-4, 2e-3, 5e-3}) {
+        for (ServoConstants& each : start) {
+          each.damping = share * lag, each.delay = lag - each.damping;
+          each.dry = dry, each.compliance = compliance;
+        }
+        const double error = rms_error(joints, start);
+        if (error < least) least = error, best = start;
+      }
+  return fit_servo(joints, best, holding(false, true), longest_delay);
 }
 
 // A servo may hold each command until the next one, or go from one to the other. Where the
 // recording shows the difference, the better is taken. Where it does not, the delay of a servo that
 // holds would be half an interval shorter: the delay is given in the middle of both.
 TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay) {
-  TypeFit linear = fit_with(joints, longest_delay);
-  const double interval = joints[0].command_dt;
-  for (JointRecording& joint : joints) {
-    joint.held = true;
-    joint.at_once = linear.delay_takes_damping;
+  const std::vector<ServoConstants> guess = first_guess(joints, longest_delay);
+  std::vector<ServoConstants> start = guess;
+  for (ServoConstants& each : start) each.damping = 0;
+  const double unknown_hold = 0.25 * joints[0].command_dt;
+  TypeFit result;
+  set_law(joints, CommandLaw::linear, true);
+  result.fit = fit_servo(joints, start, holding(true, true), longest_delay);
+  result.hold = unknown_hold;
+  result.delay_takes_damping = true;
+  CommandLaw law = CommandLaw::linear;
+  set_law(joints, CommandLaw::held, true);
+  start = result.fit.constants;
+  for (ServoConstants& each : start)
+    each.delay = std::max(0.0, each.delay - behind(CommandLaw::held, joints[0]));
+  ServoFit held = fit_servo(joints, start, holding(true, true), longest_delay);
+  if (fits_better(result.fit, held) || fits_better(held, result.fit)) result.hold = 0;
+  if (fits_better(held, result.fit)) result.fit = std::move(held), law = CommandLaw::held;
+
+  set_law(joints, CommandLaw::linear, false);
+  ServoFit damped = damped_fit(joints, result.fit, guess, longest_delay);
+  CommandLaw damped_law = CommandLaw::linear;
+  double hold = unknown_hold, step = 0.5 * joints[0].dt;
+  for (const CommandLaw other : {CommandLaw::held, CommandLaw::stepped}) {
+    set_law(joints, other, false);
+    ServoFit fit = damped_fit(joints, result.fit, guess, longest_delay);
+    const bool better = fits_better(fit, damped);
+    if (better || (other == CommandLaw::held && fits_better(damped, fit))) hold = 0;
+    if (other == CommandLaw::stepped && (better || fits_better(damped, fit))) step = 0;
+    if (better) damped = std::move(fit), damped_law = other;
   }
-  std::vector<ServoConstants> start = linear.fit.constants;
-  for (ServoConstants& each : start) each.delay = std::max(0.0, each.delay - 0.5 * interval);
-  linear.hold = 0.25 * interval;
-  if (std::abs(rms_of(joints, start) / linear.fit.rms - 1) < 1 - kHoldSeen) return linear;
-  TypeFit held = linear;
-  held.hold = 0;
-  held.fit = fit_servo(joints, start, holding(linear.delay_takes_damping, !linear.has_backlash),
-                       longest_delay);
-  if (held.fit.rms < kHoldSeen * linear.fit.rms) return held;
-  if (linear.fit.rms < kHoldSeen * held.fit.rms) linear.hold = 0;
-  return linear;
+  if (shows_damping(damped, result.fit)) {
+    result.fit = std::move(damped);
+    result.hold = hold;
+    result.step = step;
+    result.delay_takes_damping = false;
+    law = damped_law;
+  }
+  set_law(joints, law, result.delay_takes_damping);
+  if (load_changes_sign(joints)) {
+    start = result.fit.constants;
+    for (ServoConstants& each : start) each.backlash = 1e-4;
+    ServoFit play =
+        fit_servo(joints, start, holding(result.delay_takes_damping, false), longest_delay);
+    result.has_backlash = fits_better(play, result.fit) &&
+                          is_seen(play, result.fit, play.constants[0].backlash, Constant::backlash);
+    if (result.has_backlash) result.fit = std::move(play);
+  }
+  for (JointRecording& joint : joints)
+    joint.inertia += kRotorShare * (joint.inertia - joint.link_inertia);
+  result.heavier =
+      fit_servo(joints, result.fit.constants,
+                holding(result.delay_takes_damping, !result.has_backlash), longest_delay)
+          .constants[0];
+  return result;
 }
 
 ServoEstimate estimate(double value, double half_width, double least = -HUGE_VAL) {
@@ -159,19 +209,27 @@ ServoEstimate estimate(double value, double half_width, double least = -HUGE_VAL
           half_width <= kKnown * std::abs(value)};
 }
 
-// Value and half width of a ratio a/s from the covariance of a and s.
-ServoEstimate ratio(double a, double s, double var_a, double var_s, double cov, double factor) {
+// The estimate of a ratio a/s from the covariance of a and s. Its half width grows by
+// `share` of the value and by `more`.
+ServoEstimate ratio(double a, double s, double var_a, double var_s, double cov, double factor,
+                    double share, double more) {
   if (s <= 0) return {};
   const double value = a / s;
   const double variance = (var_a - 2 * value * cov + value * value * var_s) / (s * s);
-  return estimate(value, factor * std::sqrt(std::max(0.0, variance)) + kModelShare * value, 0);
+  return estimate(value, factor * std::sqrt(std::max(0.0, variance)) + share * value + more, 0);
 }
 
 class Advice {
  public:
-  Advice(const TypeFit& type, const IdentifiedJoint& joint) : fit_(type.fit) {
+  Advice(const TypeFit& type, const IdentifiedJoint& joint, bool load_known) : fit_(type.fit) {
+    if (!load_known) {
+      say("both feet stand, so the legs may press against each other and their load is not known: "
+          "record a motion that lifts each foot");
+      return;
+    }
     if (type.delay_takes_damping)
-      say("delay and damping are confounded, and the delay stands for both: record steps or a "
+      say("delay and damping are confounded, and the delay stands for both: record quick steps or "
+          "a "
           "chirp");
     const bool kp = joint.kp.known;
     if (!kp && tied(Constant::compliance, Constant::dry))
@@ -228,6 +286,14 @@ void find_sag(const RobotModel& model, const JointLoads& loads, int dof,
   }
 }
 
+// Standard deviation of what loads a joint beside its own inertia [N m].
+double load_change(const JointRecording& recording) {
+  const VectorXd load =
+      (recording.torque.array() - recording.link_inertia.array() * recording.acceleration.array())
+          .matrix()(recording.compared);
+  return std::sqrt((load.array() - load.mean()).square().mean());
+}
+
 void describe(const TypeFit& type, size_t i, const JointRecording& recording,
               const ServoDescription& servo, bool own_servo, IdentifiedJoint& joint) {
   const ServoFit& fit = type.fit;
@@ -239,21 +305,26 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
   joint.delay = estimate(std::max(0.0, c.delay - type.hold),
                          factor * deviation(fit, Constant::delay) + type.hold, 0);
   joint.lag = c.delay + c.damping;
-  const double s = c.compliance,
-               half = factor * deviation(fit, Constant::compliance) + kModelShare * s;
+  const double s = c.compliance, heavier = std::max(type.heavier.compliance, 1e-12),
+               load_share = kModelShare + kLoadError / std::max(load_change(recording), 1e-6),
+               half = factor * deviation(fit, Constant::compliance) + load_share * s +
+                      std::abs(heavier - s);
   joint.kp = {1 / std::max(s, 1e-12), 1 / (s + half), s > half ? 1 / (s - half) : HUGE_VAL,
               half <= kKnown * s};
-  const double var_s = var(Constant::compliance, Constant::compliance);
-  joint.damping = ratio(c.damping, s, var(Constant::damping, Constant::damping), var_s,
-                        var(Constant::damping, Constant::compliance), factor);
-  joint.coulomb = ratio(c.dry, s, var(Constant::dry, Constant::dry), var_s,
-                        var(Constant::dry, Constant::compliance), factor);
+  const auto by_stiffness = [&](Constant which, double value, double other, double more) {
+    return ratio(value, s, var(which, which), var(Constant::compliance, Constant::compliance),
+                 var(which, Constant::compliance), factor, load_share,
+                 std::abs(other / heavier - value / std::max(s, 1e-12)) + more);
+  };
+  joint.damping = by_stiffness(Constant::damping, c.damping, type.heavier.damping,
+                               type.step / std::max(s, 1e-12));
+  joint.coulomb = by_stiffness(Constant::dry, c.dry, type.heavier.dry, 0);
   // The motor's damping and viscous friction act alike. What the robot's file states of the first
   // is taken off, unless the recording contradicts it.
   const double kd = own_servo && servo.kd <= joint.damping.upper ? servo.kd : 0;
   joint.viscous = estimate(std::max(0.0, joint.damping.value - kd),
                            joint.damping.upper - joint.damping.value, 0);
-  joint.viscous.known = joint.damping.known && joint.viscous.known;
+  joint.viscous.known = joint.damping.known;
   joint.backlash = estimate(c.backlash, factor * deviation(fit, Constant::backlash), 0);
   if (!type.has_backlash) joint.backlash = {};
   const auto o = static_cast<Index>(kConstants + i);
@@ -262,9 +333,14 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
   const VectorXd& residual = fit.residual[i];
   Index at = 0;
   joint.largest_error = residual.cwiseAbs().maxCoeff(&at);
-  joint.largest_at = recording.dt * static_cast<double>(at + fit.first);
+  joint.largest_at =
+      recording.dt * static_cast<double>(recording.compared[static_cast<size_t>(at)]);
   joint.mean_error = residual.cwiseAbs().mean();
-  joint.confounded = Advice(type, joint).words;
+  joint.delay_is_lag = type.delay_takes_damping;
+  if (!recording.load_known)
+    for (ServoEstimate* each : {&joint.kp, &joint.damping, &joint.viscous, &joint.coulomb})
+      *each = {each->value, 0, HUGE_VAL, false};
+  joint.confounded = Advice(type, joint, recording.load_known).words;
 }
 
 JointRecording recording_of(const RobotModel& model, const RecordedMotion& motion,
@@ -278,7 +354,11 @@ JointRecording recording_of(const RobotModel& model, const RecordedMotion& motio
   r.link_inertia = loads.inertia.col(dof);
   r.inertia = r.link_inertia.array() + model.limits().servo[static_cast<size_t>(dof)].rotor_inertia;
   r.acceleration = loads.acceleration.col(dof);
-  r.start_rate = loads.rate(0, dof);
+  r.rate = loads.rate.col(dof);
+  r.compared = telling_rows(r, load_known(model, loads, dof, r.dt));
+  r.load_known = r.dt * static_cast<double>(r.compared.size()) > kLeastKnown;
+  if (!r.load_known)
+    r.compared = telling_rows(r, std::vector<char>(static_cast<size_t>(r.measured.size()), 1));
   return r;
 }
 

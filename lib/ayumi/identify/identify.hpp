@@ -28,16 +28,17 @@ struct ServoEstimate {
 /// What was found for one joint.
 struct IdentifiedJoint {
   std::string joint, type;
-  bool moved = false;      ///< false: only the offset is found
-  ServoEstimate delay;     ///< [s]
-  ServoEstimate kp;        ///< [N m/rad]
-  ServoEstimate damping;   ///< kd + viscous [N m s/rad]
-  ServoEstimate viscous;   ///< damping less the robot's kd [N m s/rad]
-  ServoEstimate coulomb;   ///< [N m]
-  ServoEstimate backlash;  ///< [rad]
-  ServoEstimate offset;    ///< of the measured angle against the command [rad]
-  double lag = 0;          ///< by which the angle is behind a slow command [s]
-  double sag = 0;          ///< change of the angle from the unloaded to the loaded foot [rad]
+  bool moved = false;         ///< false: only the mean distance from the command is found
+  bool delay_is_lag = false;  ///< the recording shows no damping: `delay` is the whole lag
+  ServoEstimate delay;        ///< [s]
+  ServoEstimate kp;           ///< [N m/rad]
+  ServoEstimate damping;      ///< kd + viscous [N m s/rad]
+  ServoEstimate viscous;      ///< damping less the robot's kd [N m s/rad]
+  ServoEstimate coulomb;      ///< [N m]
+  ServoEstimate backlash;     ///< [rad]
+  ServoEstimate offset;       ///< mean distance of the unloaded joint from its command [rad]
+  double lag = 0;             ///< by which the angle is behind a slow command [s]
+  double sag = 0;             ///< change of the angle from the unloaded to the loaded foot [rad]
   bool has_sag = false;
   double mean_error = 0, largest_error = 0, largest_at = 0;  ///< measured - simulated [rad], [s]
   double command_error = 0;                                  ///< mean |measured - command| [rad]

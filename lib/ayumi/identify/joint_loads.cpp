@@ -25,6 +25,15 @@ namespace {
 // of a leg by less than 0.05 N m.
 constexpr double kLoadCutoff = 50;
 
+// The distance of a joint from its late command changes slower than this [Hz]. Chosen: weight and
+// friction change it, and the noise of an encoder beyond this frequency does not become a torque.
+constexpr double kSagCutoff = 15;
+
+// Load of a standing leg above this frequency [Hz], and its share of the largest load of the joint
+// above which it is not known well. Chosen: slower than a step; at a tenth, the delays of a
+// simulated robot are 0.5 ms wrong.
+constexpr double kQuickLoad = 5, kQuickShare = 0.05;
+
 // Load cells are smoothed to this frequency [Hz]. Chosen: the weight goes from foot to foot in 0.1
 // s or more.
 constexpr double kShareCutoff = 15;
@@ -134,6 +143,7 @@ class LoadsOnFeet {
   }
 
   const CommandSample& sample(size_t k) const { return anchored_[0][k]; }
+  Support support(size_t k) const { return supports_[k]; }
 
  private:
   const RobotModel& model_;
@@ -141,6 +151,37 @@ class LoadsOnFeet {
   std::array<std::vector<CommandSample>, 2> anchored_;
   std::vector<Support> supports_;
 };
+
+// The motion of a joint that has a command: the command with the mean delay of the answer, and what
+// the answer differs from it, smoothed. Two differentiations make little of an encoder's noise.
+VectorXd smooth_motion(const RecordedMotion& motion, Index dof) {
+  const AngleTable &measured = motion.measured, &command = motion.command;
+  const VectorXd answer = measured.theta.col(dof);
+  if (dof >= command.theta.cols() || !command.has[static_cast<size_t>(dof)])
+    return low_pass(answer, measured.dt, kLoadCutoff);
+  const Index last = command.theta.rows() - 1;
+  const auto sent = [&](double late) {
+    VectorXd angle(answer.size());
+    for (Index k = 0; k < angle.size(); ++k) {
+      const double at = std::clamp((measured.dt * static_cast<double>(k) - late) / command.dt, 0.0,
+                                   static_cast<double>(last));
+      const Index row = std::min(static_cast<Index>(at), std::max<Index>(0, last - 1));
+      const double u = at - static_cast<double>(row);
+      angle[k] =
+          (1 - u) * command.theta(row, dof) + u * command.theta(std::min(row + 1, last), dof);
+    }
+    return angle;
+  };
+  const VectorXd now = sent(0);
+  const VectorXd step = sent(-measured.dt) - sent(measured.dt);
+  const double square = step.squaredNorm();
+  VectorXd behind = now - answer;
+  behind.array() -= behind.mean();
+  const double lag = square > 0 ? 2 * measured.dt * behind.dot(step) / square : 0.0;
+  const VectorXd late = sent(std::max(0.0, lag));
+  return low_pass(late, measured.dt, kLoadCutoff) +
+         low_pass(answer - late, measured.dt, kSagCutoff);
+}
 
 }  // namespace
 
@@ -176,11 +217,14 @@ JointLoads joint_loads(const RobotModel& model, const RecordedMotion& motion, Ro
   const VectorXd home = model.posture();
   MatrixXd theta(rows, dofs);
   for (Index j = 0; j < dofs; ++j)
-    theta.col(j) = measured.has[static_cast<size_t>(j)]
-                       ? low_pass(measured.theta.col(j), measured.dt, kLoadCutoff)
-                       : VectorXd::Constant(rows, home[j]);
-  JointLoads loads{
-      MatrixXd(rows, dofs), MatrixXd(rows, dofs), MatrixXd(rows, dofs), MatrixXd(rows, dofs), {}};
+    theta.col(j) = measured.has[static_cast<size_t>(j)] ? smooth_motion(motion, j)
+                                                        : VectorXd::Constant(rows, home[j]);
+  JointLoads loads{MatrixXd(rows, dofs),
+                   MatrixXd(rows, dofs),
+                   MatrixXd(rows, dofs),
+                   MatrixXd(rows, dofs),
+                   {},
+                   {}};
   RobotData data(model);
   MatrixXd mass;
   const auto add_row = [&](size_t k, const CommandSample& sample, const VectorXd& torque) {
@@ -209,8 +253,26 @@ JointLoads joint_loads(const RobotModel& model, const RecordedMotion& motion, Ro
     double& used = loads.left_share[static_cast<Index>(k)];
     used = share.size() > 0 ? share[static_cast<Index>(k)] : -1;
     add_row(k, feet.sample(k), feet.torque(k, used));
+    loads.support.push_back(feet.support(k));
   }
   return loads;
+}
+
+std::vector<char> load_known(const RobotModel& model, const JointLoads& loads, int dof, double dt) {
+  const VectorXd torque = loads.torque.col(dof);
+  std::vector<char> known(static_cast<size_t>(torque.size()), 1);
+  for (const Side side : {Side::left, Side::right}) {
+    if (loads.support.empty()) break;
+    const std::vector<int>& leg = model.leg(side);
+    if (std::find(leg.begin(), leg.end(), dof) == leg.end()) continue;
+    const VectorXd quick = torque - low_pass(torque, dt, kQuickLoad);
+    const double bound = kQuickShare * torque.cwiseAbs().maxCoeff();
+    const Support own = side == Side::left ? Support::left : Support::right;
+    for (size_t k = 0; k < known.size(); ++k)
+      known[k] = loads.support[k] != Support::both &&
+                 (loads.support[k] != own || std::abs(quick[static_cast<Index>(k)]) < bound);
+  }
+  return known;
 }
 
 }  // namespace ayumi

@@ -4,6 +4,7 @@
 
 #include "ayumi/identify/recorded_motion.hpp"
 #include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/pattern.hpp"
 
 namespace ayumi {
 
@@ -18,12 +19,18 @@ struct JointLoads {
   Eigen::MatrixXd inertia;  ///< rows x dof: of what the joint moves, root held [kg m^2, kg]
   Eigen::MatrixXd rate, acceleration;  ///< rows x dof, of the smoothed motion
   Eigen::VectorXd left_share;          ///< of the ground's load on the left foot; empty when fixed
+  std::vector<Support> support;        ///< by row; empty when fixed
 };
 
 /// Rows as those of `motion.measured`; joints that it does not have keep the home posture. Angles
 /// are smoothed first (kLoadCutoff). While both feet support, the left foot's share is that of
 /// `motion.sensors.foot_load` where the file has it, else what the ZMP asks for.
 JointLoads joint_loads(const RobotModel& model, const RecordedMotion& motion, RobotStand stand);
+
+/// By row: the load of joint `dof` follows from the motion. While both feet stand, the legs may
+/// press against each other with forces that no angle and no load cell shows. The quick part of
+/// what a single standing leg carries comes from the whole robot on yielding servos and ground.
+std::vector<char> load_known(const RobotModel& model, const JointLoads& loads, int dof, double dt);
 
 /// x without what is faster than `cutoff` [Hz], not delayed: a Butterworth filter of second order
 /// forwards and backwards.

@@ -17,9 +17,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// The simulated joint starts where the recording does, but not with its torque; rows before this
-// time are not compared [s]. Chosen: ten time constants of a small servo.
-constexpr double kSettle = 0.1;
+// Rate of the command below which a joint rests [rad/s], and half of the time over which it is
+// taken [s]. Chosen: far below the rates of a motion, and above a step of one count.
+constexpr double kRestRate = 0.01, kRateTime = 0.01;
 
 // Units of the constants in a fit, so that numbers near 1 are searched: ms, 0.1 mrad/(N m), ms,
 // 0.1 mrad.
@@ -45,9 +45,9 @@ ServoConstants constants_of(const double* shared, double offset) {
 // Measured less simulated angle of one joint, in the unit of offsets.
 class JointError final : public ceres::CostFunction {
  public:
-  explicit JointError(const JointRecording& joint) : joint_(joint), first_(first_compared(joint)) {
+  explicit JointError(const JointRecording& joint) : joint_(joint) {
     mutable_parameter_block_sizes()->assign({kConstants, 1});
-    set_num_residuals(static_cast<int>(joint.measured.size() - first_));
+    set_num_residuals(static_cast<int>(joint.compared.size()));
   }
 
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -75,11 +75,10 @@ class JointError final : public ceres::CostFunction {
   VectorXd error(const std::array<double, kConstants + 1>& x) const {
     VectorXd theta;
     servo_response(joint_, constants_of(x.data(), x[kConstants]), theta);
-    return (joint_.measured - theta).tail(num_residuals()) / kUnit[5];
+    return (joint_.measured - theta)(joint_.compared) / kUnit[5];
   }
 
   const JointRecording& joint_;
-  Index first_;
 };
 
 // Rows after which the residuals are independent.
@@ -170,9 +169,35 @@ double model_error(const std::vector<JointRecording>& joints,
 
 }  // namespace
 
-Index first_compared(const JointRecording& joint) {
-  return std::min<Index>(static_cast<Index>(std::ceil(kSettle / joint.dt)),
-                         joint.measured.size() / 4);
+std::vector<Index> telling_rows(const JointRecording& joint, const std::vector<char>& known) {
+  const Index rows = joint.measured.size();
+  const auto wait = static_cast<Index>(std::ceil(kSettle / joint.dt));
+  std::vector<Index> telling;
+  Index held = 0, rested = wait;
+  for (Index k = 0; k < rows; ++k) {
+    held = known[static_cast<size_t>(k)] ? held + 1 : 0;
+    const double t = joint.dt * static_cast<double>(k);
+    const double change = command_at(joint, t + kRateTime) - command_at(joint, t - kRateTime);
+    rested = std::abs(change) > 2 * kRateTime * kRestRate ? 0 : rested + 1;
+    // The end of the recording is no change of the load.
+    bool holds = held > wait;
+    for (Index ahead = k + 1; holds && ahead < std::min(rows, k + wait); ++ahead)
+      holds = known[static_cast<size_t>(ahead)];
+    if (holds && rested < wait) telling.push_back(k);
+  }
+  return telling;
+}
+
+double rms_error(const std::vector<JointRecording>& joints,
+                 const std::vector<ServoConstants>& constants) {
+  double sum = 0, count = 0;
+  VectorXd theta;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    servo_response(joints[j], constants[j], theta);
+    sum += (joints[j].measured - theta)(joints[j].compared).squaredNorm();
+    count += static_cast<double>(joints[j].compared.size());
+  }
+  return std::sqrt(sum / count);
 }
 
 ServoFit fit_servo(const std::vector<JointRecording>& joints,
@@ -197,9 +222,9 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = 60;
-  options.function_tolerance = 1e-13;
-  options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-9;
+  options.function_tolerance = 1e-9;
+  options.gradient_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-7;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
   // Where the joint comes to rest changes with a jump as its friction does, so that the error has
@@ -227,19 +252,19 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
   }
 
   ServoFit fit;
-  fit.first = first_compared(joints[0]);
   std::vector<double> residuals;
   problem.Evaluate({}, nullptr, &residuals, nullptr, nullptr);
   Index at = 0;
   for (size_t j = 0; j < joints.size(); ++j) {
     fit.constants.push_back(constants_of(shared.data(), offsets[j]));
-    const Index count = joints[j].measured.size() - first_compared(joints[j]);
+    const auto count = static_cast<Index>(joints[j].compared.size());
     fit.residual.push_back(kUnit[5] * Eigen::Map<const VectorXd>(residuals.data() + at, count));
     at += count;
   }
   fit.rms = kUnit[5] * std::sqrt(Eigen::Map<const VectorXd>(residuals.data(), at).squaredNorm() /
                                  static_cast<double>(at));
   fit.model_error = model_error(joints, fit.residual);
+  fit.independent = static_cast<double>(at) / static_cast<double>(correlation_length(fit.residual));
   // The Jacobian by all constants that were free and may move, and by the offsets.
   std::vector<Index> free;
   for (int i = 0; i < kConstants; ++i)
@@ -285,9 +310,6 @@ std::vector<ServoConstants> first_guess(const std::vector<JointRecording>& joint
   double best = std::numeric_limits<double>::infinity();
   std::vector<ServoConstants> found(joints.size());
   for (double delay = 0; delay <= longest_delay + 1e-9; delay += kDelayStep) {
-    Index rows = 0;
-    for (const JointRecording& joint : joints)
-      rows += joint.measured.size() - first_compared(joint);
     // Unknowns: compliance, dry friction, an offset for each joint. Damping starts small, since a
     // delay does nearly the same.
     MatrixXd normal = MatrixXd::Zero(2 + joint_count, 2 + joint_count);
@@ -296,11 +318,13 @@ std::vector<ServoConstants> first_guess(const std::vector<JointRecording>& joint
     for (size_t j = 0; j < joints.size(); ++j) {
       const JointRecording& joint = joints[j];
       double last = command_at(joint, -delay), direction = 0;
-      for (Index k = 0; k < joint.measured.size(); ++k) {
+      auto next = joint.compared.begin();
+      for (Index k = 0; k < joint.measured.size() && next != joint.compared.end(); ++k) {
         const double target = command_at(joint, joint.dt * static_cast<double>(k) - delay);
         if (target != last) direction = target > last ? 1 : -1;
         last = target;
-        if (k < first_compared(joint)) continue;
+        if (k != *next) continue;
+        ++next;
         VectorXd row = VectorXd::Zero(2 + joint_count);
         row[0] = -joint.torque[k] * 1e-4;
         row[1] = -direction * 1e-4;

@@ -19,15 +19,22 @@ struct ServoFit {
   /// held has variance 0.
   Eigen::MatrixXd covariance;
   double t_factor = 1.96;                 ///< half width of a 95 % interval, in standard deviations
-  std::vector<Eigen::VectorXd> residual;  ///< measured - simulated by joint, from kSettle on [rad]
-  Eigen::Index first = 0;                 ///< row of the first residual
+  std::vector<Eigen::VectorXd> residual;  ///< measured - simulated by joint and compared row [rad]
   double rms = 0;                         ///< [rad]
+  double independent = 0;                 ///< residuals that are independent of each other
   double model_error = 0;                 ///< part of the residuals that is not noise, rms [rad]
 };
 
-/// The first row that a fit compares: the joint starts where the recording does, but not with its
-/// torque.
-Eigen::Index first_compared(const JointRecording& joint);
+/// Rows that a fit can compare: those where `known` holds and has held for the time that a servo
+/// needs to settle, and will hold for as long. The joint starts where the recording does, but not
+/// with its torque. Where the joint rests for longer than this, it stands where friction and the
+/// creep of its gear have left it, which shows no constant: such rows are left out. Empty when none
+/// is left.
+std::vector<Eigen::Index> telling_rows(const JointRecording& joint, const std::vector<char>& known);
+
+/// Root of the mean squared error of these constants at the compared rows [rad].
+double rms_error(const std::vector<JointRecording>& joints,
+                 const std::vector<ServoConstants>& constants);
 
 /// Fits from `start`; constants in `held` keep the value of the start. The covariance holds for
 /// residuals that are correlated in time: their scores are summed over blocks longer than that

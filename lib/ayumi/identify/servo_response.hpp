@@ -5,11 +5,12 @@
 //   kp = 1/s:  s J ddphi = u(t - delay) - phi - D dphi - C sgn(dphi) - s tau,
 //   theta = phi + offset - backlash/2 sgn(tau)
 // with J the inertia of rotor and link, tau what else acts on the joint. Dry friction holds the
-// joint at rest. Implicit midpoint rule in steps of at most kResponseStep.
+// joint at rest. Implicit midpoint rule in steps of at most kResponseStep, or as the law says.
 //   In a recording that shows no damping, the joint is without J and D: phi then goes where the
 // error exceeds the dry friction, |u(t - delay) - phi - s tau| <= C.
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace ayumi {
 
@@ -23,24 +24,38 @@ struct ServoConstants {
   double offset = 0;      ///< [rad]
 };
 
+/// What a servo does between two rows of its command.
+enum class CommandLaw {
+  linear,  ///< it goes from one to the next
+  held,    ///< it holds each until the next
+  stepped  ///< held, in the simulator's own steps: implicit Euler from row to row
+};
+
 /// A joint's recording. Vectors of the measured rate have one entry per measured row.
 struct JointRecording {
   double command_dt = 0.001, dt = 0.001;  ///< [s]
   bool at_once = false;                   ///< the angle follows the late command without J and D
-  bool held = false;             ///< a command holds until the next; else linear between them
-  Eigen::VectorXd command;       ///< [rad]
-  Eigen::VectorXd measured;      ///< [rad]
-  Eigen::VectorXd torque;        ///< of the rigid tree on the joint [N m]
-  Eigen::VectorXd inertia;       ///< that the joint moves, its rotor included [kg m^2]
-  Eigen::VectorXd link_inertia;  ///< without the rotor [kg m^2]
-  Eigen::VectorXd acceleration;  ///< with which `torque` was computed [rad/s^2]
-  double start_rate = 0;         ///< at the first row [rad/s]
+  CommandLaw law = CommandLaw::linear;
+  Eigen::VectorXd command;             ///< [rad]
+  Eigen::VectorXd measured;            ///< [rad]
+  Eigen::VectorXd torque;              ///< of the rigid tree on the joint [N m]
+  Eigen::VectorXd inertia;             ///< that the joint moves, its rotor included [kg m^2]
+  Eigen::VectorXd link_inertia;        ///< without the rotor [kg m^2]
+  Eigen::VectorXd acceleration;        ///< with which `torque` was computed [rad/s^2]
+  Eigen::VectorXd rate;                ///< of the smoothed motion [rad/s]
+  std::vector<Eigen::Index> compared;  ///< rows that a fit compares, ascending
+  bool load_known = true;              ///< `torque` is right at these rows
 };
+
+/// A joint settles in this time after its start, or after a time in which its load was not known
+/// [s]. Chosen: ten time constants of a small servo.
+inline constexpr double kSettle = 0.1;
 
 /// The command at time t, constant before its first and after its last row.
 double command_at(const JointRecording& recording, double t);
 
-/// The measured angle that the servo gives, one entry per measured row.
+/// The measured angle that the servo gives, one entry per measured row; rows far from those that
+/// are compared keep the measured angle. The joint starts anew after each such gap.
 void servo_response(const JointRecording& recording, const ServoConstants& constants,
                     Eigen::VectorXd& theta);
 

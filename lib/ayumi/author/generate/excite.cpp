@@ -1,8 +1,8 @@
-// Motions that tell the constants of servos apart. Both feet stay, so the trunk moves the legs: up
-// and down (hip pitch, knee, ankle pitch), to the sides (hip roll, ankle roll), ahead and back, and
-// about the vertical (hip yaw). Other joints move alone. Each motion is a slow sweep, whose turns
-// show friction and whose load shows the stiffness, a chirp and quick steps, which tell delay from
-// damping.
+// Motions that tell the constants of servos apart. The robot stands on one foot, because two feet
+// may press against each other with forces that nothing shows. The leg that stands carries the
+// weight in slow sweeps, up and down, to the sides, ahead and back. The other leg moves its foot in
+// the air: slow sweeps, whose turns show friction, a chirp and quick steps, which tell delay from
+// damping. Joints that are not of a leg make such motions alone, on both feet.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,6 +10,7 @@
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/foot_plan.hpp"
 
@@ -22,46 +23,139 @@ using Eigen::Vector3d;
 
 // Time of the slow sweep to one side and of a pause [s]. Chosen: slow enough that nothing but
 // friction and weight loads the joint.
-constexpr double kSweepTime = 1.0;
-constexpr double kPause = 0.3;
-// Half periods of the chirp [s] and the time of a step. Chosen: up to 3 Hz, and steps as quick as a
+constexpr double kSweepTime = 0.7;
+constexpr double kPause = 0.2;
+// Time in which the weight goes from both feet to one, and in which a foot is lifted [s]. Chosen:
+// as in a slow walk.
+constexpr double kShiftTime = 1.2, kLiftTime = 0.5;
+// Rest on both feet between two stands on one [s]. Chosen: the motors then stay within what they
+// can bear for long.
+constexpr double kRestTime = 2.2;
+// Half periods of the chirp [s] and the time of a step. Chosen: up to 6 Hz, and steps as quick as a
 // minimum-jerk curve of some degrees within the speed of small servos allows.
-constexpr std::array<double, 6> kChirp = {0.45, 0.35, 0.28, 0.22, 0.18, 0.15};
-constexpr double kStepTime = 0.12;
-// Amplitudes of the chirp and of the steps in that of the sweep. Chosen: the chirp's acceleration
-// then stays about the same at all its frequencies.
-constexpr double kStepShare = 0.4;
-// Largest angle of joints that move alone, of the trunk's turn [rad], and what is kept from the
-// limits of a joint [rad]. Chosen: some thousand counts, without reaching for other links.
+constexpr std::array<double, 8> kChirp = {0.45, 0.35, 0.28, 0.22, 0.18, 0.15, 0.11, 0.08};
+constexpr double kStepTime = 0.07;
+// Amplitude of the steps in that of the sweep. Chosen: a joint then reaches half of the speed of
+// small servos. The chirp's acceleration is about the same at all its frequencies.
+constexpr double kStepShare = 0.33;
+// Largest angle of joints that move alone, of the foot in the air about each axis [rad], and what
+// is kept from the limits of a joint [rad]. Chosen: some thousand counts, without reaching for
+// other links.
 constexpr double kJointAngle = 0.25;
-constexpr double kTurn = 0.12;
+constexpr double kFootAngle = 0.1;
+// Roll of the foot in the air, outer edge up, as its leg leans [rad]. Chosen: the middle of the
+// lean that the weight on one foot takes, so that the ankle stays within its range.
+constexpr double kFootLean = 0.17;
 constexpr double kLimitMargin = 0.05;
+// How far the foot in the air moves ahead, aside and up, and how high it is lifted, for HOAP-1 [m].
+// Chosen: without touching the other leg or the ground.
+constexpr double kAhead = 0.02, kAside = 0.012, kUp = 0.012, kLift = 0.03;
+// Share of the sole over which the ZMP sweeps, and the depth of the squat on one leg in that of a
+// squat. Chosen: half, for the other half is needed against disturbances.
+constexpr double kSoleShare = 0.4, kDepthShare = 0.5;
 
-// Adds the keys of one motion: set(key, share) writes the share -1..1 of its amplitude.
-void add_motion(PatternBuilder& writer, double& t,
-                const std::function<void(Keyframe&, double)>& set) {
-  const auto at = [&](double step, double share) {
+using SetKey = std::function<void(Keyframe&, double)>;
+
+// Writes keys one after the other: set(key, share) writes the share -1..1 of an amplitude.
+class Motion {
+ public:
+  Motion(PatternBuilder& writer, double& t, SetKey set)
+      : writer_(writer), t_(t), set_(std::move(set)) {}
+  void at(double step, double share) {
     Keyframe key;
-    set(key, share);
-    writer.add(t += step, key);
+    set_(key, share);
+    writer_.add(t_ += step, key);
+  }
+  void sweep() {
+    at(kPause, 0);
+    at(kSweepTime, 1);
+    at(2 * kSweepTime, -1);
+    at(kSweepTime, 0);
+  }
+  void chirp_and_steps() {
+    double side = 1;
+    for (const double half : kChirp) {
+      at(half, side * std::pow(half / kChirp[0], 2));
+      side = -side;
+    }
+    at(kChirp.back(), 0);
+    double last = 0;
+    for (const double share : {kStepShare, 0.0, -kStepShare, 0.0}) {
+      at(kPause, last);
+      at(kStepTime, share);
+      last = share;
+    }
+    at(kPause, 0);
+  }
+
+ private:
+  PatternBuilder& writer_;
+  double& t_;
+  SetKey set_;
+};
+
+// What the robot does on one foot. Each is short, so that no motor gets hot.
+enum class OnOneFoot { squat, sway_ahead, sway_aside, swing_ahead, swing_aside };
+
+// The robot stands on the foot `side`, and then on both feet again. Slow sweeps of the leg that
+// stands go with slow sweeps of the foot in the air; this foot makes its chirps and steps alone.
+void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Side side,
+                  OnOneFoot what, double height, double scale) {
+  Pattern standing;
+  standing.phases.push_back({1, Support::both, {}});
+  const FootPlan feet(model, standing);
+  const Side other = side == Side::left ? Side::right : Side::left;
+  const Eigen::Isometry3d pose = feet.pose(other, 0);
+  const double yaw = matrix_to_rpy(pose.linear()).z();
+  const Vector2d center = feet.sole_center(side, 0).head<2>();
+  const auto foot = [&](Keyframe& key, const Vector3d& moved, const Vector3d& turned) {
+    key.feet[static_cast<size_t>(other)] =
+        Foothold{pose.translation() + moved, Vector3d(0, 0, yaw) + turned};
   };
-  at(kPause, 0);
-  at(kSweepTime, 1);
-  at(2 * kSweepTime, -1);
-  at(kSweepTime, 0);
-  double side = 1;
-  for (const double half : kChirp) {
-    at(half, side * std::pow(half / kChirp[0], 2));
-    side = -side;
-  }
-  at(kChirp.back(), 0);
-  double last = 0;
-  for (const double share : {kStepShare, 0.0, -kStepShare, 0.0}) {
-    at(kPause, last);
-    at(kStepTime, share);
-    last = share;
-  }
-  at(kPause, 0);
+  const auto zmp = [](Keyframe& key, const Vector2d& point) {
+    key.zmp = ZmpKey{ZmpKey::Place::point, point};
+  };
+  const double size = size_beside_hoap1(model), out = other == Side::left ? 1 : -1;
+  const Vector3d lifted(0, 0, size * kLift), none = Vector3d::Zero(), lean(out * kFootLean, 0, 0);
+  Keyframe first;
+  zmp(first, feet.support_center(0).head<2>());
+  foot(first, none, none);
+  first.cog_height = height;
+  first.torso = Vector3d::Zero();
+  writer.add(t > 0 ? t += kRestTime : t, first);
+  Keyframe over = first;
+  zmp(over, center);
+  writer.add(t += kShiftTime, over);
+  writer.phase(t - writer.t, Support::both);
+  Keyframe up = over;
+  foot(up, lifted, lean);
+  writer.add(t += kLiftTime, up);
+
+  Vector2d half = Vector2d::Constant(HUGE_VAL);
+  for (const Vector2d& corner : model.sole(side).polygon)
+    half = half.cwiseMin((corner - model.sole(side).center).cwiseAbs());
+  const double depth = kDepthShare * scale * squat_defaults(model).depth,
+               angle = scale * kFootAngle;
+  const bool ahead = what == OnOneFoot::squat || what == OnOneFoot::swing_ahead;
+  const Vector3d moved = scale * size * (ahead ? Vector3d(kAhead, 0, kUp) : Vector3d(0, kAside, 0)),
+                 turned = angle * (ahead ? Vector3d(0, 1, 0) : Vector3d(1, 0, 1));
+  Motion motion(writer, t, [&](Keyframe& key, double u) {
+    foot(key, lifted + u * moved, lean + u * turned);
+    Vector2d point = center;
+    if (what == OnOneFoot::sway_ahead) point.x() += kSoleShare * scale * half.x() * u;
+    if (what == OnOneFoot::sway_aside) point.y() += kSoleShare * scale * half.y() * u;
+    zmp(key, point);
+    // Down only: the legs may be nearly straight.
+    const double down = what == OnOneFoot::squat ? 0.5 * (1 - std::cos(M_PI * std::abs(u))) : 0.0;
+    key.cog_height = height - depth * down;
+  });
+  if (what == OnOneFoot::swing_ahead || what == OnOneFoot::swing_aside)
+    motion.chirp_and_steps();
+  else
+    motion.sweep();
+  writer.add(t += kLiftTime, over);
+  writer.phase(t - writer.t, side == Side::left ? Support::left : Support::right);
+  writer.add(t += kShiftTime, first);
 }
 
 // Place of each joint that is not of a leg in its own chain: joints of one place move together.
@@ -95,27 +189,11 @@ Pattern excite_pattern(const RobotModel& model, double scale) {
   double t = 0;
   if (model.has_soles()) {
     pattern.cog_height = bent_height(model);
-    Pattern standing;
-    standing.phases.push_back({1, Support::both, {}});
-    const Vector2d middle = FootPlan(model, standing).support_center(0).head<2>();
     const double height = default_cog_height(model, pattern);
-    const double depth = scale * squat_defaults(model).depth,
-                 side = scale * sway_defaults(model).side;
-    Keyframe first;
-    first.cog_x = middle.x();
-    first.cog_y = middle.y();
-    first.cog_height = height;
-    first.torso = Vector3d::Zero();
-    writer.add(0, first);
-    // Down only: the legs may be nearly straight.
-    add_motion(writer, t, [&](Keyframe& key, double u) {
-      key.cog_height = height - 0.5 * depth * (1 - std::cos(M_PI * std::abs(u)));
-    });
-    add_motion(writer, t, [&](Keyframe& key, double u) { key.cog_y = middle.y() + side * u; });
-    add_motion(writer, t,
-               [&](Keyframe& key, double u) { key.cog_x = middle.x() + 0.5 * side * u; });
-    add_motion(writer, t,
-               [&](Keyframe& key, double u) { key.torso = Vector3d(0, 0, scale * kTurn * u); });
+    for (const OnOneFoot what : {OnOneFoot::squat, OnOneFoot::sway_ahead, OnOneFoot::sway_aside,
+                                 OnOneFoot::swing_ahead, OnOneFoot::swing_aside})
+      for (const Side side : {Side::left, Side::right})
+        add_stand_on(model, writer, t, side, what, height, scale);
   }
   const Eigen::VectorXd home = model.posture();
   const double margin = kLimitMargin + model.description().soft_limit_margin;
@@ -143,12 +221,14 @@ Pattern excite_pattern(const RobotModel& model, double scale) {
     };
     back(kPause);
     t += kPause;
-    add_motion(writer, t, [&](Keyframe& key, double u) {
+    Motion motion(writer, t, [&](Keyframe& key, double u) {
       for (const Range& r : ranges) key.joints[r.joint] = r.center + r.half * u;
     });
+    motion.sweep();
+    motion.chirp_and_steps();
     back(kSweepTime);
   }
-  writer.phase(t + kPause, Support::both);
+  writer.phase(t + kPause - writer.t, Support::both);
   return pattern;
 }
 
