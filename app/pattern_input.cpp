@@ -39,8 +39,8 @@ std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
   return pairs;
 }
 
-std::string read_input(const std::filesystem::path& file) {
-  if (file != "-") return read_file(file);
+std::string read_input(const std::filesystem::path& file, size_t most) {
+  if (file != "-") return read_file(file, most);
   return {std::istreambuf_iterator<char>(std::cin), {}};
 }
 

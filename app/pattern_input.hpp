@@ -19,8 +19,8 @@ struct PatternOptions {
 };
 void add_pattern_options(CLI::App& command, PatternOptions& options);
 
-/// The bytes of a file; `-` is standard input.
-std::string read_input(const std::filesystem::path& file);
+/// The bytes of a file; `-` is standard input. Throws Error(bad_file) for more than `most` bytes.
+std::string read_input(const std::filesystem::path& file, size_t most = size_t{1} << 30);
 
 /// The pattern of a file; `-` is standard input, what it names is then looked for in the working
 /// folder.

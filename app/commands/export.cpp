@@ -12,6 +12,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/laws/dtad.hpp"
 #include "ayumi/io/formats/hoap.hpp"
+#include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/io/formats/sign_test.hpp"
 #include "ayumi/io/kept_rows.hpp"
 #include "ayumi/io/run/results_json.hpp"
@@ -58,11 +59,29 @@ struct Source {
   double interval = 0;  ///< from row to row of the file that was imported; 0: none was [s]
 };
 
+/// The format of a motion that is written; null for the joint tables of this program.
+const MotionFormat* motion_format(const ExportOptions& options) {
+  const MotionFormat* format = find_motion_format(options.format);
+  return format && format->write ? format : nullptr;
+}
+
+/// Whether the program of a robot plays the file as it is, so that it must be safe.
+bool plays(const ExportOptions& options) {
+  const MotionFormat* format = motion_format(options);
+  return !format || format->played;
+}
+
 /// Takes the rows of an imported sequence as they were, unless the motion was changed.
 void take_kept_rows(const Task& task, const ExportOptions& options, Source& source) {
   if (!task.pattern.table) return;
   source.interval = 0.001 * task.pattern.table->interval_ms;
   if (!options.servo.empty()) return;
+  if (motion_format(options)) {
+    source.interval = task.pattern.table->dt;
+    if (const auto rows = rows_of_table(task, source.reference))
+      source.reference.rows = rows->rows, source.reference.dt = rows->dt;
+    return;
+  }
   source.kept = kept_rows(task);
   if (!source.kept) return;
   ReferenceTrajectory targets = source.kept->targets;
@@ -85,7 +104,8 @@ std::string profile_of(const ExportOptions& options, const RobotModel& model,
 }
 
 ServoContent content_of(const ExportOptions& options) {
-  return servo_content(options.servo.empty() ? "lead" : options.servo);
+  const char* const usual = motion_format(options) ? "ideal" : "lead";
+  return servo_content(options.servo.empty() ? usual : options.servo);
 }
 
 bool draws(const ExportOptions& options) { return options.format == "gltf"; }
@@ -273,6 +293,31 @@ void export_gltf(const ExportOptions& options, Context& context) {
   context.print_json(json.dump(2));
 }
 
+/// The table as a motion of any format.
+MotionFile motion_file_of(const Source& source, const ReferenceTrajectory& table) {
+  MotionFile motion;
+  motion.rate = 1 / table.dt;
+  motion.joints = table.joints;
+  motion.name = fs::path(table.provenance.pattern).stem().string();
+  const auto rows = static_cast<Eigen::Index>(table.rows.size());
+  motion.values.resize(rows, static_cast<Eigen::Index>(table.joints.size()));
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const ReferenceRow& row = table.rows[static_cast<size_t>(k)];
+    motion.times.push_back(static_cast<double>(k) * table.dt);
+    motion.values.row(k) = row.theta.transpose();
+    motion.base.push_back(row.base);
+    motion.cog.push_back(row.cog);
+    motion.zmp.push_back(row.zmp);
+    motion.fz.push_back(row.fz);
+    motion.support.push_back(row.contact[0] && row.contact[1] ? Support::both
+                             : row.contact[0]                 ? Support::left
+                             : row.contact[1]                 ? Support::right
+                                                              : Support::none);
+  }
+  if (source.torque.rows() == rows) motion.torque = source.torque;
+  return motion;
+}
+
 std::string bytes_of(const std::string& format, const Source& source,
                      const ReferenceTrajectory& table, const TableCaution& caution,
                      const ExportOptions& options, size_t first) {
@@ -308,7 +353,7 @@ SafeTable judged(const ExportOptions& options, const Source& source, const std::
   SafetyOptions safety = options.safety;
   safety.profile = profile;
   SafeTable safe = make_safe(source.model, source.reference, safety);
-  if (options.format == "hoap" && knows_torque(source))
+  if (plays(options) && options.format != "csv" && options.format != "json" && knows_torque(source))
     add_violations(safe, torque_violations_of(source, safe, profile));
   return safe;
 }
@@ -328,6 +373,7 @@ std::vector<std::string> sufficient_profiles(ExportOptions options, const Source
 std::vector<std::string> refusals(const ExportOptions& options, const Source& source,
                                   const SafeTable& safe) {
   std::vector<std::string> reasons;
+  if (!plays(options)) return reasons;
   const std::string& disturbances = source.disturbances;
   if (!options.force_unsafe) reasons = source.unfit;
   if (!disturbances.empty() && !options.pushed)
@@ -357,7 +403,13 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   else
     text = options.output + ": not written, because " + text::join(refused, "\n  and ") + "\n";
   if (refused.empty())
-    for (const std::string& reason : source.unfit) text += "  written although " + reason + "\n";
+    for (const std::string& reason : source.unfit)
+      text +=
+          (plays(options) ? "  written although " : "  not for a robot, because ") + reason + "\n";
+  if (const MotionFormat* format = motion_format(options)) {
+    const std::string lost = cannot_hold(*format, motion_file_of(source, safe.table));
+    if (!lost.empty()) text += "  the format cannot hold " + lost + "\n";
+  }
   const TableServo& servo = safe.table.servo;
   if (!servo.content.empty())
     text += "  made for the servos of profile " + servo.profile + ": " + words_of(servo) + "\n";
@@ -374,7 +426,7 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   text += "\n";
   for (const SafetyViolation& violation : report.violations)
     text += "  unsafe: " + text_of(violation) + "\n";
-  if (!options.force_unsafe && (!source.unfit.empty() || !report.safe))
+  if (!options.force_unsafe && plays(options) && (!source.unfit.empty() || !report.safe))
     text += "  --force-unsafe writes the table nevertheless\n";
   return text;
 }
@@ -429,6 +481,19 @@ std::string note_text(const TableCaution& caution) {
   return text;
 }
 
+/// All files of the format, or none where one of them exists.
+void write_motion(const MotionFormat& format, const ExportOptions& options, const Context& context,
+                  const Source& source, const SafeTable& safe) {
+  std::vector<std::pair<fs::path, std::string>> files;
+  for (WrittenFile& file : format.write(source.model, motion_file_of(source, safe.table))) {
+    fs::path path = options.output;
+    if (!file.extension.empty()) path.replace_extension(file.extension);
+    refuse_overwriting(context, path);
+    files.emplace_back(std::move(path), std::move(file.bytes));
+  }
+  for (const auto& [path, bytes] : files) write_file(path, bytes);
+}
+
 void write_table(const ExportOptions& options, const Context& context, const Source& source,
                  const SafeTable& safe) {
   const TableCaution caution = caution_of_written(source, safe);
@@ -437,6 +502,10 @@ void write_table(const ExportOptions& options, const Context& context, const Sou
   const bool old_note = fs::is_regular_file(note) && read_file(note).starts_with(kNoteHead);
   const bool beside = options.format == "hoap" && !nothing;
   if (beside) refuse_overwriting(context, note);
+  if (const MotionFormat* format = motion_format(options)) {
+    write_motion(*format, options, context, source, safe);
+    return;
+  }
   write_file(options.output,
              bytes_of(options.format, source, safe.table, caution, options, safe.first));
   if (old_note && !beside) fs::remove(note);  // it was about the table that was there before
@@ -461,6 +530,10 @@ std::string as_json(const ExportOptions& options, const Source& source, const Sa
                     : nlohmann::ordered_json(safe.table.servo.content)},
       {"imported_rows_unchanged", source.kept.has_value()},
       {"joints", safe.table.joints},
+      {"cannot_hold", motion_format(options)
+                          ? nlohmann::ordered_json(cannot_hold(*motion_format(options),
+                                                               motion_file_of(source, safe.table)))
+                          : nlohmann::ordered_json("")},
       {"profile", options.safety.profile},
       {"sufficient_profiles", sufficient},
       {"safety", nlohmann::ordered_json::parse(safety_json(safe.report))}};
@@ -537,7 +610,7 @@ void export_table(ExportOptions options, Context& context) {
   if (options.format == "gltf") return export_gltf(options, context);
   Source source = source_of(options, context);
   set_rate(options, source);
-  if (source.kept) options.safety = as_it_is(options.safety);
+  if (source.kept || motion_format(options)) options.safety = as_it_is(options.safety);
   if (options.ramp) options.safety.ramp = *options.ramp;
   if (options.hold) options.safety.hold = *options.hold;
   options.safety.profile = profile_of(options, source.model, source.reference.provenance.profile);
@@ -545,12 +618,13 @@ void export_table(ExportOptions options, Context& context) {
   std::vector<std::string> others;
   if (!safe.report.safe) others = sufficient_profiles(options, source);
   const std::vector<std::string> refused = refusals(options, source, safe);
-  if (refused.empty() && (!safe.report.safe || !source.unfit.empty())) {
+  if (plays(options) && refused.empty() && (!safe.report.safe || !source.unfit.empty())) {
     options.output = unsafe_name(options.output);
     refuse_overwriting(context, options.output);
   }
   if (refused.empty()) write_table(options, context, source, safe);
-  context.print(in_words(options, source, safe, refused) + words_on_sequence(source, safe));
+  context.print(in_words(options, source, safe, refused) +
+                (motion_format(options) ? "" : words_on_sequence(source, safe)));
   if (!safe.report.safe)
     context.print("  judged by profile " + options.safety.profile + "; " +
                   (others.empty()
@@ -575,12 +649,15 @@ void add_export(CLI::App& app, Context& context) {
                    "Run folder, pattern or reference table; with --sign-test a robot.")
       ->type_name("RUN_OR_PATTERN");
   std::vector<std::string> formats = {"csv", "json", "hoap", "gltf"};
+  const std::vector<std::string> motions = written_format_names();
+  formats.insert(formats.end(), motions.begin(), motions.end());
   formats.insert(formats.end(), log_formats().begin(), log_formats().end());
   command
-      ->add_option(
-          "--format", options->format,
-          "Format of the file. A joint table: csv, json, hoap or gltf. The log of a run: " +
-              text::join(log_formats(), ", ") + ".")
+      ->add_option("--format", options->format,
+                   "Format of the file. A joint table: csv, json, hoap or gltf. A motion for "
+                   "another program: " +
+                       text::join(motions, ", ") +
+                       ". The log of a run: " + text::join(log_formats(), ", ") + ".")
       ->required()
       ->check(one_of(formats));
   command->add_option("-o,--out", options->output, "File to write; with --sign-test a folder.")

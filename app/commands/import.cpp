@@ -7,6 +7,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/table/motion_import.hpp"
 #include "option_checks.hpp"
@@ -18,6 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+/// Bytes of a motion file. Chosen: an hour of 50 joints at 30 rows per second; a file and its copy
+/// stay within 200 MB.
+constexpr size_t kMostBytes = 64'000'000;
 
 struct ImportCommand {
   std::string file, robot, out;
@@ -37,7 +42,8 @@ void print_import(const Context& context, const ImportCommand& options,
                   const ImportedMotion& imported, const GroundedMotion& motion) {
   const double duration = motion.pattern.duration();
   std::string words = options.out + ": " + text::fixed(duration, 3) + " s from " +
-                      text::counted(imported.rows, "row") + " (" + imported.format + "), " +
+                      text::counted(imported.rows, "row") + " (" + imported.format +
+                      (imported.reason.empty() ? "" : ", because " + imported.reason) + "), " +
                       text::counted(motion.contacts.size(), "contact") + ", " +
                       text::counted(motion.pattern.phases.size(), "phase") + "\n";
   for (const std::string& line : imported.filled) words += "  " + line + "\n";
@@ -50,6 +56,7 @@ void print_import(const Context& context, const ImportCommand& options,
       {"sequence",
        imported.sequence.empty() ? Json() : Json(sequence_beside(options.out).string())},
       {"format", imported.format},
+      {"format_reason", imported.reason.empty() ? Json(nullptr) : Json(imported.reason)},
       {"rows", imported.rows},
       {"duration_s", duration},
       {"contacts", contacts},
@@ -63,11 +70,11 @@ void import_motion(const Context& context, const ImportCommand& options) {
   refuse_overwriting(context, sequence_beside(options.out));
   const RobotModel model = load_robot(options.robot, robot_search(context));
   const std::string name = options.file == "-" ? "standard input" : options.file;
-  const std::string bytes = read_input(options.file);
+  const std::string bytes = read_input(options.file, kMostBytes);
   if (bytes.find("\"ayumi.pattern/") != std::string::npos)
-    fail(ErrorCode::bad_file, name +
-                                  ": this is a pattern already; import reads HOAP sequences and "
-                                  "tables of joint angles");
+    fail(ErrorCode::bad_file,
+         name + ": this is a pattern already; import reads motions in the formats " +
+             text::join(read_format_names(), ", "));
   ImportedMotion imported = read_motion(bytes, name, model, options.import);
   GroundedMotion motion =
       grounded(model, imported.motion, table_beside(options.out).filename().string());
@@ -89,15 +96,16 @@ void import_motion(const Context& context, const ImportCommand& options) {
 
 void add_import(CLI::App& app, Context& context) {
   CLI::App* command =
-      app.add_subcommand("import", "read a HOAP sequence or a table of angles as a pattern");
+      app.add_subcommand("import", "read a motion of another program or robot as a pattern");
   command->footer(
       "Examples:\n  ayumi import walk.csv --robot hoap1 -o walk.json\n"
       "  ayumi import m03.csv --robot examples/hoap3/robot.json --robot-path hoap3_description "
       "-o m03.json\n"
-      "  ayumi import angles.csv --robot hoap1 --unit deg --rate 200 -o angles.json");
+      "  ayumi import angles.csv --robot hoap1 --unit deg --rate 200 -o angles.json\n"
+      "  ayumi import dance.csv --robot g1.urdf --rate 30 --order -o dance.json");
   static ImportCommand options;
   static std::string unit = "rad", signs = "encoder";
-  command->add_option("FILE", options.file, "Sequence or table; - is standard input.")->required();
+  command->add_option("FILE", options.file, "Motion file; - is standard input.")->required();
   command->add_option("--robot", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
       ->required()
       ->type_name("ROBOT");
@@ -109,11 +117,11 @@ void add_import(CLI::App& app, Context& context) {
   command
       ->add_option("--format", options.import.format,
                    "Format of the file (default: recognized by its content).")
-      ->check(one_of({"hoap", "csv", "json"}));
-  command->add_option("--unit", unit, "Unit of columns whose names are bare joint names.")
+      ->check(one_of(read_format_names()));
+  command->add_option("--unit", unit, "Unit of angles where the file does not state it.")
       ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
-  command->add_option("--rate", options.import.rate, "Rate of a table without a time column [1/s].")
+  command->add_option("--rate", options.import.rate, "Rate of rows without times [1/s].")
       ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
   command
@@ -122,6 +130,13 @@ void add_import(CLI::App& app, Context& context) {
                    "those of the joints.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
+  command->add_flag("--order", options.import.by_order,
+                    "The columns are the robot's joints in its own order.");
+  command
+      ->add_option("--joints", options.import.joints,
+                   "Names of the joint columns, in the order of the file.")
+      ->delimiter(',')
+      ->type_name("A,B,...");
   command->add_flag(
       "--commands", options.import.commands,
       "The angles are servo targets (as written by export): subtract the velocity lead. "

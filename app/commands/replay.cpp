@@ -86,7 +86,7 @@ Played read_played(const ReplayCommand& options, const RobotModel& model,
                    options.rate > 0 ? static_cast<int>(std::lround(1000 / options.rate)) : 0);
     return {hoap_targets(model, sequence), "hoap", sequence.layout.name};
   }
-  const ImportedMotion read = read_table_motion(bytes, options.file, model, {.rate = options.rate});
+  const ImportedMotion read = read_motion_rows(bytes, options.file, model, {.rate = options.rate});
   Played played{{}, read.format, ""};
   played.table.dt = read.motion.dt;
   played.table.joints = model.dof_names();

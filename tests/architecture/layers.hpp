@@ -112,6 +112,7 @@ inline const std::vector<ThirdParty>& third_parties() {
       {"assimp", std::regex("assimp/.*"), {"io"}},
       {"OpenSSL", std::regex("openssl/.*"), {"io"}},
       {"zlib", std::regex("zlib\\.h"), {"io"}},
+      {"yaml-cpp", std::regex("yaml-cpp/.*"), {"io"}},
       {"libzip", std::regex("zip\\.h"), {"io"}},
       {"zstd", std::regex("zstd\\.h"), {"io"}},
       {"nlohmann-json", std::regex("nlohmann/.*"), {"io", "app"}},

@@ -189,7 +189,7 @@ TEST(Hoap, RowsOfRadiansHaveTheSignsOfTheEncoders) {
     }
     bytes += row + "0,0\n";
   }
-  const ImportedMotion motion = read_hoap_motion(bytes, "kick.csv", robot);
+  const ImportedMotion motion = read_motion_rows(bytes, "kick.csv", robot);
   EXPECT_EQ(motion.motion.dt, 0.002);
   for (const char* const knee : {"l_knee", "r_knee"})
     EXPECT_NEAR(motion.motion.theta(39, robot.find_dof(knee)), 0.69, 1e-6) << knee;
@@ -198,7 +198,7 @@ TEST(Hoap, RowsOfRadiansHaveTheSignsOfTheEncoders) {
   EXPECT_NE(said.find("have the signs of the encoders: those of r_hip_pitch, "), std::string::npos)
       << said;
   EXPECT_EQ(said.find("exceed the position limits"), std::string::npos) << said;
-  const ImportedMotion other = read_hoap_motion(bytes, "kick.csv", robot, 0, false);
+  const ImportedMotion other = read_motion_rows(bytes, "kick.csv", robot, {.encoder_signs = false});
   EXPECT_NEAR(other.motion.theta(39, robot.find_dof("l_knee")), -0.69, 1e-6);
   EXPECT_NE(other.filled.back().find("l_knee exceed the position limits"), std::string::npos)
       << other.filled.back();
@@ -211,9 +211,9 @@ TEST(Hoap, ZerosAreNoRecordingAndJumpsAreNamed) {
     zeros += "1,2,0" + tail;
     jump += (k < 5 ? "2,2,0" : "2,2,200") + tail;
   }
-  const std::string error = test::error_message([&] { read_hoap_motion(zeros, "z.csv", hoap1()); });
+  const std::string error = test::error_message([&] { read_motion_rows(zeros, "z.csv", hoap1()); });
   EXPECT_EQ(error, "z.csv: every value of every motor is 0; nothing was recorded here");
-  const ImportedMotion motion = read_hoap_motion(jump, "j.csv", hoap1());
+  const ImportedMotion motion = read_motion_rows(jump, "j.csv", hoap1());
   ASSERT_FALSE(motion.filled.empty());
   EXPECT_EQ(motion.filled.front(),
             "device 1 jumps by 100 counts/ms before row 6, but motor boards allow at most 57 "

@@ -20,4 +20,10 @@ struct KeptRows {
 /// motion was changed. Throws Error(bad_file) where the kept sequence is missing or was changed.
 std::optional<KeptRows> kept_rows(const Task& task);
 
+/// The rows of the pattern's table as they are, as long as the pattern moves as its table does;
+/// COG, ZMP, force and contacts of `planned` where the table has none. Nothing where the pattern
+/// has no table or was changed.
+std::optional<ReferenceTrajectory> rows_of_table(const Task& task,
+                                                 const ReferenceTrajectory& planned);
+
 }  // namespace ayumi

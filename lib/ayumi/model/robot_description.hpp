@@ -182,6 +182,7 @@ struct RobotDescription {
   std::vector<LinkDescription> links;
   std::vector<JointDescription> joints;
   std::vector<std::string> joint_order;          ///< preferred order of moving joints; may be empty
+  std::map<std::string, std::string> aliases;    ///< joint by the name that motion files give it
   std::map<std::string, SoleDescription> soles;  ///< "left", "right"
   std::map<std::string, std::map<std::string, double>> postures;  ///< [rad]; "home" at least
   std::map<std::string, ServoDescription> servos;                 ///< by joint name

@@ -165,6 +165,19 @@ void read_encoders(const JsonNode& node, RobotDescription& robot) {
   }
 }
 
+// {"LHipYaw": "l_hip_yaw"}: names of joints in motion files.
+void read_aliases(const JsonNode& node, RobotDescription& robot) {
+  const std::vector<std::string> names = moving_joints(robot);
+  for (const auto& [alias, joint] : node.members()) {
+    if (!contains(names, joint.string()))
+      joint.complain("'" + joint.string() + "' is not a moving joint of the robot" +
+                     text::suggestion(joint.string(), names));
+    if (contains(names, alias))
+      joint.complain("'" + alias + "' is itself a joint of the robot; remove this alias");
+    robot.aliases[alias] = joint.string();
+  }
+}
+
 // ["interval", "2", "motors", "60", "R"]: the columns before and after those of the motors.
 void read_columns(const JsonNode& node, SequenceLayout& layout) {
   std::vector<std::string>* side = &layout.before;
@@ -378,6 +391,7 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "servo_period",
                                         "profiles",
                                         "encoders",
+                                        "aliases",
                                         "layouts",
                                         "sensors",
                                         "control",
@@ -411,6 +425,7 @@ void read_root(const JsonNode& root, RobotDescription& robot, std::string& files
       {"servos", [&](const JsonNode& node) { robot.servos = read_servos(node, {}, robot, files); }},
       {"profiles", [&](const JsonNode& node) { read_profiles(node, robot, files); }},
       {"encoders", [&](const JsonNode& node) { read_encoders(node, robot); }},
+      {"aliases", [&](const JsonNode& node) { read_aliases(node, robot); }},
       {"layouts", [&](const JsonNode& node) { read_layouts(node, robot); }},
       {"sensors", [&](const JsonNode& node) { read_sensors(node, robot.sensors); }},
       {"control", [&](const JsonNode& node) { read_control(node, robot); }},

@@ -1,11 +1,9 @@
 #pragma once
-// Motions of other origin: HOAP sequences as the real robots' files are, tables of angles, and the
-// joint tables Ayumi writes. What was understood, filled in or left out is said in words.
+// Motions of other origin, in the formats of io/formats/motion_formats.hpp, fitted to a robot. What
+// was understood, assumed, filled in or left out is said in words.
 
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "ayumi/author/import/contact_reconstruction.hpp"
@@ -14,18 +12,21 @@
 namespace ayumi {
 
 struct ImportOptions {
-  std::string format{};       ///< "hoap", "csv", "json"; "" by the content
-  bool degrees = false;       ///< unit of bare joint columns
-  double rate = 0;            ///< of rows without a time column [1/s]
+  std::string format{};       ///< name of motion_formats(); "" by the content
+  bool degrees = false;       ///< unit of angles where the format does not define it
+  double rate = 0;            ///< of rows without times [1/s]
   bool commands = false;      ///< angles are what servos receive, as in Ayumi's reference tables
   bool encoder_signs = true;  ///< rows of radians have the signs of the encoders, not of the joints
   std::optional<double> smooth{};  ///< largest change of an angle [deg]; left out: 0.1 of counts,
                                    ///< none of angles
+  bool by_order = false;           ///< columns are the robot's joints in its own order
+  std::vector<std::string> joints{};  ///< names of the columns, in the order of the file
 };
 
 struct ImportedMotion {
   RawMotion motion;
-  std::string format;               ///< "hoap", "csv" or "json"
+  std::string format;               ///< name of motion_formats()
+  std::string reason;               ///< why the content is of this format; "" where it was stated
   int rows = 0;                     ///< data rows of the file
   bool commands = false;            ///< motion.theta is what servos receive
   TableCaution caution = {};        ///< of the run that the table is from
@@ -33,24 +34,15 @@ struct ImportedMotion {
   std::vector<std::string> filled;  ///< what the file does not say, or says beside the motion
 };
 
-/// A HOAP sequence in one of the robot's layouts (io/formats/hoap.hpp). General commands (3) only
-/// take their time. Where intervals change, rows are interpolated linearly on their greatest common
-/// divisor. Rows without an interval have that of their layout, or `rate` [1/s]; those of radians
-/// have the signs of the encoders unless `encoder_signs` is false. Throws Error(bad_file) as
-/// parse_hoap, and where a device moves that the robot does not have.
-ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
-                                const RobotModel& model, double rate = 0,
-                                bool encoder_signs = true);
+/// The rows of a file as they are, evenly spaced, with the columns of the robot's joints. Joints
+/// are mapped by their names or the robot's aliases, and by order only where the options say so.
+/// Unset values and rows between key postures are interpolated. Throws Error(bad_file) that names
+/// the format, the place and the remedy.
+ImportedMotion read_motion_rows(const std::string& bytes, const std::string& file,
+                                const RobotModel& model, const ImportOptions& options = {});
 
-/// A head row and numbers: t[s] (or t, time, time_ms), joints as theta.<joint>[rad] or by their
-/// names, bare or with a unit as in r_knee[deg], and whole groups of cog, zmp, fz, base, contact
-/// columns as in Ayumi's tables. Rows that are not evenly spaced are interpolated. Throws
-/// Error(bad_file) naming the column or row.
-ImportedMotion read_table_motion(const std::string& bytes, const std::string& file,
-                                 const RobotModel& model, const ImportOptions& options = {});
-
-/// Either of them, by the content. `bytes` from `file`. Postures: where the file holds commands,
-/// the servos' lead is taken out. Angles are then smoothed within what ImportOptions::smooth says.
+/// The same as postures: where the file holds commands, the servos' lead is taken out. Angles are
+/// then smoothed within what ImportOptions::smooth says.
 ImportedMotion read_motion(const std::string& bytes, const std::string& file,
                            const RobotModel& model, const ImportOptions& options = {});
 

@@ -1,13 +1,15 @@
 // Real sequence files are no clean tables: line ends of two kinds, blanks around cells, "-0",
 // requests where others have hobby servo words, commands to single devices between the rows; and
 // what robots answer, or other programs write for them, is bare: no intervals, counts or radians.
+#include "ayumi/io/formats/hoap_motion.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/formats/hoap.hpp"
-#include "ayumi/io/table/motion_import.hpp"
+#include "ayumi/io/table/csv_dialect.hpp"
 
 namespace ayumi {
 
@@ -20,7 +22,8 @@ void refuse_lost_motion(const HoapFile& sequence, int device, const RobotModel& 
       sequence.rows.begin(), sequence.rows.end(),
       [&](const HoapRow& a, const HoapRow& b) { return a.values[column] < b.values[column]; });
   // Movement of an axis that holds its place. Chosen: 0.05 degrees, half of what servos do not
-  // follow (kOfCounts of table_import.cpp); as counts those of an encoder of 209 counts per degree.
+  // follow (kOfCounts of motion_import.cpp); as counts those of an encoder of 209 counts per
+  // degree.
   constexpr double kTremblingCounts = 10, kTremblingAngle = 0.05 * EIGEN_PI / 180;
   const double low = least->values[column], high = most->values[column];
   const std::string unit = sequence.layout.radians ? " rad" : " counts";
@@ -79,80 +82,94 @@ std::vector<std::string> beyond_limits(const RobotModel& model, const Eigen::Mat
 }
 
 // Angles in radians: says which of them were negated, and whether the other reading fits better.
-void apply_signs(const RobotModel& model, bool encoder_signs, ImportedMotion& result) {
+void apply_signs(const RobotModel& model, bool encoder_signs, Eigen::MatrixXd& theta,
+                 std::vector<std::string>& notes) {
   std::vector<std::string> negative;
-  Eigen::MatrixXd other = result.motion.theta;
+  Eigen::MatrixXd other = theta;
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];
     if (dof.encoder.device < 1 || dof.encoder.counts_per_degree >= 0) continue;
     negative.push_back(dof.name);
     other.col(j) *= -1;
   }
-  if (!encoder_signs) result.motion.theta.swap(other);
+  if (!encoder_signs) theta.swap(other);
   if (encoder_signs)
-    result.filled.push_back(
-        "angles in radians have the signs of the encoders: those of " +
-        (negative.empty() ? std::string("no joint") : text::join(negative, ", ")) +
-        " were negated (--signs joint takes all angles as they are)");
+    notes.push_back("angles in radians have the signs of the encoders: those of " +
+                    (negative.empty() ? std::string("no joint") : text::join(negative, ", ")) +
+                    " were negated (--signs joint takes all angles as they are)");
   else
-    result.filled.push_back(
+    notes.push_back(
         "angles in radians have the signs of the joints: none was negated (--signs encoder applies "
         "the signs of the encoders)");
-  const std::vector<std::string> beyond = beyond_limits(model, result.motion.theta);
+  const std::vector<std::string> beyond = beyond_limits(model, theta);
   if (beyond.size() > beyond_limits(model, other).size())
-    result.filled.push_back("with these signs, angles of " + text::join(beyond, ", ") +
-                            " exceed the position limits; with --signs " +
-                            (encoder_signs ? "joint" : "encoder") + " fewer joints do");
-}
-
-void say_bare_rate(const HoapFile& sequence, double rate, ImportedMotion& result) {
-  if (rate > 0) result.motion.dt = 1 / rate;
-  result.filled.push_back(std::string(sequence.layout.radians ? "angles in radians" : "counts") +
-                          " without intervals: " + text::brief(1000 * result.motion.dt) +
-                          " ms from row to row" + (rate > 0 ? "" : " (--rate HZ changes this)"));
+    notes.push_back("with these signs, angles of " + text::join(beyond, ", ") +
+                    " exceed the position limits; with --signs " +
+                    (encoder_signs ? "joint" : "encoder") + " fewer joints do");
 }
 
 }  // namespace
 
-ImportedMotion read_hoap_motion(const std::string& bytes, const std::string& file,
-                                const RobotModel& model, double rate, bool encoder_signs) {
+std::string recognize_hoap_motion(const MotionInput& source) {
+  const size_t first = source.bytes.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos || source.bytes.find('\0') != std::string::npos) return "";
+  const char c = source.bytes[first];
+  if (!(c == '-' || c == '+' || c == '.' || (c >= '0' && c <= '9'))) return "";
+  const std::string_view line =
+      std::string_view(source.bytes).substr(first, source.bytes.find('\n', first) - first);
+  if (line.find_first_of(",;\t") == std::string_view::npos) return "";
+  return looks_like_hoap(plain_table_text(source.bytes, source.file), source.model)
+             ? "its first row has the columns of a sequence of this robot"
+             : "";
+}
+
+MotionFile read_hoap_motion(const MotionInput& source) {
+  const RobotModel& model = source.model;
+  const std::string &file = source.file, bytes = plain_table_text(source.bytes, file);
   const HoapFile sequence = parse_hoap(bytes, file, model);
   refuse_zeros(sequence, file);
   const ReferenceTrajectory targets = hoap_targets(model, sequence);
-  ImportedMotion result;
-  result.format = "hoap";
-  result.rows = static_cast<int>(sequence.rows.size());
-  result.motion.dt = sequence.dt();
-  if (sequence.layout.has_interval())
-    result.sequence = bytes;
-  else
-    say_bare_rate(sequence, rate, result);
+  MotionFile motion;
+  motion.file_rows = static_cast<int>(sequence.rows.size());
+  double dt = sequence.dt();
+  if (sequence.layout.has_interval()) {
+    motion.sequence = source.bytes;
+  } else {
+    const double rate = source.options.rate;
+    if (rate > 0) dt = 1 / rate;
+    motion.notes.push_back(std::string(sequence.layout.radians ? "angles in radians" : "counts") +
+                           " without intervals: " + text::brief(1000 * dt) + " ms from row to row" +
+                           (rate > 0 ? "" : " (--rate HZ changes this)"));
+  }
+  motion.rate = 1 / dt;
   if (!sequence.even)
-    result.filled.push_back(
+    motion.notes.push_back(
         "the intervals change, so the rows are interpolated linearly, one every " +
         std::to_string(sequence.tick_ms) + " ms");
   if (sequence.general_commands > 0)
-    result.filled.push_back(
+    motion.notes.push_back(
         std::to_string(sequence.general_commands) +
         " commands to single devices are ignored, but the time of their rows counts");
-  say_largest_step(sequence, result.filled);
-  std::vector<char> known(static_cast<size_t>(sequence.layout.motors) + 1, 0);
-  result.motion.theta.resize(static_cast<Eigen::Index>(targets.rows.size()), model.dof_count());
+  say_largest_step(sequence, motion.notes);
+  Eigen::MatrixXd theta(static_cast<Eigen::Index>(targets.rows.size()), model.dof_count());
   for (size_t k = 0; k < targets.rows.size(); ++k)
-    result.motion.theta.row(static_cast<Eigen::Index>(k)) = targets.rows[k].theta.transpose();
-  for (const Dof& dof : model.dofs())
-    if (dof.encoder.device >= 1 && dof.encoder.device <= sequence.layout.motors)
-      known[static_cast<size_t>(dof.encoder.device)] = 1;
+    theta.row(static_cast<Eigen::Index>(k)) = targets.rows[k].theta.transpose();
+  std::vector<char> known(static_cast<size_t>(sequence.layout.motors) + 1, 0);
+  std::vector<Eigen::Index> columns;
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    if (dof.encoder.device < 1 || dof.encoder.device > sequence.layout.motors) continue;
+    known[static_cast<size_t>(dof.encoder.device)] = 1;
+    motion.joints.push_back(dof.name);
+    columns.push_back(j);
+  }
   for (int device = 1; device <= sequence.layout.motors; ++device)
     if (!known[static_cast<size_t>(device)])
-      refuse_lost_motion(sequence, device, model, file, result.filled);
-  for (const Dof& dof : model.dofs())
-    if (dof.encoder.device < 1 || dof.encoder.device > sequence.layout.motors)
-      result.filled.push_back(
-          dof.name +
-          ": the file has no angles of this joint; the joint keeps its angle of the home posture");
-  if (sequence.layout.radians) apply_signs(model, encoder_signs, result);
-  return result;
+      refuse_lost_motion(sequence, device, model, file, motion.notes);
+  if (sequence.layout.radians)
+    apply_signs(model, source.options.encoder_signs, theta, motion.notes);
+  motion.values = theta(Eigen::all, columns);
+  return motion;
 }
 
 }  // namespace ayumi

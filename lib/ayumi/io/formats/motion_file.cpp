@@ -1,0 +1,78 @@
+#include "ayumi/io/formats/motion_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/io/table/comma_cells.hpp"
+
+namespace ayumi {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> MotionInput::beside(const std::string& extension) const {
+  const fs::path other = fs::path(file).replace_extension(extension);
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored) || !fs::is_regular_file(other, ignored)) return {};
+  return read_file(other);
+}
+
+void MotionInput::refuse(size_t line, const std::string& reason) const {
+  fail(ErrorCode::bad_file, file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + reason +
+                                (words.empty() ? "" : " (read as " + words + ")"));
+}
+
+double MotionInput::number(std::string_view cell, size_t line, const std::string& where) const {
+  std::string shown(cell.substr(0, 24));
+  std::replace_if(
+      shown.begin(), shown.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const std::string place = where.empty() ? "" : where + ": ";
+  if (cell.empty() || error != std::errc() || end != cell.data() + cell.size())
+    refuse(line, place + "'" + shown + "' is not a number" +
+                     (shown.find(',') != std::string::npos ? "; write a decimal point" : ""));
+  if (!std::isfinite(value)) refuse(line, place + "'" + shown + "' is not a finite number");
+  return value;
+}
+
+int find_joint(const RobotModel& model, const std::string& name) {
+  const int dof = model.find_dof(name);
+  if (dof >= 0) return dof;
+  const auto& aliases = model.description().aliases;
+  const auto found = aliases.find(name);
+  return found == aliases.end() ? -1 : model.find_dof(found->second);
+}
+
+NumberRows number_rows(const MotionInput& source, std::string_view text,
+                       const std::string& separators) {
+  NumberRows result;
+  for (size_t line = 1; !text.empty(); ++line) {
+    std::string_view rest = take_line(text);
+    if (rest.empty() || rest.front() == '#') continue;
+    std::vector<double> row;
+    if (!result.rows.empty()) row.reserve(result.rows.front().size());
+    while (!rest.empty()) {
+      const size_t end = std::min(rest.find_first_of(separators), rest.size());
+      const std::string_view cell = trimmed(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+      if (cell.empty() && separators.find(' ') != std::string::npos) continue;
+      row.push_back(source.number(cell, line, "value " + std::to_string(row.size() + 1)));
+    }
+    if (!result.rows.empty() && row.size() != result.rows.front().size())
+      source.refuse(line, text::counted(row.size(), "value") +
+                              " in the row, but the first row has " +
+                              std::to_string(result.rows.front().size()));
+    result.rows.push_back(std::move(row));
+    result.lines.push_back(line);
+  }
+  if (result.rows.empty()) source.refuse(0, "there is no row of numbers");
+  return result;
+}
+
+}  // namespace ayumi

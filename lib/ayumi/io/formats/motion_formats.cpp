@@ -1,0 +1,172 @@
+#include "ayumi/io/formats/motion_formats.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/formats/body_motion.hpp"
+#include "ayumi/io/formats/hoap.hpp"
+#include "ayumi/io/formats/hoap_motion.hpp"
+#include "ayumi/io/formats/hrpsys.hpp"
+#include "ayumi/io/formats/motion_csv.hpp"
+#include "ayumi/io/formats/table_motion.hpp"
+#include "ayumi/io/formats/transposed_csv.hpp"
+#include "ayumi/io/formats/webots_motion.hpp"
+#include "ayumi/io/formats/zvs.hpp"
+
+namespace ayumi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Foreign {
+  std::string sign;  ///< bytes that the file begins with
+  std::string words, advice;
+};
+
+using namespace std::string_literals;
+
+const std::vector<Foreign>& foreign_files() {
+  static const std::string arrays =
+      "load it in Python and save its arrays with numpy.savez (fps, root_pos, root_rot, dof_pos)";
+  static const std::vector<Foreign> files = {
+      {"#ROSBAG", "a ROS 1 bag", "write its joint trajectory as YAML, or its joint states as CSV"},
+      {"SQLite format 3", "an SQLite database, such as a ROS 2 bag",
+       "write its joint states as CSV"},
+      {"\x89MCAP", "an MCAP log", "write its joint states as CSV"},
+      {"Kaydara FBX Binary", "an FBX scene",
+       "retarget it to the robot in the program that made it, and write the joint angles as CSV"},
+      {"; FBX", "an FBX scene",
+       "retarget it to the robot in the program that made it, and write the joint angles as CSV"},
+      {"HIERARCHY", "a BVH recording of a person",
+       "retarget it to the robot first; Ayumi writes BVH and does not read it"},
+      {"glTF", "a glTF scene", "Ayumi writes glTF and does not read it"},
+      {"\x80\x02"s, "a Python pickle (.pkl)", arrays},
+      {"\x80\x03"s, "a Python pickle (.pkl)", arrays},
+      {"\x80\x04"s, "a Python pickle (.pkl)", arrays},
+      {"\x80\x05"s, "a Python pickle (.pkl)", arrays},
+      {"\x04\x22\x4d\x18", "a file compressed with LZ4, such as one of joblib",
+       arrays + "; Ayumi does not read compressed pickles"},
+      {"\x1f\x8b", "a file compressed with gzip", "unpack it first"},
+      {"\x89PNG", "a picture", "name the motion file"},
+      {"\x89HDF", "an HDF5 file", "write its joint angles as CSV"}};
+  return files;
+}
+
+std::string lower_extension(const std::string& file) {
+  std::string extension = fs::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+// Kinds that the first bytes prove.
+const Foreign* signed_kind(const MotionInput& source) {
+  for (const Foreign& kind : foreign_files())
+    if (source.bytes.starts_with(kind.sign)) return &kind;
+  static const Foreign c3d = {"", "a C3D recording of markers",
+                              "retarget it to the robot first, and write the joint angles as CSV"};
+  if (source.bytes.size() >= 512 && source.bytes[1] == 'P' &&
+      static_cast<unsigned char>(source.bytes[0]) < 16)
+    return &c3d;
+  return nullptr;
+}
+
+// Kinds that the text shows.
+const Foreign* text_kind(const MotionInput& source) {
+  static const Foreign mtnx = {"", "a motion of ROBOTIS R+ Motion (.mtnx)",
+                               "write the motion as CSV, or as an action file (.bin)"};
+  if (lower_extension(source.file) == ".mtnx") return &mtnx;
+  static const Foreign urdf = {"", "a robot description (URDF)",
+                               "give it with --robot, and name a motion file"};
+  static const Foreign mjcf = {"", "a MuJoCo model", "name a motion file"};
+  const std::string head = source.bytes.substr(0, 2000);
+  if (head.find("<robot") != std::string::npos) return &urdf;
+  if (head.find("<mujoco") != std::string::npos) return &mjcf;
+  static const Foreign xml = {"", "an XML file of a kind that Ayumi does not know",
+                              "write the motion in one of these formats"};
+  if (head.starts_with("<")) return &xml;
+  return nullptr;
+}
+
+}  // namespace
+
+const std::vector<MotionFormat>& motion_formats() {
+  static const std::vector<MotionFormat> formats = {
+      {"webots", "Webots .motion", kJointNames | kRate, false, false, recognize_webots_motion,
+       read_webots_motion, write_webots_motion},
+      {"choreonoid", "Choreonoid BodyMotion",
+       kJointNames | kRate | kRoot | kZmp | kCog | kVerticalForce, false, false,
+       recognize_body_motion, read_body_motion, write_body_motion},
+      {"zvs", "mi-lib .zvs", kRate | kRoot, false, false, recognize_zvs, read_zvs, write_zvs},
+      {"transposed-csv", "CSV with a row for each joint", kJointNames | kRate, false, false,
+       recognize_transposed_csv, read_transposed_csv, write_transposed_csv},
+      {"motion-csv", "motion CSV without a head row", kRoot, false, false, recognize_motion_csv,
+       read_motion_csv, write_motion_csv},
+      {"hoap", "HOAP sequence", kRate, true, false, recognize_hoap_motion, read_hoap_motion,
+       nullptr},
+      {"hrpsys", "hrpsys .pos", kRate | kRoot | kZmp | kTorque, true, false, recognize_hrpsys,
+       read_hrpsys, write_hrpsys},
+      {"json", "joint table as JSON", ~0u, true, false, recognize_json_table, read_json_table,
+       nullptr},
+      {"csv", "table with a head row", ~0u, true, false, recognize_csv_table, read_csv_table,
+       nullptr}};
+  return formats;
+}
+
+const MotionFormat* find_motion_format(const std::string& name) {
+  for (const MotionFormat& format : motion_formats())
+    if (format.name == name) return &format;
+  return nullptr;
+}
+
+std::vector<std::string> read_format_names() {
+  std::vector<std::string> names;
+  for (const MotionFormat& format : motion_formats())
+    if (format.read) names.push_back(format.name);
+  return names;
+}
+
+std::vector<std::string> written_format_names() {
+  std::vector<std::string> names;
+  for (const MotionFormat& format : motion_formats())
+    if (format.write) names.push_back(format.name);
+  return names;
+}
+
+Recognized recognize(const MotionInput& source) {
+  const Foreign* kind = signed_kind(source);
+  for (const MotionFormat& format : motion_formats()) {
+    if (kind) break;
+    if (!format.recognize) continue;
+    const std::string reason = format.recognize(source);
+    if (!reason.empty()) return {&format, reason};
+  }
+  const std::string formats = "import reads " + text::join(read_format_names(), ", ");
+  if (source.bytes.find_first_not_of(" \t\r\n") == std::string::npos)
+    source.refuse(0, "the file is empty");
+  if (!kind) kind = text_kind(source);
+  if (kind)
+    source.refuse(0, "this is " + kind->words + ", which import does not read; " + kind->advice +
+                         "; " + formats);
+  source.refuse(0, "the content is of no format that import knows; " + formats);
+}
+
+std::string cannot_hold(const MotionFormat& format, const MotionFile& motion) {
+  std::vector<std::string> lost;
+  const auto say = [&](unsigned part, bool present, const char* words) {
+    if (present && !(format.holds & part)) lost.emplace_back(words);
+  };
+  say(kJointNames, !motion.joints.empty(), "the names of the joints");
+  say(kRate, true, "the rate");
+  say(kRoot, !motion.base.empty(), "the track of the root");
+  say(kZmp, !motion.zmp.empty(), "the ZMP");
+  say(kCog, !motion.cog.empty(), "the COG");
+  say(kVerticalForce, !motion.fz.empty(), "the vertical force");
+  say(kTorque, motion.torque.size() > 0, "the torques");
+  say(kContacts, !motion.support.empty(), "the contacts");
+  return text::join(lost, ", ");
+}
+
+}  // namespace ayumi

@@ -1,0 +1,58 @@
+#pragma once
+// The formats of motions: how a file is recognized, its reader and its writer, and what it cannot
+// hold. A new format is one pair of files and one line of the table.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/io/formats/motion_file.hpp"
+
+namespace ayumi {
+
+/// Parts of a motion beside its joint angles. A format holds some of them.
+enum FormatPart : unsigned {
+  kJointNames = 1,
+  kRate = 2,
+  kRoot = 4,
+  kZmp = 8,
+  kCog = 16,
+  kVerticalForce = 32,
+  kTorque = 64,
+  kContacts = 128
+};
+
+struct MotionFormat {
+  std::string name;   ///< of --format
+  std::string words;  ///< "Webots .motion"
+  unsigned holds = 0;
+  bool played = false;  ///< a robot's own program plays such files
+  bool binary = false;  ///< the content is no text
+  /// Why the content is of this format; "" where it is not. Null: it is only written.
+  std::string (*recognize)(const MotionInput&) = nullptr;
+  MotionFile (*read)(const MotionInput&) = nullptr;
+  /// Null: it is only read.
+  std::vector<WrittenFile> (*write)(const RobotModel&, const MotionFile&) = nullptr;
+};
+
+/// In the order in which content is compared with them.
+const std::vector<MotionFormat>& motion_formats();
+
+/// The format of that name; null where there is none.
+const MotionFormat* find_motion_format(const std::string& name);
+
+/// Names of the formats that are read, or of those that are written.
+std::vector<std::string> read_format_names();
+std::vector<std::string> written_format_names();
+
+struct Recognized {
+  const MotionFormat* format = nullptr;
+  std::string reason;  ///< in words
+};
+/// Throws Error(bad_file) that names the formats that are read, and what the file is where Ayumi
+/// knows its kind but does not read it.
+Recognized recognize(const MotionInput& source);
+
+/// What of the motion the format cannot hold, in words; empty: nothing is lost.
+std::string cannot_hold(const MotionFormat& format, const MotionFile& motion);
+
+}  // namespace ayumi

@@ -1,0 +1,513 @@
+// From the content of a motion file to evenly spaced postures of a robot.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/formats/motion_formats.hpp"
+#include "ayumi/math/smoothing.hpp"
+#include "ayumi/motion/servo_feedforward.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kDegreeAngle = EIGEN_PI / 180;  // [rad]
+
+/// Rows of a file and of a motion. Chosen: a motion of this length and 60 columns takes 200 MB.
+constexpr size_t kMostRows = 400'000;
+
+/// The rows of a motion: every quantity is a column, so that all are treated alike.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+std::string shortened(const std::vector<std::string>& names) {
+  constexpr size_t kMost = 40;  // Chosen: a line that a person still reads
+  if (names.size() <= kMost) return text::join(names, ", ");
+  return text::join({names.begin(), names.begin() + kMost}, ", ") + " and " +
+         std::to_string(names.size() - kMost) + " more";
+}
+
+// Text as the readers take it: no mark, lines end with a line feed.
+std::string plain_text(const std::string& bytes, const std::string& file) {
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
+    fail(ErrorCode::bad_file, file + ": is UTF-16 text; save it as UTF-8");
+  std::string text = bytes.starts_with("\xEF\xBB\xBF") ? bytes.substr(3) : bytes;
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+  return text;
+}
+
+void refuse_too_long(const MotionInput& source, size_t rows) {
+  if (rows > kMostRows)
+    source.refuse(0, std::to_string(rows) + " rows; at most " + std::to_string(kMostRows) +
+                         " are read, so cut the file or leave out rows");
+}
+
+MotionFile read_file_of(const std::string& bytes, const std::string& file, const RobotModel& model,
+                        const ImportOptions& options, ImportedMotion& result) {
+  MotionInput source{{}, file, model, options};
+  const MotionFormat* format = nullptr;
+  const bool text = bytes.find('\0') == std::string::npos || bytes.starts_with("\xFF\xFE") ||
+                    bytes.starts_with("\xFE\xFF");
+  source.bytes = text ? plain_text(bytes, file) : bytes;
+  if (text) {
+    refuse_too_long(
+        source, static_cast<size_t>(std::count(source.bytes.begin(), source.bytes.end(), '\n')));
+  }
+  if (options.format.empty()) {
+    const Recognized recognized = recognize(source);
+    format = recognized.format;
+    result.reason = recognized.reason;
+  } else {
+    format = find_motion_format(options.format);
+    if (!format || !format->read)
+      fail(ErrorCode::usage, "--format " + options.format + " cannot be read; import reads " +
+                                 text::join(read_format_names(), ", "));
+  }
+  result.format = format->name;
+  source.words = format->name == "csv" || format->name == "json" || format->name == "hoap"
+                     ? ""
+                     : format->words;
+  if (!format->binary && !text) {
+    const size_t at = bytes.find('\0');
+    source.refuse(static_cast<size_t>(
+                      std::count(bytes.begin(), bytes.begin() + static_cast<long>(at), '\n')) +
+                      1,
+                  "is a binary file, text is needed");
+  }
+  MotionFile motion = format->read(source);
+  if (format->name == "hoap" && !motion.sequence.empty()) motion.sequence = bytes;
+  refuse_too_long(source, static_cast<size_t>(motion.rows()));
+  return motion;
+}
+
+// ---- Joints
+
+std::vector<std::string> column_names(const MotionFile& motion, const RobotModel& model,
+                                      const ImportOptions& options, const std::string& file,
+                                      std::vector<std::string>& notes) {
+  const auto columns = static_cast<size_t>(motion.values.cols());
+  const std::string count = text::counted(columns, "joint column");
+  if (!options.joints.empty()) {
+    if (options.joints.size() != columns)
+      fail(ErrorCode::bad_file, file + ": the file has " + count + ", but --joints names " +
+                                    std::to_string(options.joints.size()));
+    return options.joints;
+  }
+  const std::vector<std::string> own = model.dof_names();
+  if (options.by_order) {
+    if (own.size() != columns)
+      fail(ErrorCode::bad_file, file + ": the file has " + count + ", but '" + model.name() +
+                                    "' has " + text::counted(own.size(), "joint") +
+                                    "; --joints A,B,... names the columns");
+    notes.push_back("joints: mapped by order, as --order asks: " + shortened(own));
+    return own;
+  }
+  if (motion.joints.empty())
+    fail(ErrorCode::bad_file,
+         file + ": the file has " + count + " without names; give --order if they are the " +
+             text::counted(own.size(), "joint") + " of '" + model.name() + "' in its order (" +
+             own.front() + ", ..., " + own.back() + "), or --joints A,B,... with their names");
+  return motion.joints;
+}
+
+/// Angle of a joint with limits from which on a column is in degrees [rad]. Chosen: more than one
+/// and a half turns, which no joint with limits makes.
+constexpr double kNoAngle = 10;
+
+void refuse_degrees(const MotionFile& motion, Eigen::Index column, const std::string& name,
+                    const Dof& dof, bool degrees, const std::string& file) {
+  if (dof.prismatic || !dof.limited || degrees) return;
+  double most = 0;
+  for (const double value : motion.values.col(column))
+    if (std::abs(value) > most) most = std::abs(value);
+  if (most > kNoAngle)
+    fail(ErrorCode::bad_file, file + ": column '" + name + "' reaches " + text::brief(most) +
+                                  " rad, which no joint reaches; " +
+                                  (motion.unit != MotionFile::Unit::of_format
+                                       ? "give --unit deg if the angles are in degrees"
+                                       : "this format holds radians, so correct the file"));
+}
+
+bool is_joint_of(const RobotModel& model, const std::string& name) {
+  const auto& joints = model.description().joints;
+  return std::any_of(joints.begin(), joints.end(),
+                     [&](const JointDescription& joint) { return joint.name == name; });
+}
+
+// The columns of the robot's joints in its order; -1 for those that the file does not have.
+std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
+                            const ImportOptions& options, const std::string& file,
+                            std::vector<std::string>& notes) {
+  const std::vector<std::string> names = column_names(motion, model, options, file, notes);
+  std::vector<int> columns(static_cast<size_t>(model.dof_count()), -1);
+  std::vector<std::string> matched, unknown, extra, missing;
+  for (size_t i = 0; i < names.size(); ++i) {
+    const int dof = find_joint(model, names[i]);
+    if (dof < 0) {
+      (is_joint_of(model, names[i]) ? extra : unknown).push_back(names[i]);
+      continue;
+    }
+    int& column = columns[static_cast<size_t>(dof)];
+    if (column >= 0)
+      fail(ErrorCode::bad_file, file + ": the columns '" + names[static_cast<size_t>(column)] +
+                                    "' and '" + names[i] + "' are the same joint");
+    const auto at = static_cast<Eigen::Index>(i);
+    if (motion.values.col(at).array().isNaN().all()) continue;  // never set
+    column = static_cast<int>(i);
+    matched.push_back(names[i]);
+    refuse_degrees(motion, at, names[i], model.dofs()[static_cast<size_t>(dof)],
+                   options.degrees && motion.unit == MotionFile::Unit::assumed, file);
+  }
+  const std::string robot = "'" + model.name() + "'";
+  if (unknown.size() > matched.size())
+    fail(ErrorCode::bad_file,
+         file + ": this is a motion of another robot: " +
+             (matched.empty() ? "no joint of it is one of " + robot
+                              : "of its " + text::counted(names.size(), "joint") + " only " +
+                                    shortened(matched) + " are joints of " + robot) +
+             ", but not " + shortened(unknown) + "; the joints of " + robot + " are " +
+             shortened(model.dof_names()) +
+             "; \"aliases\" in the sidecar give them other names, and --joints A,B,... names the "
+             "columns");
+  for (int dof = 0; dof < model.dof_count(); ++dof)
+    if (columns[static_cast<size_t>(dof)] < 0)
+      missing.push_back(model.dofs()[static_cast<size_t>(dof)].name);
+  if (!unknown.empty())
+    notes.push_back("unknown joints, left out: " + shortened(unknown) +
+                    (unknown.size() == 1 ? text::suggestion(unknown[0], missing) : ""));
+  if (!extra.empty())
+    notes.push_back("extra joints, which do not move by themselves on this robot, left out: " +
+                    shortened(extra));
+  if (!missing.empty())
+    notes.push_back("missing joints, which keep their angles of the home posture: " +
+                    shortened(missing));
+  return columns;
+}
+
+// ---- Rows
+
+// theta of the robot, then what else the motion has, as columns. NaN: not set.
+Rows rows_of(const MotionFile& motion, const std::vector<int>& columns, const RobotModel& model,
+             bool degrees) {
+  const Eigen::Index rows = motion.rows(), dofs = model.dof_count();
+  Rows all(rows, dofs + (motion.base.empty() ? 0 : 7) + (motion.cog.empty() ? 0 : 3) +
+                     (motion.zmp.empty() ? 0 : 3) + (motion.fz.empty() ? 0 : 1));
+  const Eigen::VectorXd home = model.posture();
+  for (Eigen::Index dof = 0; dof < dofs; ++dof) {
+    const int column = columns[static_cast<size_t>(dof)];
+    if (column < 0)
+      all.col(dof).setConstant(home[dof]);
+    else
+      all.col(dof) = motion.values.col(column);
+    if (degrees && column >= 0 && !model.dofs()[static_cast<size_t>(dof)].prismatic)
+      all.col(dof) *= kDegreeAngle;
+  }
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const auto at = static_cast<size_t>(k);
+    Eigen::Index c = dofs;
+    if (!motion.base.empty()) {
+      Eigen::Quaterniond q = motion.base[at].attitude;
+      // From row to row the quaternion must not change its sign where rows are interpolated.
+      if (k > 0 &&
+          all.row(k - 1).segment<4>(c + 3).dot(Eigen::RowVector4d(q.w(), q.x(), q.y(), q.z())) < 0)
+        q.coeffs() *= -1;
+      all.row(k).segment<3>(c) = motion.base[at].position.transpose();
+      all.row(k).segment<4>(c + 3) << q.w(), q.x(), q.y(), q.z();
+      c += 7;
+    }
+    if (!motion.cog.empty()) all.row(k).segment<3>(c) = motion.cog[at].transpose(), c += 3;
+    if (!motion.zmp.empty()) all.row(k).segment<3>(c) = motion.zmp[at].transpose(), c += 3;
+    if (!motion.fz.empty()) all(k, c) = motion.fz[at];
+  }
+  return all;
+}
+
+/// One column between the rows in which it is set.
+class SetColumn {
+ public:
+  SetColumn(const std::vector<double>& times, const Eigen::VectorXd& values, bool smooth) {
+    for (Eigen::Index k = 0; k < values.size(); ++k)
+      if (!std::isnan(values[k])) {
+        t_.push_back(times[static_cast<size_t>(k)]);
+        x_.push_back(values[k]);
+      }
+    slope_.assign(t_.size(), 0);
+    // Monotone cubics (Fritsch and Carlson 1980, with the harmonic mean of Fritsch and Butland
+    // 1984): they do not swing over the keys, and rest at the first and the last one.
+    for (size_t i = 1; smooth && i + 1 < t_.size(); ++i) {
+      const double h0 = t_[i] - t_[i - 1], h1 = t_[i + 1] - t_[i];
+      const double d0 = (x_[i] - x_[i - 1]) / h0, d1 = (x_[i + 1] - x_[i]) / h1;
+      if (d0 * d1 > 0) slope_[i] = 3 * (h0 + h1) / ((2 * h1 + h0) / d0 + (h1 + 2 * h0) / d1);
+    }
+    smooth_ = smooth;
+  }
+
+  double at(double t) {
+    while (i_ + 2 < t_.size() && t_[i_ + 1] <= t) ++i_;
+    if (t_.size() < 2 || t <= t_.front()) return x_.front();
+    if (t >= t_.back()) return x_.back();
+    const double h = t_[i_ + 1] - t_[i_], u = (t - t_[i_]) / h;
+    if (!smooth_ || u == 0) return (1 - u) * x_[i_] + u * x_[i_ + 1];
+    const double v = 1 - u;
+    return v * v * (1 + 2 * u) * x_[i_] + u * u * (3 - 2 * u) * x_[i_ + 1] +
+           h * u * v * (v * slope_[i_] - u * slope_[i_ + 1]);
+  }
+
+ private:
+  std::vector<double> t_, x_, slope_;
+  size_t i_ = 0;
+  bool smooth_ = false;
+};
+
+Rows interpolated(const std::vector<double>& times, const Rows& rows, double dt, Eigen::Index count,
+                  bool smooth) {
+  Rows result(count, rows.cols());
+  for (Eigen::Index c = 0; c < rows.cols(); ++c) {
+    SetColumn column(times, rows.col(c), smooth);
+    for (Eigen::Index k = 0; k < count; ++k) result(k, c) = column.at(static_cast<double>(k) * dt);
+  }
+  return result;
+}
+
+double near_whole_rate(double dt) {
+  const double rate = std::round(1 / dt);
+  return rate > 0 && std::abs(1 / dt - rate) < 1e-3 * rate ? 1 / rate : dt;
+}
+
+struct Spacing {
+  double dt = 0;
+  bool even = false;
+};
+
+// The median step, else the mean one where the format rounds its times.
+Spacing spacing_of(const std::vector<double>& times, double time_step) {
+  std::vector<double> steps;
+  for (size_t k = 1; k < times.size(); ++k) steps.push_back(times[k] - times[k - 1]);
+  std::nth_element(steps.begin(), steps.begin() + static_cast<long>(steps.size() / 2), steps.end());
+  const double median = near_whole_rate(steps[steps.size() / 2]);
+  const double mean = near_whole_rate(times.back() / static_cast<double>(times.size() - 1));
+  for (const double dt : {median, mean}) {
+    const double tolerance = std::max(1e-3 * dt, time_step > 0 ? 0.51 * time_step : 0);
+    bool even = true;
+    for (size_t k = 0; even && k < times.size(); ++k)
+      even = std::abs(times[k] - static_cast<double>(k) * dt) < tolerance;
+    if (even) return {dt, true};
+  }
+  return {median, false};
+}
+
+std::vector<double> times_of(const MotionFile& motion, const ImportOptions& options,
+                             const std::string& file, std::vector<std::string>& notes) {
+  std::vector<double> times = motion.times;
+  const auto rows = static_cast<size_t>(motion.rows());
+  if (rows < 2)
+    fail(ErrorCode::bad_file, file + ": the table has only one row; a motion needs more");
+  if (times.empty()) {
+    if (motion.rate > 0 && options.rate > 0 && motion.file_rows == 0)
+      notes.push_back("--rate is not used, because the file states its rate, " +
+                      text::brief(motion.rate) + " rows per second");
+    const double rate = motion.rate > 0 ? motion.rate : options.rate;
+    if (!(rate > 0))
+      fail(
+          ErrorCode::bad_file,
+          file +
+              ": the format does not hold the rate of its rows; give --rate HZ (LAFAN1 for Unitree "
+              "G1 has 30 rows per second), because a wrong rate changes all speeds with it and all "
+              "accelerations with its square");
+    for (size_t k = 0; k < rows; ++k) times.push_back(static_cast<double>(k) / rate);
+    return times;
+  }
+  if (options.rate > 0)
+    notes.push_back("--rate is not used, because the file states the times of its rows");
+  if (times[0] != 0)
+    notes.push_back("the pattern begins at the first row; its time in the file is " +
+                    text::brief(times[0]) + " s");
+  for (size_t k = 1; k < rows; ++k)
+    if (!(times[k] > times[k - 1]))
+      fail(ErrorCode::bad_file, file + ": data row " + std::to_string(k + 1) + ": time " +
+                                    text::brief(times[k]) + " s does not come after " +
+                                    text::brief(times[k - 1]) +
+                                    " s of the row before; times must increase");
+  const double first = times[0];
+  for (double& time : times) time -= first;
+  return times;
+}
+
+/// Step from row to row from which on rows are key postures [s]. Chosen: recordings have at least
+/// 20 rows per second, and players do not hold a posture for longer.
+constexpr double kKeyStep = 0.06;
+/// Rows between key postures [s]. Chosen: half of the interval of hobby servos (20 ms).
+constexpr double kKeyTick = 0.01;
+
+Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& options,
+               const std::string& file, double& dt, std::vector<std::string>& notes) {
+  const std::vector<double> times = times_of(motion, options, file, notes);
+  const Spacing spacing = spacing_of(times, motion.time_step);
+  const bool keys = (motion.keys && !spacing.even) || spacing.dt > kKeyStep;
+  const bool unset = rows.array().isNaN().any();
+  dt = keys ? kKeyTick : spacing.dt;
+  const double last = times.back() / dt;
+  if (last > static_cast<double>(kMostRows))
+    fail(ErrorCode::bad_file, file + ": the motion lasts " + text::brief(times.back()) +
+                                  " s, more than is read; cut the file");
+  const Eigen::Index count =
+      spacing.even && !keys ? rows.rows() : static_cast<Eigen::Index>(std::floor(last + 1e-3)) + 1;
+  if (keys)
+    notes.push_back(text::counted(rows.rows(), "key posture") +
+                    "; between them, angles follow monotone cubics, one row every " +
+                    text::brief(1000 * dt) + " ms");
+  else if (!spacing.even)
+    notes.push_back(
+        "the rows are not evenly spaced, so they are interpolated linearly, one every " +
+        text::brief(dt) + " s");
+  if (unset && !keys) notes.push_back("values that are not set in a row are interpolated linearly");
+  if (spacing.even && !keys && !unset) return rows;
+  std::vector<double> on_ticks = times;
+  if (spacing.even && !keys)
+    for (size_t k = 0; k < times.size(); ++k) on_ticks[k] = static_cast<double>(k) * dt;
+  return interpolated(on_ticks, rows, dt, count, keys);
+}
+
+void set_motion(const Rows& rows, const MotionFile& file, Eigen::Index dofs, RawMotion& motion) {
+  motion.theta = rows.leftCols(dofs);
+  for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+    Eigen::Index c = dofs;
+    const auto vector = [&] {
+      c += 3;
+      return Eigen::Vector3d(rows.row(k).segment<3>(c - 3).transpose());
+    };
+    if (!file.base.empty()) {
+      BasePose base;
+      base.position = vector();
+      const auto q = rows.row(k).segment<4>(c);
+      base.attitude = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+      // Definition: what Ayumi's own tables take for a unit quaternion; its bits are then kept.
+      constexpr double kUnit = 1e-6;
+      if (!(std::abs(base.attitude.norm() - 1) < kUnit)) base.attitude.normalize();
+      motion.base.push_back(base);
+      c += 4;
+    }
+    if (!file.cog.empty()) motion.cog.push_back(vector());
+    if (!file.zmp.empty()) motion.zmp.push_back(vector());
+    if (!file.fz.empty()) motion.fz.push_back(rows(k, c));
+  }
+}
+
+// Contacts of the nearest rows.
+std::vector<Support> supports_on_ticks(const MotionFile& motion, size_t count, double dt) {
+  if (motion.support.empty() || motion.support.size() == count) return motion.support;
+  std::vector<Support> result;
+  size_t r = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const double t = motion.times.front() + static_cast<double>(k) * dt;
+    while (r + 1 < motion.times.size() && motion.times[r + 1] <= t + 0.5 * dt) ++r;
+    result.push_back(motion.support[r]);
+  }
+  return result;
+}
+
+void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
+  DenseTable table;
+  table.dt = imported.motion.dt;
+  table.joints = model.dof_names();
+  table.theta = imported.motion.theta;
+  table.commands = true;
+  imported.motion.theta = postures_of(model, model.limits(), table).theta;
+  imported.commands = false;
+  imported.filled.push_back(
+      "angles are servo targets: the velocity lead, delay + kd/kp, was subtracted");
+}
+
+// The robot keeps the last target of a sequence, so a short one can be made longer.
+void hold_last_row(Eigen::Index least, ImportedMotion& imported) {
+  Eigen::MatrixXd& theta = imported.motion.theta;
+  const Eigen::Index rows = theta.rows();
+  if (rows >= least) return;
+  theta.conservativeResize(least, Eigen::NoChange);
+  theta.bottomRows(least - rows) = theta.row(rows - 1).replicate(least - rows, 1);
+  imported.filled.push_back("the last posture is held until there are " + std::to_string(least) +
+                            " rows, which the check of a motion needs");
+}
+
+// A motion begins and ends at rest: as if it returned along its own path.
+Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, double cutoff) {
+  const Eigen::Index n = raw.size();
+  const auto more = std::min<Eigen::Index>(n - 1, static_cast<Eigen::Index>(2 / cutoff));
+  Eigen::VectorXd mirrored(n + 2 * more);
+  mirrored << raw.segment(1, more).reverse(), raw, raw.segment(n - 1 - more, more).reverse();
+  return smoothed_within(mirrored, band, cutoff).segment(more, n);
+}
+
+// Counts are rounded, and straight between the times for which they were made: differences of that
+// are no accelerations of anything. Servos do not follow a tenth of a degree.
+void smooth_angles(const RobotModel& model, const ImportOptions& options,
+                   ImportedMotion& imported) {
+  // Largest change of an angle [deg]. Chosen: 21 counts; what servos do not follow.
+  constexpr double kOfCounts = 0.1;
+  // Frequency up to which a motion is kept [1/s]. Chosen: ten times that of the steps of a walk
+  // (0.55 s each).
+  constexpr double kCutoff = 20;
+  const double degrees = options.smooth.value_or(imported.format == "hoap" ? kOfCounts : 0);
+  if (degrees <= 0) return;
+  Eigen::MatrixXd& theta = imported.motion.theta;
+  for (int i = 0; i < model.dof_count(); ++i) {
+    const Dof& dof = model.dofs()[i];
+    if (dof.prismatic) continue;
+    const Eigen::VectorXd raw = theta.col(i);
+    theta.col(i) = smoothed_from_rest(raw, degrees * kDegreeAngle, kCutoff * imported.motion.dt);
+    if (!dof.limited) continue;
+    // Beside a jump it swings over: no limit is to be broken by that.
+    const double margin = model.description().soft_limit_margin;
+    theta.col(i) = theta.col(i)
+                       .cwiseMax(std::min(dof.lower + margin, raw.minCoeff()))
+                       .cwiseMin(std::max(dof.upper - margin, raw.maxCoeff()));
+  }
+  imported.filled.push_back("angles smoothed by at most " + text::brief(degrees) + " deg");
+}
+
+}  // namespace
+
+ImportedMotion read_motion_rows(const std::string& bytes, const std::string& file,
+                                const RobotModel& model, const ImportOptions& options) {
+  ImportedMotion result;
+  const MotionFile read = read_file_of(bytes, file, model, options, result);
+  const std::vector<int> columns = map_joints(read, model, options, file, result.filled);
+  result.filled.insert(result.filled.end(), read.notes.begin(), read.notes.end());
+  const bool assumed = read.unit == MotionFile::Unit::assumed;
+  if (assumed)
+    result.filled.push_back(options.degrees ? "units: degrees, as --unit says"
+                                            : "units: radians (assumed; --unit deg changes this)");
+  const Rows rows = rows_of(read, columns, model, options.degrees && assumed);
+  set_motion(even_rows(read, rows, options, file, result.motion.dt, result.filled), read,
+             model.dof_count(), result.motion);
+  result.motion.support =
+      supports_on_ticks(read, static_cast<size_t>(result.motion.theta.rows()), result.motion.dt);
+  result.rows = read.file_rows > 0 ? read.file_rows : static_cast<int>(read.rows());
+  result.commands = read.commands;
+  result.caution = read.caution;
+  result.sequence = read.sequence;
+  constexpr int kLeastRows = 6;  // Derived: accelerations take five (motion/differentiate.hpp)
+  if (!result.sequence.empty()) hold_last_row(kLeastRows, result);
+  if (result.motion.theta.rows() < kLeastRows)
+    fail(ErrorCode::bad_file, file + ": " + std::to_string(result.motion.theta.rows()) +
+                                  " rows of motion; at least " + std::to_string(kLeastRows) +
+                                  " are needed");
+  return result;
+}
+
+ImportedMotion read_motion(const std::string& bytes, const std::string& file,
+                           const RobotModel& model, const ImportOptions& options) {
+  ImportedMotion result = read_motion_rows(bytes, file, model, options);
+  if (options.commands || result.commands) take_out_lead(model, result);
+  smooth_angles(model, options, result);
+  if (result.motion.support.empty()) result.filled.push_back("contacts: detected from the motion");
+  if (result.motion.base.empty())
+    result.filled.push_back(
+        "base: computed from the supporting feet, which stand level on the ground");
+  return result;
+}
+
+}  // namespace ayumi

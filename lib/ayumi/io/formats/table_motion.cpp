@@ -1,0 +1,198 @@
+#include "ayumi/io/formats/table_motion.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/table/comma_cells.hpp"
+#include "ayumi/io/table/csv_dialect.hpp"
+#include "ayumi/io/table/table_columns.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr double kRadiansPerDegree = EIGEN_PI / 180;
+
+[[noreturn]] void refuse_table(const std::string& file, const std::string& reason) {
+  fail(ErrorCode::bad_file, file + ": " + reason);
+}
+
+// "r_knee[deg]" and "r_knee (deg)" are a name and its unit; so are "time_s" and "time_ms".
+struct ColumnName {
+  std::string name, unit;
+};
+
+ColumnName column_name(const std::string& column) {
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+    const size_t at = column.find(open);
+    if (at == std::string::npos || column.back() != close) continue;
+    return {std::string(trimmed(std::string_view(column).substr(0, at))),
+            std::string(trimmed(std::string_view(column).substr(at + 1, column.size() - at - 2)))};
+  }
+  for (const std::string unit : {"s", "ms"})
+    if (column.ends_with("_" + unit))
+      return {column.substr(0, column.size() - unit.size() - 1), unit};
+  return {column, ""};
+}
+
+bool is_time(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name == "t" || name == "time";
+}
+
+bool is_group_column(const std::string& column) {
+  for (const auto* group : {&kCogColumns, &kZmpColumns, &kBaseColumns, &kContactColumns})
+    if (std::find(group->begin(), group->end(), column) != group->end()) return true;
+  return column == "fz[N]";
+}
+
+// Joint columns by bare name or with a unit become theta columns, and a time column of any name
+// t[s].
+void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
+                   const ImportOptions& options) {
+  std::string& column = table.columns[static_cast<size_t>(i)];
+  const ColumnName named = column_name(column);
+  if (is_time(named.name) && (named.unit.empty() || named.unit == "s" || named.unit == "ms")) {
+    if (named.unit == "ms") table.values.col(i) *= 1e-3;
+    column = "t[s]";
+    return;
+  }
+  if (is_group_column(column)) return;
+  const bool whole = find_joint(model, column) >= 0;  // a name may end like a unit
+  std::string joint = whole ? column : named.name;
+  if (joint.starts_with("theta.") && !named.unit.empty()) joint = joint.substr(6);
+  const std::string unit = whole ? "" : named.unit;
+  if (!(unit.empty() || unit == "deg" || unit == "rad")) return;
+  const int dof = find_joint(model, joint);
+  const bool prismatic = dof >= 0 && model.dofs()[static_cast<size_t>(dof)].prismatic;
+  const bool degrees = unit.empty() ? options.degrees : unit == "deg";
+  if (degrees && !prismatic) table.values.col(i) *= kRadiansPerDegree;
+  column = theta_column(joint);
+}
+
+void rename_columns(NumberTable& table, const RobotModel& model, const ImportOptions& options,
+                    const std::string& file) {
+  for (Eigen::Index i = 0; i < table.values.cols(); ++i) rename_column(table, i, model, options);
+  for (size_t i = 0; i < table.columns.size(); ++i)
+    if (std::find(table.columns.begin() + static_cast<std::ptrdiff_t>(i) + 1, table.columns.end(),
+                  table.columns[i]) != table.columns.end())
+      refuse_table(file, "the column '" + table.columns[i] + "' is given twice");
+}
+
+std::vector<Eigen::Vector3d> vectors_of(const NumberTable& table, const std::vector<int>& at) {
+  std::vector<Eigen::Vector3d> result;
+  if (at.empty()) return result;
+  for (Eigen::Index k = 0; k < table.values.rows(); ++k)
+    result.emplace_back(table.values(k, at[0]), table.values(k, at[1]), table.values(k, at[2]));
+  return result;
+}
+
+std::vector<BasePose> bases_of(const NumberTable& table, const TableLayout& layout,
+                               const std::string& file) {
+  std::vector<BasePose> result;
+  if (layout.base.empty()) return result;
+  for (Eigen::Index k = 0; k < table.values.rows(); ++k) {
+    Eigen::Vector4d q;
+    for (int i = 0; i < 4; ++i) q[i] = table.values(k, layout.base[3 + i]);
+    if (std::abs(q.norm() - 1) > 0.01)
+      refuse_table(file, "data row " + std::to_string(k + 1) + ": base.qw...qz has length " +
+                             text::brief(q.norm()) + ", a unit quaternion (w, x, y, z) is needed");
+    BasePose base;
+    base.position = {table.values(k, layout.base[0]), table.values(k, layout.base[1]),
+                     table.values(k, layout.base[2])};
+    base.attitude = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    result.push_back(base);
+  }
+  return result;
+}
+
+std::vector<Support> supports_of(const NumberTable& table, const TableLayout& layout) {
+  std::vector<Support> result;
+  if (layout.contact.empty()) return result;
+  for (Eigen::Index k = 0; k < table.values.rows(); ++k) {
+    const bool left = table.values(k, layout.contact[0]) > 0.5;
+    const bool right = table.values(k, layout.contact[1]) > 0.5;
+    result.push_back(left && right ? Support::both
+                     : left        ? Support::left
+                     : right       ? Support::right
+                                   : Support::none);
+  }
+  return result;
+}
+
+MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
+  const std::string& file = source.file;
+  MotionFile motion;
+  motion.commands = holds_commands(table);
+  motion.caution = caution_of(table);
+  rename_columns(table, source.model, source.options, file);
+  const bool timed = table.find("t[s]") >= 0;
+  if (!timed && !(source.options.rate > 0))
+    refuse_table(file,
+                 "no time column (t[s], t, time); give --rate HZ when the rows are evenly spaced");
+  if (!timed) {  // layout_of needs the column
+    table.columns.emplace_back("t[s]");
+    table.values.conservativeResize(Eigen::NoChange, table.values.cols() + 1);
+    table.values.rightCols(1).setZero();
+  }
+  const TableLayout layout = layout_of(table, file);
+  if (timed)
+    for (Eigen::Index k = 0; k < table.values.rows(); ++k)
+      motion.times.push_back(table.values(k, layout.time));
+  motion.joints = layout.joints;
+  motion.values.resize(table.values.rows(), static_cast<Eigen::Index>(layout.theta.size()));
+  for (size_t j = 0; j < layout.theta.size(); ++j)
+    motion.values.col(static_cast<Eigen::Index>(j)) = table.values.col(layout.theta[j]);
+  motion.unit = MotionFile::Unit::of_columns;
+  motion.base = bases_of(table, layout, file);
+  motion.cog = vectors_of(table, layout.cog);
+  motion.zmp = vectors_of(table, layout.zmp);
+  motion.support = supports_of(table, layout);
+  if (layout.fz >= 0)
+    for (Eigen::Index k = 0; k < table.values.rows(); ++k)
+      motion.fz.push_back(table.values(k, layout.fz));
+  return motion;
+}
+
+}  // namespace
+
+std::string recognize_csv_table(const MotionInput& source) {
+  std::string_view rest = source.bytes;
+  while (!rest.empty()) {
+    const std::string_view line = take_line(rest);
+    if (line.empty() || line.front() == '#') continue;
+    const bool letter = std::isalpha(static_cast<unsigned char>(line.front())) ||
+                        line.front() == '"' || line.front() == '_';
+    const bool cells = line.find_first_of(",;\t ") != std::string_view::npos ||
+                       line.find_first_not_of(
+                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                           "0123456789_.-[]()") == std::string_view::npos;
+    return letter && cells && line.find(": ") == std::string_view::npos && line.back() != ':'
+               ? "its first row names columns"
+               : "";
+  }
+  return "";
+}
+
+MotionFile read_csv_table(const MotionInput& source) {
+  return read_number_motion(source,
+                            number_table(plain_table_text(source.bytes, source.file), source.file));
+}
+
+std::string recognize_json_table(const MotionInput& source) {
+  const size_t first = source.bytes.find_first_not_of(" \t\r\n");
+  const bool object = first != std::string::npos && source.bytes[first] == '{';
+  return object && source.bytes.find("\"columns\"") != std::string::npos
+             ? "it is JSON with \"columns\""
+             : "";
+}
+
+MotionFile read_json_table(const MotionInput& source) {
+  return read_number_motion(source, number_table(source.bytes, source.file));
+}
+
+}  // namespace ayumi

@@ -1,0 +1,15 @@
+#pragma once
+// Tables with a head row: t[s] (or t, time, time_ms), joints as theta.<joint>[rad] or by their
+// names, bare or with a unit as in r_knee[deg], and whole groups of cog, zmp, fz, base and contact
+// columns as in Ayumi's own tables; the same as JSON with "columns" and "data".
+
+#include "ayumi/io/formats/motion_file.hpp"
+
+namespace ayumi {
+
+std::string recognize_csv_table(const MotionInput& source);
+MotionFile read_csv_table(const MotionInput& source);
+std::string recognize_json_table(const MotionInput& source);
+MotionFile read_json_table(const MotionInput& source);
+
+}  // namespace ayumi

@@ -1,0 +1,80 @@
+#include "ayumi/io/formats/transposed_csv.hpp"
+
+#include <charconv>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/table/comma_cells.hpp"
+
+namespace ayumi {
+
+namespace {
+
+bool is_number(std::string_view cell) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return !cell.empty() && error == std::errc() && end == cell.data() + cell.size();
+}
+
+}  // namespace
+
+std::string recognize_transposed_csv(const MotionInput& source) {
+  std::string_view rest = source.bytes;
+  const std::vector<std::string_view> head = cells_of(take_line(rest));
+  const bool times = head.size() > 1 && (head[0] == "time" || head[0] == "t") && is_number(head[1]);
+  return times ? "its first row is times, so each further row is a joint" : "";
+}
+
+MotionFile read_transposed_csv(const MotionInput& source) {
+  std::string_view rest = source.bytes;
+  MotionFile motion;
+  std::vector<std::vector<double>> joints;
+  for (size_t line = 1; !rest.empty(); ++line) {
+    const std::string_view text = take_line(rest);
+    if (text.empty() || text.front() == '#') continue;
+    const std::vector<std::string_view> cells = cells_of(text);
+    std::vector<double> row;
+    for (size_t i = 1; i < cells.size(); ++i)
+      row.push_back(source.number(cells[i], line, "value " + std::to_string(i)));
+    if (motion.times.empty()) {
+      for (size_t i = 1; i < row.size(); ++i)
+        if (!(row[i] > row[i - 1]))
+          source.refuse(line, "time " + text::brief(row[i]) + " s does not come after " +
+                                  text::brief(row[i - 1]) +
+                                  " s; times must increase, so correct or remove this column");
+      if (row.empty()) source.refuse(line, "there is no time");
+      motion.times = std::move(row);
+      continue;
+    }
+    if (row.size() != motion.times.size())
+      source.refuse(line, text::counted(row.size(), "value") + " of '" +
+                              std::string(cells[0].substr(0, 48)) + "', but the first row has " +
+                              text::counted(motion.times.size(), "time"));
+    motion.joints.emplace_back(cells[0]);
+    joints.push_back(std::move(row));
+  }
+  if (joints.empty()) source.refuse(0, "there is no row of a joint");
+  motion.values.resize(static_cast<Eigen::Index>(motion.times.size()),
+                       static_cast<Eigen::Index>(joints.size()));
+  for (size_t i = 0; i < joints.size(); ++i)
+    motion.values.col(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<Eigen::VectorXd>(joints[i].data(), static_cast<Eigen::Index>(joints[i].size()));
+  motion.keys = true;
+  motion.unit = MotionFile::Unit::assumed;
+  return motion;
+}
+
+std::vector<WrittenFile> write_transposed_csv(const RobotModel&, const MotionFile& motion) {
+  std::string text = "time";
+  for (const double time : motion.times) text += "," + text::exact(time);
+  text += "\n";
+  for (size_t i = 0; i < motion.joints.size(); ++i) {
+    text += motion.joints[i];
+    for (const double value : motion.values.col(static_cast<Eigen::Index>(i)))
+      text += "," + text::exact(value);
+    text += "\n";
+  }
+  return {{"", text}};
+}
+
+}  // namespace ayumi

@@ -1,0 +1,14 @@
+#pragma once
+// Webots .motion: a head with the names of motors, then time, name of the pose and angles. V1.1 of
+// the NAO teams has the names in a second line, % between the cells, and durations at the end of
+// the rows in place of times.
+
+#include "ayumi/io/formats/motion_file.hpp"
+
+namespace ayumi {
+
+std::string recognize_webots_motion(const MotionInput& source);
+MotionFile read_webots_motion(const MotionInput& source);
+std::vector<WrittenFile> write_webots_motion(const RobotModel& model, const MotionFile& motion);
+
+}  // namespace ayumi

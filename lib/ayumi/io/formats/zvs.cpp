@@ -1,0 +1,106 @@
+#include "ayumi/io/formats/zvs.hpp"
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/table/comma_cells.hpp"
+#include "ayumi/math/rotation.hpp"
+
+namespace ayumi {
+
+namespace {
+
+constexpr size_t kRootValues = 6;
+
+std::vector<std::string_view> tokens_of(std::string_view line) {
+  std::vector<std::string_view> tokens;
+  constexpr std::string_view between = " \t(),{}[]";
+  while (true) {
+    const size_t begin = line.find_first_not_of(between);
+    if (begin == std::string_view::npos) return tokens;
+    line.remove_prefix(begin);
+    const size_t end = std::min(line.find_first_of(between), line.size());
+    tokens.push_back(line.substr(0, end));
+    line.remove_prefix(end);
+  }
+}
+
+}  // namespace
+
+std::string recognize_zvs(const MotionInput& source) {
+  std::string_view rest = source.bytes;
+  std::string_view line;
+  while (line.empty() && !rest.empty()) line = take_line(rest);
+  const size_t open = line.find('(');
+  if (open == std::string_view::npos ||
+      line.find_first_not_of("0123456789.eE+-/ \t(), \r") != std::string_view::npos)
+    return "";
+  return tokens_of(line.substr(0, open)).size() == 2 ? "its rows have the form `dt n ( values )`"
+                                                     : "";
+}
+
+MotionFile read_zvs(const MotionInput& source) {
+  std::string_view rest = source.bytes;
+  std::vector<double> cells;
+  MotionFile motion;
+  size_t width = 0;
+  double now = 0;
+  for (size_t line = 1; !rest.empty(); ++line) {
+    const std::string_view text = take_line(rest);
+    if (text.empty()) continue;
+    const std::vector<std::string_view> tokens = tokens_of(text);
+    if (tokens.size() < 3) source.refuse(line, "`dt n ( values )` is needed");
+    const double dt = source.number(tokens[0], line, "dt");
+    const double count =
+        source.number(tokens[1].substr(0, tokens[1].find('/')), line, "number of values");
+    if (count != static_cast<double>(tokens.size() - 2))
+      source.refuse(line, text::counted(tokens.size() - 2, "value") +
+                              " in the brackets, but n is " + text::brief(count));
+    if (width > 0 && tokens.size() - 2 != width)
+      source.refuse(line, text::counted(tokens.size() - 2, "value") +
+                              " in the row, but the first row has " + std::to_string(width));
+    width = tokens.size() - 2;
+    if (!(dt > 0)) source.refuse(line, "dt " + text::brief(dt) + " s is not above 0");
+    motion.times.push_back(now);
+    now += dt;
+    for (size_t i = 2; i < tokens.size(); ++i)
+      cells.push_back(source.number(tokens[i], line, "value " + std::to_string(i - 1)));
+  }
+  if (motion.times.empty()) source.refuse(0, "there is no row");
+  Eigen::MatrixXd all = Eigen::Map<Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
+      cells.data(), static_cast<Eigen::Index>(motion.times.size()),
+      static_cast<Eigen::Index>(width));
+  motion.notes.push_back("units: seconds, radians and metres, as the format defines them");
+  const auto joints = static_cast<size_t>(source.model.dof_count());
+  if (width == joints + kRootValues) {
+    for (Eigen::Index k = 0; k < all.rows(); ++k)
+      motion.base.push_back(
+          {all.row(k).head<3>().transpose(), exp_rotation(all.row(k).segment<3>(3).transpose())});
+    all = all.rightCols(static_cast<Eigen::Index>(joints)).eval();
+    motion.notes.push_back(
+        "the first 6 values of a row are read as the position and the rotation vector of the root, "
+        "because the robot has " +
+        text::counted(joints, "joint"));
+  }
+  motion.values = std::move(all);
+  return motion;
+}
+
+std::vector<WrittenFile> write_zvs(const RobotModel&, const MotionFile& motion) {
+  std::string text;
+  const size_t rows = motion.times.size();
+  const auto width = static_cast<size_t>(motion.values.cols()) + kRootValues;
+  for (size_t k = 0; k < rows; ++k) {
+    const double dt = 1 / motion.rate;
+    text += text::exact(dt) + " " + std::to_string(width) + " (";
+    const BasePose& base = motion.base[k];
+    const Eigen::Vector3d turn = log_rotation(base.attitude);
+    for (const double value : base.position) text += " " + text::exact(value);
+    for (const double value : turn) text += " " + text::exact(value);
+    for (const double value : motion.values.row(static_cast<Eigen::Index>(k)))
+      text += " " + text::exact(value);
+    text += " )\n";
+  }
+  return {{"", text}};
+}
+
+}  // namespace ayumi

@@ -1,0 +1,31 @@
+#pragma once
+// A YAML document as a tree in which a list of numbers takes eight bytes each: motions have
+// millions of them.
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace ayumi {
+
+struct YamlNode {
+  enum class Kind { scalar, list, map };
+  Kind kind = Kind::scalar;
+  int line = 0;                      ///< from 1
+  std::string text = {};             ///< of a scalar
+  std::vector<double> numbers = {};  ///< of a list of finite numbers alone
+  std::vector<YamlNode> items = {};  ///< of any other list; of a map in the order of `keys`
+  std::vector<std::string> keys = {};
+
+  bool is_map() const { return kind == Kind::map; }
+  bool is_list() const { return kind == Kind::list; }
+  /// Member of a map by one of its names; null when there is none.
+  const YamlNode* find(std::string_view key, std::string_view other = "") const;
+};
+
+/// Throws Error(bad_file) "file:line: ..." for text that is no YAML, for aliases, and for more than
+/// one document. `words`: what the file was recognized as.
+YamlNode parse_yaml(const std::string& text, const std::string& file, const std::string& words);
+
+}  // namespace ayumi

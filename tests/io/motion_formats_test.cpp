@@ -1,0 +1,205 @@
+// Motions in the formats of other programs: round trips, recognition, mapping of joints, and one
+// line for what cannot be read.
+
+#include "ayumi/io/formats/motion_formats.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "tests/support/error_message.hpp"
+#include "tests/support/hoap1.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace ayumi::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Every joint and the root move; numbers have all their digits.
+MotionFile moving(const RobotModel& model, int rows = 40, double rate = 50) {
+  MotionFile motion;
+  motion.rate = rate;
+  motion.joints = model.dof_names();
+  motion.values.resize(rows, model.dof_count());
+  for (int k = 0; k < rows; ++k) {
+    motion.times.push_back(k / rate);
+    for (int j = 0; j < model.dof_count(); ++j) motion.values(k, j) = 0.1 * std::sin(0.1 * k + j);
+    const double yaw = 0.3 * std::sin(0.05 * k);
+    BasePose base;
+    base.position = {0.01 * k, -0.002 * k, 0.25 + 0.001 * std::cos(0.2 * k)};
+    base.attitude = Eigen::Quaterniond(std::cos(yaw / 2), 0, 0, std::sin(yaw / 2));
+    motion.base.push_back(base);
+    motion.zmp.emplace_back(0.01 * k, 0.001 * k, 0);
+  }
+  return motion;
+}
+
+struct RoundTrip {
+  std::string format;
+  double angle, place;  // largest difference [rad, m]
+  bool names, root;
+};
+
+class MotionFormats : public testing::TestWithParam<RoundTrip> {};
+
+TEST_P(MotionFormats, ReadsWhatItWrites) {
+  const RoundTrip& expected = GetParam();
+  const RobotModel& model = hoap1();
+  const MotionFile written = moving(model);
+  const MotionFormat* format = find_motion_format(expected.format);
+  ASSERT_TRUE(format && format->write);
+  TemporaryFolder folder;
+  std::string main;
+  for (const WrittenFile& file : format->write(model, written)) {
+    const fs::path path =
+        (folder.path() / "motion")
+            .replace_extension(file.extension.empty() ? ".motion" : file.extension);
+    write_file(path, file.bytes);
+    if (main.empty()) main = path.string();
+  }
+  ImportOptions options;
+  options.by_order = !expected.names;
+  if (!(format->holds & kRate)) options.rate = 50;
+  const ImportedMotion read = read_motion_rows(read_file(main), main, model, options);
+  EXPECT_EQ(read.format, expected.format);
+  EXPECT_FALSE(read.reason.empty());
+  EXPECT_NEAR(read.motion.dt, 0.02, 1e-12);
+  ASSERT_EQ(read.motion.theta.rows(), written.rows());
+  EXPECT_LE((read.motion.theta - written.values).cwiseAbs().maxCoeff(), expected.angle);
+  ASSERT_EQ(read.motion.base.size(), expected.root ? written.base.size() : 0);
+  for (size_t k = 0; k < read.motion.base.size(); ++k) {
+    EXPECT_LE((read.motion.base[k].position - written.base[k].position).norm(), expected.place);
+    EXPECT_LE(read.motion.base[k].attitude.angularDistance(written.base[k].attitude),
+              expected.place + 2e-8);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, MotionFormats,
+                         testing::Values(RoundTrip{"webots", 0, 0, true, false},
+                                         RoundTrip{"choreonoid", 0, 0, true, true},
+                                         RoundTrip{"zvs", 0, 1e-15, false, true},
+                                         RoundTrip{"transposed-csv", 0, 0, true, false},
+                                         RoundTrip{"motion-csv", 0, 0, false, true},
+                                         RoundTrip{"hrpsys", 0, 1e-15, false, true}),
+                         [](const auto& info) {
+                           std::string name = info.param.format;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(MotionFormats, EveryWrittenFormatIsTried) {
+  for (const MotionFormat& format : motion_formats())
+    EXPECT_TRUE(format.read || format.write) << format.name;
+}
+
+std::string refusal_of(const std::string& bytes, const std::string& file = "m.dat",
+                       ImportOptions options = {}) {
+  return error_message([&] { read_motion_rows(bytes, file, hoap1(), options); });
+}
+
+TEST(MotionFormats, ForeignFilesAreNamed) {
+  EXPECT_NE(refusal_of(std::string("\x80\x04\x95\x00", 4)).find("a Python pickle"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("#ROSBAG V2.0\n").find("a ROS 1 bag"), std::string::npos);
+  EXPECT_NE(refusal_of("Kaydara FBX Binary  ").find("an FBX scene"), std::string::npos);
+  EXPECT_NE(refusal_of("<?xml version=\"1.0\"?><a/>", "m.mtnx").find("R+ Motion"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("<?xml version=\"1.0\"?><a/>").find("an XML file"), std::string::npos);
+  std::string c3d(512, '\0');
+  c3d[0] = 2;
+  c3d[1] = 'P';
+  EXPECT_NE(refusal_of(c3d).find("a C3D recording"), std::string::npos);
+  for (const std::string& name : read_format_names())
+    EXPECT_NE(refusal_of("???").find(name), std::string::npos) << name;
+}
+
+TEST(MotionFormats, MistakesNameFileLineAndFormat) {
+  const std::string head = "#WEBOTS_MOTION,V1.0,l_knee,r_knee\n";
+  EXPECT_EQ(
+      refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0\n"),
+      "m.dat:3: 3 cells in the row, but the head needs 4 (2 joints) (read as Webots .motion)");
+  EXPECT_EQ(refusal_of(head + "00:00:000,a,0,nan\n"),
+            "m.dat:2: column r_knee: 'nan' is not a finite number (read as Webots .motion)");
+  EXPECT_EQ(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n"),
+            "m.dat:1: version 'V3.0'; V1.0 and V1.1 are read (read as Webots .motion)");
+  EXPECT_EQ(refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n"),
+            "m.dat:3: 1 value of 'r_knee', but the first row has 2 times (read as CSV with a row "
+            "for each joint)");
+  EXPECT_EQ(refusal_of("0.02 3 ( 1 2 )\n"),
+            "m.dat:1: 2 values in the brackets, but n is 3 (read as mi-lib .zvs)");
+  EXPECT_NE(refusal_of("0 0.1 0,2\n0.1 0.1 0.2\n0.2 0 0\n", "m.pos").find("not "),
+            std::string::npos);
+  EXPECT_NE(refusal_of("type: CompositeSeq\ncontent: BodyMotion\ncomponents:\n  - [ 1, 2\n")
+                .find("no valid YAML"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal_of("type: CompositeSeq\ncontent: BodyMotion\nformat_version: 7\ncomponents: []\n")
+          .find("versions 1 to 4 are read"),
+      std::string::npos);
+}
+
+TEST(MotionFormats, JointsAreMappedByNameAndByOrderOnlyOnRequest) {
+  std::string rows;
+  for (int k = 0; k < 10; ++k) {
+    rows += "0,0,0.25,0,0,0,1";
+    for (int j = 0; j < hoap1().dof_count(); ++j) rows += ",0." + std::to_string(k);
+    rows += "\n";
+  }
+  EXPECT_NE(refusal_of(rows).find("20 joint columns without names; give --order"),
+            std::string::npos)
+      << refusal_of(rows);
+  ImportOptions options;
+  options.by_order = true;
+  EXPECT_NE(refusal_of(rows, "m.csv", options).find("give --rate HZ"), std::string::npos);
+  options.rate = 30;
+  const ImportedMotion read = read_motion_rows(rows, "m.csv", hoap1(), options);
+  EXPECT_EQ(read.motion.dt, 1.0 / 30);
+  EXPECT_EQ(read.motion.theta(5, 3), 0.5);
+
+  std::string webots = "#WEBOTS_MOTION,V1.0,l_knee,r_knee,HeadYaw\n";
+  for (int k = 0; k < 10; ++k) webots += std::to_string(40 * k) + ",p,0.1,*,0\n";
+  const ImportedMotion some = read_motion_rows(webots, "m.motion", hoap1());
+  std::string said;
+  for (const std::string& line : some.filled) said += line + "\n";
+  EXPECT_NE(said.find("unknown joints, left out: HeadYaw\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("missing joints, which keep their angles of the home posture: "),
+            std::string::npos);
+  const std::string other = "#WEBOTS_MOTION,V1.0,l_knee,A,B,C\n0,p,0,0,0,0\n40,p,0,0,0,0\n";
+  EXPECT_NE(refusal_of(other).find("of its 4 joints only l_knee are joints of"), std::string::npos)
+      << refusal_of(other);
+}
+
+// Keys are met, and nothing swings over them.
+TEST(MotionFormats, KeysAreMet) {
+  const std::string text = "time,0,0.5,1.5\nl_knee,0,1,1\nr_knee,0,0.5,1\n";
+  const ImportedMotion read = read_motion_rows(text, "k.csv", hoap1());
+  EXPECT_EQ(read.format, "transposed-csv");
+  const auto knee = read.motion.theta.col(hoap1().find_dof("l_knee"));
+  ASSERT_EQ(knee.size(), 151);
+  EXPECT_EQ(knee[0], 0);
+  EXPECT_EQ(knee[50], 1);
+  EXPECT_LE(knee.maxCoeff(), 1 + 1e-12);
+}
+
+// Real files of other projects. Their robots are not here, so the joints are named after this one.
+TEST(MotionFormats, RealFilesAreRead) {
+  const fs::path data = fs::path(AYUMI_SOURCE_DIR) / "../shared/data";
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files";
+  int tried = 0;
+  for (const auto& entry : fs::directory_iterator(data / "nao_webots_motion")) {
+    const std::string file = entry.path().string();
+    if (entry.path().extension() != ".motion") continue;
+    const std::string bytes = read_file(file);
+    // Another robot: the message says which joints match.
+    EXPECT_NE(refusal_of(bytes, file).find("this is a motion of another robot"), std::string::npos);
+    ++tried;
+  }
+  EXPECT_EQ(tried, 7);
+}
+
+}  // namespace
+}  // namespace ayumi::test
