@@ -5,8 +5,10 @@
 
 #include <filesystem>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/identify/identify.hpp"
+#include "ayumi/identify/recording_checks.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/table/recording.hpp"
 
@@ -61,6 +63,26 @@ TEST(IdentifyHoap3, FindsDelayAndSagOfTheRecordedWalk) {
   EXPECT_NEAR(0.5 * (delays[6] + delays[7]), 0.0036, 0.0003);
   EXPECT_NEAR(delays.front(), 0.0036, 0.0005);
   EXPECT_NEAR(delays.back(), 0.0036, 0.0005);
+}
+
+// Five rows of a file without time are missing: the answer comes earlier from there on.
+TEST(IdentifyHoap3, RefusesMissingRows) {
+  if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
+  const RobotModel model = recorded_robot();
+  RecordedMotion motion = recorded_walk(model);
+  const Eigen::MatrixXd whole = motion.measured.theta;
+  EXPECT_NO_THROW(require_answer(model, motion.command, motion.measured, 0.1, "m.csv"));
+  const Eigen::Index gap = 8000, missing = 5, rows = whole.rows() - missing;
+  motion.measured.theta.resize(rows, whole.cols());
+  motion.measured.theta << whole.topRows(gap), whole.bottomRows(rows - gap);
+  try {
+    require_answer(model, motion.command, motion.measured, 0.1, "m.csv");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("5 ms earlier than before: rows are missing"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace

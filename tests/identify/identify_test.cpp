@@ -141,6 +141,8 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
          m.measured.theta.bottomRows(old.rows() - 800) = old.topRows(old.rows() - 800);
        }),
        "ms behind their command; the recording is shifted");
+  said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(5901, 1); }),
+       "m.csv: lasts 5.900 s, but its command lasts 6.000 s");
   said(answer_error([](RecordedMotion& m) { m.measured.theta *= -1; }),
        "arm_joint moves against its command");
   said(answer_error([](RecordedMotion& m) { m.measured.theta *= 180 / M_PI; }),

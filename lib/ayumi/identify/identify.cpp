@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "ayumi/base/text.hpp"
 #include "ayumi/identify/recording_checks.hpp"
 #include "ayumi/identify/servo_fit.hpp"
 #include "ayumi/study/in_parallel.hpp"
@@ -49,6 +50,10 @@ constexpr double kRotorShare = 0.25;
 // Compliance below which a joint does not show any [rad/(N m)]. Chosen: far stiffer than the servos
 // of small humanoids, which have 1e-4 or more.
 constexpr double kLeastCompliance = 1e-6;
+
+// Lag beyond which a recording may be shifted [s]. Chosen: soft servos of small humanoids have up
+// to 20 ms.
+constexpr double kSlowServo = 0.03;
 
 // Time for which the load of a joint has to be known [s], or its stiffness is not looked for.
 // Chosen: the single supports of two steps.
@@ -222,6 +227,10 @@ ServoEstimate ratio(double a, double s, double var_a, double var_s, double cov, 
 class Advice {
  public:
   Advice(const TypeFit& type, const IdentifiedJoint& joint, bool load_known) : fit_(type.fit) {
+    if (joint.lag > kSlowServo)
+      say("the answer is " + text::fixed(1000 * joint.lag, 0) +
+          " ms behind its command, which is rare for a servo: make sure that both files begin at "
+          "the same time");
     if (!load_known) {
       say("both feet stand, so the legs may press against each other and their load is not known: "
           "record a motion that lifts each foot");

@@ -1,5 +1,6 @@
 #include "ayumi/identify/recording_checks.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -20,9 +21,15 @@ constexpr double kDegree = M_PI / 180;
 // small servo.
 constexpr double kMoves = 0.5 * kDegree;
 
-// A recording may end this much earlier or later than its command, in parts of it, and in seconds.
-// Chosen: recorders start and stop by hand.
-constexpr double kLengthShare = 0.02, kLengthTime = 0.25;
+// A recording may be longer than its command by this part of it and by this time [s]: recorders are
+// stopped by hand. It may not be shorter by more than the second time [s]. Chosen: the longest
+// delay of a servo; what is shorter has lost rows or its end.
+constexpr double kLengthShare = 0.02, kLengthTime = 0.25, kShorter = 0.05;
+
+// Windows over which the delay of the answer is followed [s], and a change of it that only missing
+// or repeated rows explain [s]. Chosen: a motion has all its rates within a window, and a change
+// that is far beyond what friction and load do to the mean of several windows.
+constexpr double kDelayWindow = 1.5, kDelayJump = 0.003;
 
 // Squared correlation with the command: from the first on, slope and sign have a meaning; below the
 // second, the joint does not follow. Chosen.
@@ -120,6 +127,78 @@ Relation relation(const AngleTable& command, const AngleTable& measured, Index d
   return r;
 }
 
+// Time by which one joint is behind its command from row `begin` on, by least squares with its
+// position, the direction of its rate and a constant, which load and friction change. `weight` is
+// the information that the window has.
+double delay_in_window(const AngleTable& command, const AngleTable& measured, Index dof,
+                       Index begin, Index rows, double& weight) {
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  const double h = measured.dt;
+  for (Index k = begin; k < begin + rows; ++k) {
+    const double t = h * static_cast<double>(k), c = value_at(command, dof, t);
+    const double rate =
+        (value_at(command, dof, t + 5 * h) - value_at(command, dof, t - 5 * h)) / (10 * h);
+    const Eigen::Vector4d row(rate, c, rate > 0 ? 1 : rate < 0 ? -1 : 0, 1);
+    normal += row * row.transpose();
+    right += (c - measured.theta(k, dof)) * row;
+  }
+  weight = 0;
+  if (normal(0, 0) <= 0) return 0;
+  normal.diagonal().array() += 1e-9 * normal.diagonal().array().maxCoeff();
+  const Eigen::Matrix4d inverse = normal.inverse();
+  weight = inverse(0, 0) > 0 ? 1 / inverse(0, 0) : 0;
+  return (inverse * right)[0];
+}
+
+// The row before which rows are missing or repeated, and the change of the delay there [s].
+struct DelayJump {
+  bool found = false;
+  double at = 0, change = 0;  // [s]
+};
+DelayJump delay_jump(const AngleTable& command, const AngleTable& measured,
+                     const std::vector<Index>& dofs) {
+  const auto rows = static_cast<Index>(std::lround(kDelayWindow / measured.dt));
+  std::vector<double> delays, weights, times;
+  for (Index begin = 0; begin + rows <= measured.theta.rows(); begin += rows) {
+    double sum = 0, total = 0;
+    for (const Index j : dofs) {
+      double weight = 0;
+      const double delay = delay_in_window(command, measured, j, begin, rows, weight);
+      sum += weight * delay, total += weight;
+    }
+    delays.push_back(total > 0 ? sum / total : 0);
+    weights.push_back(total);
+    times.push_back(measured.dt * static_cast<double>(begin));
+  }
+  if (delays.size() < 4) return {};
+  const double most = *std::max_element(weights.begin(), weights.end());
+  DelayJump jump;
+  // Both sides of a jump have a delay of their own, which changes little.
+  const auto side = [&](size_t from, size_t to, double& mean, double& spread) {
+    double n = 0, sum = 0, square = 0;
+    for (size_t i = from; i < to; ++i)
+      if (weights[i] > 0.1 * most) ++n, sum += delays[i], square += delays[i] * delays[i];
+    if (n < 2) return false;
+    mean = sum / n;
+    spread = std::sqrt(std::max(0.0, square / n - mean * mean));
+    return true;
+  };
+  double least = HUGE_VAL;
+  for (size_t split = 2; split + 2 <= delays.size(); ++split) {
+    double before = 0, after = 0, spread0 = 0, spread1 = 0;
+    // The window of the jump belongs to neither side.
+    if (!side(0, split - 1, before, spread0) || !side(split, delays.size(), after, spread1))
+      continue;
+    const double change = after - before, spread = spread0 + spread1;
+    if (std::abs(change) < kDelayJump || spread > 0.25 * std::abs(change) || spread >= least)
+      continue;
+    least = spread;
+    jump = {true, times[split - 1], change};
+  }
+  return jump;
+}
+
 }  // namespace
 
 double least_motion() { return kMoves; }
@@ -197,7 +276,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
     complain("no joint of this recording moves by " + text::brief(kMoves / kDegree) +
              " deg in its command; record a motion");
   const double lasts = measured.duration(), asked = command.duration();
-  if (std::abs(lasts - asked) > kLengthShare * asked + kLengthTime)
+  if (lasts - asked > kLengthShare * asked + kLengthTime || asked - lasts > kShorter)
     complain("lasts " + text::fixed(lasts, 3) + " s, but its command lasts " +
              text::fixed(asked, 3) +
              " s; it is cut, of another rate (--rate), or the answer to another command");
@@ -219,6 +298,13 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
                (shift > 0 ? "behind" : "ahead of") +
                " their command; the recording is shifted, so let both begin at the same time");
   }
+  const DelayJump jump = delay_jump(command, measured, dofs);
+  if (jump.found)
+    complain("from about " + text::fixed(jump.at, 1) + " s on, the angles are " +
+             text::fixed(1000 * std::abs(jump.change), 0) + " ms " +
+             (jump.change < 0 ? "earlier than before: rows are missing there"
+                              : "later than before: rows are repeated there") +
+             "; record again, or give the rows a time column");
   const std::vector<std::string> wrong = motion_complaints(
       model, command, measured, std::clamp(shift, 0.0, longest_delay), 0, command.duration());
   if (!wrong.empty()) complain(wrong.front());
