@@ -1,5 +1,7 @@
 // Pictures of runs: PNG bytes, and clips as files.
 
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/render/clip.hpp"
 #include "ayumi/render/snapshots.hpp"
@@ -28,6 +30,15 @@ ClipOptions clip_options(int width, int height, const std::string& view, double 
   return options;
 }
 
+/// Throws Error(usage) for a time that is not in the run: a picture of its end would be taken for
+/// one of that time.
+void require_time_of_run(const Log& log, double at) {
+  const double end = log.data().dt * static_cast<double>(log.data().samples.size() - 1);
+  if (!(at >= 0 && at <= end))
+    fail(ErrorCode::usage, "a picture at t = " + text::brief(at) + " s: the run is from 0 to " +
+                               text::brief(end) + " s");
+}
+
 /// PNG bytes of what `draw` makes without the interpreter's lock.
 template <typename Draw>
 py::bytes png(const Draw& draw) {
@@ -45,6 +56,7 @@ void bind_picture(py::module_& m) {
       "picture",
       [](const RobotModel& robot, const Log& log, double at, int width, int height,
          const std::string& view, double zoom, const std::string& title) {
+        require_time_of_run(log, at);
         const ClipOptions options = clip_options(width, height, view, zoom, title);
         return png([&] { return ClipRenderer(robot, log.data(), options).frame(at); });
       },
@@ -58,6 +70,7 @@ void bind_picture(py::module_& m) {
       [](const RobotModel& robot, const Log& log, const std::vector<double>& times, int count,
          int columns, int width, int height, const std::string& view, double zoom,
          const std::string& title) {
+        for (const double at : times) require_time_of_run(log, at);
         StripOptions options;
         options.clip = clip_options(width, height, view, zoom, title);
         options.times = times;

@@ -20,6 +20,18 @@ namespace ayumi::python {
 
 namespace {
 
+/// What a function of the user has returned. Throws Error(usage) where it is something else.
+template <typename T>
+T returned(const py::object& object, const char* what) {
+  // None would be cast to no object at all.
+  try {
+    if (!object.is_none()) return object.cast<T>();
+  } catch (const py::cast_error&) {
+  }
+  fail(ErrorCode::usage,
+       std::string(what) + ", but it is " + py::repr(py::type::of(object)).cast<std::string>());
+}
+
 /// An object that a copy of a simulator must not share: copying it is Python's deepcopy.
 class OwnObject {
  public:
@@ -57,7 +69,9 @@ class PythonPlant {
   }
   const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt) {
     const py::gil_scoped_acquire acquire;
-    report_ = object_.get().attr("step")(py::cast(targets), py::cast(input), dt).cast<StepReport>();
+    report_ =
+        returned<StepReport>(object_.get().attr("step")(py::cast(targets), py::cast(input), dt),
+                             "plant: step(targets, input, dt) must return an ayumi.StepReport");
     if (report_.torque.size() != model_->dof_count())
       fail(ErrorCode::usage, "the plant reports " + std::to_string(report_.torque.size()) +
                                  " torques, but robot '" + model_->name() + "' has " +
@@ -69,7 +83,8 @@ class PythonPlant {
  private:
   void take_state() {
     const py::gil_scoped_acquire acquire;
-    state_ = object_.get().attr("state").cast<RobotState>();
+    state_ = returned<RobotState>(object_.get().attr("state"),
+                                  "plant: state must be an ayumi.RobotState");
     if (state_.theta.size() != model_->dof_count())
       fail(ErrorCode::usage, "the state of the plant has " + std::to_string(state_.theta.size()) +
                                  " joint angles, but robot '" + model_->name() + "' has " +
@@ -99,7 +114,8 @@ PlantKind plant_of(const py::object& plant) {
     return {"python",
             [make](const RobotModel& model, const ActuatorLimits& limits, const World& world) {
               const py::gil_scoped_acquire acquire;
-              py::object made = make->get()(py::cast(model, py::return_value_policy::reference),
+              // A copy: the object in Python may live longer than the run and its robot.
+              py::object made = make->get()(py::cast(model, py::return_value_policy::copy),
                                             limits.name, py::cast(world));
               return PlantInterface(PythonPlant(model, OwnObject(std::move(made))));
             }};
@@ -121,10 +137,10 @@ TargetFunction targets_of(const py::object& function) {
   return [call](double t, const Estimate& estimate, const CommandSample& plan,
                 const Eigen::VectorXd& targets) {
     const py::gil_scoped_acquire acquire;
-    return call
-        ->get()(t, py::cast(estimate, py::return_value_policy::copy),
-                py::cast(plan, py::return_value_policy::copy), py::cast(targets))
-        .cast<Eigen::VectorXd>();
+    return returned<Eigen::VectorXd>(
+        call->get()(t, py::cast(estimate, py::return_value_policy::copy),
+                    py::cast(plan, py::return_value_policy::copy), py::cast(targets)),
+        "targets: the function must return an array of numbers, shape (dof,)");
   };
 }
 

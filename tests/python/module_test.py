@@ -350,6 +350,17 @@ class InTheLoop(unittest.TestCase):
         # The servo of the joint settles near its offset target [rad].
         self.assertGreater(abs(log["theta"][-1, 0] - own["theta"][-1, 0]), 0.03)
 
+    def test_the_robot_of_a_plant_outlives_its_run(self):
+        robots = []
+
+        def make(robot, profile, world):
+            robots.append(robot)
+            return OffsetPlant(robot, profile, world, 0.0)
+
+        ayumi.simulate(short_stand(0.05), plant=make)
+        gc.collect()
+        self.assertEqual(robots[0].joints, self.task.robot.joints)
+
     def test_copies_of_a_plant_are_independent(self):
         robot = self.task.robot
         plant = OffsetPlant(robot, "", ayumi.World(), 0.0)
@@ -393,6 +404,15 @@ class InTheLoop(unittest.TestCase):
     def test_wrong_sizes_and_errors(self):
         with self.assertRaisesRegex(ayumi.Error, "joints"):
             ayumi.simulate(self.task, targets=lambda *_: np.zeros(3))
+        with self.assertRaisesRegex(ayumi.Error, r"targets: .* \(dof,\), but it is <class 'str'>"):
+            ayumi.simulate(self.task, targets=lambda *_: "straight")
+
+        class WithoutReport(OffsetPlant):
+            def step(self, *_):
+                return None
+
+        with self.assertRaisesRegex(ayumi.Error, "must return an ayumi.StepReport"):
+            ayumi.simulate(self.task, plant=lambda *about: WithoutReport(*about, 0.0))
 
         def fails(*_):
             raise ValueError("from the controller")
@@ -408,6 +428,9 @@ class Pictures(unittest.TestCase):
         shot = ayumi.picture(task.robot, log, at=1.0, width=320, height=240)
         self.assertTrue(shot.startswith(b"\x89PNG"))
         self.assertEqual(int.from_bytes(shot[16:20], "big"), 320)
+        for at in (-0.1, log.t[-1] + 0.1, float("nan")):
+            with self.assertRaisesRegex(ayumi.Error, "the run is from 0 to"):
+                ayumi.picture(task.robot, log, at=at)
         for plot in (ayumi.loci(task.robot, {"walk": log}),
                      ayumi.support_plot(task.robot, {"walk": log})):
             self.assertTrue(plot.startswith(b"\x89PNG"))
