@@ -170,5 +170,19 @@ TEST(Compare, TheGhostMovesAsMeasured) {
               walk_log().samples[2000].state.theta[knee] + 0.1, 1e-12);
 }
 
+// A run that fell is compared until its fall, and the recording is not called another robot's.
+TEST(Compare, EndsWhereTheRunFell) {
+  SimulationLog fallen = walk_log();
+  fallen.result.outcome = Outcome::fell;
+  fallen.result.fell_at = 3;
+  for (size_t k = 3200; k < fallen.samples.size(); ++k)
+    fallen.samples[k].state.theta.setConstant(1);
+  const Comparison found = compare(hoap1(), fallen, angles_from(0), {}, {.shift = 0.0}, "m.csv");
+  EXPECT_NEAR(found.end, 3, 1e-9);
+  EXPECT_LT(found.largest_joint(), 1e-9);
+  ASSERT_EQ(found.notes.size(), 1u);
+  EXPECT_NE(found.notes[0].find("the simulated robot fell at 3.000 s"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ayumi::test

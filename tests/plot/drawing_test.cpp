@@ -18,11 +18,11 @@ TEST(Ticks, AreRoundAndInside) {
        {Interval{-0.013, 0.021}, Interval{0.2371, 0.2379}, Interval{0, 4.2}, Interval{-3, 127}}) {
     for (const int count : {3, 5, 9}) {
       const std::vector<double> ticks = nice_ticks(interval, count);
-      ASSERT_GE(ticks.size(), 1u);
-      EXPECT_LE(ticks.size(), size_t(count));
+      // One number does not show a scale, so that up to four may stand in place of one.
+      ASSERT_GE(ticks.size(), 2u);
+      EXPECT_LE(ticks.size(), size_t(std::max(count, 4)));
       EXPECT_GE(ticks.front(), interval.low - 1e-12);
       EXPECT_LE(ticks.back(), interval.high + 1e-12);
-      if (ticks.size() < 2) continue;
       const double step = ticks[1] - ticks[0];
       const double lead = step / std::pow(10.0, std::floor(std::log10(step) + 1e-6));
       EXPECT_TRUE(std::abs(lead - 1) < 1e-6 || std::abs(lead - 2) < 1e-6 ||

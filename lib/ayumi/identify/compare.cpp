@@ -235,6 +235,12 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
   if (sensor_rows > 0 && !measured) lasts = sensors.dt * static_cast<double>(sensor_rows - 1);
   result.begin = std::max({0.0, result.shift, options.begin});
   result.end = std::min({simulated.duration(), lasts + result.shift, options.end});
+  const double fell = log.result.fell_at;
+  if (fell >= 0 && fell < result.end) {
+    result.notes.push_back("the simulated robot fell at " + text::fixed(fell, 3) +
+                           " s: what comes later is not compared");
+    result.end = fell;
+  }
   if (result.end - result.begin < 10 * interval)
     fail(ErrorCode::bad_file,
          file + ": the recording lasts from " + text::fixed(result.shift, 3) + " to " +

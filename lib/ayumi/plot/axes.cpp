@@ -109,15 +109,22 @@ std::vector<double> nice_ticks(const Interval& interval, int count) {
   const double rough = interval.span() / std::max(1, count);
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   std::vector<double> ticks;
-  for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
-    const double step = factor * power;
-    if (step < rough * (1 - 1e-9)) continue;
+  const auto take = [&](double step) {
+    ticks.clear();
     const double first = std::ceil(interval.low / step - 1e-9);
     const double last = std::floor(interval.high / step + 1e-9);
-    if (last - first + 1 > std::max(2, count)) continue;
     for (double k = first; k <= last; ++k) ticks.push_back(k * step + 0.0);
-    break;
+  };
+  const std::vector<double> steps = {10 * power, 5 * power,   2 * power,
+                                     power,      0.5 * power, 0.2 * power};
+  size_t chosen = 0;
+  for (size_t i = 0; i < steps.size() && steps[i] >= rough * (1 - 1e-9); ++i) {
+    take(steps[i]);
+    if (ticks.size() > static_cast<size_t>(std::max(2, count))) break;
+    chosen = i;
   }
+  // A single number does not show a scale.
+  for (take(steps[chosen]); ticks.size() < 2 && chosen + 1 < steps.size();) take(steps[++chosen]);
   return ticks;
 }
 

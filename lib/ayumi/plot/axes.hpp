@@ -14,7 +14,7 @@ struct Interval {
   double span() const { return high - low; }
 };
 
-/// Multiples of 1, 2 or 5 times a power of ten within the interval, at most `count` (at least 2).
+/// Multiples of 1, 2 or 5 times a power of ten within the interval, about `count`, but at least 2.
 std::vector<double> nice_ticks(const Interval& interval, int count);
 
 /// The digits after the point that ticks of this distance need.

@@ -14,9 +14,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector4f;
 
-constexpr double kComparedWidth = 1000, kCurveHeight = 92, kErrorHeight = 34;  // [pixel]
-constexpr double kComparedLeft = 96, kComparedRight = 24, kComparedTop = 60;   // [pixel]
-constexpr double kCurveGap = 30;                                               // [pixel]
+constexpr double kComparedWidth = 1000, kCurveHeight = 104, kErrorHeight = 62;  // [pixel]
+constexpr double kComparedLeft = 96, kComparedRight = 24, kComparedTop = 60;    // [pixel]
+// Between a curve and its difference, so that the names at their sides do not touch; between
+// curves.
+constexpr double kErrorGap = 20, kCurveGap = 26;  // [pixel]
 
 const Vector4f kMeasured = {0.10f, 0.10f, 0.12f, 1}, kSimulated = {0.86f, 0.45f, 0.10f, 1},
                kDifference = {0.62f, 0.12f, 0.24f, 1};
@@ -74,7 +76,7 @@ void draw_curve(Drawing& drawing, const Comparison& comparison, const ShownCurve
   draw_axes(drawing, axes, shown.name, false);
   draw_line(drawing, axes, simulated, {kSimulated, 2.2});
   draw_line(drawing, axes, measured, {kMeasured, 1});
-  axes.top += kCurveHeight + 4;
+  axes.top += kCurveHeight + kErrorGap;
   axes.height = kErrorHeight;
   axes.y = range_of(difference, difference);
   draw_axes(drawing, axes, "difference", last);
@@ -88,7 +90,7 @@ Drawing draw_comparison(const Comparison& comparison, const std::string& title) 
   if (shown.empty()) fail(ErrorCode::usage, "nothing that moves was compared");
   Drawing drawing;
   drawing.width = kComparedWidth;
-  const double step = kCurveHeight + kErrorHeight + kCurveGap;
+  const double step = kCurveHeight + kErrorGap + kErrorHeight + kCurveGap;
   drawing.height = kComparedTop + step * static_cast<double>(shown.size()) + 20;
   drawing.title = title;
   drawing.description = "Measured (black) over simulated (orange), and their difference (red)";

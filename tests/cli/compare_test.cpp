@@ -1,0 +1,73 @@
+// `ayumi compare`: a recording made from the log of a run, 0.2 degrees away at one knee.
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Columns t and theta of an exported log as a recording.
+std::string recording_of(const std::string& log, double late, double knee) {
+  std::istringstream lines(log);
+  std::string line, text;
+  std::vector<size_t> columns;
+  size_t moved = 0;
+  for (bool head = true; std::getline(lines, line); head = false) {
+    std::istringstream cells(line);
+    std::string cell, row;
+    for (size_t i = 0; std::getline(cells, cell, ','); ++i) {
+      if (head && i > 0 && cell.starts_with("theta.")) {
+        if (cell.find("l_knee") != std::string::npos) moved = i;
+        columns.push_back(i);
+        row += "," + cell.substr(6);
+      } else if (head && i == 0) {
+        row = cell;
+      } else if (i == 0) {
+        row = std::to_string(std::stod(cell) + late);
+      } else if (!head && std::find(columns.begin(), columns.end(), i) != columns.end()) {
+        row += "," + std::to_string(std::stod(cell) + (i == moved ? knee : 0.0));
+      }
+    }
+    text += row + "\n";
+  }
+  return text;
+}
+
+TEST(CompareCommand, NumbersPictureAndReport) {
+  const Folder folder;
+  const auto ayumi = [&](const std::vector<std::string>& words) {
+    return run_program(words, folder.path());
+  };
+  write(folder / "p.json", R"({
+    "format": "ayumi.pattern/1", "name": "squat", "robot": "hoap1",
+    "phases": [{ "until": 2, "support": "both" }],
+    "keyframes": [{ "t": 0, "cog": { "height": 0.245 } }, { "t": 1, "cog": { "height": 0.225 } },
+                  { "t": 2, "cog": { "height": 0.245 } }]
+  })");
+  ASSERT_EQ(ayumi({"run", "p.json", "-o", "out", "-q", "--no-pictures"}).exit_code, 0);
+  ASSERT_EQ(ayumi({"export", "out", "--format", "csv-log", "-o", "log.csv", "-q"}).exit_code, 0);
+  const double knee = 0.2 * M_PI / 180;
+  write(folder / "m.csv", recording_of(contents(folder / "log.csv"), 0, knee));
+  const Output out = ayumi({"compare", "out", "m.csv", "--shift", "0", "--json", "-q", "--plot",
+                            "c.svg", "--report", "c.html"});
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const Json json = Json::parse(out.out);
+  EXPECT_EQ(json.at("shift_s"), 0);
+  EXPECT_NEAR(json.at("joint_max_rad"), knee, 1e-5);
+  for (const Json& joint : json.at("joints"))
+    EXPECT_NEAR(joint.at("mean"), joint.at("name") == "l_knee" ? knee : 0.0, 1e-5) << joint;
+  const std::string picture = contents(folder / "c.svg");
+  EXPECT_NE(picture.find("l_knee [deg]"), std::string::npos);
+  EXPECT_NE(contents(folder / "c.html").find("measured"), std::string::npos);
+  EXPECT_EQ(ayumi({"compare", "out", "m.csv", "--plot", "c.svg"}).exit_code, 3);
+  const Output none = ayumi({"compare", "out"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("name a recording"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ayumi::test
