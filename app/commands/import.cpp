@@ -26,6 +26,8 @@ constexpr size_t kMostBytes = 64'000'000;
 
 struct ImportCommand {
   std::string file, robot, out;
+  bool ground = false;        ///< --ground
+  ContactThresholds contact;  ///< as given
   ImportOptions import;
 };
 
@@ -76,8 +78,11 @@ void import_motion(const Context& context, const ImportCommand& options) {
          name + ": this is a pattern already; import reads motions in the formats " +
              text::join(read_format_names(), ", "));
   ImportedMotion imported = read_motion(bytes, name, model, options.import);
+  imported.motion.contact = options.contact;
+  if (options.ground) imported.motion = put_on_ground(model, std::move(imported.motion));
   GroundedMotion motion =
       grounded(model, imported.motion, table_beside(options.out).filename().string());
+  imported.filled.insert(imported.filled.end(), motion.notes.begin(), motion.notes.end());
   motion.pattern.name = "imported from " + fs::path(name).filename().string();
   motion.pattern.robot = robot_as_written(options.robot);
   motion.pattern.file = "imported";  // relative names hold from the working folder
@@ -137,6 +142,24 @@ void add_import(CLI::App& app, Context& context) {
                    "Names of the joint columns, in the order of the file.")
       ->delimiter(',')
       ->type_name("A,B,...");
+  command->add_flag(
+      "--ground", options.ground,
+      "Move the robot up and down so that the soles that carry it are on the ground.");
+  command
+      ->add_option("--contact-height", options.contact.height,
+                   "Height over the lowest sole up to which a sole may carry [m].")
+      ->check(number_within(0.0, 0.2))
+      ->capture_default_str();
+  command
+      ->add_option("--contact-speed", options.contact.speed,
+                   "Speed up to which a sole may carry [m/s].")
+      ->check(number_within(0.0, 5.0))
+      ->capture_default_str();
+  command
+      ->add_option("--contact-load", options.contact.load,
+                   "Vertical force from which on the robot is carried, in weights.")
+      ->check(number_within(0.0, 2.0))
+      ->capture_default_str();
   command->add_flag(
       "--commands", options.import.commands,
       "The angles are servo targets (as written by export): subtract the velocity lead. "

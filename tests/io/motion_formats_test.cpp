@@ -10,6 +10,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -42,6 +43,7 @@ struct RoundTrip {
   std::string format;
   double angle, place;  // largest difference [rad, m]
   bool names, root;
+  double rate = 50;
 };
 
 class MotionFormats : public testing::TestWithParam<RoundTrip> {};
@@ -49,7 +51,7 @@ class MotionFormats : public testing::TestWithParam<RoundTrip> {};
 TEST_P(MotionFormats, ReadsWhatItWrites) {
   const RoundTrip& expected = GetParam();
   const RobotModel& model = hoap1();
-  const MotionFile written = moving(model);
+  const MotionFile written = moving(model, 40, expected.rate);
   const MotionFormat* format = find_motion_format(expected.format);
   ASSERT_TRUE(format && format->write);
   TemporaryFolder folder;
@@ -63,11 +65,11 @@ TEST_P(MotionFormats, ReadsWhatItWrites) {
   }
   ImportOptions options;
   options.by_order = !expected.names;
-  if (!(format->holds & kRate)) options.rate = 50;
+  if (!(format->holds & kRate)) options.rate = expected.rate;
   const ImportedMotion read = read_motion_rows(read_file(main), main, model, options);
   EXPECT_EQ(read.format, expected.format);
   EXPECT_FALSE(read.reason.empty());
-  EXPECT_NEAR(read.motion.dt, 0.02, 1e-12);
+  EXPECT_NEAR(read.motion.dt, 1 / expected.rate, 1e-12);
   ASSERT_EQ(read.motion.theta.rows(), written.rows());
   EXPECT_LE((read.motion.theta - written.values).cwiseAbs().maxCoeff(), expected.angle);
   ASSERT_EQ(read.motion.base.size(), expected.root ? written.base.size() : 0);
@@ -78,23 +80,25 @@ TEST_P(MotionFormats, ReadsWhatItWrites) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, MotionFormats,
-                         testing::Values(RoundTrip{"webots", 0, 0, true, false},
-                                         RoundTrip{"choreonoid", 0, 0, true, true},
-                                         RoundTrip{"zvs", 0, 1e-15, false, true},
-                                         RoundTrip{"transposed-csv", 0, 0, true, false},
-                                         RoundTrip{"motion-csv", 0, 0, false, true},
-                                         RoundTrip{"hrpsys", 0, 1e-15, false, true}),
-                         [](const auto& info) {
-                           std::string name = info.param.format;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
-
-TEST(MotionFormats, EveryWrittenFormatIsTried) {
-  for (const MotionFormat& format : motion_formats())
-    EXPECT_TRUE(format.read || format.write) << format.name;
-}
+INSTANTIATE_TEST_SUITE_P(
+    Formats, MotionFormats,
+    testing::Values(
+        RoundTrip{"webots", 0, 0, true, false}, RoundTrip{"choreonoid", 0, 0, true, true},
+        RoundTrip{"tracking-npz", 0, 0, true, true}, RoundTrip{"gmr-npz", 0, 0, true, true},
+        // Half a count of 4096 a turn; servos of 8 ms.
+        RoundTrip{"op3-action", 0.5 * EIGEN_PI / 2048 + 1e-12, 0, true, false, 62.5},
+        RoundTrip{"ros-trajectory", 0, 0, true, false},
+        RoundTrip{"play-motion2", 0, 0, true, false},
+        // Degrees with twelve digits.
+        RoundTrip{"qianim", 1e-12, 0, true, false}, RoundTrip{"poppy-move", 1e-12, 0, true, false},
+        RoundTrip{"open-duck", 0, 0, true, true}, RoundTrip{"deepmimic", 0, 0, true, true},
+        RoundTrip{"zvs", 0, 1e-15, false, true}, RoundTrip{"transposed-csv", 0, 0, true, false},
+        RoundTrip{"motion-csv", 0, 0, false, true}, RoundTrip{"hrpsys", 0, 1e-15, false, true}),
+    [](const auto& info) {
+      std::string name = info.param.format;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
 
 std::string refusal_of(const std::string& bytes, const std::string& file = "m.dat",
                        ImportOptions options = {}) {
@@ -173,6 +177,44 @@ TEST(MotionFormats, JointsAreMappedByNameAndByOrderOnlyOnRequest) {
       << refusal_of(other);
 }
 
+TEST(MotionFormats, TrajectoriesFollowEachOtherOrRunTogether) {
+  const auto one = [](const std::string& joint, double to) {
+    return "joint_names: [" + joint +
+           "]\npoints:\n  - positions: [0]\n    time_from_start: {sec: 0, " +
+           "nanosec: 0}\n  - positions: [" + std::to_string(to) +
+           "]\n    time_from_start: {sec: 0, nanosec: 500000000}\n";
+  };
+  const std::string text =
+      one("l_knee", 1) + "---\n" + one("r_knee", 0.5) + "---\n" + one("l_knee", 0.2);
+  const ImportedMotion read = read_motion_rows(text, "t.yaml", hoap1());
+  ASSERT_EQ(read.motion.theta.rows(), 101);
+  EXPECT_EQ(read.motion.theta(50, hoap1().find_dof("l_knee")), 1);
+  EXPECT_NEAR(read.motion.theta(100, hoap1().find_dof("l_knee")), 0.2, 1e-12);
+  EXPECT_EQ(read.motion.theta(100, hoap1().find_dof("r_knee")), 0.5);
+}
+
+TEST(MotionFormats, DamagedArchivesAndActionFilesAreRefused) {
+  const MotionFile motion = moving(hoap1());
+  const std::string npz = find_motion_format("gmr-npz")->write(hoap1(), motion)[0].bytes;
+  EXPECT_NE(refusal_of(npz.substr(0, npz.size() / 2)).find("truncated"), std::string::npos)
+      << refusal_of(npz.substr(0, npz.size() / 2));
+  MotionFile bad = motion;
+  bad.values(3, 2) = std::nan("");
+  EXPECT_NE(refusal_of(find_motion_format("gmr-npz")->write(hoap1(), bad)[0].bytes)
+                .find("not a finite number"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(std::string(256 * 512, '\0')).find("no page has steps"), std::string::npos);
+}
+
+TEST(MotionFormats, WrittenOnlyFormatsHaveARowForEachRow) {
+  const MotionFile motion = moving(hoap1());
+  const std::string bvh = find_motion_format("bvh")->write(hoap1(), motion)[0].bytes;
+  EXPECT_NE(bvh.find("Frames: 40\nFrame Time: 0.02\n"), std::string::npos);
+  EXPECT_EQ(std::count(bvh.begin(), bvh.end(), '{'), std::count(bvh.begin(), bvh.end(), '}'));
+  const std::string keys = find_motion_format("mujoco-keys")->write(hoap1(), motion)[0].bytes;
+  EXPECT_NE(keys.find("<key name=\"k39\" time=\"0.78\" qpos=\"0.39 "), std::string::npos);
+}
+
 // Keys are met, and nothing swings over them.
 TEST(MotionFormats, KeysAreMet) {
   const std::string text = "time,0,0.5,1.5\nl_knee,0,1,1\nr_knee,0,0.5,1\n";
@@ -183,6 +225,53 @@ TEST(MotionFormats, KeysAreMet) {
   EXPECT_EQ(knee[0], 0);
   EXPECT_EQ(knee[50], 1);
   EXPECT_LE(knee.maxCoeff(), 1 + 1e-12);
+}
+
+// The robot stands in its home posture, with the soles `height` [m] over the ground in each row.
+RawMotion standing(const std::vector<double>& height, double dt) {
+  const RobotModel& model = hoap1();
+  RawMotion motion;
+  motion.dt = dt;
+  motion.theta = model.posture().transpose().replicate(static_cast<Eigen::Index>(height.size()), 1);
+  RobotData data(model);
+  const RobotState state = model.rest_state();
+  update_positions(model, state, data);
+  for (const double z : height) {
+    BasePose base;
+    base.position.z() = z - sole_pose(model, data, Side::left).translation().z();
+    motion.base.push_back(base);
+  }
+  return motion;
+}
+
+TEST(MotionFormats, SolesThatHoverCarryAndSolesThatFallDoNot) {
+  std::vector<double> hovers, jumps;
+  for (int k = 0; k < 100; ++k) {
+    hovers.push_back(0.005 + 0.004 * std::sin(0.1 * k));
+    const double t = 0.02 * (k - 40);  // in the air from row 40 to row 60
+    jumps.push_back(k < 40 || k > 60 ? 0 : 0.5 * 9.80665 * t * (0.4 - t));
+  }
+  const RawMotion hovering = standing(hovers, 0.02);
+  for (const Support support : detect_supports(hoap1(), hovering))
+    EXPECT_EQ(support, Support::both);
+  const std::vector<Support> jump = detect_supports(hoap1(), standing(jumps, 0.02));
+  EXPECT_EQ(jump[20], Support::both);
+  EXPECT_EQ(jump[50], Support::none);
+  EXPECT_EQ(jump[90], Support::both);
+  const GroundedMotion found = grounded(hoap1(), hovering, "t.csv");
+  ASSERT_EQ(found.notes.size(), 1u);
+  EXPECT_NE(found.notes[0].find("soles float by up to 9 mm"), std::string::npos) << found.notes[0];
+  const RawMotion low = put_on_ground(hoap1(), hovering);
+  EXPECT_TRUE(grounded(hoap1(), low, "t.csv").notes.empty());
+}
+
+TEST(MotionFormats, AChangeInTheLastRowMakesNoPhase) {
+  RawMotion motion = standing(std::vector<double>(20, 0), 0.02);
+  motion.support.assign(20, Support::both);
+  motion.support.back() = Support::left;
+  const Pattern pattern = grounded(hoap1(), motion, "t.csv").pattern;
+  ASSERT_EQ(pattern.phases.size(), 1u);
+  EXPECT_NEAR(pattern.phases[0].until, 0.38, 1e-12);
 }
 
 // Real files of other projects. Their robots are not here, so the joints are named after this one.

@@ -6,6 +6,7 @@
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
@@ -123,15 +124,71 @@ void add_handovers(const Soles& soles, double dt, std::vector<int>& labels) {
   }
 }
 
+// Vertical force that the motion of the COG needs in each row, in weights.
+std::vector<double> loads_of(const RobotModel& model, const RawMotion& motion) {
+  const int n = static_cast<int>(motion.theta.rows());
+  // Half of the time over which the acceleration is a mean [s]. Chosen: long against the rows of a
+  // recording (33 ms), short against a flight (0.2 s and more).
+  constexpr double kMean = 0.07;
+  const int w = std::max(1, static_cast<int>(std::lround(kMean / motion.dt)));
+  RobotData data(model);
+  std::vector<double> height;
+  for (int k = 0; k < n; ++k) {
+    RobotState state = model.rest_state();
+    state.theta = motion.theta.row(k).transpose();
+    state.base = motion.base[static_cast<size_t>(k)];
+    update_positions(model, state, data);
+    height.push_back(data.cog.z());
+  }
+  std::vector<double> loads(static_cast<size_t>(n), 1);
+  for (int k = 0; k < n; ++k) {
+    const int c = std::clamp(k, w, std::max(w, n - 1 - w));
+    if (c + w >= n) continue;
+    const double time = w * motion.dt;
+    loads[static_cast<size_t>(k)] =
+        1 + (height[static_cast<size_t>(c + w)] - 2 * height[static_cast<size_t>(c)] +
+             height[static_cast<size_t>(c - w)]) /
+                (time * time * kGravity);
+  }
+  return loads;
+}
+
+// Rows in which nothing rests, but the robot does not fall either: feet near the lowest height of
+// these moments that are slow enough.
+void carry_loaded_rows(const RobotModel& model, const RawMotion& motion, const Soles& soles,
+                       std::vector<Support>& supports) {
+  if (std::find(supports.begin(), supports.end(), Support::none) == supports.end()) return;
+  const int n = static_cast<int>(supports.size());
+  const std::vector<double> loads = loads_of(model, motion);
+  std::array<std::vector<double>, 2> low;
+  for (int s : {0, 1})
+    for (int k = 0; k < n; ++k) low[s].push_back(lowest_point(model, soles, s, k));
+  // Half of the time in which the lowest sole is looked for [s]. Chosen: a step.
+  constexpr double kWindow = 0.5;
+  const int window = std::max(1, static_cast<int>(std::lround(kWindow / motion.dt)));
+  const int look = std::max(1, static_cast<int>(std::lround(kLook / motion.dt)));
+  for (int k = 0; k < n; ++k) {
+    if (supports[k] != Support::none || loads[static_cast<size_t>(k)] < motion.contact.load)
+      continue;
+    double ground = 1e300;
+    for (int i = std::max(0, k - window); i <= std::min(n - 1, k + window); ++i)
+      ground = std::min({ground, low[0][i], low[1][i]});
+    const int a = std::max(0, k - look), b = std::min(n - 1, k + look);
+    std::array<bool, 2> down;
+    for (int s : {0, 1})
+      down[s] = low[s][k] - ground < motion.contact.height &&
+                speed_between(soles[s][a], soles[s][b], (b - a) * motion.dt) < motion.contact.speed;
+    supports[k] = down[0] && down[1] ? Support::both
+                  : down[0]          ? Support::left
+                  : down[1]          ? Support::right
+                                     : Support::none;
+  }
+}
+
 std::vector<Support> supports_with_base(const RobotModel& model, const Soles& soles, double dt) {
   const int n = static_cast<int>(soles[0].size());
   const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
-  const auto lowest = [&](int s, int k) {
-    double low = 1e300;
-    for (const Eigen::Vector2d& v : model.sole(static_cast<Side>(s)).polygon)
-      low = std::min(low, (soles[s][k] * Vector3d(v.x(), v.y(), 0)).z());
-    return low;
-  };
+  const auto lowest = [&](int s, int k) { return lowest_point(model, soles, s, k); };
   double ground = 1e300;
   for (int k = 0; k < n; ++k) ground = std::min({ground, lowest(0, k), lowest(1, k)});
   std::vector<Support> result(n);
@@ -212,6 +269,13 @@ RobotState state_of(const RobotModel& model, const RawMotion& motion, Eigen::Ind
 
 }  // namespace
 
+double lowest_point(const RobotModel& model, const Soles& soles, int foot, int k) {
+  double low = 1e300;
+  for (const Eigen::Vector2d& v : model.sole(static_cast<Side>(foot)).polygon)
+    low = std::min(low, (soles[foot][k] * Vector3d(v.x(), v.y(), 0)).z());
+  return low;
+}
+
 Soles soles_of(const RobotModel& model, const RawMotion& motion) {
   RobotData data(model);
   Soles soles;
@@ -236,8 +300,9 @@ std::vector<Stretch> stretches(const std::vector<Support>& supports) {
 std::vector<Support> supports_from(const RobotModel& model, const RawMotion& motion,
                                    const Soles& soles) {
   if (!motion.base.empty()) {
-    std::vector<Support> result =
-        without_blinks(supports_with_base(model, soles, motion.dt), motion.dt);
+    std::vector<Support> result = supports_with_base(model, soles, motion.dt);
+    carry_loaded_rows(model, motion, soles, result);
+    result = without_blinks(std::move(result), motion.dt);
     end_swings(model, motion, soles, result);
     return result;
   }

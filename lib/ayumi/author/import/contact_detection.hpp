@@ -14,6 +14,9 @@ using Soles = std::array<std::vector<Eigen::Isometry3d>, 2>;  ///< frames by Sid
 /// Sole frames in the world where the motion has a base, else in the base.
 Soles soles_of(const RobotModel& model, const RawMotion& motion);
 
+/// Height of the lowest corner of a sole in row k; `foot` by Side.
+double lowest_point(const RobotModel& model, const Soles& soles, int foot, int k);
+
 /// Support by row. Standing feet do not move relative to each other; at an immediate change of the
 /// supporting foot both support as long as they do not move apart. A contact lasts from the rest
 /// after a swing to the beginning of the next swing.

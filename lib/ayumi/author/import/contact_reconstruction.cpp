@@ -8,6 +8,7 @@
 
 #include "ayumi/author/import/contact_detection.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/track.hpp"
@@ -38,7 +39,7 @@ class Grounding {
         motion_(motion),
         soles_(soles_of(model, motion)),
         supports_(motion.support.empty() ? supports_from(model, motion, soles_) : motion.support),
-        runs_(stretches(supports_)),
+        runs_(with_last_row(stretches(supports_))),
         place_(runs_.size()) {}
 
   GroundedMotion whole(const std::string& table) {
@@ -48,11 +49,65 @@ class Grounding {
       read_feet();
     GroundedMotion result;
     fill_phases(result);
+    if (!motion_.base.empty()) result.notes = notes();
     fill_table(result.pattern, table);
     return result;
   }
 
  private:
+  // The last row has no time of its own: a change in it belongs to what is before.
+  static std::vector<Stretch> with_last_row(std::vector<Stretch> runs) {
+    if (runs.size() < 2 || runs.back().first < runs.back().last) return runs;
+    runs[runs.size() - 2].last = runs.back().last;
+    runs.pop_back();
+    return runs;
+  }
+
+  std::string millimetres(double length) const { return text::brief(1000 * length, 3) + " mm"; }
+
+  std::vector<std::string> notes() const {
+    // Below these lengths nothing is said [m]. Chosen: what the compliance of a sole hides.
+    constexpr double kSaid = 0.001;
+    double floats = 0, sinks = 0, slides = 0, flight = 0;
+    std::vector<std::string> flights;
+    for (size_t r = 0; r < runs_.size(); ++r) {
+      if (runs_[r].support == Support::none) {
+        flights.push_back(text::brief(time(runs_[r].first), 5) + " to " +
+                          text::brief(time(runs_[r].last), 5) + " s");
+        flight += time(runs_[r].last - runs_[r].first + 1);
+      }
+      for (int foot : {0, 1}) {
+        if (!carries(r, foot)) continue;
+        for (int k = runs_[r].first; k <= runs_[r].last; ++k) {
+          const double low = lowest_point(model_, soles_, foot, k);
+          floats = std::max(floats, low);
+          sinks = std::max(sinks, -low);
+          slides = std::max(
+              slides, (soles_[foot][k].translation() - soles_[foot][runs_[r].first].translation())
+                          .head<2>()
+                          .norm());
+        }
+      }
+    }
+    std::vector<std::string> result;
+    if (floats > kSaid || sinks > kSaid)
+      result.push_back("while they carry, soles float by up to " + millimetres(floats) +
+                       " and sink by up to " + millimetres(sinks) +
+                       " (--ground moves the robot up and down so that they do not)");
+    if (slides > kSaid)
+      result.push_back("while they carry, soles slide by up to " + millimetres(slides));
+    constexpr size_t kMost = 6;  // Chosen: a line that a person still reads
+    const size_t more = flights.size() > kMost ? flights.size() - kMost : 0;
+    flights.resize(flights.size() - more);
+    if (flight > 0)
+      result.push_back(
+          "nothing rests on the ground for " + text::brief(flight, 3) + " s (" +
+          text::join(flights, ", ") +
+          (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
+          "): this is flight (--contact-height and --contact-speed change what rests)");
+    return result;
+  }
+
   int middle(size_t run) const { return (runs_[run].first + runs_[run].last) / 2; }
   bool carries(size_t run, int foot) const {
     return supports(runs_[run].support, static_cast<Side>(foot));
@@ -200,6 +255,42 @@ GroundedMotion grounded(const RobotModel& model, const RawMotion& motion,
                         const std::string& table) {
   require_motion(model, motion);
   return Grounding(model, motion).whole(table);
+}
+
+RawMotion put_on_ground(const RobotModel& model, RawMotion motion) {
+  require_motion(model, motion);
+  if (motion.base.empty()) return motion;
+  const Soles soles = soles_of(model, motion);
+  if (motion.support.empty()) motion.support = supports_from(model, motion, soles);
+  const int n = static_cast<int>(motion.support.size());
+  std::vector<int> known;
+  std::vector<double> height(static_cast<size_t>(n));
+  for (int k = 0; k < n; ++k) {
+    double low = 1e300;
+    for (int foot : {0, 1})
+      if (supports(motion.support[static_cast<size_t>(k)], static_cast<Side>(foot)))
+        low = std::min(low, lowest_point(model, soles, foot, k));
+    if (low > 1e299) continue;
+    known.push_back(k);
+    height[static_cast<size_t>(k)] = low;
+  }
+  if (known.empty()) return motion;
+  for (int k = 0; k < n; ++k) {
+    const auto after = std::lower_bound(known.begin(), known.end(), k);
+    double shift = 0;
+    if (after == known.end()) {
+      shift = height[static_cast<size_t>(known.back())];
+    } else if (*after == k || after == known.begin()) {
+      shift = height[static_cast<size_t>(*after)];
+    } else {
+      const int a = *(after - 1), b = *after;
+      const double u = static_cast<double>(k - a) / (b - a);
+      shift = (1 - u) * height[static_cast<size_t>(a)] + u * height[static_cast<size_t>(b)];
+    }
+    motion.base[static_cast<size_t>(k)].position.z() -= shift;
+    if (!motion.cog.empty()) motion.cog[static_cast<size_t>(k)].z() -= shift;
+  }
+  return motion;
 }
 
 }  // namespace ayumi

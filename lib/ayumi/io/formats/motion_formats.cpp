@@ -5,11 +5,17 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/formats/animation.hpp"
 #include "ayumi/io/formats/body_motion.hpp"
 #include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/formats/hoap_motion.hpp"
 #include "ayumi/io/formats/hrpsys.hpp"
+#include "ayumi/io/formats/json_motion.hpp"
 #include "ayumi/io/formats/motion_csv.hpp"
+#include "ayumi/io/formats/npz_motion.hpp"
+#include "ayumi/io/formats/op3_action.hpp"
+#include "ayumi/io/formats/qianim.hpp"
+#include "ayumi/io/formats/ros_trajectory.hpp"
 #include "ayumi/io/formats/table_motion.hpp"
 #include "ayumi/io/formats/transposed_csv.hpp"
 #include "ayumi/io/formats/webots_motion.hpp"
@@ -50,6 +56,7 @@ const std::vector<Foreign>& foreign_files() {
       {"\x04\x22\x4d\x18", "a file compressed with LZ4, such as one of joblib",
        arrays + "; Ayumi does not read compressed pickles"},
       {"\x1f\x8b", "a file compressed with gzip", "unpack it first"},
+      {"\x93NUMPY", "a single NumPy array (.npy)", arrays},
       {"\x89PNG", "a picture", "name the motion file"},
       {"\x89HDF", "an HDF5 file", "write its joint angles as CSV"}};
   return files;
@@ -78,6 +85,11 @@ const Foreign* text_kind(const MotionInput& source) {
   static const Foreign mtnx = {"", "a motion of ROBOTIS R+ Motion (.mtnx)",
                                "write the motion as CSV, or as an action file (.bin)"};
   if (lower_extension(source.file) == ".mtnx") return &mtnx;
+  static const Foreign archive = {
+      "", "an archive without the arrays of a motion",
+      "save fps, root_pos, root_rot and dof_pos, or fps, joint_pos, body_pos_w and body_quat_w, "
+      "with numpy.savez"};
+  if (source.bytes.starts_with("PK")) return &archive;
   static const Foreign urdf = {"", "a robot description (URDF)",
                                "give it with --robot, and name a motion file"};
   static const Foreign mjcf = {"", "a MuJoCo model", "name a motion file"};
@@ -94,11 +106,29 @@ const Foreign* text_kind(const MotionInput& source) {
 
 const std::vector<MotionFormat>& motion_formats() {
   static const std::vector<MotionFormat> formats = {
+      {"tracking-npz", "tracking .npz", kJointNames | kRate | kRoot, false, true,
+       recognize_tracking_npz, read_tracking_npz, write_tracking_npz},
+      {"gmr-npz", "GMR .npz", kJointNames | kRate | kRoot, false, true, recognize_gmr_npz,
+       read_gmr_npz, write_gmr_npz},
+      {"op3-action", "ROBOTIS OP3 action file", kRate, true, true, recognize_op3_action,
+       read_op3_action, write_op3_action},
       {"webots", "Webots .motion", kJointNames | kRate, false, false, recognize_webots_motion,
        read_webots_motion, write_webots_motion},
       {"choreonoid", "Choreonoid BodyMotion",
        kJointNames | kRate | kRoot | kZmp | kCog | kVerticalForce, false, false,
        recognize_body_motion, read_body_motion, write_body_motion},
+      {"ros-trajectory", "ROS JointTrajectory", kJointNames | kRate, true, false,
+       recognize_ros_trajectory, read_ros_trajectory, write_ros_trajectory},
+      {"play-motion2", "play_motion2 parameters", kJointNames | kRate, true, false,
+       recognize_play_motion, read_play_motion, write_play_motion},
+      {"qianim", "NAO animation curves", kJointNames | kRate, true, false, recognize_qianim,
+       read_qianim, write_qianim},
+      {"poppy-move", "Poppy .move", kJointNames | kRate, true, false, recognize_poppy_move,
+       read_poppy_move, write_poppy_move},
+      {"open-duck", "Open Duck reference motion", kJointNames | kRate | kRoot, false, false,
+       recognize_open_duck, read_open_duck, write_open_duck},
+      {"deepmimic", "DeepMimic frames", kJointNames | kRate | kRoot, false, false,
+       recognize_deep_mimic, read_deep_mimic, write_deep_mimic},
       {"zvs", "mi-lib .zvs", kRate | kRoot, false, false, recognize_zvs, read_zvs, write_zvs},
       {"transposed-csv", "CSV with a row for each joint", kJointNames | kRate, false, false,
        recognize_transposed_csv, read_transposed_csv, write_transposed_csv},
@@ -111,7 +141,10 @@ const std::vector<MotionFormat>& motion_formats() {
       {"json", "joint table as JSON", ~0u, true, false, recognize_json_table, read_json_table,
        nullptr},
       {"csv", "table with a head row", ~0u, true, false, recognize_csv_table, read_csv_table,
-       nullptr}};
+       nullptr},
+      {"bvh", "BVH", kJointNames | kRate | kRoot, false, false, nullptr, nullptr, write_bvh},
+      {"mujoco-keys", "MuJoCo keyframes", kRate | kRoot, false, false, nullptr, nullptr,
+       write_mujoco_keys}};
   return formats;
 }
 

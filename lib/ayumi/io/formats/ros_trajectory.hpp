@@ -1,0 +1,20 @@
+#pragma once
+// trajectory_msgs/JointTrajectory as YAML, one or several, and the motions of play_motion2.
+
+#include "ayumi/io/formats/motion_file.hpp"
+
+namespace ayumi {
+
+std::string recognize_ros_trajectory(const MotionInput& source);
+/// Several trajectories of the same joints follow each other; those of other joints run beside each
+/// other.
+MotionFile read_ros_trajectory(const MotionInput& source);
+/// ROS 2 form: sec and nanosec.
+std::vector<WrittenFile> write_ros_trajectory(const RobotModel& model, const MotionFile& motion);
+
+std::string recognize_play_motion(const MotionInput& source);
+/// The first motion of the file.
+MotionFile read_play_motion(const MotionInput& source);
+std::vector<WrittenFile> write_play_motion(const RobotModel& model, const MotionFile& motion);
+
+}  // namespace ayumi
