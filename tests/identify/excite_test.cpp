@@ -101,6 +101,24 @@ TEST(ExciteRoundTrip, FindsTheServosOfTheSimulatedRobot) {
       EXPECT_TRUE(joints.at(side + name).kp.known) << side + name;
 }
 
+// The play of gears is found where the load goes from one flank to the other with weight: at the
+// knees, which carry the robot and then the leg in the air.
+TEST(ExciteBacklash, IsFoundAtTheKnees) {
+  constexpr double kPlay = 0.01;  // [rad]
+  const RobotModel model = robot_with_servos(kPlay);
+  IdentifyOptions options;
+  options.threads = 2;
+  const Identification found =
+      identify(model, recorded_run(model, excite_pattern(model, 0.5)), options, "m.csv");
+  int knees = 0;
+  for (const IdentifiedJoint& joint : found.joints) {
+    if (!joint.joint.ends_with("knee")) continue;
+    ++knees;
+    EXPECT_NEAR(joint.backlash.value, kPlay, 0.2 * kPlay) << joint.joint;
+  }
+  EXPECT_EQ(knees, 2);
+}
+
 // On both feet, the legs may press against each other: nothing is said of their stiffness.
 TEST(ExciteRoundTrip, SaysThatTwoFeetDoNotShowTheLoad) {
   const RobotModel model = robot_with_servos(0);
