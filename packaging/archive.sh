@@ -1,0 +1,68 @@
+#!/bin/bash
+# Makes ayumi-VERSION-linux-x86_64.tar.xz from an installation: packaging/archive.sh PREFIX OUT_FOLDER
+# The archive has the program, the bundled data, every shared library that a bare Debian 12 may lack,
+# the fonts, and ffmpeg. It runs from any folder without being installed:
+#   tar -xf ayumi-*.tar.xz && ayumi-*/bin/ayumi --help
+# XZ_OPT holds the options of xz in place of -T0 -1; -9 makes the archive smaller and takes longer.
+# packaging/try_archive.sh tries the archive.
+set -euo pipefail
+prefix=$(cd "$1" && pwd)
+out=$(mkdir -p "$2" && cd "$2" && pwd)
+version=$("$prefix/bin/ayumi" --version | sed -E 's/^ayumi ([0-9]+\.[0-9]+).*/\1/')
+name=ayumi-$version-linux-$(uname -m)
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+root=$tree/$name
+mkdir -p "$root"/{bin,lib/ayumi,share}
+
+cp -r "$prefix/share/." "$root/share/"
+programs=("$prefix/bin/ayumi")
+if command -v ffmpeg >/dev/null; then programs+=("$(command -v ffmpeg)"); fi
+cp "${programs[@]}" "$root/lib/ayumi/"
+strip "$root/lib/ayumi/ayumi"
+
+# Every library below the programs but those of libc, which belong to the kernel and the loader.
+libc='/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|nsl|anl|mvec|BrokenLocale)\.so\.[0-9]+)$'
+ldd "${programs[@]}" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
+  { grep -Ev "$libc" || true; } | while read -r library; do
+  cp -L "$library" "$root/lib/"
+  # Debian's licences of what is copied; a package may have none beside its links.
+  package=$(dpkg-query --search "$(readlink -f "$library")" 2>/dev/null | cut -d: -f1 || true)
+  notice=/usr/share/doc/$package/copyright
+  if [[ -n $package && -e $notice ]]; then
+    mkdir -p "$root/share/doc/ayumi/libraries"
+    cp -L "$notice" "$root/share/doc/ayumi/libraries/$package"
+  fi
+done
+
+# The font of pictures and plots, and where fontconfig finds it.
+mkdir -p "$root/share/fonts"
+cp /usr/share/fonts/truetype/dejavu/DejaVuSans{,-Bold}.ttf "$root/share/fonts/"
+cp -L /usr/share/doc/fonts-dejavu-core/copyright "$root/share/doc/ayumi/libraries/fonts-dejavu-core"
+cat > "$root/share/fonts/fonts.conf" <<'CONF'
+<?xml version="1.0"?>
+<!DOCTYPE fontconfig SYSTEM "urn:fontconfig:fonts.dtd">
+<fontconfig>
+  <dir prefix="relative">.</dir>
+  <dir>/usr/share/fonts</dir>
+  <cachedir prefix="xdg">fontconfig</cachedir>
+</fontconfig>
+CONF
+
+cat > "$root/bin/ayumi" <<'RUN'
+#!/bin/sh
+# Starts Ayumi with the libraries, the fonts and the ffmpeg of this folder.
+here=$(dirname "$(readlink -f "$0")")/..
+LD_LIBRARY_PATH=$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+# This ffmpeg first: another one would be started with libraries that are not its own.
+PATH=$here/lib/ayumi:$PATH
+FONTCONFIG_FILE=${FONTCONFIG_FILE:-$here/share/fonts/fonts.conf}
+export LD_LIBRARY_PATH PATH FONTCONFIG_FILE
+exec "$here/lib/ayumi/ayumi" "$@"
+RUN
+chmod 755 "$root/bin/ayumi"
+
+XZ_OPT=${XZ_OPT:--T0 -1} tar --create --xz --sort=name --owner=0 --group=0 --numeric-owner \
+  --mtime="@${SOURCE_DATE_EPOCH:-$(stat -c %Y "$prefix/bin/ayumi")}" --directory "$tree" \
+  --file "$out/$name.tar.xz" "$name"
+echo "$out/$name.tar.xz: $(du -m "$out/$name.tar.xz" | cut -f1) MB, unpacked $(du -sm "$root" | cut -f1) MB"

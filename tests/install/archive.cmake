@@ -1,0 +1,30 @@
+# cmake -DSOURCE= -DSCRATCH= -P archive.cmake
+# The archive can be unpacked anywhere and runs with an empty environment. Of all its shared
+# libraries only those of libc are from the system.
+cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+set(folder ${SCRATCH}/archive)
+file(REMOVE_RECURSE ${folder})
+file(MAKE_DIRECTORY ${folder}/unpacked)
+run(${CMAKE_COMMAND} -E env XZ_OPT=-0 ${SOURCE}/packaging/archive.sh ${SCRATCH}/stage ${folder})
+file(GLOB archive ${folder}/ayumi-*-linux-*.tar.xz)
+run(tar --extract --directory ${folder}/unpacked --file ${archive})
+file(GLOB root ${folder}/unpacked/ayumi-*)
+
+run(env -i PATH=/usr/bin:/bin ${root}/bin/ayumi check ${root}/share/ayumi/patterns/hoap1_walk.json)
+if(NOT output MATCHES "hoap1_walk.json: consistent")
+  message(FATAL_ERROR "the unpacked program does not check a bundled pattern:\n${output}")
+endif()
+file(GLOB programs ${root}/lib/ayumi/*)
+foreach(program ${programs})
+  run(env LD_LIBRARY_PATH=${root}/lib ldd ${program})
+  string(REGEX MATCHALL "=> [^\n(]*" places "${output}")
+  foreach(place ${places})
+    if(NOT place MATCHES "=> ${root}/lib/"
+       AND NOT place MATCHES "/(libc|libm|libmvec|libdl|librt|libpthread|libresolv)\\.so")
+      message(FATAL_ERROR "${program} takes a library from the system:\n${place}")
+    endif()
+  endforeach()
+endforeach()
+file(REMOVE_RECURSE ${folder})
