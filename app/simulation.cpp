@@ -152,6 +152,9 @@ std::string outcome_text(const SimulationLog& log) {
       if (event.kind == "fell") text += " (" + event.text + ")";
   } else {
     text += ", final COG error " + text::fixed(1e3 * r.final_cog_error, 2) + " mm";
+    if (r.outcome == Outcome::unsettled && r.zmp_amplitude > 0)
+      text += ", the ZMP oscillates by " + text::fixed(1e3 * r.zmp_amplitude, 1) + " mm at " +
+              text::fixed(r.zmp_frequency, 1) + " Hz";
   }
   text += ", largest trunk tilt " + text::fixed(r.max_tilt * 180 / std::numbers::pi, 1) +
           " deg, joint speed " + text::fixed(100 * r.max_speed_ratio, 0) + " % and torque " +

@@ -56,7 +56,8 @@ void read_wishes(GainsCommand& options) {
 }
 
 std::string mode_text(const Complex& pole) {
-  std::string line = "  decays with the time constant " + text::brief(-1 / pole.real()) + " s";
+  std::string line = std::string(pole.real() < 0 ? "  decays" : "  grows") +
+                     " with the time constant " + text::brief(std::abs(1 / pole.real())) + " s";
   if (std::abs(pole.imag()) > 1e-6)
     line += ", oscillates at " + text::fixed(std::abs(pole.imag()) / (2 * M_PI), 2) + " Hz";
   return line + "\n";
@@ -65,7 +66,7 @@ std::string mode_text(const Complex& pole) {
 std::string report(const RobotModel& model, const GainStudy& d) {
   const DtadParams& p = d.params;
   const double w = d.omega;
-  std::string out = model.name() + ": COG " + text::fixed(d.loop.height, 3) +
+  std::string out = model.name() + ": COG " + text::fixed(d.loops.front().height, 3) +
                     " m above the soles, omega " + text::fixed(w, 2) + " /s\n";
   out += "gains, as a pattern or a sidecar names them:\n ";
   for (const auto& [name, value] : gain_list(p)) out += " " + name + "=" + text::brief(value);
@@ -82,14 +83,14 @@ std::string report(const RobotModel& model, const GainStudy& d) {
   out += p.offset_time > 0 ? ", a constant ZMP offset is accepted as normal after " +
                                  text::fixed(1e3 * p.offset_time / w, 0) + " ms\n"
                            : ", a constant ZMP offset is never accepted as normal\n";
-  out += "loop on one foot: ankle stiffness " + text::brief(d.loop.stiffness) +
-         " N m/rad, delay of sensors and servos " + text::brief(1e3 * d.loop.delay) +
-         " ms; the loop is stable, and stays stable " +
+  const LoopModel& weakest = d.loops[d.weakest.index];
+  out += "the whole loop, with sensors and servos " + text::brief(1e3 * weakest.delay) +
+         " ms late, is stable on both feet, and on one foot for a step; it stays stable " +
          (d.largest_ka >= GainStudy::kMostKa ? "beyond ka = " + text::brief(GainStudy::kMostKa)
                                              : "up to ka = " + text::fixed(d.largest_ka, 2)) +
-         "; slowest modes:\n";
+         "; slowest modes (" + weakest.name + "):\n";
   int shown = 0;
-  for (const Complex& pole : d.analysis.poles)
+  for (const Complex& pole : d.weakest.analysis.poles)
     if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);
   out += "largest error of the DCM that needs no step, and the impulse that causes this error:\n";
   for (const Reach& r : d.reaches)
@@ -101,7 +102,7 @@ std::string report(const RobotModel& model, const GainStudy& d) {
 Json json_of(const RobotModel& model, const GainStudy& d) {
   Json gains = Json::object(), poles = Json::array(), reach = Json::array();
   for (const auto& [name, value] : gain_list(d.params)) gains[name] = value;
-  for (const Complex& pole : d.analysis.poles) poles.push_back({pole.real(), pole.imag()});
+  for (const Complex& pole : d.weakest.analysis.poles) poles.push_back({pole.real(), pole.imag()});
   for (const Reach& r : d.reaches)
     reach.push_back({{"support", r.support},
                      {"direction", r.direction},
@@ -112,9 +113,9 @@ Json json_of(const RobotModel& model, const GainStudy& d) {
           {"gains", gains},
           {"K", long_term_k(d.params)},
           {"D_s", long_term_d(d.params) / d.omega},
-          {"stable", d.analysis.stable},
-          {"decay_1_s", d.analysis.decay},
-          {"frequency_Hz", d.analysis.frequency},
+          {"stable", d.weakest.analysis.stable},
+          {"decay_1_s", d.weakest.analysis.decay},
+          {"frequency_Hz", d.weakest.analysis.frequency},
           {"largest_stable_ka", d.largest_ka},
           {"poles_1_s", poles},
           {"recoverable", reach}};
@@ -126,7 +127,7 @@ void print_gains(Context& context, GainsCommand& options) {
   const auto gains = read_pairs(options.gains, "--gain");
   const GainStudy d =
       study_gains(model, options.wishes, {gains.begin(), gains.end()}, options.latency);
-  refuse_unstable(d.loop, d.params);
+  refuse_unstable(d.loops, d.params);
   context.print(report(model, d));
   context.print_json(json_of(model, d).dump(2));
 }

@@ -162,13 +162,13 @@ void bind_gains(py::module_& m) {
           },
           "The gains by their names in patterns and sidecars.")
       .def_property_readonly(
-          "stable", [](const GainStudy& s) { return s.analysis.stable; },
+          "stable", [](const GainStudy& s) { return s.weakest.analysis.stable; },
           "Whether the linear loop on one foot is stable.")
       .def_property_readonly(
-          "poles", [](const GainStudy& s) { return s.analysis.poles; },
+          "poles", [](const GainStudy& s) { return s.weakest.analysis.poles; },
           "Its poles [1/s], the slowest decay first.")
       .def_property_readonly(
-          "decay", [](const GainStudy& s) { return s.analysis.decay; },
+          "decay", [](const GainStudy& s) { return s.weakest.analysis.decay; },
           "Of the slowest mode [1/s]; negative when it grows.")
       .def_readonly("largest_ka", &GainStudy::largest_ka,
                     "Largest short-term gain with which the loop is stable.")

@@ -127,7 +127,7 @@ std::vector<Broken> broken_robots() {
               "\"position_limits_deg\": {\"r_knee\": [10, -10]}, \"trunk_link\"",
               "robot.json: /position_limits_deg/r_knee: the lower limit 10 deg exceeds the upper "
               "limit -10 deg"),
-      sidecar("unknown_gain", "\"tau_z\": 0.04", "\"tau_y\": 0.04",
+      sidecar("unknown_gain", "\"tau_z\": 0.01", "\"tau_y\": 0.01",
               "hoap1 sidecar: dtad has no gain 'tau_y'"),
       sidecar("wrong_type", "\"servo_period\": 0.001", "\"servo_period\": \"fast\"",
               "/servo_period"),
@@ -274,7 +274,7 @@ std::vector<Broken> broken_simulations() {
   return {
       simulation("push_on_an_unknown_link", "\"type\": \"impulse\"",
                  "\"on\": \"tail\", \"type\": \"impulse\"", "tail"),
-      simulation("unknown_profile", "", "", "known: hoap1, hoap1-measured, hoap1-strong",
+      simulation("unknown_profile", "", "", "known: hoap1, hoap1-soft, hoap1-strong",
                  {"--profile", "hoap"}),
       simulation("scenario_file_missing", "", "", "gone.json", {"--scenario", "gone.json"}),
       {"output_folder_in_the_way",

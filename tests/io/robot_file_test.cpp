@@ -36,7 +36,12 @@ TEST(Hoap1, HasTheFiguresOfItsReadme) {
   const Dof& knee = model.dofs()[model.find_dof("l_knee")];
   EXPECT_NEAR(knee.upper, 120 * kDegree, 1e-12);
   const ServoDescription& servo = model.limits().servo[model.find_dof("l_knee")];
-  EXPECT_DOUBLE_EQ(servo.kd, 0.020 * servo.kp);
+  EXPECT_NEAR(servo.lag(), 0.0036, 1e-4);
+  EXPECT_GE(servo.kp, 2500);  // as measured: 2500 to 5000 N m/rad
+  EXPECT_LE(servo.kp, 5000);
+  const ServoDescription& soft = model.limits("hoap1-soft").servo[model.find_dof("l_knee")];
+  EXPECT_EQ(soft.kp, 600);
+  EXPECT_EQ(soft.lag(), 0.020);
   EXPECT_DOUBLE_EQ(model.limits().servo[model.find_dof("l_elbow")].kp, servo.kp / 2);
   EXPECT_EQ(model.limits().peak_torque[model.find_dof("l_knee")], 4.5);
   EXPECT_EQ(model.limits().peak_torque[model.find_dof("l_hip_pitch")], 3);
@@ -78,7 +83,7 @@ TEST(Hoap1, BareUrdfIsInferred) {
     for (int i = 0; i < 4; ++i)
       EXPECT_LT((model.sole(side).polygon[i] - full.sole(side).polygon[i]).norm(), 1e-4);
   }
-  EXPECT_NEAR(model.limits().servo[0].kp / full.limits().servo[0].kp, 1, 0.2);
+  EXPECT_NEAR(model.limits().servo[0].kp / full.limits("hoap1-soft").servo[0].kp, 1, 0.2);
   EXPECT_NEAR(model.limits().servo[0].rotor_inertia, 0.003, 0.0015);
   EXPECT_GE(model.description().assumptions.size(), 4u);
 }

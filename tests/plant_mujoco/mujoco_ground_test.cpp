@@ -128,7 +128,7 @@ std::vector<Disturbance> disturbances() {
            .radius = 0.015,
            .height = 0.003});
   add(Latency{0.004});
-  add(SensorBias{.tilt = {0.01, 0.01}});
+  add(SensorBias{.tilt = {0.005, 0.005}});
   add(EncoderOffset{.joint = "l_ankle_pitch", .offset = 0.02});
   add(JointFriction{.coulomb = 0.3, .viscous = 0.1});
   add(GainLoss{.joint = "l_knee", .share = 0.4});

@@ -31,6 +31,23 @@ constexpr double kStanceShare = 0.6;
 // Figures change by less than 5 % from half to twice.
 constexpr double kContactShare = 0.05;
 
+// Tilt about x and y of a sole that lies flat, per f_z (cop - centre) [rad/(N m)]: its corners are
+// springs of equal stiffness, as in the plant (sim/plant/contact_points).
+Eigen::Matrix2d tilt_per_moment(const Sole& sole) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  const double count = static_cast<double>(sole.polygon.size());
+  for (const Eigen::Vector2d& corner : sole.polygon) middle += corner / count;
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& corner : sole.polygon)
+    spread += (corner - middle) * (corner - middle).transpose() / count;
+  // Height of the sole over the place r: -r . spread^-1 (cop - centre) f_z / stiffness.
+  const Eigen::Matrix2d slope = -spread.inverse() / sole.stiffness;
+  Eigen::Matrix2d tilt;  // a slope along y turns about x, one along x about -y
+  tilt.row(0) = slope.row(1);
+  tilt.row(1) = -slope.row(0);
+  return tilt;
+}
+
 }  // namespace
 
 Estimator::Estimator(const RobotModel& model, double dt)
@@ -42,6 +59,7 @@ Estimator::Estimator(const RobotModel& model, double dt)
     const int i = static_cast<int>(side);
     sole_[i] = ConvexPolygon(model.sole(side).polygon);
     widest_[i] = sole_[i].margin(model.sole(side).center);
+    yield_[i] = tilt_per_moment(model.sole(side));
   }
 }
 
@@ -97,6 +115,9 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   e.dcog = s.base_velocity + rate.cross(offset) + attitude * data_.dcog;
   const Matrix3d tilt = attitude * sole_in_base.linear() * feet[stance].linear().transpose();
   e.foot_tilt = log_rotation(Quaterniond(tilt));
+  Vector3d yielding = Vector3d::Zero();  // of the sole under its load
+  yielding.head<2>() = yield_[stance] * (m.feet[stance].fz * (cop - model_->sole(e.stance).center));
+  e.foot_tilt -= feet[stance].linear() * yielding;
   e.foot_tilt.z() = 0;
   e.stance_inside = std::clamp(sole_[stance].margin(cop) / widest_[stance], 0.0, 1.0);
 

@@ -34,7 +34,8 @@ struct Estimate {
   bool contact = true;                                  ///< f_z at least 5 % of the weight
   Side stance = Side::left;                             ///< foot that carries the robot
   Eigen::Vector3d foot_tilt = Eigen::Vector3d::Zero();  ///< of the stance foot against the plan, as
-                                                        ///< a rotation vector without yaw [rad]
+                                                        ///< a rotation vector without yaw [rad];
+                                                        ///< without what its sole yields
   double stance_inside = 1;  ///< distance of the stance foot's centre of pressure from the nearest
                              ///< edge of its sole, as a share of the largest: 0 at the edge
 };
@@ -54,10 +55,11 @@ class Estimator {
   const RobotModel* model_;
   RobotData data_;
   std::array<ConvexPolygon, 2> sole_;
-  std::array<double, 2> widest_;         // distance of the middle of each sole from its edge [m]
-  int imu_;                              // link
-  double filter_;                        // share of the new load taken per tick
-  std::array<double, 2> load_ = {0, 0};  // low-passed f_z of each foot [N]
+  std::array<double, 2> widest_;          // distance of the middle of each sole from its edge [m]
+  std::array<Eigen::Matrix2d, 2> yield_;  // tilt of each sole per moment, sole frame [rad/(N m)]
+  int imu_;                               // link
+  double filter_;                         // share of the new load taken per tick
+  std::array<double, 2> load_ = {0, 0};   // low-passed f_z of each foot [N]
   bool first_ = true;
   Estimate last_;
 };

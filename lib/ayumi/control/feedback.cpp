@@ -22,6 +22,12 @@ namespace {
 // changes from half to twice (constants.md).
 constexpr double kAdmissibleForceShare = 0.1;
 
+// Largest shift of the ZMP by which the rocking of the robot on its soles is damped, times z: 22 mm
+// on HOAP-1. Chosen: enough to end the rocking that a push of 0.3 N s leaves with sensors that are
+// 14 ms late (with 0.06 it goes on), and small beside the soles, because after a hard push this
+// damping works against the long term: without a bound the walk survives 0.78 B instead of 1.08.
+constexpr double kRockingLimit = 0.09;
+
 }  // namespace
 
 CogError cog_error(const CommandSample& command, const Estimate& estimate) {
@@ -40,6 +46,14 @@ double long_term_force(double command_fz, double mass, double K_z, double D_z,
 
 double admissible_force(double fz, double mass) {
   return std::max(kAdmissibleForceShare * mass * kGravity, fz);
+}
+
+Eigen::Vector2d rocking_acceleration(double gain, double omega, double z,
+                                     const Eigen::Vector3d& reference_dcog,
+                                     const Estimate& estimate) {
+  const Eigen::Vector2d asked = gain * omega * (estimate.dcog - reference_dcog).head<2>();
+  const double size = asked.norm(), most = kRockingLimit * z * omega * omega;
+  return size > most ? Eigen::Vector2d(most / size * asked) : asked;
 }
 
 double push_stiffness(double z_H, double z_d) { return 2 * kGravity * z_H / (z_d * z_d); }

@@ -43,6 +43,14 @@ inline Eigen::Vector2d short_term_acceleration(double gain, double omega2,
   return gain * omega2 * gap;
 }
 
+/// Damping of the robot's rocking on soles and servos that yield [m/s^2]: the reference follows the
+/// measured velocity of the COG, which it lacks by `estimate.dcog - reference_dcog` [m/s], at
+/// gain * omega and with a bounded acceleration. z: height of the COG [m]. docs/theory.md, "Late
+/// sensors".
+Eigen::Vector2d rocking_acceleration(double gain, double omega, double z,
+                                     const Eigen::Vector3d& reference_dcog,
+                                     const Estimate& estimate);
+
 /// Stiffness and damping of the vertical force: forces per metre, or per unit of mass where the
 /// caller multiplies by the mass.
 struct HeightGains {

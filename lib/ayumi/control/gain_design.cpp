@@ -1,15 +1,13 @@
-// Deviations from the plan; s = stiffness / (m g z), T = damping / stiffness:
-//   zZ = -s (xr + T dxr - x - T dx),  ddx = w2 (x - zZ)                      body on its ankle
+// Deviations from the plan; body and reference as control/stance_loop:
 //   per tick, from measurements n ticks old:
 //   zf += f (zZ - zf),  gap = zf - K x - D dx - zd,  zd += dt w / Tw gap
-//   dxr += dt (ka w2 gap - ks^2 w2 xr - 2 kd w dxr),  xr += dt dxr
-// The body is integrated exactly over a tick; poles are log(eigenvalue) / tick. The measured zZ is
-// that under the target of the tick before it, as in the simulator.
+//   dxr += dt (ka w2 gap + damp w (dx - dxr) - ks^2 w2 xr - 2 kd w dxr),  xr += dt dxr
+// Poles are log(eigenvalue) / tick. The measured zZ is that under the target of the tick before, as
+// in the simulator.
 #include "ayumi/control/gain_design.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -22,72 +20,49 @@ using Eigen::RowVectorXd;
 
 namespace {
 
-enum State { kX, kDx, kXr, kDxr, kFiltered, kOffset, kTarget, kFixed };
-
 MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
   const double w = std::sqrt(kGravity / loop.height), w2 = w * w, dt = loop.tick;
-  const double s = loop.stiffness / (loop.mass * kGravity * loop.height);
-  const double T = loop.damping / loop.stiffness;
   const double K = long_term_k(p), D = long_term_d(p) / w;
   const int delay = static_cast<int>(std::lround(loop.delay / dt));
-  const int n = kFixed + 3 * delay;  // and delayed (x, dx, zZ), newest first
+  const auto body = static_cast<int>(loop.body.rows());
+  const int xr = body, dxr = body + 1, filtered = body + 2, offset = body + 3;
+  const int fixed = body + 4, n = fixed + 3 * delay;  // and delayed (x, dx, zZ), newest first
   const auto unit = [&](int i) { return RowVectorXd(RowVectorXd::Unit(n, i)); };
+  const auto of_body = [&](const RowVectorXd& row) {
+    RowVectorXd all = RowVectorXd::Zero(n);
+    all.head(body) = row;
+    return all;
+  };
 
-  RowVectorXd x = unit(kX), dx = unit(kDx);
-  RowVectorXd zmp = -s * (unit(kTarget) - x - T * dx);
+  RowVectorXd x = of_body(loop.cog), dx = of_body(loop.dcog), zmp = of_body(loop.zmp);
+  zmp[xr] += loop.zmp_reference[0];
+  zmp[dxr] += loop.zmp_reference[1];
   MatrixXd A = MatrixXd::Zero(n, n);
   if (delay > 0) {
-    A.row(kFixed) = x;
-    A.row(kFixed + 1) = dx;
-    A.row(kFixed + 2) = zmp;
-    for (int i = kFixed + 3; i < n; ++i) A.row(i) = unit(i - 3);
+    A.row(fixed) = x;
+    A.row(fixed + 1) = dx;
+    A.row(fixed + 2) = zmp;
+    for (int i = fixed + 3; i < n; ++i) A.row(i) = unit(i - 3);
     x = unit(n - 3);
     dx = unit(n - 2);
     zmp = unit(n - 1);
   }
   const double filter = 1 - std::exp(-dt * w / p.zmp_filter);
-  A.row(kFiltered) = unit(kFiltered) + filter * (zmp - unit(kFiltered));
-  const RowVectorXd gap = A.row(kFiltered) - K * x - D * dx - unit(kOffset);
-  A.row(kOffset) = unit(kOffset);
-  if (p.offset_time > 0) A.row(kOffset) += dt * w / p.offset_time * gap;
+  A.row(filtered) = unit(filtered) + filter * (zmp - unit(filtered));
+  const RowVectorXd gap = A.row(filtered) - K * x - D * dx - unit(offset);
+  A.row(offset) = unit(offset);
+  if (p.offset_time > 0) A.row(offset) += dt * w / p.offset_time * gap;
   // The law uses the gap before the offset follows in this tick.
-  A.row(kDxr) =
-      unit(kDxr) + dt * (p.zmp_gain * w2 * gap - p.pull_rate * p.pull_rate * w2 * unit(kXr) -
-                         2 * p.pull_damping * w * unit(kDxr));
-  A.row(kXr) = unit(kXr) + dt * A.row(kDxr);
-  A.row(kTarget) = A.row(kXr) + T * A.row(kDxr);
-
-  Eigen::Matrix3d body = Eigen::Matrix3d::Zero();  // x, dx, target held
-  body.row(0) << 0, 1, 0;
-  body.row(1) << w2 * (1 - s), -w2 * s * T, w2 * s;
-  const Eigen::Matrix3d over = Eigen::Matrix3d(dt * body).exp();
-  A.row(kX) = over(0, 0) * unit(kX) + over(0, 1) * unit(kDx) + over(0, 2) * A.row(kTarget);
-  A.row(kDx) = over(1, 0) * unit(kX) + over(1, 1) * unit(kDx) + over(1, 2) * A.row(kTarget);
+  A.row(dxr) = unit(dxr) + dt * (p.zmp_gain * w2 * gap + p.rocking_damping * w * (dx - unit(dxr)) -
+                                 p.pull_rate * p.pull_rate * w2 * unit(xr) -
+                                 2 * p.pull_damping * w * unit(dxr));
+  A.row(xr) = unit(xr) + dt * A.row(dxr);
+  A.topLeftCorner(body, body) = loop.body;
+  A.topRows(body) += loop.reference * A.middleRows(xr, 2);
   return A;
 }
 
 }  // namespace
-
-LoopModel single_support_loop(const RobotModel& model, const ActuatorLimits& actuators,
-                              double height, double tick) {
-  LoopModel loop{.mass = model.mass(), .height = height, .tick = tick};
-  double servo_delay = 0;
-  for (Side side : {Side::left, Side::right}) {
-    const std::vector<int>& leg = model.leg(side);
-    for (size_t i = leg.size() >= 2 ? leg.size() - 2 : 0; i < leg.size(); ++i) {
-      const ServoDescription& servo = actuators.servo[static_cast<size_t>(leg[i])];
-      servo_delay = std::max(servo_delay, servo.delay);
-      if (servo.kp <= 0)
-        fail(ErrorCode::bad_model, model.name() + ": joint " + model.dofs()[leg[i]].name +
-                                       " has no servo (kp); give it one in the sidecar");
-      if (loop.stiffness > 0 && servo.kp >= loop.stiffness) continue;
-      loop.stiffness = servo.kp;
-      loop.damping = servo.kd;
-    }
-  }
-  loop.delay = model.description().sensors.latency + servo_delay;
-  return loop;
-}
 
 LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params) {
   const Eigen::VectorXcd values = tick_matrix(loop, params).eigenvalues();
@@ -102,7 +77,7 @@ LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params) {
   });
   analysis.decay = -analysis.poles.front().real();
   analysis.frequency = std::abs(analysis.poles.front().imag()) / (2 * M_PI);
-  analysis.stable = analysis.decay > 0;
+  analysis.stable = analysis.decay > -loop.tolerated_growth;
   return analysis;
 }
 
@@ -153,11 +128,22 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
   return params;
 }
 
+WeakestLoop weakest_loop(const std::vector<LoopModel>& loops, const DtadParams& params) {
+  WeakestLoop weakest;
+  double least = 0;
+  for (size_t i = 0; i < loops.size(); ++i) {
+    LoopAnalysis analysis = analyze_loop(loops[i], params);
+    const double margin = analysis.decay + loops[i].tolerated_growth;
+    if (i == 0 || margin < least) weakest = {i, std::move(analysis)}, least = margin;
+  }
+  return weakest;
+}
+
 // Stable gains below the first unstable one: the loop leaves stability once as ka grows.
-double largest_stable_ka(const LoopModel& loop, DtadParams params, double most) {
+double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params, double most) {
   const auto stable = [&](double ka) {
     params.zmp_gain = ka;
-    return analyze_loop(loop, params).stable;
+    return weakest_loop(loops, params).analysis.stable;
   };
   if (stable(most)) return most;
   double low = 0, high = most;
@@ -171,15 +157,16 @@ double largest_stable_ka(const LoopModel& loop, DtadParams params, double most) 
 namespace {
 
 /// Empty when stable.
-std::string growth(const LoopModel& loop, const DtadParams& params) {
-  const LoopAnalysis analysis = analyze_loop(loop, params);
-  if (analysis.stable) return {};
-  const double low = largest_stable_ka(loop, params, params.zmp_gain);
+std::string growth(const std::vector<LoopModel>& loops, const DtadParams& params) {
+  const WeakestLoop weakest = weakest_loop(loops, params);
+  if (weakest.analysis.stable) return {};
+  const LoopModel& loop = loops[weakest.index];
+  const double low = largest_stable_ka(loops, params, params.zmp_gain);
   return "controller gains: the loop is unstable with ka = " + text::brief(params.zmp_gain) +
-         ", tau_z = " + text::brief(params.zmp_filter) + " and a sensor latency of " +
-         text::brief(1e3 * loop.delay) + " ms (an error grows at " +
-         text::fixed(-analysis.decay, 1) + " /s and oscillates at " +
-         text::fixed(analysis.frequency, 1) + " Hz); " +
+         ", tau_z = " + text::brief(params.zmp_filter) + " and sensors and servos that are " +
+         text::brief(1e3 * loop.delay) + " ms late (a robot that stands on " + loop.name +
+         " oscillates at " + text::fixed(weakest.analysis.frequency, 1) +
+         " Hz, and an error grows at " + text::fixed(-weakest.analysis.decay, 1) + " /s); " +
          (low > 1e-6 ? "ka below " + text::fixed(low, 2) + " would be stable"
                      : std::string("no ka is stable: the servos are too soft for this robot, or "
                                    "ks and kd too small"));
@@ -187,8 +174,8 @@ std::string growth(const LoopModel& loop, const DtadParams& params) {
 
 }  // namespace
 
-void refuse_unstable(const LoopModel& loop, const DtadParams& params) {
-  const std::string reason = growth(loop, params);
+void refuse_unstable(const std::vector<LoopModel>& loops, const DtadParams& params) {
+  const std::string reason = growth(loops, params);
   if (!reason.empty()) fail(ErrorCode::usage, reason);
 }
 
@@ -200,7 +187,7 @@ std::string instability(const RobotModel& model, const ActuatorLimits& actuators
   for (Side side : {Side::left, Side::right})
     for (const int joint : model.leg(side))
       if (actuators.servo[static_cast<size_t>(joint)].kp <= 0) return {};
-  return growth(single_support_loop(model, actuators, height, tick), params);
+  return growth(stance_loops(model, actuators, height, tick), params);
 }
 
 }  // namespace ayumi

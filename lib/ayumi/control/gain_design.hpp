@@ -1,7 +1,6 @@
 #pragma once
-// Gains from poles, and whether the whole linear loop they close is stable: pendulum on a servo of
-// finite stiffness, filter and accepted offset, sensor delay, control tick. One horizontal axis,
-// feet flat, the ZMP away from the edge. docs/theory.md, "Gain design".
+// Gains from poles, and whether the whole linear loop they close is stable: the robot on its servos
+// and soles, filter and accepted offset, delays, control tick. docs/theory.md, "Gain design".
 
 #include <array>
 #include <complex>
@@ -10,24 +9,9 @@
 #include <vector>
 
 #include "ayumi/control/laws/dtad.hpp"
+#include "ayumi/control/stance_loop.hpp"
 
 namespace ayumi {
-
-/// What the gains work on.
-struct LoopModel {
-  double mass = 0;       ///< [kg]
-  double height = 0;     ///< of the COG above the ground [m]
-  double stiffness = 0;  ///< about the ankle that turns the body against the foot [N m/rad]
-  double damping = 0;    ///< about the same ankle [N m s/rad]
-  double tick = 0.001;   ///< of the controller [s]
-  double delay = 0;      ///< of the sensors and of the servos' targets [s]
-};
-
-/// The softest stance: the robot on one foot, the softer axis of that ankle alone giving way, the
-/// sidecar's sensor latency and the longest delay of an ankle's servo. Throws Error(bad_model) for
-/// a leg without servos.
-LoopModel single_support_loop(const RobotModel& model, const ActuatorLimits& actuators,
-                              double height, double tick);
 
 struct LoopAnalysis {
   std::vector<std::complex<double>> poles;  ///< continuous equivalents, slowest decay first [1/s]
@@ -38,6 +22,13 @@ struct LoopAnalysis {
 
 /// Poles of the loop under the law of dtad.cpp.
 LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params);
+
+/// The loop whose slowest mode comes nearest to the growth that the loop tolerates.
+struct WeakestLoop {
+  size_t index = 0;
+  LoopAnalysis analysis;
+};
+WeakestLoop weakest_loop(const std::vector<LoopModel>& loops, const DtadParams& params);
 
 /// K and D (times omega) of (18)(19) that give the COG the poles p1, p2 in units of omega: both
 /// real or a conjugate pair, Re < 0. Throws Error(usage) otherwise.
@@ -58,12 +49,12 @@ struct GainWishes {
 /// at -1 / T. Throws Error(usage) naming the wish that cannot be had.
 DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams params = {});
 
-/// Largest ka with which the loop is stable, other gains as they are; 0 when none is.
-double largest_stable_ka(const LoopModel& loop, DtadParams params, double most = 20);
+/// Largest ka with which all loops are stable, other gains as they are; 0 when none is.
+double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params, double most = 20);
 
 /// Throws Error(usage) with the mode that grows and the largest short-term gain that would be
 /// stable.
-void refuse_unstable(const LoopModel& loop, const DtadParams& params);
+void refuse_unstable(const std::vector<LoopModel>& loops, const DtadParams& params);
 
 /// Why a robot should not be run with a controller at this COG height, in the words of
 /// refuse_unstable(); empty when nothing speaks against it, for demonstrations (dtad-literal,

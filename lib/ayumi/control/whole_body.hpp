@@ -152,6 +152,7 @@ class ReferenceBody {
   // Tilt of the ground under each foot, and at large [rad].
   std::array<Eigen::Vector3d, 2> slope_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   Eigen::Vector3d ground_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d tipped_ = Eigen::Vector3d::Zero();  // of the stance foot, filtered [rad]
 };
 
 }  // namespace ayumi

@@ -36,6 +36,17 @@ constexpr double kRestError = 0.09;
 /// moves the DCM by 0.054 z, which is 13 mm for HOAP-1 and keeps it inside the soles. No measured
 /// case changes from half to twice (constants.md).
 constexpr double kRestSpeed = 0.054;
+/// Amplitude of an oscillating ZMP below which a robot stands at the end, in units of z. Chosen: 5
+/// mm on HOAP-1. The noise of its sensors moves the ZMP of a robot that stands by 1.4 mm under DTAD
+/// and 2.6 mm under VIIP, and feet that hammer move it by 68 mm and more.
+constexpr double kRestZmp = 0.02;
+/// Time at the end in which the ZMP must be at rest [s]. Chosen: several periods of the slowest
+/// oscillation that is looked for, and shorter than the second for which a run goes on after its
+/// motion.
+constexpr double kRestTime = 0.5;
+/// Slowest oscillation of the ZMP that is looked for [Hz]. Chosen: faster than any step, and slower
+/// than the rocking of a robot on soft soles. Slower motions are judged by the COG.
+constexpr double kSlowestRocking = 3;
 /// Fraction of the weight above which a foot or the robot is on the ground. Chosen: above the noise
 /// of contacts that open and close, below the load of any stance. Half: pushed walk, touchdowns 6
 /// to 5; twice: 7.
@@ -118,6 +129,14 @@ bool FallMonitor::observe(double t, const CommandSample& command, const Simulati
           std::max(r.max_torque_ratio, std::abs(sample.torque[j]) / limits_.peak_torque[j]);
     }
     if (sample.fz > kTouchLoad * weight) {
+      tick_ = dt;
+      const auto kept = static_cast<size_t>(std::lround(kRestTime / dt));
+      if (last_zmp_.capacity() < kept) last_zmp_.reserve(kept);
+      if (last_zmp_.size() < kept)
+        last_zmp_.push_back(sample.zmp.head<2>());
+      else
+        last_zmp_[next_zmp_] = sample.zmp.head<2>();
+      next_zmp_ = (next_zmp_ + 1) % kept;
       zmp_square_sum_ += (sample.measured_zmp - sample.reference_zmp).head<2>().squaredNorm();
       ++zmp_count_;
       airborne_ = flight_apex_ = 0;
@@ -172,6 +191,28 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
   }
 }
 
+// Amplitude and frequency of the last ZMPs about their straight line, on the axis that moves more.
+void FallMonitor::judge_zmp() {
+  const auto count = static_cast<Eigen::Index>(last_zmp_.size());
+  if (static_cast<double>(count) * tick_ < 0.999 * kRestTime) return;
+  Eigen::MatrixX2d zmp(count, 2), line(count, 2);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    zmp.row(k) = last_zmp_[(next_zmp_ + static_cast<size_t>(k)) % last_zmp_.size()].transpose();
+    line.row(k) << 1, 2 * static_cast<double>(k) / static_cast<double>(count) - 1;
+  }
+  zmp -= line * line.colPivHouseholderQr().solve(zmp);
+  Eigen::Index axis = 0;
+  const double rms =
+      std::sqrt(zmp.colwise().squaredNorm().maxCoeff(&axis) / static_cast<double>(count));
+  int crossings = 0;
+  for (Eigen::Index k = 1; k < count; ++k)
+    crossings += (zmp(k, axis) > 0) != (zmp(k - 1, axis) > 0);
+  const double frequency = crossings / (2 * kRestTime);
+  if (frequency < kSlowestRocking) return;
+  result_.zmp_amplitude = std::sqrt(2.0) * rms;
+  result_.zmp_frequency = frequency;
+}
+
 SimulationResult FallMonitor::conclude(const CommandSample& command, const RobotState& state) {
   SimulationResult& r = result_;
   RobotData data(*model_);
@@ -185,12 +226,13 @@ SimulationResult FallMonitor::conclude(const CommandSample& command, const Robot
     r.outcome = Outcome::fell;
     return r;
   }
+  judge_zmp();
   const double z = command.cog.z() - command.zmp.z();
   const double omega = std::sqrt(kGravity / z);
   const Vector3d up = data.rotation[model_->trunk_body()].col(2);
   const double tilt = std::acos(std::clamp(up.dot(normal()), -1.0, 1.0));
   const bool rest = r.final_cog_error < kRestError * z && r.final_speed < kRestSpeed * omega * z &&
-                    tilt < kRestTilt;
+                    tilt < kRestTilt && r.zmp_amplitude < kRestZmp * z;
   r.outcome = rest ? Outcome::stands : Outcome::unsettled;
   return r;
 }

@@ -30,6 +30,7 @@ class FallMonitor {
   const std::vector<SimulationEvent>& events() const { return events_; }
 
  private:
+  void judge_zmp();
   void observe_feet(double t, const CommandSample& command, const RobotData& truth,
                     const StepReport& report, double dt);
 
@@ -47,6 +48,9 @@ class FallMonitor {
   double level_ = 0;        // commanded COG height, that of the lift-off during a flight [m]
   double airborne_ = 0;     // of the present flight [s]
   double flight_apex_ = 0;  // of the present flight, over level_ [m]
+  std::vector<Eigen::Vector2d> last_zmp_;    // of the last ticks, a ring [m]
+  size_t next_zmp_ = 0;                      // place in that ring
+  double tick_ = 0;                          // control tick [s]
   std::array<double, 2> unloaded_ = {0, 0};  // time each foot has been off the ground [s]
   std::array<bool, 2> in_stance_ = {false, false};
   std::array<Eigen::Vector3d, 2> stance_start_;  // in the floor's frame [m]

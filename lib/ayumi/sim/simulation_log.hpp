@@ -65,6 +65,8 @@ struct SimulationResult {
   double final_cog_error = 0;       ///< relative to the feet, horizontal [m]
   double final_speed = 0;           ///< of the COG [m/s]
   double zmp_tracking_rms = 0;      ///< measured ZMP against reference ZMP [m]
+  double zmp_amplitude = 0;         ///< of the true ZMP's oscillation at the end; 0: none [m]
+  double zmp_frequency = 0;         ///< of that oscillation [Hz]
   double flight = 0;                ///< time without ground contact [s]
   double apex = 0;                  ///< of the COG above its command [m]
   int steps = 0;                    ///< touchdowns

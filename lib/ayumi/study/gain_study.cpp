@@ -47,6 +47,7 @@ std::vector<std::pair<std::string, double>> gain_list(const DtadParams& p) {
   for (const auto& entry : std::vector<std::pair<std::string, double>>{{"ka", p.zmp_gain},
                                                                        {"ks", p.pull_rate},
                                                                        {"kd", p.pull_damping},
+                                                                       {"damp", p.rocking_damping},
                                                                        {"tau_z", p.zmp_filter},
                                                                        {"margin", p.margin},
                                                                        {"washout", p.offset_time},
@@ -69,10 +70,11 @@ GainStudy study_gains(const RobotModel& model, const GainWishes& wishes,
   ControllerSpec spec;
   spec.gains = gains;
   d.params = design_gains(d.omega, wishes, dtad_params(model, spec));
-  d.loop = single_support_loop(model, model.limits(), z, model.description().servo_period);
-  if (latency) d.loop.delay += *latency - model.description().sensors.latency;
-  d.analysis = analyze_loop(d.loop, d.params);
-  d.largest_ka = largest_stable_ka(d.loop, d.params, GainStudy::kMostKa);
+  d.loops = stance_loops(model, model.limits(), z, model.description().servo_period);
+  if (latency)
+    for (LoopModel& loop : d.loops) loop.delay += *latency - model.description().sensors.latency;
+  d.weakest = weakest_loop(d.loops, d.params);
+  d.largest_ka = largest_stable_ka(d.loops, d.params, GainStudy::kMostKa);
   d.reaches = reaches(model);
   return d;
 }

@@ -18,12 +18,12 @@ struct Reach {
 };
 
 struct GainStudy {
-  double omega = 0;            ///< of the pendulum [1/s]
-  LoopModel loop;              ///< on one foot
-  DtadParams params;           ///< the gains
-  LoopAnalysis analysis;       ///< of the loop with these gains
-  double largest_ka = 0;       ///< with which the loop is stable; kMostKa: at least
-  std::vector<Reach> reaches;  ///< on both feet, then on the left foot
+  double omega = 0;              ///< of the pendulum [1/s]
+  std::vector<LoopModel> loops;  ///< of the robot that stands, as stance_loops() has them
+  DtadParams params;             ///< the gains
+  WeakestLoop weakest;           ///< the loop nearest to its edge of stability with these gains
+  double largest_ka = 0;         ///< with which all loops are stable; kMostKa: at least
+  std::vector<Reach> reaches;    ///< on both feet, then on the left foot
 
   /// Largest ka up to which the edge of stability is searched. Chosen: twenty times the default.
   static constexpr double kMostKa = 20;
@@ -34,7 +34,7 @@ std::vector<std::pair<std::string, double>> gain_list(const DtadParams& params);
 
 /// `gains` are set first, in place of the robot's; then `wishes` change them. `latency`: of the
 /// sensors [s], in place of the robot's. The study of unstable gains is a result too. Throws
-/// Error(usage) as design_gains() and for unknown gains, Error(bad_model) as single_support_loop().
+/// Error(usage) as design_gains() and for unknown gains, Error(bad_model) as stance_loops().
 GainStudy study_gains(const RobotModel& model, const GainWishes& wishes = {},
                       const std::vector<std::pair<std::string, double>>& gains = {},
                       std::optional<double> latency = {});

@@ -50,12 +50,12 @@ struct Tuner {
   const TuneOptions& options;
   CommandSeries stand;
   std::vector<PushPhase> phases;
-  LoopModel loop;
+  std::vector<LoopModel> loops;
   std::atomic<bool> stop = false;
 
   ControllerSpec controller(const Gains& gains) const;
   bool stable(const Gains& gains) const {
-    return analyze_loop(loop, dtad_params(model, controller(gains))).stable;
+    return weakest_loop(loops, dtad_params(model, controller(gains))).analysis.stable;
   }
   const CommandSeries& series_of(const PushPhase& phase) const {
     return phase.standing ? stand : series;
@@ -193,12 +193,12 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
               .options = options,
               .stand = standing_series(series),
               .phases = options.phases,
-              .loop = single_support_loop(model, model.limits(options.simulate.profile),
-                                          height(series.samples.front()), series.dt)};
+              .loops = stance_loops(model, model.limits(options.simulate.profile),
+                                    height(series.samples.front()), series.dt)};
   if (tuner.phases.empty()) tuner.phases = default_push_phases(model, series, options.simulate);
   TuneResult result;
   for (const std::string& name : options.gains) result.start[name] = known.at(name);
-  refuse_unstable(tuner.loop, dtad_params(model, tuner.controller(result.start)));
+  refuse_unstable(tuner.loops, dtad_params(model, tuner.controller(result.start)));
   result.gains = result.start;
   result.before = result.after = tuner.evaluate(result.start);
   if (result.before.unpushed >= kFall)

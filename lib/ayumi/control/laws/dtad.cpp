@@ -4,10 +4,13 @@
 //   reffz = max(fmin, cmdfz + m (Kz Dz + Dz Ddz))                  (20)
 //   w2    = reffz / (m (zG - zZ))                                  (17)
 //   ddx   = cmdddx + ka w2 (zhat - refZ - zd) + ks^2 w^2 (cmdx - xref) + 2 kd w (cmddx - dxref)
+//           + sat(damp w (dxhat - dxref))
 //   zd'   = (zhat - refZ - zd) / Tw                                accepted offset
 //   dxref += dt ddx; theta from (22)(23); xref is read back from the posture.
 // The term with ka is what the reference lacks of (14): w2 (x - refZ) is asked, w2 (x - zhat) is
 // what the ground gives. It is zero when the ZMP is where it should be: short-term absorption.
+// The term with damp damps the rocking of the robot on soles and servos that yield, which the late
+// answer of the term with ka drives (docs/theory.md, "Late sensors").
 #include "ayumi/control/laws/dtad.hpp"
 
 #include <algorithm>
@@ -53,12 +56,15 @@ constexpr double kContactTiltTime = 0.33;
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   DtadParams p;
   const std::map<std::string, double*> fields = {
-      {"q", &p.pole_ratio},        {"ka", &p.zmp_gain},          {"ks", &p.pull_rate},
-      {"kd", &p.pull_damping},     {"tau_z", &p.zmp_filter},     {"margin", &p.margin},
-      {"kz", &p.height_stiffness}, {"dz", &p.height_damping},    {"kaz", &p.fz_gain},
-      {"washout", &p.offset_time}, {"ankle", &p.ankle_share},    {"conform", &p.compliance},
-      {"trunk", &p.trunk_gain},    {"step", &p.step_share},      {"hurry", &p.time_scale_limit},
-      {"long", &p.long_term},      {"as_printed", &p.as_printed}};
+      {"q", &p.pole_ratio},         {"ka", &p.zmp_gain},
+      {"ks", &p.pull_rate},         {"kd", &p.pull_damping},
+      {"damp", &p.rocking_damping}, {"tau_z", &p.zmp_filter},
+      {"margin", &p.margin},        {"kz", &p.height_stiffness},
+      {"dz", &p.height_damping},    {"kaz", &p.fz_gain},
+      {"washout", &p.offset_time},  {"ankle", &p.ankle_share},
+      {"conform", &p.compliance},   {"trunk", &p.trunk_gain},
+      {"step", &p.step_share},      {"hurry", &p.time_scale_limit},
+      {"long", &p.long_term},       {"as_printed", &p.as_printed}};
   std::vector<std::string> names = {"k", "d"};
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where,
@@ -176,6 +182,8 @@ CogReference Dtad::cog_reference(const Estimate& estimate) {
                         2 * p.pull_damping * w * (command.dcog - body_.dcog());
   ref.ddcog = command.ddcog + pull;
   ref.ddcog.head<2>() += short_term_acceleration(p.zmp_gain, w2, gap);
+  if (carries)
+    ref.ddcog.head<2>() += rocking_acceleration(p.rocking_damping, w, z, body_.dcog(), estimate);
   if (estimate.contact) ref.ddcog.z() += p.fz_gain * (ref.fz - filter_.fz()) / m;
   return ref;
 }

@@ -16,17 +16,18 @@ namespace ayumi {
 /// in units of the COG height z. The names in files and on the command line are those in brackets.
 /// Where the values come from: docs/theory.md, "DTAD".
 struct DtadParams {
-  double pole_ratio = 0.25;   ///< [q] second pole of (18)(19): K = 1 + q, D = (1 + q)/omega
-  std::optional<double> k;    ///< [k] K given directly, with d; must exceed 1
-  std::optional<double> d;    ///< [d] D omega given directly, with k; must be positive
-  double long_term = 1;       ///< [long] share of (18)(19); 0: ref ZMP is the commanded one
-  double as_printed = 0;      ///< [as_printed] 1: D with the printed sign, a demonstration
-  double zmp_gain = 1;        ///< [ka] short-term loop on the measured ZMP; grows towards (14)
-  double pull_rate = 1.8;     ///< [ks] pull of the reference COG to the command
-  double pull_damping = 1.8;  ///< [kd] damping of that pull
-  double zmp_filter = 0.04;   ///< [tau_z] low pass of the measured ZMP
-  double margin = 0.01;       ///< [margin] kept inside the support region
-  double offset_time = 6.6;   ///< [washout] after which a constant ZMP offset is accepted; 0: never
+  double pole_ratio = 0.25;    ///< [q] second pole of (18)(19): K = 1 + q, D = (1 + q)/omega
+  std::optional<double> k;     ///< [k] K given directly, with d; must exceed 1
+  std::optional<double> d;     ///< [d] D omega given directly, with k; must be positive
+  double long_term = 1;        ///< [long] share of (18)(19); 0: ref ZMP is the commanded one
+  double as_printed = 0;       ///< [as_printed] 1: D with the printed sign, a demonstration
+  double zmp_gain = 1;         ///< [ka] short-term loop on the measured ZMP; grows towards (14)
+  double rocking_damping = 8;  ///< [damp] of the robot's rocking on its soles and servos
+  double pull_rate = 1.8;      ///< [ks] pull of the reference COG to the command
+  double pull_damping = 1.8;   ///< [kd] damping of that pull
+  double zmp_filter = 0.01;    ///< [tau_z] low pass of the measured ZMP
+  double margin = 0.01;        ///< [margin] kept inside the support region
+  double offset_time = 6.6;  ///< [washout] after which a constant ZMP offset is accepted; 0: never
   double height_stiffness = 1.0;  ///< [kz] K_z of (20), times omega^2
   double height_damping = 2.0;    ///< [dz] D_z of (20), times omega
   double fz_gain = 0.3;           ///< [kaz] short-term loop on the measured f_z

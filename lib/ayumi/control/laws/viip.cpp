@@ -84,24 +84,14 @@ Vector3d rotated(const Vector3d& v, double yaw) { return rpy_to_matrix({0, 0, ya
 
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   ViipParams p;
-  const std::map<std::string, double*> fields = {{"q", &p.pole_ratio},
-                                                 {"goal", &p.goal_lag},
-                                                 {"ka", &p.zmp_gain},
-                                                 {"av", &p.velocity_leak},
-                                                 {"ax", &p.position_leak},
-                                                 {"tau_z", &p.zmp_filter},
-                                                 {"margin", &p.margin},
-                                                 {"kz", &p.height_rate},
-                                                 {"dz", &p.height_damping},
-                                                 {"ankle", &p.ankle_share},
-                                                 {"single", &p.single_support},
-                                                 {"both", &p.double_support},
-                                                 {"lift", &p.lift},
-                                                 {"reach", &p.reach},
-                                                 {"hold", &p.recovery},
-                                                 {"inside", &p.zmp_inset},
-                                                 {"hurry", &p.early_step_bound},
-                                                 {"soonest", &p.least_step_time}};
+  const std::map<std::string, double*> fields = {
+      {"q", &p.pole_ratio},           {"goal", &p.goal_lag},     {"ka", &p.zmp_gain},
+      {"av", &p.velocity_leak},       {"ax", &p.position_leak},  {"damp", &p.rocking_damping},
+      {"tau_z", &p.zmp_filter},       {"margin", &p.margin},     {"kz", &p.height_rate},
+      {"dz", &p.height_damping},      {"ankle", &p.ankle_share}, {"single", &p.single_support},
+      {"both", &p.double_support},    {"lift", &p.lift},         {"reach", &p.reach},
+      {"hold", &p.recovery},          {"inside", &p.zmp_inset},  {"hurry", &p.early_step_bound},
+      {"soonest", &p.least_step_time}};
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where,
@@ -153,6 +143,8 @@ Vector2d viip_acceleration(const ViipParams& p, double omega, double omega2, dou
   ddcog += p.velocity_leak * omega * (e.dcog.head<2>() - reference.dcog) +
            p.position_leak * omega * omega * (e.cog.head<2>() - reference.cog);
   if (!e.contact) return ddcog;
+  ddcog += rocking_acceleration(p.rocking_damping, omega, kGravity / (omega * omega),
+                                Vector3d(reference.dcog.x(), reference.dcog.y(), 0), e);
   filter.update(e, low_pass_share(dt, omega, p.zmp_filter));
   ddcog += short_term_acceleration(p.zmp_gain, omega2, filter.zmp() - measured_zmp);
   return ddcog;

@@ -154,6 +154,8 @@ std::string simulation_json(const SimulationLog& log) {
                  {"final_cog_error_m", figure(r.final_cog_error)},
                  {"final_speed_m_s", figure(r.final_speed)},
                  {"zmp_tracking_rms_m", figure(r.zmp_tracking_rms)},
+                 {"zmp_amplitude_m", figure(r.zmp_amplitude)},
+                 {"zmp_frequency_Hz", figure(r.zmp_frequency, r.zmp_amplitude > 0)},
                  {"flight_s", figure(r.flight)},
                  {"apex_m", figure(r.apex, r.flight > 0)},
                  {"steps", r.steps},

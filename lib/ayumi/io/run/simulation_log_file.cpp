@@ -88,6 +88,8 @@ void for_each_figure(Result& r, const Visit& visit) {
   visit("final_cog_error", r.final_cog_error);
   visit("final_speed", r.final_speed);
   visit("zmp_tracking_rms", r.zmp_tracking_rms);
+  visit("zmp_amplitude", r.zmp_amplitude);
+  visit("zmp_frequency", r.zmp_frequency);
   visit("flight", r.flight);
   visit("apex", r.apex);
   visit("steps", r.steps);
