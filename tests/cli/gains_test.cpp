@@ -74,7 +74,8 @@ TEST(GainsCommand, WhatItRefusesIsNotRunUnlessAsked) {
     return Json::parse(run(words).out)["outcome"].get<std::string>();
   };
   EXPECT_FALSE(outcome({"--gain", "ka=40", "--allow-unstable"}).empty());
-  EXPECT_EQ(outcome({"--controller", "dtad-literal", "--profile", "hoap1-soft"}), "fell");  // a demonstration needs no leave
+  EXPECT_EQ(outcome({"--controller", "dtad-literal", "--profile", "hoap1-soft"}),
+            "fell");  // a demonstration needs no leave
 }
 
 TEST(TuneCommand, BettersItsObjectiveTheSameWayForAnyNumberOfThreads) {

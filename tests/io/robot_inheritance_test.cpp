@@ -77,8 +77,8 @@ TEST(RobotInheritance, MergesObjectsByKeyAndAppendsGroups) {
   EXPECT_EQ(unit.description().control.dtad.at("q"), base.description().control.dtad.at("q"));
   EXPECT_EQ(unit.joint_weight()[base.find_dof("l_elbow")], 3);
   EXPECT_EQ(unit.joint_weight()[base.find_dof("r_elbow")], 10);
-  EXPECT_EQ(unit.profile_names(),
-            (std::vector<std::string>{"hoap1", "hoap1-soft", "hoap1-strong", "hoap1-strong-soft", "weak"}));
+  EXPECT_EQ(unit.profile_names(), (std::vector<std::string>{"hoap1", "hoap1-soft", "hoap1-strong",
+                                                            "hoap1-strong-soft", "weak"}));
   EXPECT_EQ(unit.limits("hoap1-strong").speed[knee], 20);
   EXPECT_EQ(unit.limits("hoap1-strong").speed[hip], 25);
   EXPECT_EQ(unit.limits("hoap1-strong").peak_torque[knee], 12);
