@@ -36,7 +36,6 @@ THREADS = os.environ.get("AYUMI_THREADS", "1")
 WORK = pathlib.Path(tempfile.mkdtemp(prefix="ayumi_measure_"))
 TABLES = {}
 
-OLD_GAINS = ["--gain", "ka=2.5", "--gain", "ks=2", "--gain", "kd=2"]
 
 
 def table(name):
@@ -176,7 +175,14 @@ def stand(robot, controller, impulse, milliseconds, profile=None):
     return write_pattern(pattern, "stand_late")
 
 
-LATENCIES = (0, 2, 4, 6, 8, 10)
+LATENCIES = (0, 4, 8, 10, 12, 14)
+
+
+def late_cell(figures):
+    if figures["outcome"] == "fell":
+        return "falls"
+    moves = "" if figures["outcome"] == "stands" else ", unsettled"
+    return mm(figures["zmp_tracking_rms_m"]) + moves
 
 
 @table("latency/standing")
@@ -184,39 +190,40 @@ def latency_standing():
     lines = head("robot, law", *[f"{ms} ms" for ms in LATENCIES])
     for name, robot, controller, impulse, words in [
         ("HOAP-1, DTAD", "hoap1", "dtad", 0.3, []),
-        ("the same with `ka=2.5 ks=2 kd=2`, the defaults up to version 0.1", "hoap1", "dtad", 0.3,
-         OLD_GAINS),
-        ("HOAP-1, DTAD, `tau_z=0.066`", "hoap1", "dtad", 0.3, ["--gain", "tau_z=0.066"]),
+        ("the same with `damp=0`", "hoap1", "dtad", 0.3, gain("damp=0")),
+        ("HOAP-1 on soft servos (`hoap1-soft`), DTAD", "hoap1", "dtad", 0.3,
+         ["--profile", "hoap1-soft"]),
         ("HOAP-1, VIIP", "hoap1", "viip", 0.3, []),
-        ("the same with `tau_z=0.066`, the default up to version 0.1", "hoap1", "viip", 0.3,
-         ["--gain", "tau_z=0.066"]),
+        ("the same with `damp=0`", "hoap1", "viip", 0.3, gain("damp=0")),
         ("`humanoid30`, DTAD, 2.4 N s", "humanoid30", "dtad", 2.4, []),
-        ("the same with `ka=2.5 ks=2 kd=2`", "humanoid30", "dtad", 2.4, OLD_GAINS),
+        ("the same with `damp=0`", "humanoid30", "dtad", 2.4, gain("damp=0")),
+        ("`humanoid30`, VIIP, 2.4 N s", "humanoid30", "viip", 2.4, []),
     ]:
-        cells = []
-        for ms in LATENCIES:
-            figures = simulate(stand(robot, controller, impulse, ms), "--allow-unstable", *words)
-            cells.append(f"{mm(figures['zmp_tracking_rms_m'])}, {mm(figures['max_foot_slip_m'])}")
-        lines.append(row(name, *cells))
+        lines.append(row(name, *[
+            late_cell(simulate(stand(robot, controller, impulse, ms), "--allow-unstable", *words))
+            for ms in LATENCIES]))
     return lines
 
 
 @table("latency/walking")
 def latency_walking():
     lines = head("pattern, law", *[f"{ms} ms" for ms in LATENCIES])
-    for name, source, words in [
-        ("`hoap1_walk`, DTAD", "hoap1_walk", []),
-        ("the same with `ka=2.5 ks=2 kd=2`", "hoap1_walk", OLD_GAINS),
-        ("`hoap1_viip_step`, VIIP", "hoap1_viip_step", []),
-        ("the same with `tau_z=0.066`", "hoap1_viip_step", ["--gain", "tau_z=0.066"]),
+    for name, source, world, robots, words in [
+        ("`hoap1_walk`, DTAD", "hoap1_walk", {}, None, []),
+        ("the same with `damp=0`", "hoap1_walk", {}, None, gain("damp=0")),
+        ("the same on ground that rises by 3°", "hoap1_walk", {"ground": {"pitch": -3}}, None, []),
+        ("the same on soles of 60 kN/m", "hoap1_walk", {}, softer_soles(6e4), []),
+        ("`hoap1_viip_step` without its push, VIIP", "hoap1_viip_step", {}, None, []),
+        ("the same with `damp=0`", "hoap1_viip_step", {}, None, gain("damp=0")),
+        ("`humanoid30_walk` without its push, DTAD", "humanoid30_walk", {}, None, []),
     ]:
         cells = []
         for ms in LATENCIES:
             pattern = bundled(source)
             pattern["scenario"] = late(ms)
-            figures = simulate(write_pattern(pattern), "--allow-unstable", *words)
-            cells.append("falls" if figures["outcome"] == "fell" else
-                         f"{mm(figures['zmp_tracking_rms_m'])}, {mm(figures['max_foot_slip_m'])}")
+            pattern.setdefault("world", {}).update(world)
+            cells.append(late_cell(simulate(write_pattern(pattern), "--allow-unstable", *words,
+                                            robots=robots)))
         lines.append(row(name, *cells))
     return lines
 
@@ -387,6 +394,7 @@ def gain(text):
 LAWS = [
     ("DTAD", []),
     ("`ka=0 conform=0`: no short term", gain("ka=0 conform=0")),
+    ("`damp=0`: rocking is not damped", gain("damp=0")),
     ("`long=0`: no long term", gain("long=0")),
     ("`washout=0`: offsets are not forgotten", gain("washout=0")),
     ("`ankle=0`: a tipped foot is not levelled", gain("ankle=0")),
@@ -418,7 +426,8 @@ def law_gains():
     lines = head("gains", "walking [B]", "standing [B]", "ZMP error [mm]",
                  "ZMP error, `--noise` [mm]")
     for words in ["", "ka=0.5", "ka=2", "ks=0.9 kd=0.9", "ks=3.6 kd=3.6", "ka=2.5 ks=2 kd=2",
-                  "q=0.125", "q=0.5", "tau_z=0.02", "tau_z=0.08", "ankle=0.25", "ankle=1"]:
+                  "damp=4", "damp=16", "q=0.125", "q=0.5", "tau_z=0.005", "tau_z=0.02",
+                  "ankle=0.25", "ankle=1"]:
         study = push_study(WALK, *FOUR, "--allow-unstable", *gain(words))
         lines.append(row(f"`{words}`" if words else "defaults", in_bounds(cases(study, False)),
                          in_bounds(cases(study, True)), zmp_error(*gain(words)),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
@@ -39,9 +40,9 @@ void expect_calm(const SimulationLog& log) {
     for (const Eigen::Vector3d& force : s.foot_force) ASSERT_GT(force.z(), 0);
 }
 
-// With ka 2.5 and ks = kd = 2 the distance was 50 mm at 4 ms, and the feet slipped by 14 mm.
-TEST(SensorLatency, AStandingRobotStaysCalmUpToEightMilliseconds) {
-  for (const double latency : {0.0, 0.004, 0.008}) {
+// Without the gain damp the distance is 39 mm at 8 ms, and the ZMP does not come to rest.
+TEST(SensorLatency, AStandingRobotStaysCalmUpToFourteenMilliseconds) {
+  for (const double latency : {0.0, 0.004, 0.008, 0.010, 0.014}) {
     SCOPED_TRACE(latency);
     expect_calm(stands_pushed(hoap1(), latency));
   }
@@ -51,19 +52,50 @@ TEST(SensorLatency, TheGainsOfARobotWithoutGainsOfItsOwnDoAsWell) {
   RobotDescription description = hoap1().description();
   description.control.dtad.clear();
   const RobotModel model(description);
-  for (const double latency : {0.004, 0.008}) {
+  for (const double latency : {0.004, 0.014}) {
     SCOPED_TRACE(latency);
     expect_calm(stands_pushed(model, latency));
   }
 }
 
-// The filter of the measured ZMP is short enough: with tau_z 0.066 the distance was 6.6 mm.
-TEST(SensorLatency, ViipStaysCalmAtFourMilliseconds) {
-  for (const double latency : {0.0, 0.004}) {
+// Without the gain damp the distance is 34 mm at 10 ms.
+TEST(SensorLatency, ViipStaysCalmUpToFourteenMilliseconds) {
+  for (const double latency : {0.0, 0.004, 0.010, 0.014}) {
     SCOPED_TRACE(latency);
-    const SimulationLog log = stands_pushed(hoap1(), latency, "viip");
-    expect_calm(log);
-    EXPECT_LT(log.result.zmp_tracking_rms, 0.005);
+    expect_calm(stands_pushed(hoap1(), latency, "viip"));
+  }
+}
+
+struct LateWalk {
+  std::string pattern;
+  double slope, sole;  // [rad], [N/m]; 0: as the pattern and the robot have it
+  double most;         // rms of measured ZMP - ref ZMP with sensors that are 14 ms late [m]
+};
+
+// 10 ms of the sensors, and as much again as the servos of HOAP-1 lag. Measured: 8.9, 30.6, 19.7,
+// 23.1 and 9.4 mm. Without the gain damp, HOAP-1 hammers in all of them.
+TEST(SensorLatency, NoFootHammersWhileWalkingAndStepping) {
+  for (const LateWalk& c :
+       {LateWalk{"hoap1_walk", 0, 0, 0.011}, LateWalk{"hoap1_walk", -3 * M_PI / 180, 0, 0.036},
+        LateWalk{"hoap1_walk", 0, 60000, 0.024}, LateWalk{"hoap1_viip_step", 0, 0, 0.028},
+        LateWalk{"humanoid30_walk", 0, 0, 0.012}}) {
+    SCOPED_TRACE(testing::Message() << c.pattern << " " << c.slope << " " << c.sole);
+    const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/" + c.pattern + ".json");
+    RobotDescription description =
+        load_robot(AYUMI_SOURCE_DIR "/robots/" + pattern.robot).description();
+    if (c.sole > 0)
+      for (auto& [link, sole] : description.soles) sole.stiffness = c.sole;
+    const RobotModel model(description);
+    SimulateOptions options;
+    options.controller = pattern.controller;
+    options.profile = pattern.profile;
+    options.world = pattern.world;
+    options.world.slope.y() += c.slope;
+    options.scenario = {{.duration = 100, .what = Latency{0.014}}};
+    const SimulationResult r = simulate(model, sample(model, pattern), options).result;
+    EXPECT_EQ(r.outcome, Outcome::stands);
+    EXPECT_LT(r.zmp_amplitude, 0.002);
+    EXPECT_LT(r.zmp_tracking_rms, c.most);
   }
 }
 
