@@ -387,9 +387,10 @@ std::string words_of(const TableServo& servo) {
   const bool one = servo.lag.find(' ') == std::string::npos;
   return std::string(
              servo.content == "lead"
-                 ? "the targets lead the posture by the lag"
-                 : "the targets lead the posture by the lag, with a correction of the sag") +
-         (one ? " of " + servo.lag + " s" : "");
+                 ? "the targets are ahead of the posture by the time that the servos lag"
+                 : "the targets are ahead of the posture by the time that the servos lag, and they "
+                   "correct the sag") +
+         (one ? ", " + servo.lag + " s" : "");
 }
 
 std::string in_words(const ExportOptions& options, const Source& source, const SafeTable& safe,
@@ -596,7 +597,7 @@ void export_sign_test(const ExportOptions& options, Context& context) {
   for (const auto& [path, bytes] : files) write_file(path, bytes);
   context.print(options.output + ": one slow motion for each of " + std::to_string(tests.size()) +
                 " joints (" + options.format + "), and sheet.html with their pictures\n" +
-                "  Hang the robot up before you play them.\n");
+                "  Hang the robot up before you play the motions.\n");
   context.print_json(nlohmann::ordered_json{
       {"format", options.format},
       {"output", options.output},

@@ -308,7 +308,9 @@ void run_patterns(Context& context, const RunCommand& options) {
     if (std::find(targets.begin(), targets.end(), target) != targets.end())
       fail(ErrorCode::usage,
            pattern + ": another input has the same name, so both results would be written to " +
-               target.string() + "; give them two folders with two calls");
+               target.string() +
+               "; run the command once for each of the two, each time with "
+               "another -o");
     require_run_target(target, context.force, names_of_files(options));
     targets.push_back(target);
   }

@@ -39,9 +39,9 @@ Json gains_json(const std::map<std::string, double>& gains) {
 }
 
 std::string line(const std::string& label, const TuneFigures& f) {
-  return "  " + label + " objective " + text::fixed(f.objective, 4) + " = recovery " +
+  return "  objective " + label + ": " + text::fixed(f.objective, 4) + " = recovery " +
          text::fixed(f.recovery, 4) + " + 10 x (" + text::counted(f.falls, "fall") + " / " +
-         text::counted(f.pushes, "push", "pushes") + ") + without a push " +
+         text::counted(f.pushes, "push", "pushes") + ") + error without a push " +
          text::fixed(f.unpushed, 4) + "\n";
 }
 
@@ -62,7 +62,8 @@ void tune(Context& context, TuneCommand& options) {
   const TuneResult result = tune_gains(input.robot, input.series, t, context.progress());
   std::string out = options.pattern + ": pushes of " + text::brief(t.level) + " B, actuators " +
                     input.profile + "\n";
-  out += line("before", result.before) + line("after ", result.after) + "  \"gains\": {";
+  out +=
+      line("before tuning", result.before) + line("after tuning", result.after) + "  \"gains\": {";
   bool first = true;
   for (const auto& [name, value] : result.gains) {
     out += std::string(first ? " \"" : ", \"") + name + "\": " + text::brief(value);

@@ -168,7 +168,9 @@ TEST_F(Export, BrokenPatternsAreOneLineAndExit3) {
   };
   for (const Case& each : std::vector<Case>{
            {"\"deg\"", "\"grad\"", "/units/angle: 'grad' is not one of deg, rad"},
-           {"1.5", "0", "/keyframes/1/t: 0 s does not come after 0 s; times must increase"},
+           {"1.5", "0",
+            "/keyframes/1/t: this keyframe is at 0 s, but the keyframe before it is at 0 s; give a "
+            "later time"},
            {"1.5", "NaN", "bad.json:7:"},
            {"1.5", "1e999", "bad.json"},
            {"l_shoulder_pitch", "l_shoulder", "l_shoulder"},

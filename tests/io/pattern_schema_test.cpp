@@ -73,12 +73,12 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
   for (unsigned seed = 0; seed < 60; ++seed)
     EXPECT_TRUE(schema.accepts(with_comments(pattern_text(random_pattern(seed))))) << seed;
   // Beyond a schema: order of times, meaning of names and expressions, other files, zero vectors.
-  const std::vector<std::string> beyond = {"does not come after",
+  const std::vector<std::string> beyond = {"give a later time",
                                            "carries the robot",
                                            "is already set",
                                            "appears twice",
                                            "unknown parameter",
-                                           "a parameter is",
+                                           "write a parameter as",
                                            "no such file",
                                            "the direction is zero",
                                            "a point needs a link",

@@ -127,9 +127,9 @@ inline const std::vector<Broken>& mistakes() {
       {"phases", R"([{"until": 1, "viip": {"jump": {"height": 0}}}])",
        "/phases/0/viip/jump/height: 0 is too small"},
       {"phases", R"([{"until": 0, "support": "both"}])",
-       "/phases/0/until: 0 s does not come after 0 s"},
+       "/phases/0/until: this phase begins at 0 s and ends at 0 s"},
       {"phases", R"([{"until": 2, "support": "both"}, {"until": 1, "support": "both"}])",
-       "/phases/1/until: 1 s does not come after 2 s; times must increase"},
+       "/phases/1/until: this phase begins at 2 s and ends at 1 s; give a later time"},
       {"phases", R"([{"until": -1, "support": "both"}])",
        "-1 is too small; the smallest allowed value is 0"},
       {"phases", R"([{"until": 5000, "support": "both"}])",
@@ -140,7 +140,7 @@ inline const std::vector<Broken>& mistakes() {
        "/phases/0/swing/to: expected [x, y], [x, y, z] or [x, y, z, yaw], found an array of length "
        "1"},
       {"keyframes", R"([{"t": 1, "zmp": "left"}, {"t": 1, "zmp": "left"}])",
-       "/keyframes/1/t: 1 s does not come after 1 s"},
+       "/keyframes/1/t: this keyframe is at 1 s, but the keyframe before it is at 1 s"},
       {"keyframes", R"([{"t": "nan"}])", "expected a number (or an expression"},
       {"keyframes", R"([{"t": "1 s"}])", "/keyframes/0/t: expected a number"},
       {"keyframes", R"([{"t": null}])", "/keyframes/0/t: expected a number, found null"},
@@ -202,7 +202,9 @@ inline const std::vector<Broken>& mistakes() {
       {"scenario", R"([{"type": "friction", "at": 1, "friction": -0.1}])",
        "/scenario/0/friction: -0.1 is too small"},
       {"scenario", R"([{"type": "friction", "at": 1, "mass": 1}])",
-       "/scenario/0/mass: the type \"friction\" does not have this key; its keys are friction"},
+       "/scenario/0/mass: a disturbance of type \"friction\" does not have this key; it has "
+       "friction, "
+       "besides \"at\" and \"duration\""},
       {"scenario", R"([{"type": "floor", "at": 1, "duration": 0, "pitch": 3}])",
        "/scenario/0/duration: a motion of the floor needs a duration"},
       {"scenario", R"([{"type": "floor", "at": 1, "duration": 1}])",
@@ -257,7 +259,8 @@ inline const std::vector<Broken>& mistakes() {
        "/repair/safety: -1 is too small; the smallest allowed value is 0"},
       {"keyframes", R"([{"t": "${a}"}])", "unknown parameter 'a'"},
       {"keyframes", R"([{"t": "${a"}])",
-       "/keyframes/0/t: expression \"${a\": a parameter is written ${name}"},
+       "/keyframes/0/t: expression \"${a\": the closing } is missing; write a parameter as "
+       "${name}"},
       {"table", "\"absent.csv\"", "absent.csv: no such file"},
       {"include", "\"absent.json\"", "absent.json: no such file"},
       {"correction", R"({"begin": 0, "spacing": 0, "columns": [], "coefficients": []})",

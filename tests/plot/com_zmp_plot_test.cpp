@@ -200,7 +200,7 @@ TEST(Loci, ErrorsSayWhatIsWrong) {
   EXPECT_NE(message_of(std::vector<LociRun>(7, {"a", &runs.standing}), {}).find("at most 6"),
             std::string::npos);
   EXPECT_EQ(message_of(runs.both(), {.begin = 3}),
-            "plot: nothing to show from 3 s to 1 s; the runs last 1 s");
+            "plot: the times from 3 s to 1 s contain nothing of the runs, which last 1 s");
   EXPECT_NE(message_of(runs.both(), {.width = 10}).find("300"), std::string::npos);
   EXPECT_NE(message_of(runs.both(), {.cog = false, .zmp = false, .fz = false}).find("every panel"),
             std::string::npos);

@@ -79,7 +79,7 @@ TEST_F(Commands, MistakesAreNamed) {
                 "needs a file name that ends in .glb"},
                {{"plot", "run", "-o", "a.pdf"}, 2, "'.pdf' is not one of"},
                {{"plot", "nothing", "-o", "a.svg"}, 3, "nothing"},
-               {{"plot", "run", "-o", "a.svg", "--from", "5"}, 2, "nothing to show from 5 s"}};
+               {{"plot", "run", "-o", "a.svg", "--from", "5"}, 2, "the times from 5 s"}};
   const std::vector<std::string> before = folder.files();
   for (const auto& c : cases) {
     const Output output = ayumi(c.arguments);

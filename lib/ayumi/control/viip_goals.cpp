@@ -148,9 +148,9 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
            " mm inside";
   const Attempt attempt = lead_to(model, held, goal);
   if (attempt.miss < kGoalReached) return {};
-  return "the legs cannot reach this place: they end " + text::fixed(1e3 * attempt.miss, 1) +
-         " mm before it" +
-         (attempt.joint.empty() ? "" : ", with " + attempt.joint + " at its limit");
+  return "the legs bring the COG only to " + text::fixed(1e3 * attempt.miss, 1) +
+         " mm from this place" +
+         (attempt.joint.empty() ? "" : ", because " + attempt.joint + " is at its limit there");
 }
 
 void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,

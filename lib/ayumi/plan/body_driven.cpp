@@ -166,7 +166,7 @@ void describe(const SampleJob& job, const CogPlan& plan, double worst, CommandSe
     origin["zmp"] += ", moved by up to " + millimetres(moved) +
                      " near the ends so that the motion starts and stops at rest";
   origin["cog_height"] = job.tracks.cog[2] ? "keys" : "level, from the defaults";
-  if (!job.tracks.fz) origin["fz"] = "from the COG height, (16)";
+  if (!job.tracks.fz) origin["fz"] = "computed from the COG height, equation (16)";
   origin["torso"] = job.tracks.torso ? "keys" : "level, along the mean heading of the feet";
   if (flies(job)) {
     origin["cog_height"] += "; parabolas in flight";

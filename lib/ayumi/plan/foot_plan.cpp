@@ -113,8 +113,8 @@ void FootPlan::read_phases(const Pattern& pattern) {
     const std::string place = "phases/" + std::to_string(i);
     if (!(phase.until > begin) || !std::isfinite(phase.until))
       complain(pattern, place,
-               "until " + text::exact(phase.until) + " s does not come after " +
-                   text::exact(begin) + " s; times must increase");
+               "it begins at " + text::exact(begin) + " s and ends at " + text::exact(phase.until) +
+                   " s; give a later \"until\"");
     if (phase.swing) {
       const Swing& swing = *phase.swing;
       if (supports(phase.support, swing.foot))

@@ -32,9 +32,9 @@ std::vector<Cut> cuts_of(const Pattern& pattern) {
   for (size_t i = 0; i < pattern.phases.size(); ++i) {
     const Phase& phase = pattern.phases[i];
     if (!(phase.until > begin))
-      fail(ErrorCode::bad_pattern, in_file(pattern, "phases/" + std::to_string(i)) + ": until " +
-                                       text::exact(phase.until) + " s does not come after " +
-                                       text::exact(begin) + " s; times must increase");
+      fail(ErrorCode::bad_pattern, in_file(pattern, "phases/" + std::to_string(i)) +
+                                       ": it begins at " + text::exact(begin) + " s and ends at " +
+                                       text::exact(phase.until) + " s; give a later \"until\"");
     if (phase.viip) {
       cuts.push_back({i, begin, phase.until, before});
       before += phase.until - begin;

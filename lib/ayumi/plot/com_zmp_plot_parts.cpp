@@ -43,8 +43,10 @@ Interval time_range(const std::vector<LociRun>& runs, const LociOptions& options
   for (const LociRun& run : runs) last = std::max(last, duration(*run.log));
   const double end = options.end < 0 ? last : std::min(options.end, last);
   if (!(end > options.begin))
-    fail(ErrorCode::usage, "plot: nothing to show from " + text::brief(options.begin) + " s to " +
-                               text::brief(end) + " s; the runs last " + text::brief(last) + " s");
+    fail(ErrorCode::usage, "plot: the times from " + text::brief(options.begin) + " s to " +
+                               text::brief(options.end < 0 ? last : options.end) +
+                               " s contain nothing of the runs, which last " + text::brief(last) +
+                               " s");
   return {options.begin, end};
 }
 

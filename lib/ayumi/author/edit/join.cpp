@@ -179,16 +179,18 @@ void require_same_posture(const RobotModel& model, const Pattern& second, const 
   const double distance = (last.base.position - first.base.position).norm();
   const double turn = last.base.attitude.angularDistance(first.base.attitude);
   if (distance > kSameBase || turn > kSameJoint)
-    fail(ErrorCode::bad_pattern, in_file(second, "start") + ": the base is " +
+    fail(ErrorCode::bad_pattern, in_file(second, "start") + ": the base begins " +
                                      text::fixed(1000 * distance, 2) + " mm and " +
                                      text::fixed(turn * 180 / M_PI, 2) +
-                                     " deg from the end of the first motion; blend the two over "
-                                     "some time");
+                                     " deg away from where it is at the end of the first motion; "
+                                     "join them with `ayumi edit blend --over S`");
   if (most < kSameJoint) return;
   fail(ErrorCode::bad_pattern,
        in_file(second, "start") + ": " + model.dofs()[worst].name + " is " +
-           text::fixed(most * 180 / M_PI, 2) + " deg from the end of the first motion; limit " +
-           text::fixed(kSameJoint * 180 / M_PI, 2) + " deg; blend the two over some time");
+           text::fixed(most * 180 / M_PI, 2) +
+           " deg away from its angle at the end of the first motion; limit " +
+           text::fixed(kSameJoint * 180 / M_PI, 2) +
+           " deg; join them with `ayumi edit blend --over S`");
 }
 
 }  // namespace

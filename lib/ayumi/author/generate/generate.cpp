@@ -64,7 +64,8 @@ void check_stairs(const RobotModel& model, const WalkParameters& p) {
   require_range("walk", "rise", p.rise, 0, 0.15 * leg_length(model), " m");
   if (p.stride < sole.front + sole.back + 2 * kStairClearance)
     fail(ErrorCode::usage, "walk: stride " + text::exact(p.stride) +
-                               " m is shorter than a stair has to be for a sole of " +
+                               " m is too short for stairs, because a stair must hold the whole "
+                               "sole of " +
                                text::brief(sole.front + sole.back) + " m; give at least " +
                                text::brief(sole.front + sole.back + 2 * kStairClearance) + " m");
 }

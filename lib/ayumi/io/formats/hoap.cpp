@@ -125,7 +125,8 @@ class Reader {
       }
     stop(std::to_string(columns) + " columns; " +
          (with_interval ? "sequences" : "rows without an interval") + " of this robot have " +
-         list_of(layouts_, with_interval) + "; \"layouts\" of its sidecar names them");
+         list_of(layouts_, with_interval) +
+         " (\"layouts\" of its sidecar); if this file is of another robot, name that robot");
   }
 
   void read_targets(const std::vector<std::string_view>& cells, std::string_view line) {
@@ -210,8 +211,8 @@ class Reader {
 std::vector<int> dofs_by_device(const RobotModel& model, const SequenceLayout& layout) {
   const std::string need =
       layout.motors == 0 ? std::string(
-                               "; give the joints devices and counts per degree in "
-                               "\"encoders\" of the sidecar")
+                               "; in \"encoders\" of the sidecar, give every joint its device and "
+                               "its counts per degree")
                          : "; the layout '" + layout.name + "' needs each of the devices 1 to " +
                                std::to_string(layout.motors) + " once, with counts per degree";
   std::vector<int> dofs(static_cast<size_t>(layout.motors), -1);

@@ -92,8 +92,10 @@ class Parser {
 
   double parameter() {
     const size_t end = text_.find('}', at_);
-    if (at_ >= text_.size() || text_[at_] != '{' || end == std::string_view::npos)
-      stop("a parameter is written ${name}");
+    if (at_ >= text_.size() || text_[at_] != '{')
+      stop("the { after $ is missing; write a parameter as ${name}");
+    if (end == std::string_view::npos)
+      stop("the closing } is missing; write a parameter as ${name}");
     const std::string name(text_.substr(at_ + 1, end - at_ - 1));
     at_ = end + 1;
     const auto found = parameters_.find(name);

@@ -24,7 +24,8 @@ StepGoal read_steps(const JsonNode& node, PatternScope& scope) {
     for (const char* const key : {"velocity", "turn"})
       if (node.has(key))
         node.at(key).complain(
-            "\"step\": \"in_place\" excludes a velocity and a turn; leave one of the two keys out");
+            std::string("\"") + key +
+            "\" and \"step\": \"in_place\" exclude each other; remove one of these two keys");
   }
   if (const auto steps = node.find("steps")) goal.steps = read_count(*steps, scope, kMostSteps);
   if (const auto velocity = node.find("velocity")) {

@@ -111,12 +111,6 @@ void read_start(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
       pattern.start_feet[static_cast<size_t>(side)] = read_foothold(*foot, scope);
 }
 
-void require_increasing(const JsonNode& node, double time, double previous, bool first) {
-  if (time > previous || (first && time == previous)) return;
-  node.complain(text::exact(time) + " s does not come after " + text::exact(previous) +
-                " s; times must increase");
-}
-
 void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
   const JsonNode phases = root.at("phases");
   phases.expect_array();
@@ -126,8 +120,11 @@ void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
   double previous = 0;
   for (const JsonNode& node : phases.items()) {
     pattern.phases.push_back(read_phase(node, scope));
-    require_increasing(node.at("until"), pattern.phases.back().until, previous, false);
-    previous = pattern.phases.back().until;
+    const double until = pattern.phases.back().until;
+    if (!(until > previous))
+      node.at("until").complain("this phase begins at " + text::exact(previous) +
+                                " s and ends at " + text::exact(until) + " s; give a later time");
+    previous = until;
   }
 }
 
@@ -144,8 +141,14 @@ void read_keyframes(const JsonNode& root, PatternScope& scope, Pattern& pattern)
   for (const JsonNode& node : keyframes->items()) {
     const bool first = pattern.keyframes.empty();
     pattern.keyframes.push_back(read_keyframe(node, scope));
-    require_increasing(node.at("t"), pattern.keyframes.back().t, previous, first);
-    previous = pattern.keyframes.back().t;
+    const double t = pattern.keyframes.back().t;
+    if (!(t > previous || (first && t == previous)))
+      node.at("t").complain("this keyframe is at " + text::exact(t) + " s, but " +
+                            (first
+                                 ? "the motion begins at 0 s"
+                                 : "the keyframe before it is at " + text::exact(previous) + " s") +
+                            "; give a later time");
+    previous = t;
   }
 }
 

@@ -41,8 +41,8 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
   if (table == path)
     fail(ErrorCode::bad_file,
          path.string() +
-             ": the table of the pattern is written to a .csv of the same name; give "
-             "the pattern another ending, such as .json");
+             ": the command writes two files, the pattern and a table beside it, and the table "
+             "needs this name; give the pattern another ending, such as .json");
   Pattern named = pattern;
   // Written as it holds from the pattern's old folder, which write_pattern turns into the new one.
   const fs::path from = fs::absolute(pattern.file.empty() ? path : fs::path(pattern.file));
