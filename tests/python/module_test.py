@@ -62,9 +62,9 @@ class Values(unittest.TestCase):
 
     def test_repair_makes_a_pattern_consistent(self):
         robot = ayumi.load_robot("hoap1", meshes=False)
-        # So fast that a knee and the motor boards cannot follow.
-        task = ayumi.sample(ayumi.squat_pattern(robot, period=0.7, depth=0.04, cycles=1), robot)
-        self.assertIn("table_step", ayumi.check(task).reason)
+        # So fast that the knees cannot follow.
+        task = ayumi.sample(ayumi.squat_pattern(robot, period=0.64, depth=0.04, cycles=1), robot)
+        self.assertIn("joint_speed", ayumi.check(task).reason)
         found = ayumi.repair(task, lock_joints=["l_elbow"])
         self.assertEqual(found.status, "repaired")
         self.assertTrue(ayumi.check(found.task))

@@ -32,9 +32,9 @@ constexpr double kStep = 1e-6;
 // Inverse weight of the base against a joint, which follows freely. Definition: large.
 constexpr double kFreeBase = 1e3;
 
-// Time for which a walking robot stands on one foot, times omega: as long as VIIP steps. An error
-// that grows by less than a factor e meanwhile is put right on both feet: on soft soles a robot can
-// walk although it could not stay on one foot.
+// Time for which a walking robot stands on one foot, times omega. Chosen: that of a step of VIIP.
+// An error that grows by less than a factor e meanwhile is put right on both feet: on soft soles a
+// robot can walk although it could not stay on one foot.
 constexpr double kStepTime = 2.1;
 
 // Regularisation of the solution for P, in parts of the trace. Chosen: rows that repeat each other
