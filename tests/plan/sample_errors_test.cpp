@@ -75,7 +75,7 @@ TEST(SampleErrors, TimesOutOfOrder) {
   expect_words(message_of([](Pattern& p) { p.keyframes[2].t = p.keyframes[1].t; }),
                {"/keyframes/2", "times must increase"});
   expect_words(message_of([](Pattern& p) { p.phases[2].until = p.phases[1].until; }),
-               {"walk.json: phases/2", "times must increase"});
+               {"walk.json: phases/2", "give a later \"until\""});
 }
 
 TEST(SampleErrors, KeysBeyondTheEnd) {
