@@ -10,6 +10,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/bundled_data.hpp"
+#include "describe.hpp"
 #include "help.hpp"
 #include "option_checks.hpp"
 #include "signals.hpp"
@@ -75,6 +76,16 @@ void add_global_options(CLI::App& app, Context& context) {
       ->check(whole_number_within(0, 1024).description(""))
       ->type_name("N");
   app.add_option("--seed", context.seed, "Seed of noise and random choices.")->type_name("N");
+  app.add_option_function<std::string>(
+         "--describe",
+         [&app](const std::string& kind) {
+           std::fputs(described(app, kind, version()).c_str(), stdout);
+           throw CLI::Success();
+         },
+         "Print the manual page (man) or the completion of a shell (bash, zsh, fish).")
+      ->type_name("KIND")
+      ->trigger_on_parse()
+      ->group("");
   app.add_option("--robot-path", context.robot_path,
                  "Folder with robots, searched before the bundled ones.")
       ->type_name("DIR")

@@ -44,9 +44,24 @@ std::string read_input(const std::filesystem::path& file, size_t most) {
   return {std::istreambuf_iterator<char>(std::cin), {}};
 }
 
+namespace {
+
+/// A file that is not here, as "patterns/hoap1_walk.json", may be one of those that belong to
+/// Ayumi.
+std::filesystem::path file_or_bundled(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (file.is_absolute() || !file.has_parent_path() || std::filesystem::exists(file, ignored))
+    return file;
+  const std::filesystem::path bundled =
+      data_folder(*file.begin()) / file.lexically_relative(*file.begin());
+  return std::filesystem::is_regular_file(bundled, ignored) ? bundled : file;
+}
+
+}  // namespace
+
 Pattern read_given_pattern(const std::filesystem::path& file,
                            const std::map<std::string, double>& set) {
-  if (file != "-") return read_pattern(file, set);
+  if (file != "-") return read_pattern(file_or_bundled(file), set);
   return pattern_of_text(read_input(file), "standard input", set);
 }
 

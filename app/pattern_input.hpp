@@ -23,7 +23,8 @@ void add_pattern_options(CLI::App& command, PatternOptions& options);
 std::string read_input(const std::filesystem::path& file, size_t most = size_t{1} << 30);
 
 /// The pattern of a file; `-` is standard input, what it names is then looked for in the working
-/// folder.
+/// folder. A file that is not there, with a folder before its name ("patterns/hoap1_walk.json"), is
+/// looked for in the bundled data.
 Pattern read_given_pattern(const std::filesystem::path& file,
                            const std::map<std::string, double>& set = {});
 

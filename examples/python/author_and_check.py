@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Author a motion, check it, repair it, simulate it, and write the table for the robot.
 
     python3 examples/python/author_and_check.py OUT

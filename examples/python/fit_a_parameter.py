@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Find what a robot carries: the mass on its left forearm, from the torques of its ankles.
 
     python3 examples/python/fit_a_parameter.py

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Plot a pushed walk with Matplotlib, beside pictures that Ayumi draws.
 
     python3 examples/python/plot_a_run.py OUT

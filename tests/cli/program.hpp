@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -34,9 +35,15 @@ inline void write(const fs::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
+/// The program under test: that of the build, or an installed one that the environment names.
+inline std::string program_under_test() {
+  const char* installed = std::getenv("AYUMI_INSTALLED_PROGRAM");
+  return installed ? installed : AYUMI_PROGRAM;
+}
+
 /// Runs `program arguments…` in `folder`, its streams going to files that are read back.
 inline Output run_program(const std::vector<std::string>& arguments, const fs::path& folder,
-                          const std::string& program = AYUMI_PROGRAM) {
+                          const std::string& program = program_under_test()) {
   const fs::path streams =
       fs::path(testing::TempDir()) / ("ayumi_streams_" + std::to_string(::getpid()));
   fs::create_directories(streams);

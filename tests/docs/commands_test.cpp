@@ -22,6 +22,7 @@ const NotRun kNotRun[] = {
     {"tests/run.sh", "builds and runs all tests, this one too"},
     {".ci/", "installs packages, builds and runs all tests"},
     {"cmake ", "builds; the build of this test is the proof"},
+    {"cpack ", "makes packages: tests/install"},
     {"ctest ", "runs all tests, this one too"},
     {"build/", "runs a test program of the build folder"},
     {"valgrind ", "measures the benchmarks, which are built by hand"},

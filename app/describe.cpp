@@ -1,0 +1,244 @@
+#include "describe.hpp"
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+/// A command with the words before it: "new walk".
+struct Level {
+  std::string words;
+  const CLI::App* app;
+};
+
+void add_levels(const CLI::App& app, const std::string& words, std::vector<Level>& levels) {
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    levels.push_back({words + command->get_name(), command});
+    add_levels(*command, words + command->get_name() + " ", levels);
+  }
+}
+
+std::vector<Level> levels_of(const CLI::App& app) {
+  std::vector<Level> levels;
+  add_levels(app, "", levels);
+  return levels;
+}
+
+std::vector<const CLI::Option*> options_of(const CLI::App& app) {
+  std::vector<const CLI::Option*> options;
+  for (const CLI::Option* option : app.get_options())
+    if (!option->get_group().empty()) options.push_back(option);
+  return options;
+}
+
+/// "-o", "--out"
+std::vector<std::string> flags_of(const CLI::Option& option) {
+  std::vector<std::string> flags;
+  for (const std::string& name : option.get_snames()) flags.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) flags.push_back("--" + name);
+  return flags;
+}
+
+bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
+
+/// "NAME", "F", as the help shows it.
+std::string value_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.substr(0, type.find(':'));
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
+    text.replace(at, what.size(), with);
+  return text;
+}
+
+// --- The manual page -----------------------------------------------------------------------------
+
+std::string roff(std::string text) {
+  text = replaced(std::move(text), "\\", "\\e");
+  text = replaced(std::move(text), "-", "\\-");
+  text = replaced(std::move(text), "\n.", "\n\\&.");
+  text = replaced(std::move(text), "\n'", "\n\\&'");
+  if (text.starts_with('.') || text.starts_with('\'')) text = "\\&" + text;
+  return text;
+}
+
+std::string manual_options(const CLI::App& app) {
+  std::string text;
+  for (const CLI::Option* option : options_of(app)) {
+    if (!option->get_positional() && flags_of(*option).empty()) continue;
+    text += ".TP\n";
+    if (option->get_positional() && flags_of(*option).empty())
+      text += "\\fI" + roff(option->get_name(true)) + "\\fR";
+    else {
+      text += "\\fB" + roff(text::join(flags_of(*option), ", ")) + "\\fR";
+      if (takes_value(*option)) text += " \\fI" + roff(value_of(*option)) + "\\fR";
+    }
+    text += "\n" + roff(option->get_description()) + "\n";
+  }
+  return text;
+}
+
+std::string manual(const CLI::App& app, const std::string& version) {
+  std::string text = ".TH AYUMI 1 \"\" \"Ayumi " + version + "\" \"User Commands\"\n";
+  text +=
+      ".SH NAME\nayumi \\- make motions of humanoid robots consistent, stable and safe\n"
+      ".SH SYNOPSIS\n.B ayumi\n[\\fIOPTIONS\\fR] \\fICOMMAND\\fR [\\fIARGUMENTS\\fR]\n"
+      ".SH DESCRIPTION\nAyumi reads a robot (URDF and sidecar) and a motion pattern, checks "
+      "whether "
+      "the motion is physically consistent, repairs it, simulates the robot with a balance "
+      "controller and disturbances, and writes joint tables for the robot.\n"
+      ".SH OPTIONS\n";
+  text += manual_options(app) + ".SH COMMANDS\n";
+  for (const Level& level : levels_of(app)) {
+    text += ".SS ayumi " + roff(level.words) + "\n" + roff(level.app->get_description()) + "\n";
+    text += manual_options(*level.app);
+    const std::string footer = level.app->get_footer();
+    if (!footer.empty()) text += ".PP\n.nf\n" + roff(footer) + "\n.fi\n";
+  }
+  return text +
+         ".SH EXIT STATUS\n0: the motion is good. 1: it is not. 2: wrong usage. 3: bad input. 4: "
+         "no "
+         "repair was found. 5: internal error. 130: stopped.\n";
+}
+
+// --- Completion ----------------------------------------------------------------------------------
+
+std::string all_flags(const CLI::App& app) {
+  std::vector<std::string> all;
+  for (const CLI::Option* option : options_of(app))
+    for (const std::string& flag : flags_of(*option)) all.push_back(flag);
+  return text::join(all, " ");
+}
+
+std::string names_below(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return text::join(names, " ");
+}
+
+std::string bash_completion(const CLI::App& app) {
+  std::string text =
+      "# Completion of ayumi for bash.\n"
+      "_ayumi() {\n"
+      "  local word=${COMP_WORDS[COMP_CWORD]} path= i\n"
+      "  for ((i = 1; i < COMP_CWORD; ++i)); do\n"
+      "    case \"$path ${COMP_WORDS[i]}\" in\n";
+  for (const Level& level : levels_of(app))
+    text += "      ' " + level.words + "') path=' " + level.words + "' ;;\n";
+  text += "    esac\n  done\n  local flags='" + all_flags(app) + "' names=\n  case $path in\n";
+  text += "    '') names='" + names_below(app) + "' ;;\n";
+  for (const Level& level : levels_of(app))
+    text += "    ' " + level.words + "') flags+=' " + all_flags(*level.app) + "' names='" +
+            names_below(*level.app) + "' ;;\n";
+  return text +
+         "  esac\n"
+         "  if [[ $word == -* ]]; then\n"
+         "    mapfile -t COMPREPLY < <(compgen -W \"$flags\" -- \"$word\")\n"
+         "  elif [[ -n $names ]]; then\n"
+         "    mapfile -t COMPREPLY < <(compgen -W \"$names\" -- \"$word\")\n"
+         "  else\n"
+         "    mapfile -t COMPREPLY < <(compgen -f -- \"$word\")\n"
+         "  fi\n"
+         "}\n"
+         "complete -o filenames -F _ayumi ayumi\n";
+}
+
+/// Text between apostrophes, without what _arguments and shells read as their own.
+std::string plain(std::string text) {
+  for (const char* mark : {"'", "[", "]", ":", "\\", "`", "$", "\""})
+    text = replaced(std::move(text), mark, "");
+  return replaced(std::move(text), "\n", " ");
+}
+
+std::string zsh_options(const CLI::App& app) {
+  std::string text;
+  for (const CLI::Option* option : options_of(app))
+    for (const std::string& flag : flags_of(*option))
+      text += " \\\n        '*" + flag + "[" + plain(option->get_description()) + "]" +
+              (takes_value(*option) ? ":" + plain(value_of(*option)) + ":_files" : "") + "'";
+  return text;
+}
+
+std::string zsh_names(const CLI::App& app) {
+  std::string text;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    text += " '" + command->get_name() + ":" + plain(command->get_description()) + "'";
+  return text;
+}
+
+std::string zsh_completion(const CLI::App& app) {
+  std::string text =
+      "#compdef ayumi\n# Completion of ayumi for zsh.\n"
+      "_ayumi() {\n  local path= word\n  local -a names\n"
+      "  for word in ${words[2,CURRENT-1]}; do\n    case \"$path $word\" in\n";
+  for (const Level& level : levels_of(app))
+    text += "      ' " + level.words + "') path=' " + level.words + "' ;;\n";
+  text += "    esac\n  done\n  case $path in\n";
+  std::vector<Level> levels = levels_of(app);
+  levels.insert(levels.begin(), {"", &app});
+  for (const Level& level : levels) {
+    text += "    '" + (level.words.empty() ? "" : " " + level.words) + "')\n";
+    const std::string names = zsh_names(*level.app);
+    if (!names.empty())
+      text += "      if [[ $PREFIX != -* ]]; then\n        names=(" + names +
+              ")\n        _describe command names\n        return\n      fi\n";
+    text += "      _arguments -S" + zsh_options(*level.app) +
+            (level.words.empty() ? "" : zsh_options(app)) + " \\\n        '*:file:_files' ;;\n";
+  }
+  return text + "  esac\n}\n_ayumi \"$@\"\n";
+}
+
+std::string fish_options(const CLI::App& app, const std::string& condition) {
+  std::string text;
+  for (const CLI::Option* option : options_of(app)) {
+    if (flags_of(*option).empty()) continue;
+    text += "complete -c ayumi" + condition;
+    for (const std::string& name : option->get_snames()) text += " -s " + name;
+    for (const std::string& name : option->get_lnames()) text += " -l " + name;
+    if (takes_value(*option)) text += " -r";
+    text += " -d '" + plain(option->get_description()) + "'\n";
+  }
+  return text;
+}
+
+std::string fish_completion(const CLI::App& app) {
+  std::string text = "# Completion of ayumi for fish.\n" + fish_options(app, "");
+  std::vector<Level> levels = levels_of(app);
+  levels.insert(levels.begin(), {"", &app});
+  for (const Level& level : levels) {
+    std::string seen;
+    for (const char c : level.words)
+      seen += c == ' ' ? std::string("; and __fish_seen_subcommand_from ") : std::string(1, c);
+    const std::string within =
+        seen.empty() ? "__fish_use_subcommand" : "__fish_seen_subcommand_from " + seen;
+    for (const CLI::App* command : level.app->get_subcommands([](const CLI::App*) { return true; }))
+      text += "complete -c ayumi -f -n '" + within + "' -a " + command->get_name() + " -d '" +
+              plain(command->get_description()) + "'\n";
+    if (!level.words.empty()) text += fish_options(*level.app, " -n '" + within + "'");
+  }
+  return text;
+}
+
+}  // namespace
+
+const std::vector<std::string>& description_kinds() {
+  static const std::vector<std::string> kinds = {"man", "bash", "zsh", "fish"};
+  return kinds;
+}
+
+std::string described(const CLI::App& app, const std::string& kind, const std::string& version) {
+  if (kind == "man") return manual(app, version);
+  if (kind == "bash") return bash_completion(app);
+  if (kind == "zsh") return zsh_completion(app);
+  if (kind == "fish") return fish_completion(app);
+  fail(ErrorCode::usage, "--describe: unknown kind '" + kind + "'" +
+                             text::suggestion(kind, description_kinds()) +
+                             " (known: " + text::join(description_kinds(), ", ") + ")");
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,70 @@
+// --describe: the manual page and the completion of shells have every command and its options.
+
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+/// Long options in the help of a command.
+std::set<std::string> options_in_help(const std::vector<std::string>& command) {
+  std::vector<std::string> words = command;
+  words.emplace_back("--help");
+  const std::string help = run_program(words, testing::TempDir()).out;
+  std::set<std::string> options;
+  std::istringstream lines(help.substr(help.find("\nOptions:")));
+  static const std::regex option("^ *(?:-\\w,)?(--[a-z-]+)");
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);)
+    if (std::regex_search(line, match, option)) options.insert(match[1]);
+  return options;
+}
+
+std::string described(const std::string& kind) {
+  const Output output = run_program({"--describe", kind}, testing::TempDir());
+  EXPECT_EQ(output.exit_code, 0) << output.err;
+  return output.out;
+}
+
+TEST(Describe, EveryKindHasTheOptionsOfTheHelp) {
+  std::set<std::string> options = options_in_help({"run"});
+  options.merge(options_in_help({"new", "walk"}));
+  ASSERT_GE(options.size(), 20u);
+  const std::string bash = described("bash"), zsh = described("zsh"), fish = described("fish");
+  std::string manual = described("man");
+  for (size_t at; (at = manual.find("\\-")) != std::string::npos;) manual.erase(at, 1);
+  for (const std::string& option : options) {
+    EXPECT_NE(manual.find(option), std::string::npos) << option;
+    EXPECT_NE(bash.find(option), std::string::npos) << option;
+    EXPECT_NE(zsh.find("*" + option + "["), std::string::npos) << option;
+    EXPECT_NE(fish.find(" -l " + option.substr(2) + " "), std::string::npos) << option;
+  }
+}
+
+TEST(Describe, EveryCommandIsThere) {
+  const std::string manual = described("man");
+  for (const char* command : {"check", "run", "new walk", "edit retime", "identify"})
+    EXPECT_NE(manual.find(std::string(".SS ayumi ") + command + "\n"), std::string::npos)
+        << command;
+}
+
+TEST(Describe, AnUnknownKindIsRefused) {
+  const Output output = run_program({"--describe", "powershell"}, testing::TempDir());
+  EXPECT_EQ(output.exit_code, 2);
+  EXPECT_NE(output.err.find("known: man, bash, zsh, fish"), std::string::npos) << output.err;
+}
+
+TEST(BundledFiles, APatternIsFoundByItsNameWhereverTheProgramIsStarted) {
+  const Folder folder;
+  EXPECT_EQ(run_program({"check", "patterns/hoap1_walk.json"}, folder.path()).exit_code, 0);
+  EXPECT_EQ(run_program({"check", "examples/motions/bow.json"}, folder.path()).exit_code, 0);
+  // A file of the same name in the working folder goes first.
+  write(folder / "patterns/hoap1_walk.json", "{");
+  EXPECT_EQ(run_program({"check", "patterns/hoap1_walk.json"}, folder.path()).exit_code, 3);
+}
+
+}  // namespace
+}  // namespace ayumi::test

@@ -1,0 +1,61 @@
+# cmake -DSCRATCH= -DPYTHON= -P installed.cmake
+# What was installed works by itself, from a folder that knows nothing of the sources: the bundled
+# robots and patterns are those of the installation, shells complete the commands, the manual page
+# is one, and Python imports the package.
+cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+set(stage ${SCRATCH}/stage)
+set(elsewhere ${SCRATCH}/elsewhere)
+file(REMOVE_RECURSE ${elsewhere})
+file(MAKE_DIRECTORY ${elsewhere})
+
+function(expect text what)
+  if(NOT output MATCHES "${text}")
+    message(FATAL_ERROR "${what}: \"${text}\" is missing in\n${output}")
+  endif()
+endfunction()
+
+# A copy in another place: nothing depends on where the build meant to install it.
+set(copy ${elsewhere}/moved)
+file(COPY ${stage}/bin ${stage}/share DESTINATION ${copy})
+run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${copy}/bin/ayumi check patterns/hoap1_walk.json)
+expect("hoap1_walk.json: consistent" "a bundled pattern by its name")
+run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${copy}/bin/ayumi robots)
+expect("hoap1" "the bundled robots")
+
+run(bash -c [=[source "$0"
+COMP_WORDS=(ayumi new walk --str) COMP_CWORD=3
+_ayumi
+echo "[${COMPREPLY[*]}]"
+COMP_WORDS=(ayumi ex) COMP_CWORD=1
+_ayumi
+echo "[${COMPREPLY[*]}]"]=]
+    ${stage}/share/bash-completion/completions/ayumi)
+expect("\\[--stride\\]" "completion of an option of bash")
+expect("\\[export explain\\]|\\[explain export\\]" "completion of a command of bash")
+find_program(zsh zsh)
+if(zsh)
+  run(${zsh} -n ${stage}/share/zsh/vendor-completions/_ayumi)
+endif()
+find_program(fish fish)
+if(fish)
+  run(${fish} --no-execute ${stage}/share/fish/vendor_completions.d/ayumi.fish)
+endif()
+find_program(man man)
+if(man)
+  run(bash -c "LC_ALL=C.UTF-8 MANWIDTH=120 '${man}' --warnings -l '${stage}/share/man/man1/ayumi.1.gz' 2>&1")
+  expect("ayumi new walk.*--stride" "the manual page")
+  if(output MATCHES "warning:")
+    message(FATAL_ERROR "the manual page has warnings:\n${output}")
+  endif()
+endif()
+
+if(PYTHON)
+  file(GLOB_RECURSE package ${stage}/*/_native*.so)
+  cmake_path(GET package PARENT_PATH folder)
+  cmake_path(GET folder PARENT_PATH folder)
+  run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${CMAKE_COMMAND} -E env PYTHONPATH=${folder}
+      ${PYTHON} -c "import ayumi\nprint(ayumi.data_folder('robots'), bool(ayumi.check(ayumi.load_task(ayumi.data_folder('patterns') / 'hoap1_walk.json'))))")
+  expect("${stage}/share/ayumi/robots True" "the Python package")
+endif()
