@@ -6,6 +6,7 @@ set(AYUMI_MAINTAINER "Ayumi maintainers <maintainers@users.noreply.github.com>" 
     "Maintainer in the control files of the packages")
 set(CPACK_PACKAGE_NAME ayumi)
 set(CPACK_PACKAGE_VENDOR Ayumi)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # CPack would put it before the packages' own summaries
 set(CPACK_PACKAGE_CONTACT "${AYUMI_MAINTAINER}")
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
