@@ -13,6 +13,7 @@
 #include "ayumi/model/outline.hpp"
 #include "ayumi/render/clip.hpp"
 #include "pattern_input.hpp"
+#include "robot_picture.hpp"
 
 namespace ayumi::app {
 
@@ -279,50 +280,12 @@ std::string inspection_text(const RobotModel& model, const Stance& stance,
          list_lines("Assumptions", model.description().assumptions) + list_lines("Warnings", notes);
 }
 
-/// The home posture on the ground with its COG, drawn as the instant of a run is.
-SimulationLog stand_of(const RobotModel& model) {
-  SimulationLog log;
-  log.joints = model.dof_names();
-  log.dt = 1e-3;
-  SimulationSample sample;
-  sample.state = model.rest_state();
-  RobotData data(model);
-  update_positions(model, sample.state, data);
-  if (model.has_soles())
-    anchor_base(model, Side::left, Eigen::Isometry3d::Identity(), sample.state, data);
-  else
-    sample.state.base.position.z() -=
-        robot_bounds(robot_surface(model), body_poses(model, sample.state)).min().z();
-  update_positions(model, sample.state, data);
-  sample.cog = data.cog;
-  sample.torque = sample.command_theta = sample.state.theta;
-  log.samples.push_back(std::move(sample));
-  return log;
-}
-
-/// What is drawn otherwise than the robot's files say.
-std::vector<std::string> write_picture(const Context& context, const RobotModel& model,
-                                       const std::string& file, const std::string& view) {
-  if (std::filesystem::path(file).extension() != ".png")
-    fail(ErrorCode::usage, "--picture " + file + ": --picture needs a file name that ends in .png");
-  refuse_overwriting(context, file);
-  ClipOptions options;
-  options.camera.view = view;
-  OverlayOptions& marks = options.overlay;  // of those, a robot without motion has a COG
-  marks.zmp = marks.reference_zmp = marks.support = marks.forces = marks.push = false;
-  marks.trails = marks.caption = false;
-  const SimulationLog log = stand_of(model);
-  ClipRenderer renderer(model, log, options);
-  write_png(file, renderer.frame(0));
-  return renderer.notes();
-}
-
 void inspect(const Context& context, const InspectOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context), {.meshes = true});
   check_controller(model, {ControllerKind::dtad, {}});  // the sidecar's gains of both laws
   std::vector<std::string> notes;
   if (!options.picture.empty())
-    notes = write_picture(context, model, options.picture, options.view);
+    notes = write_robot_picture(context, model, options.picture, options.view);
   const Stance stance = stance_of(model);
   const std::vector<ModelWarning> warnings = diagnose(model);
   context.print(inspection_text(model, stance, warnings));

@@ -80,6 +80,93 @@ TEST(InverseKinematics, SevenJointLegs) {
   EXPECT_LT(solution.error, 1e-10);
 }
 
+// Without the ankle's roll, and with feet that stand still, the COG goes aside only where the trunk
+// leans; soles stay within the stated tolerance.
+TEST(InverseKinematics, FiveJointLegsLean) {
+  RobotDescription robot = test::biped_description();
+  for (JointDescription& joint : robot.joints)
+    if (joint.name.ends_with("ankle_roll")) joint.type = JointType::fixed;
+  const RobotModel model(robot);
+  const InverseKinematics ik(model, model.posture());
+  EXPECT_TRUE(ik.lacks_joints());
+  RobotData data(model);
+  RobotState state = model.rest_state();
+  update_positions(model, state, data);
+  PostureTarget target;
+  for (const Side side : kSides) target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
+  for (const double aside : {0.0, 0.004, -0.004}) {
+    target.cog = data.cog;
+    target.cog.y() += aside;
+    RobotState solved = state;
+    RobotData there(model);
+    const PostureSolution solution = ik.solve(target, solved, there);
+    EXPECT_TRUE(solution.reached) << aside;
+    update_positions(model, solved, there);
+    EXPECT_LT((there.cog - target.cog).norm(), 1e-6);
+    EXPECT_LE(solution.missing, kLackingTolerance);
+    if (aside == 0)
+      EXPECT_LT(solution.lean, 1e-6);
+    else
+      EXPECT_GT(solution.lean, 0.01);
+  }
+}
+
+// Both knees come forward, whatever the signs of their axes, where the limits do not tell.
+TEST(InverseKinematics, StraightKneesComeForwardByGeometry) {
+  RobotDescription robot = test::biped_description();
+  for (JointDescription& joint : robot.joints) {
+    joint.lower = -2.8;
+    joint.upper = 2.8;
+    if (joint.name.starts_with("r_")) joint.axis = -joint.axis;
+  }
+  robot.postures["home"] = {};
+  const RobotModel model(robot);
+  const InverseKinematics ik(model, model.posture());
+  EXPECT_GT(ik.start()[model.find_dof("l_knee")], 0.1);
+  EXPECT_LT(ik.start()[model.find_dof("r_knee")], -0.1);
+  EXPECT_TRUE(ik.positive_bends_forward(Side::left));
+  EXPECT_FALSE(ik.positive_bends_forward(Side::right));
+}
+
+// A knee that has room to one side only bends to this side.
+TEST(InverseKinematics, LimitsTellTheKneeOfABird) {
+  RobotDescription robot = test::biped_description();
+  for (JointDescription& joint : robot.joints)
+    if (joint.name.ends_with("knee")) {
+      joint.lower = -2.2;
+      joint.upper = 0.05;
+    }
+  robot.postures["home"] = {};
+  robot.postures["squat"] = {};
+  const RobotModel model(robot);
+  EXPECT_LT(InverseKinematics(model, model.posture()).start()[model.find_dof("l_knee")], -0.1);
+}
+
+// Redundant legs stay inside the position limits on their way to the target.
+TEST(InverseKinematics, SevenJointLegsRespectLimits) {
+  RobotDescription robot = test::biped_description();
+  for (const std::string s : {"l_", "r_"}) {
+    for (JointDescription& joint : robot.joints)
+      if (joint.name == s + "hip_pitch") joint.child = s + "hip3";
+    robot.links.push_back(test::box_link(s + "hip3", 0.05, {0, 0, 0}, {0.02, 0.02, 0.02}));
+    robot.joints.push_back(
+        test::hinge(s + "thigh_twist", s + "hip3", s + "thigh", {0, 0, 0}, {0, 0, 1}, -0.01, 0.01));
+  }
+  const RobotModel model(robot);
+  const InverseKinematics ik(model, model.posture());
+  RobotData data(model);
+  RobotState state = model.rest_state();
+  update_positions(model, state, data);
+  PostureTarget target;
+  for (const Side side : kSides) target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
+  target.cog = data.cog;
+  target.feet[0].linear() = rpy_to_matrix({0, 0, 0.3});
+  const PostureSolution solution = ik.solve(target, state, data);
+  EXPECT_TRUE(solution.reached);
+  for (const std::string s : {"l_", "r_"})
+    EXPECT_LE(std::abs(state.theta[model.find_dof(s + "thigh_twist")]), 0.01);
+}
+
 TEST(InverseKinematics, SolvesLegsOnly) {
   const RobotModel model = test::biped({.waist = true});
   const InverseKinematics ik(model, model.posture());

@@ -38,8 +38,41 @@ constexpr double kLargestJointStep = 0.3;
 // reach shows at the feet and not at the COG.
 constexpr double kCogWeight = 100;
 
+// Weight of the trunk's attitude against the feet where legs lack joints. Chosen: an angle of 0.1
+// rad then moves the soles by less than 1e-6 m. No tested motion changes from half to twice.
+constexpr double kTrunkWeight = 1e-3;
+
+// Share of an axis that lies across the trunk. Chosen: within 45 degrees.
+constexpr double kAcross = 0.7;
+
+// Room that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with less
+// stays nearly straight, and its robot is built to bend the other way.
+constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
+
+// Sine of the knee's angle up to which a leg counts as straight. Chosen: 1 degree.
+constexpr double kStraightSine = 0.02;
+
 bool contains(const std::vector<int>& list, int value) {
   return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+// Joints of both legs that move each leg by a body of its own; a waist moves both by one body.
+std::vector<int> coupled_joints(const RobotModel& model) {
+  const auto bodies = [&](Side side) {
+    std::vector<int> chain;
+    for (int i = model.sole(side).body; i > 0; i = model.bodies()[i].parent) chain.push_back(i);
+    return chain;
+  };
+  const std::vector<int> left = bodies(Side::left), right = bodies(Side::right);
+  std::vector<int> coupled;
+  for (const int dof : model.leg(Side::left)) {
+    if (!contains(model.leg(Side::right), dof) || contains(coupled, dof)) continue;
+    if (std::any_of(left.begin(), left.end(), [&](int body) {
+          return model.bodies()[body].dof == dof && !contains(right, body);
+        }))
+      coupled.push_back(dof);
+  }
+  return coupled;
 }
 
 }  // namespace
@@ -56,25 +89,77 @@ InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& re
     for (const int dof : leg) solved_[dof] = true;
   }
   square_ = legs_[0].size() == 6 && legs_[1].size() == 6;
-  if (!square_) return;
+  lacking_ = std::min(legs_[0].size(), legs_[1].size()) < 6;
+  if (lacking_) {
+    coupled_ = coupled_joints(model);
+    for (const int dof : coupled_) solved_[dof] = true;
+  }
   RobotData data(model);
-  RobotState state = model.rest_state();
-  for (const Side side : kSides) {
-    state.theta = start_;
-    update_positions(model, state, data);
-    const int knee = legs_[static_cast<int>(side)][3];
-    const Dof& dof = model.dofs()[knee];
-    const double length =
-        (sole_pose(model, data, side).translation() - data.pose(dof.body).translation()).norm();
-    // A straight leg has determinant 0: bend it towards the middle of the knee's range.
-    if (std::abs(bend(data)[static_cast<int>(side)]) < 1e-2 * length * length * length) {
-      const double middle = dof.limited ? 0.5 * (dof.lower + dof.upper) : 1.0;
-      start_[knee] += std::copysign(0.3, middle - start_[knee]);
+  find_knees(data);
+  bend_straight_legs(data);
+  bend_ = bend(data);
+}
+
+// The knee is the middle one of the first three joints of a leg whose axes lie across the trunk.
+void InverseKinematics::find_knees(RobotData& data) {
+  RobotState state = model_->rest_state();
+  state.theta = start_;
+  update_positions(*model_, state, data);
+  const Vector3d across = data.rotation[model_->trunk_body()].col(1);
+  for (int s = 0; s < 2; ++s) {
+    std::vector<int> found;
+    for (const int dof : legs_[s]) {
+      const int body = model_->dofs()[dof].body;
+      if (!model_->dofs()[dof].prismatic && std::abs(data.axis[body].dot(across)) > kAcross)
+        found.push_back(dof);
     }
+    if (found.size() < 3) continue;
+    knees_[s] = found[1];
+    knee_hips_[s] = model_->dofs()[found[0]].body;
+    knee_feet_[s] = model_->dofs()[found[2]].body;
+    const Body& shank = model_->bodies()[model_->dofs()[found[1]].body];
+    // A shank turned about the axis to the left goes back, and the knee comes forward.
+    forward_[s] =
+        std::copysign(1.0, shank.ratio * data.axis[model_->dofs()[found[1]].body].dot(across));
+  }
+}
+
+// Sine of the angle between thigh and shank, positive where the knee is in front of the line from
+// hip to ankle; without a knee 0.
+double InverseKinematics::knee_bend(const RobotData& data, Side side) const {
+  const int s = static_cast<int>(side);
+  if (knees_[s] < 0) return 0;
+  const int knee = model_->dofs()[knees_[s]].body;
+  const Vector3d thigh = data.position[knee] - data.position[knee_hips_[s]];
+  const Vector3d shank = data.position[knee_feet_[s]] - data.position[knee];
+  const double size = thigh.norm() * shank.norm();
+  const Vector3d left = forward_[s] * model_->bodies()[knee].ratio * data.axis[knee];
+  return size > 0 ? thigh.cross(shank).dot(left) / size : 0;
+}
+
+void InverseKinematics::bend_straight_legs(RobotData& data) {
+  RobotState state = model_->rest_state();
+  state.theta = start_;
+  update_positions(*model_, state, data);
+  for (const Side side : kSides) {
+    const int s = static_cast<int>(side);
+    const int knee = knees_[s] >= 0 ? knees_[s] : square_ ? legs_[s][3] : -1;
+    if (knee < 0) continue;
+    const Dof& dof = model_->dofs()[knee];
+    const double length =
+        (sole_pose(*model_, data, side).translation() - data.pose(dof.body).translation()).norm();
+    const bool straight = square_ ? std::abs(bend(data)[s]) < 1e-2 * length * length * length
+                                  : std::abs(knee_bend(data, side)) < kStraightSine;
+    if (!straight) continue;
+    double way = knees_[s] >= 0 ? forward_[s] : 1.0;
+    const auto room = [&](double w) {
+      return w > 0 ? dof.upper - start_[knee] : start_[knee] - dof.lower;
+    };
+    if (room(way) < kKneeRoom && room(-way) > room(way)) way = -way;
+    start_[knee] += way * kStartBend;
   }
   state.theta = start_;
-  update_positions(model, state, data);
-  bend_ = bend(data);
+  update_positions(*model_, state, data);
 }
 
 double InverseKinematics::Residual::largest() const {
@@ -95,12 +180,14 @@ InverseKinematics::Residual InverseKinematics::residual(const PostureTarget& tar
         log_rotation(Eigen::Quaterniond(target.feet[s].linear() * sole.linear().transpose()));
   }
   e.cog = target.cog - data.cog;
+  e.trunk = log_rotation(
+      Eigen::Quaterniond(target.trunk * data.rotation[model_->trunk_body()].transpose()));
   return e;
 }
 
-// 6 x leg joints: twist of the sole, written for speed (body_jacobian has all columns).
-MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side) const {
-  const auto& leg = legs_[static_cast<int>(side)];
+// 6 x joints: twist of the sole, written for speed (body_jacobian has all columns).
+MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side,
+                                         const std::vector<int>& leg) const {
   const Sole& sole = model_->sole(side);
   const Vector3d p = data.position[sole.body] + data.rotation[sole.body] * sole.frame.translation();
   MatrixXd J = MatrixXd::Zero(6, static_cast<Eigen::Index>(leg.size()));
@@ -121,8 +208,9 @@ MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side) const
 }
 
 std::array<double, 2> InverseKinematics::bend(const RobotData& data) const {
-  return {Matrix6d(leg_jacobian(data, Side::left)).determinant(),
-          Matrix6d(leg_jacobian(data, Side::right)).determinant()};
+  if (!square_) return {knee_bend(data, Side::left), knee_bend(data, Side::right)};
+  return {Matrix6d(leg_jacobian(data, Side::left, legs_[0])).determinant(),
+          Matrix6d(leg_jacobian(data, Side::right, legs_[1])).determinant()};
 }
 
 void InverseKinematics::set_attitude(const PostureTarget& target, RobotState& state,
@@ -150,7 +238,7 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state,
       Eigen::Matrix<double, 6, 4> B = Eigen::Matrix<double, 6, 4>::Zero();
       B.topLeftCorner<3, 3>().setIdentity();
       B.col(3) = e.foot[s];
-      solved[s] = Matrix6d(leg_jacobian(data, kSides[s])).partialPivLu().solve(B);
+      solved[s] = Matrix6d(leg_jacobian(data, kSides[s], legs_[s])).partialPivLu().solve(B);
       for (int i = 0; i < 6; ++i) {
         const Vector3d c = C.col(6 + legs_[s][i]);
         S -= c * solved[s].row(i).head<3>();
@@ -173,40 +261,70 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state,
   return false;
 }
 
-// Levenberg-Marquardt on all residuals, the COG weighted; returns the largest residual.
+// Levenberg-Marquardt on all residuals, the COG weighted, inside the position limits: a joint at
+// its limit stays there while the step would take it beyond. Where legs lack joints, the attitude
+// of the base is solved too, with a small weight on the trunk's. Returns the largest residual of
+// soles and COG.
 double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
                                  RobotData& data) const {
-  const auto n0 = static_cast<Eigen::Index>(legs_[0].size());
-  const auto n1 = static_cast<Eigen::Index>(legs_[1].size());
-  const auto stack = [](const Residual& e) {
-    VectorXd r(15);
-    r << e.foot[0], e.foot[1], kCogWeight * e.cog;
+  std::vector<int> joints = legs_[0];
+  joints.insert(joints.end(), legs_[1].begin(), legs_[1].end());
+  joints.insert(joints.end(), coupled_.begin(), coupled_.end());
+  const auto n = static_cast<Eigen::Index>(joints.size());
+  const Eigen::Index base = lacking_ ? 6 : 3, rows = lacking_ ? 18 : 15;
+  const auto limit = [&](VectorXd& theta) {
+    for (const int dof : joints)
+      theta[dof] = std::clamp(theta[dof], model_->dofs()[dof].lower, model_->dofs()[dof].upper);
+  };
+  limit(state.theta);
+  const auto stack = [&](const Residual& e) {
+    VectorXd r(rows);
+    r.head<15>() << e.foot[0], e.foot[1], kCogWeight * e.cog;
+    if (lacking_) r.tail<3>() = kTrunkWeight * e.trunk;
     return r;
   };
   Residual e = residual(target, state, data);
   double lambda = 1e-6;
-  for (int iteration = 0; iteration < 200 && e.largest() > kNewtonTolerance; ++iteration) {
-    MatrixXd J = MatrixXd::Zero(15, 3 + n0 + n1);
-    J.block<3, 3>(0, 0).setIdentity();
-    J.block<3, 3>(6, 0).setIdentity();
+  for (int iteration = 0; iteration < 200 && stack(e).cwiseAbs().maxCoeff() > kNewtonTolerance;
+       ++iteration) {
+    MatrixXd J = MatrixXd::Zero(rows, base + n);
+    for (int s = 0; s < 2; ++s) {
+      J.block<3, 3>(6 * s, 0).setIdentity();
+      J.block(6 * s, base, 6, n) = leg_jacobian(data, kSides[s], joints);
+    }
     J.block<3, 3>(12, 0) = kCogWeight * Eigen::Matrix3d::Identity();
-    J.block(0, 3, 6, n0) = leg_jacobian(data, Side::left);
-    J.block(6, 3 + n0, 6, n1) = leg_jacobian(data, Side::right);
     const MatrixXd C = cog_jacobian_floating(*model_, data);
-    for (Eigen::Index i = 0; i < n0; ++i)
-      J.block<3, 1>(12, 3 + i) = kCogWeight * C.col(6 + legs_[0][i]);
-    for (Eigen::Index i = 0; i < n1; ++i)
-      J.block<3, 1>(12, 3 + n0 + i) = kCogWeight * C.col(6 + legs_[1][i]);
-    const VectorXd r = stack(e);
+    for (Eigen::Index i = 0; i < n; ++i)
+      J.block<3, 1>(12, base + i) = kCogWeight * C.col(6 + joints[i]);
+    if (lacking_) {
+      for (int s = 0; s < 2; ++s) {
+        const Vector3d sole = sole_pose(*model_, data, kSides[s]).translation();
+        J.block<3, 3>(6 * s, 3) = -skew(sole - data.base_position);
+        J.block<3, 3>(6 * s + 3, 3).setIdentity();
+      }
+      J.block<3, 3>(12, 3) = -kCogWeight * skew(data.cog - data.base_position);
+      J.block<3, 3>(15, 3) = kTrunkWeight * Eigen::Matrix3d::Identity();
+    }
+    const VectorXd r = stack(e), down = J.transpose() * r;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Dof& dof = model_->dofs()[joints[i]];
+      const double theta = state.theta[joints[i]];
+      if ((theta >= dof.upper && down[base + i] > 0) || (theta <= dof.lower && down[base + i] < 0))
+        J.col(base + i).setZero();
+    }
     MatrixXd H = J.transpose() * J;
-    H.diagonal().array() += lambda;
+    H.diagonal().array() += lambda * (lacking_ ? kTrunkWeight * kTrunkWeight : 1.0);
     VectorXd d = H.ldlt().solve(J.transpose() * r);
-    const double longest = d.tail(n0 + n1).cwiseAbs().maxCoeff();
+    const double longest = d.tail(base + n - 3).cwiseAbs().maxCoeff();
     if (longest > kLargestJointStep) d *= kLargestJointStep / longest;
     RobotState trial = state;
     trial.base.position += d.head<3>();
-    for (Eigen::Index i = 0; i < n0; ++i) trial.theta[legs_[0][i]] += d[3 + i];
-    for (Eigen::Index i = 0; i < n1; ++i) trial.theta[legs_[1][i]] += d[3 + n0 + i];
+    if (lacking_)
+      trial.base.attitude =
+          Eigen::Quaterniond(exp_rotation(d.segment<3>(3)) * state.base.attitude.toRotationMatrix())
+              .normalized();
+    for (Eigen::Index i = 0; i < n; ++i) trial.theta[joints[i]] += d[base + i];
+    limit(trial.theta);
     const Residual next = residual(target, trial, data);
     const double gain = r.squaredNorm() - stack(next).squaredNorm();
     if (gain > 0) {
@@ -226,24 +344,32 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
 PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState& state,
                                          RobotData& data) const {
   PostureSolution solution;
-  set_attitude(target, state, data);
+  // A leaning trunk is kept as the initial guess.
+  if (!lacking_ || residual(target, state, data).trunk.norm() > kLargestJointStep)
+    set_attitude(target, state, data);
   const VectorXd warm = state.theta;
   if (square_) solution.reached = newton(target, state, data);
   if (!solution.reached) {
     for (int dof = 0; dof < model_->dof_count(); ++dof)
       state.theta[dof] = solved_[dof] && square_ ? start_[dof] : warm[dof];
     if (square_) state.base.position = target.cog - (data.cog - data.base_position);
-    solution.reached = damped(target, state, data) <= kAcceptedResidual;
+    solution.reached =
+        damped(target, state, data) <= (lacking_ ? kLackingTolerance : kAcceptedResidual);
   }
   const Residual e = residual(target, state, data);
   solution.error = e.largest();
+  solution.lean = e.trunk.norm();
   const double miss[2] = {e.foot[0].head<3>().norm(), e.foot[1].head<3>().norm()};
   solution.foot = miss[0] >= miss[1] ? Side::left : Side::right;
   solution.missing = std::max(miss[0], miss[1]);
-  if (solution.reached && square_) {
+  for (const int dof : legs_[static_cast<int>(solution.foot)]) {
+    const Dof& joint = model_->dofs()[dof];
+    if (state.theta[dof] <= joint.lower || state.theta[dof] >= joint.upper) solution.at_limit = dof;
+  }
+  if (solution.reached) {
     const auto now = bend(data);
     for (int s = 0; s < 2; ++s)
-      if (now[s] * bend_[s] <= 0) {
+      if (now[s] * bend_[s] < 0 || (square_ && now[s] * bend_[s] == 0)) {
         solution.knee_flipped = true;
         solution.foot = kSides[s];
       }

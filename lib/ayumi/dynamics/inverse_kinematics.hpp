@@ -18,50 +18,77 @@ struct PostureTarget {
 
 struct PostureSolution {
   bool reached = false;
-  double error = 0;           ///< largest residual component [m, rad]
+  double error = 0;           ///< largest residual component of the soles and the COG [m, rad]
+  double lean = 0;            ///< of the trunk from its target, where the legs lack joints [rad]
   Side foot = Side::left;     ///< that is out of reach when not reached
   double missing = 0;         ///< of that foot, COG held [m]
+  int at_limit = -1;          ///< joint of that leg that is at its position limit; -1: none
   bool knee_flipped = false;  ///< reached, but with a leg bent the other way
 };
 
+/// Distance by which soles may miss their places, and the same number of radians, where legs have
+/// fewer than six joints [m, rad]. Chosen: three quarters of the slip that the check allows
+/// (limits/stance). Half: narrower shuffles; twice: the check finds slipping soles.
+inline constexpr double kLackingTolerance = 1.5e-3;
+
 class InverseKinematics {
  public:
-  /// `reference` is a posture whose legs bend the right way (straight legs: the knee, the middle
-  /// joint of the chain, is taken to bend towards the middle of its range). Throws
-  /// Error(bad_model) for a robot without soles or with a foot as root.
+  /// `reference` is a posture whose legs bend the right way. The knee of a straight leg bends as a
+  /// human knee does, so that it comes forward, where its limits leave room for it; else it bends
+  /// the other way. Throws Error(bad_model) for a robot without soles or with a foot as root.
   InverseKinematics(const RobotModel& model, const Eigen::VectorXd& reference);
 
   /// Joints that are solved: those of one leg only. A waist above which both legs hang is not.
   const std::vector<int>& leg(Side side) const { return legs_[static_cast<int>(side)]; }
+  /// A leg has fewer than six joints of its own. Then the trunk leans where the soles and the COG
+  /// need it, and joints that are coupled across both legs are solved too.
+  bool lacks_joints() const { return lacking_; }
+  /// Joints that move both legs at once, as coupled hips do; only where legs lack joints.
+  const std::vector<int>& coupled() const { return coupled_; }
+  /// Joint whose body is the shank; -1: the leg has no three parallel joints across.
+  int knee(Side side) const { return knees_[static_cast<int>(side)]; }
+  /// Whether angles above the straight leg bring the knee forward. Only with a knee.
+  bool positive_bends_forward(Side side) const { return forward_[static_cast<int>(side)] > 0; }
   bool solves(int dof) const { return solved_[dof]; }
 
   /// Legs bent the right way, other joints of the reference.
   const Eigen::VectorXd& start() const { return start_; }
 
   /// Newton on base position and leg joints, warm from `state`; other joints are read from it, the
-  /// base attitude follows from `target.trunk`. Six-joint legs meet the target to 1e-12; others
-  /// as damped least squares. `state` is only meaningful when the solution says reached.
+  /// base attitude follows from `target.trunk`. Six-joint legs meet the target to 1e-12. Others are
+  /// solved as damped least squares inside the position limits: legs with more joints meet the
+  /// target, legs with fewer joints come within kLackingTolerance. `state` is only meaningful when
+  /// the solution says reached.
   PostureSolution solve(const PostureTarget& target, RobotState& state, RobotData& data) const;
 
  private:
   struct Residual {
     Eigen::Matrix<double, 6, 1> foot[2];
-    Eigen::Vector3d cog;
+    Eigen::Vector3d cog, trunk;
     double largest() const;
   };
   Residual residual(const PostureTarget& target, const RobotState& state, RobotData& data) const;
   bool newton(const PostureTarget& target, RobotState& state, RobotData& data) const;
   double damped(const PostureTarget& target, RobotState& state, RobotData& data) const;
-  Eigen::MatrixXd leg_jacobian(const RobotData& data, Side side) const;
+  Eigen::MatrixXd leg_jacobian(const RobotData& data, Side side, const std::vector<int>& leg) const;
   std::array<double, 2> bend(const RobotData& data) const;
+  void find_knees(RobotData& data);
+  void bend_straight_legs(RobotData& data);
+  double knee_bend(const RobotData& data, Side side) const;
   void set_attitude(const PostureTarget& target, RobotState& state, RobotData& data) const;
 
   const RobotModel* model_;
   std::array<std::vector<int>, 2> legs_;
+  std::vector<int> coupled_;
   std::vector<bool> solved_;
-  bool square_ = false;  ///< both legs have six joints
+  bool square_ = false;   ///< both legs have six joints
+  bool lacking_ = false;  ///< a leg has fewer
+  std::array<int, 2> knees_ = {-1, -1};
+  std::array<int, 2> knee_feet_ = {-1, -1};  ///< bodies of the joints across below the knees
+  std::array<int, 2> knee_hips_ = {-1, -1};  ///< and above them
+  std::array<double, 2> forward_ = {0, 0};
   Eigen::VectorXd start_;
-  std::array<double, 2> bend_ = {0, 0};  ///< sign of the leg Jacobian's determinant
+  std::array<double, 2> bend_ = {0, 0};  ///< sign of the leg Jacobian's determinant, of the knee
 };
 
 }  // namespace ayumi

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -49,14 +50,18 @@ namespace {
                              " or shorten the stride";
   if (solution.knee_flipped)
     fail(ErrorCode::bad_pattern, where + " knee would have to bend the wrong way" + remedy);
+  const std::string limit =
+      solution.at_limit < 0
+          ? ""
+          : ", with " + job.model.dofs()[solution.at_limit].name + " at its position limit";
   fail(ErrorCode::bad_pattern,
-       where + " foot is out of reach by " + millimetres(solution.missing) + remedy);
+       where + " foot is out of reach by " + millimetres(solution.missing) + limit + remedy);
 }
 
 }  // namespace
 
-void solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
-                   CommandSample& sample, RobotData& data) {
+PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
+                              CommandSample& sample, RobotData& data) {
   PostureTarget target;
   target.trunk = trunk;
   target.cog = sample.cog;
@@ -68,6 +73,7 @@ void solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
     if (!job.ik.solves(dof)) sample.state.theta[dof] = job.tracks.joints[dof].at(t).value;
   const PostureSolution solution = job.ik.solve(target, sample.state, data);
   if (!solution.reached || solution.knee_flipped) complain_reach(job, t, sample, solution);
+  return solution;
 }
 
 namespace {
@@ -102,8 +108,15 @@ void require_body_tracks(const SampleJob& job) {
   }
 }
 
-void solve_samples(const SampleJob& job, const CogPlan& plan, CommandSeries& series) {
+// Largest figures of a motion by legs that lack joints.
+struct Compromise {
+  double miss = 0;  // of a sole [m]
+  double lean = 0;  // of the trunk [rad]
+};
+
+Compromise solve_samples(const SampleJob& job, const CogPlan& plan, CommandSeries& series) {
   RobotData data(job.model);
+  Compromise most;
   for (int k = 0; k < job.count; ++k) {
     if (k % 256 == 0) report(job.progress, {"sample", static_cast<double>(k) / job.count, ""});
     const double t = k * job.dt;
@@ -112,9 +125,12 @@ void solve_samples(const SampleJob& job, const CogPlan& plan, CommandSeries& ser
     if (k == 0) sample.state.theta = job.ik.start();
     sample.cog = {plan.cog[0].at(t).value, plan.cog[1].at(t).value, plan.cog[2].at(t).value};
     if (k > 0) sample.state.base.position += sample.cog - series.samples[k - 1].cog;
-    solve_posture(job, t, plan.trunk_at(job, t), sample, data);
+    const PostureSolution solution = solve_posture(job, t, plan.trunk_at(job, t), sample, data);
+    most.miss = std::max(most.miss, solution.missing);
+    most.lean = std::max(most.lean, solution.lean);
   }
   fill_rates(series.samples, job.dt, job.tracks.rest_ends);
+  return most;
 }
 
 // Fills commanded ZMP and f_z; returns the largest ZMP error of the full model in the solved axes.
@@ -143,7 +159,8 @@ double fill_ground(const SampleJob& job, const CogPlan& plan, CommandSeries& ser
   return worst;
 }
 
-void describe(const SampleJob& job, const CogPlan& plan, double worst, CommandSeries& series) {
+void describe(const SampleJob& job, const CogPlan& plan, double worst, const Compromise& most,
+              CommandSeries& series) {
   auto& origin = series.origin;
   const bool any = plan.solved[0] || plan.solved[1];
   const bool both = plan.solved[0] && plan.solved[1];
@@ -175,6 +192,16 @@ void describe(const SampleJob& job, const CogPlan& plan, double worst, CommandSe
   }
   origin["feet"] = "phases and swings";
   origin["base"] = "solved from feet, torso and COG";
+  if (job.ik.lacks_joints()) {
+    const size_t joints = std::min(job.ik.leg(Side::left).size(), job.ik.leg(Side::right).size());
+    origin["base"] +=
+        "; a leg has " + std::to_string(joints) +
+        (job.ik.coupled().empty() ? " joints, not six"
+                                  : " joints of its own and one that moves both legs, not six") +
+        ", so the trunk leans by up to " + text::fixed(most.lean * 180 / std::numbers::pi, 1) +
+        " deg and soles miss their places by up to " + millimetres(most.miss) + " (allowed " +
+        millimetres(kLackingTolerance) + ")";
+  }
   origin["joints"] = "legs by inverse kinematics, others from keys and default posture";
 }
 
@@ -192,9 +219,9 @@ CommandSeries sample_body_driven(const SampleJob& job) {
   series.samples.resize(job.count);
   series.origin = job.tracks.origin;
   const CogPlan plan = plan_cog(job);
-  solve_samples(job, plan, series);
+  const Compromise most = solve_samples(job, plan, series);
   const double worst = fill_ground(job, plan, series);
-  describe(job, plan, worst, series);
+  describe(job, plan, worst, most, series);
   return series;
 }
 

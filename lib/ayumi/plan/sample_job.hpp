@@ -32,8 +32,8 @@ using TrunkTurn = std::array<Track, 3>;
 
 /// Solves base and legs at time t for sample.cog with the initial guess sample.state; fills feet
 /// and support. Throws Error(bad_pattern) that names phase, time, foot and missing millimetres.
-void solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
-                   CommandSample& sample, RobotData& data);
+PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
+                              CommandSample& sample, RobotData& data);
 
 /// True when a phase has no support.
 bool flies(const SampleJob& job);

@@ -109,6 +109,34 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
   }
 }
 
+// What the robot's files say: where the soles are, about which axes joints turn by positive angles
+// (right-handed about the arrow), and where ahead is.
+void add_model(Triangles& target, const RobotModel& model,
+               const std::vector<Eigen::Isometry3d>& poses, const Plane& plane) {
+  const double size = plane.size;
+  for (size_t i = 1; i < poses.size(); ++i) {
+    const Body& body = model.bodies()[i];
+    const Vector3d at = poses[i].translation();
+    const Vector3d along = body.ratio * (poses[i].linear() * body.axis);
+    add_arrow(target, at - 0.02 * size * along, at + 0.05 * size * along, 0.004 * size,
+              overlay_color::kAxis);
+  }
+  if (!model.has_soles()) return;
+  Vector3d middle = Vector3d::Zero(), ahead = Vector3d::Zero();
+  for (const Side side : {Side::left, Side::right}) {
+    const Sole& sole = model.sole(side);
+    const Eigen::Isometry3d pose = poses[sole.body] * sole.frame;
+    std::vector<Vector3d> corners;
+    for (const Eigen::Vector2d& p : sole.polygon)
+      corners.push_back(pose * Vector3d(p.x(), p.y(), 0.002 * size));
+    add_band(target, corners, std::vector<Vector4f>(corners.size(), overlay_color::kSupport),
+             plane.normal, 0.006 * size, true);
+    middle += 0.5 * (pose * Vector3d(sole.center.x(), sole.center.y(), 0.01 * size));
+    ahead += 0.5 * pose.linear().col(0);
+  }
+  add_arrow(target, middle, middle + 0.35 * size * ahead, 0.008 * size, overlay_color::kAhead);
+}
+
 }  // namespace
 
 std::vector<Vector3d> support_corners(const RobotModel& model,
@@ -172,6 +200,7 @@ Overlay make_overlay(const RobotModel& model, const SimulationLog& log,
     add_trail(target, log, t, options, plane, &SimulationSample::cog, overlay_color::kCog, 3);
   if (options.trails && options.zmp)
     add_trail(target, log, t, options, plane, &SimulationSample::zmp, overlay_color::kZmp, 4);
+  if (options.model) add_model(target, model, poses, plane);
   if (options.cog) add_cog(target, sample.cog, plane);
   if (options.reference_zmp)
     add_ring(target, plane.drop(sample.reference_zmp, 6), plane.normal, 0.026 * height,

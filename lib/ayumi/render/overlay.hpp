@@ -21,6 +21,7 @@ struct OverlayOptions {
   bool forces = true;         ///< arrow per foot
   bool push = true;           ///< arrow with its value
   bool trails = true;         ///< of COG (on the ground) and ZMP
+  bool model = false;         ///< outlines of the soles, axes of the joints, arrow ahead
   bool heat = false;          ///< bodies whose joint is near a limit in red
   bool caption = true;        ///< line of text and legend of the marks
   double trail = 2.0;         ///< length of the trails [s]
@@ -45,6 +46,8 @@ inline const Eigen::Vector4f kZmp = {0.84f, 0.15f, 0.12f, 1};
 inline const Eigen::Vector4f kReferenceZmp = {0.05f, 0.30f, 0.75f, 1};
 inline const Eigen::Vector4f kSupport = {0.10f, 0.45f, 0.80f, 1};
 inline const Eigen::Vector4f kForce = {0.05f, 0.55f, 0.35f, 1};
+inline const Eigen::Vector4f kAxis = {0.40f, 0.20f, 0.60f, 1};
+inline const Eigen::Vector4f kAhead = {0.84f, 0.15f, 0.12f, 1};
 inline const Eigen::Vector4f kPush = {0.78f, 0.25f, 0.62f, 1};
 }  // namespace overlay_color
 

@@ -102,8 +102,7 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
   if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))
     robot.assumptions.push_back("the " + std::string(kSidecarName) +
                                 " beside the URDF is not used; name the folder to use it");
-  infer_missing(robot);
-  return robot;
+  return options.guess ? guess_robot(std::move(robot)).robot : robot;
 }
 
 RobotModel load_robot(const std::string& name_or_path, const RobotSearch& search,

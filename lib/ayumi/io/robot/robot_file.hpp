@@ -18,6 +18,7 @@ struct RobotSearch {
 
 struct LoadOptions {
   bool meshes = false;  ///< fill MeshShape::mesh of visuals too; of collisions always
+  bool guess = true;    ///< fill in what the files do not state
 };
 
 struct RobotEntry {

@@ -3,120 +3,533 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numbers>
+#include <set>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/inverse_kinematics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot/facing.hpp"
 #include "ayumi/io/robot/mesh.hpp"
+#include "ayumi/math/polygon.hpp"
 #include "ayumi/model/body_poses.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/model/outline.hpp"
-#include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
 
 namespace {
 
-// What is this near to the lowest point of a foot is sole [m]. Chosen: an eighth of the height of
-// HOAP-1's ankle (37 mm), so that rounded edges count and the ankle does not.
-constexpr double kSoleThickness = 0.005;
-// A foot lies at least this far from the middle [m]. Chosen: a quarter of where HOAP-1's feet are
-// (39 mm).
-constexpr double kSideways = 0.01;
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Points = std::vector<Vector3d>;
+
+constexpr double kOneDegree = std::numbers::pi / 180;
+
+// What is this near to the lowest point of a foot touches the ground [m]. Chosen: above the
+// rounding of meshes, below the rounded edges of feet. Half or twice: the sole of a foot with edges
+// of 5 mm radius changes by 1 mm.
+constexpr double kTouching = 0.001;
+// What is this near to the lowest point of a foot that is not level belongs to its underside [m].
+// Chosen: an eighth of the height of HOAP-1's ankle (37 mm).
+constexpr double kUnderside = 0.005;
+// Feet are at least this far apart [m]. Chosen: half of the distance of HOAP-1's feet (78 mm).
+constexpr double kApart = 0.02;
+// Difference of the heights of both feet, as a share of the robot's height. Chosen: below the
+// distance of an ankle from its sole.
+constexpr double kSameHeight = 0.02;
 // Longest side of a sole [m]. Chosen: ten times HOAP-1's; a longer one is a mistake of the unit.
 constexpr double kLargestSole = 1.0;
+// Smallest area of a sole [m^2]. Chosen: 1 mm by 1 mm.
+constexpr double kSmallestSole = 1e-6;
+// Most corners of a sole. Chosen: each corner is a contact of the simulation; the removed corners
+// lie outside of what is left, by less than 2 % of the length of a round sole.
+constexpr size_t kMostCorners = 8;
+// Ratio of the ends of a foot, ahead of and behind its ankle, that tells the front. Chosen.
+constexpr double kLongerEnd = 1.1;
 
-std::vector<Eigen::Vector3d> loaded_outline(const PlacedShape& placed) {
+// Reach of the legs at home, in lengths of the straight leg, in the order in which they are tried.
+// Chosen: thigh and shank of equal length are at 40 deg to each other for 0.94; HOAP-1 stands so.
+constexpr std::array kReaches = {0.94, 0.92, 0.955, 0.90, 0.97, 0.87, 0.84};
+// Distance of the home posture from the position limits [rad]. Chosen: 2 deg, so that the
+// controller has room on both sides.
+constexpr double kLimitRoom = 2 * kOneDegree;
+
+// Error at which a servo gives its full effort [rad]. Chosen: makers of torque-controlled humanoids
+// use up to 1 rad with torques from a policy, and hobby servos reach their torque at 0.02 to 0.1
+// rad.
+constexpr double kFullEffortError = 0.2;
+// Smallest kp of a joint of a leg, in m g z per rad. Derived: a robot that leans by e falls with
+// the moment m g z e, and both ankles together have to hold it several times over. Measured:
+// with 2.5 m g z the default gains are unstable for a robot of 28 kg, with 4 they are stable for
+// all robots of robots/ and of the tests.
+constexpr double kLegStiffness = 4;
+// kd over kp of a servo, in sqrt(z/g). Chosen: 20 ms for a robot of HOAP-1's size; HOAP-1's servos
+// have 4 ms and its soft ones 20 ms.
+constexpr double kDampingTime = 0.13;
+// Rotor inertia of a servo per effort [kg m^2 per N m]. Source: armature 0.01 to 0.025 kg m^2 for
+// 88 to 139 N m in published models of humanoids.
+constexpr double kInertiaPerEffort = 2e-4;
+// Effort of a joint of a leg, and of any other joint, in m g z, where none is stated. Source:
+// HOAP-1 0.21 to 0.31, DARwIn-OP 0.4, Unitree G1 0.37 to 0.59 in the legs.
+constexpr double kLegEffort = 0.4, kOtherEffort = 0.1;
+// Effort in m g z above which a limit is a placeholder. Chosen: ten times that of a strong leg.
+constexpr double kGreatestEffort = 5;
+// Speed above which a limit is a placeholder [rad/s]. Chosen: ten times that of a usual servo.
+constexpr double kGreatestSpeed = 60;
+// Share of the joints that have the same position limits where these are placeholders. Chosen.
+constexpr double kSameLimits = 0.8;
+// Fewest joints for a rule about all joints. Chosen.
+constexpr size_t kManyJoints = 6;
+
+VectorXd zero_posture(const RobotModel& model) {
+  VectorXd theta(model.dof_count());
+  for (int i = 0; i < model.dof_count(); ++i)
+    theta[i] = std::clamp(0.0, model.dofs()[i].lower, model.dofs()[i].upper);
+  return theta;
+}
+
+Points loaded_outline(const PlacedShape& placed) {
   const auto* reference = std::get_if<MeshShape>(&placed.shape);
   if (!reference || !reference->mesh.parts.empty()) return outline(placed.shape);
-  return outline(MeshShape{{}, {}, load_mesh(reference->file, reference->scale)});
+  try {
+    return outline(MeshShape{{}, {}, load_mesh(reference->file, reference->scale)});
+  } catch (const Error&) {
+    return {};  // a mesh that cannot be read is reported where it is needed
+  }
 }
 
-std::vector<Eigen::Isometry3d> zero_poses(const RobotModel& model) {
-  return body_poses(model, Eigen::VectorXd::Zero(model.dof_count()));
+// Points whose lowest ones are those of the shape. Round shapes touch in one point or in a line.
+Points points_above_ground(const PlacedShape& placed, const Isometry3d& link) {
+  const Isometry3d pose = link * placed.pose;
+  if (const auto* sphere = std::get_if<Sphere>(&placed.shape))
+    return {pose.translation() - sphere->radius * Vector3d::UnitZ()};
+  if (const auto* capsule = std::get_if<Capsule>(&placed.shape)) {
+    const Vector3d half = pose.linear().col(2) * capsule->length / 2;
+    const Vector3d down = capsule->radius * Vector3d::UnitZ();
+    return {pose.translation() + half - down, pose.translation() - half - down};
+  }
+  Points points = loaded_outline(placed);
+  for (Vector3d& point : points) point = pose * point;
+  return points;
 }
 
-struct FootCandidate {
-  int link = -1;
+// What a body touches with, else what it looks like, in the root frame.
+Points body_points(const RobotModel& model, const std::vector<Isometry3d>& poses, int body) {
+  Points points;
+  for (const bool collisions : {true, false}) {
+    for (const Link& link : model.links()) {
+      if (link.body != body) continue;
+      for (const PlacedShape& placed : collisions ? link.collisions : link.visuals)
+        for (const Vector3d& point : points_above_ground(placed, poses[body] * link.pose))
+          points.push_back(point);
+    }
+    if (!points.empty()) break;
+  }
+  return points;
+}
+
+double lowest_of(const Points& points) {
   double lowest = std::numeric_limits<double>::infinity();
-  std::vector<Eigen::Vector3d> points;  // of its body, in the root frame
+  for (const Vector3d& point : points) lowest = std::min(lowest, point.z());
+  return lowest;
+}
+
+// ---- feet
+
+struct Foot {
+  int body = -1;
+  Points points;  // root frame, every joint at 0
+  double lowest = std::numeric_limits<double>::infinity();
 };
 
-// Lowest leaf body on one side (+1 left, -1 right).
-FootCandidate lowest_foot(const RobotModel& model, const std::vector<Eigen::Isometry3d>& poses,
-                          int side) {
+double touching_area(const Points& points, double lowest) {
+  std::vector<Vector2d> touching;
+  for (const Vector3d& point : points)
+    if (point.z() <= lowest + kTouching) touching.push_back(point.head<2>());
+  const ConvexPolygon hull(touching);
+  const auto& v = hull.vertices();
+  double area = 0;
+  for (size_t i = 0; i < v.size(); ++i) {
+    const Vector2d& next = v[(i + 1) % v.size()];
+    area += 0.5 * (v[i].x() * next.y() - v[i].y() * next.x());
+  }
+  return area;
+}
+
+bool is_above(const RobotModel& model, int body, int other) {
+  for (int i = other; i > 0; i = model.bodies()[i].parent)
+    if (i == body) return true;
+  return false;
+}
+
+// The two lowest end bodies that are beside each other. A toe gives way to the foot that carries it
+// where that stands on more ground.
+std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3d>& poses) {
   std::vector<bool> leaf(model.bodies().size(), true);
   for (const Body& body : model.bodies())
     if (body.parent >= 0) leaf[body.parent] = false;
-  FootCandidate best;
+  std::vector<Foot> ends;
+  double highest = -std::numeric_limits<double>::infinity();
   for (int body = 1; body < static_cast<int>(leaf.size()); ++body) {
-    if (!leaf[body] || side * poses[body].translation().y() < kSideways) continue;
-    FootCandidate foot;
-    for (size_t i = 0; i < model.links().size(); ++i) {
-      const Link& link = model.links()[i];
-      if (link.body != body) continue;
-      if (foot.link < 0) foot.link = static_cast<int>(i);
-      for (const PlacedShape& placed : link.collisions.empty() ? link.visuals : link.collisions)
-        for (const Eigen::Vector3d& point : loaded_outline(placed))
-          foot.points.push_back(poses[body] * link.pose * placed.pose * point);
+    highest = std::max(highest, poses[body].translation().z());
+    if (!leaf[body]) continue;
+    Foot foot{body, body_points(model, poses, body), 0};
+    foot.lowest = lowest_of(foot.points);
+    for (int up = model.bodies()[body].parent; up > 0; up = model.bodies()[up].parent) {
+      const Points points = body_points(model, poses, up);
+      const double lowest = lowest_of(points);
+      if (lowest > foot.lowest + kTouching ||
+          touching_area(points, lowest) <= touching_area(foot.points, foot.lowest))
+        break;
+      foot = {up, points, lowest};
     }
-    for (const Eigen::Vector3d& point : foot.points) foot.lowest = std::min(foot.lowest, point.z());
-    if (foot.lowest < best.lowest) best = foot;
+    if (!foot.points.empty()) ends.push_back(foot);
+  }
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const Foot& a, const Foot& b) { return a.lowest < b.lowest; });
+  for (size_t i = 0; i < ends.size(); ++i)
+    for (size_t j = i + 1; j < ends.size(); ++j) {
+      const Foot &a = ends[i], &b = ends[j];
+      const Vector3d between = poses[a.body].translation() - poses[b.body].translation();
+      if (b.lowest > a.lowest + kSameHeight * (highest - a.lowest)) break;
+      if (between.head<2>().norm() < kApart || is_above(model, a.body, b.body) ||
+          is_above(model, b.body, a.body))
+        continue;
+      return {a, b};
+    }
+  return {};
+}
+
+// ---- facing
+
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// +1: the first of two names is the left one, -1: the right one, 0: they do not say.
+int first_is_left(const std::string& first, const std::string& second) {
+  const std::string a = lower_case(first), b = lower_case(second);
+  const auto has = [](const std::string& name, const char* word) {
+    return name.find(word) != std::string::npos;
+  };
+  if (has(a, "left") && has(b, "right")) return 1;
+  if (has(a, "right") && has(b, "left")) return -1;
+  if (a.size() != b.size()) return 0;
+  int side = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (a[i] == b[i]) continue;
+    const int here = a[i] == 'l' && b[i] == 'r' ? 1 : a[i] == 'r' && b[i] == 'l' ? -1 : 0;
+    if (here == 0 || (side != 0 && side != here)) return 0;
+    side = here;
+  }
+  return side;
+}
+
+// Of the links and joints from two feet upwards.
+int first_foot_is_left(const RobotModel& model, int first, int second) {
+  while (first > 0 && second > 0) {
+    const Body &a = model.bodies()[first], &b = model.bodies()[second];
+    for (const int side : {first_is_left(a.name, b.name),
+                           first_is_left(model.dofs()[a.dof].name, model.dofs()[b.dof].name)})
+      if (side != 0) return side;
+    first = a.parent;
+    second = b.parent;
+  }
+  return 0;
+}
+
+std::string nearest_facing(const Vector3d& direction) {
+  std::string best;
+  double most = -2;
+  for (const std::string& name : facing_names()) {
+    const double along = facing_direction(name).dot(direction);
+    if (along > most) {
+      most = along;
+      best = name;
+    }
   }
   return best;
 }
 
-SoleDescription sole_of(const RobotModel& model, const std::vector<Eigen::Isometry3d>& poses,
-                        const FootCandidate& foot) {
-  const Link& link = model.links()[foot.link];
-  const Eigen::Vector3d ankle = poses[link.body].translation();
-  const Eigen::Vector3d origin(ankle.x(), ankle.y(), foot.lowest);
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
-  for (const Eigen::Vector3d& point : foot.points) {
-    if (point.z() > foot.lowest + kSoleThickness) continue;
-    low = low.cwiseMin((point - origin).head<2>());
-    high = high.cwiseMax((point - origin).head<2>());
+void find_facing(const RobotModel& model, RobotGuess& guess) {
+  const std::vector<Isometry3d> poses = body_poses(model, zero_posture(model));
+  const std::vector<Foot> feet = find_feet(model, poses);
+  if (feet.empty()) {
+    guess.facing_reason = {"no feet were recognised, so the robot is taken to face x",
+                           "that the robot faces x in the picture"};
+    return;
   }
+  Vector3d across = poses[feet[0].body].translation() - poses[feet[1].body].translation();
+  across.z() = 0;
+  const Vector3d ahead = across.normalized().cross(Vector3d::UnitZ());  // if the first is left
+  double front = 0, back = 0;
+  for (const Foot& foot : feet)
+    for (const Vector3d& point : foot.points) {
+      const double along = (point - poses[foot.body].translation()).dot(ahead);
+      front = std::max(front, along);
+      back = std::max(back, -along);
+    }
+  const int toes = front > kLongerEnd * back ? 1 : back > kLongerEnd * front ? -1 : 0;
+  const int named = first_foot_is_left(model, feet[0].body, feet[1].body);
+  const std::string ends = text::fixed(1e3 * std::max(front, back), 0) + " mm and " +
+                           text::fixed(1e3 * std::min(front, back), 0) + " mm";
+  if (named != 0) {
+    guess.facing = nearest_facing(named * ahead);
+    guess.facing_reason.why =
+        "the names of the legs say which is left, and the left leg is on the left of a robot that "
+        "faces this way";
+    if (toes == -named)
+      guess.facing_reason.why += "; but the longer end of the feet (" + ends + ") is at the back";
+  } else if (toes != 0) {
+    guess.facing = nearest_facing(toes * ahead);
+    guess.facing_reason.why = "the feet reach farther this way from their ankles (" + ends + ")";
+  } else {
+    guess.facing =
+        nearest_facing(ahead.x() < 0 || (ahead.x() == 0 && ahead.y() < 0) ? -ahead : ahead);
+    guess.facing_reason.why =
+        "the feet are across this axis; names and shapes of the feet do not tell front from back";
+  }
+  guess.facing_reason.check = "that the robot looks along the red arrow in the picture";
+}
+
+// ---- soles
+
+// Attitude in which the underside of a foot is level, by planes through what is near the ground.
+Eigen::Matrix3d levelled(const Points& points) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  for (int pass = 0; pass < 3; ++pass) {
+    Points turned = points;
+    for (Vector3d& point : turned) point = turn * point;
+    const double lowest = lowest_of(turned);
+    Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+    Vector3d right = Vector3d::Zero();
+    for (const Vector3d& point : turned) {
+      if (point.z() > lowest + kUnderside) continue;
+      const Vector3d row(point.x(), point.y(), 1);
+      square += row * row.transpose();
+      right += (point.z() - lowest) * row;
+    }
+    const Eigen::FullPivLU<Eigen::Matrix3d> solver(square);
+    if (solver.rank() < 3) return Eigen::Matrix3d::Identity();
+    const Vector3d plane = solver.solve(right);
+    const Vector3d normal = Vector3d(-plane.x(), -plane.y(), 1).normalized();
+    turn = Eigen::Quaterniond::FromTwoVectors(normal, Vector3d::UnitZ()).toRotationMatrix() * turn;
+  }
+  return turn;
+}
+
+// The corner whose removal takes the least area goes first; what is left lies inside.
+std::vector<Vector2d> thinned(std::vector<Vector2d> corners) {
+  const auto cut = [&](size_t i) {
+    const size_t n = corners.size();
+    const Vector2d a = corners[(i + n - 1) % n] - corners[i], b = corners[(i + 1) % n] - corners[i];
+    return std::abs(a.x() * b.y() - a.y() * b.x());
+  };
+  while (corners.size() > kMostCorners) {
+    size_t least = 0;
+    for (size_t i = 1; i < corners.size(); ++i)
+      if (cut(i) < cut(least)) least = i;
+    corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(least));
+  }
+  return corners;
+}
+
+SoleDescription sole_of(const RobotModel& model, const std::vector<Isometry3d>& poses,
+                        const Foot& foot) {
+  const auto link = std::find_if(model.links().begin(), model.links().end(),
+                                 [&](const Link& each) { return each.body == foot.body; });
+  Points points = foot.points;
+  const Vector3d ankle = poses[foot.body].translation();
+  Eigen::Matrix3d turn = levelled(points);
+  Points turned = points;
+  for (Vector3d& point : turned) point = turn * (point - ankle);
+  Points level = points;
+  for (Vector3d& point : level) point -= ankle;
+  // A foot that stands level is not turned by the unevenness of its mesh.
+  if (touching_area(level, lowest_of(level)) > 0.5 * touching_area(turned, lowest_of(turned))) {
+    turn.setIdentity();
+    turned = level;
+  }
+  const double lowest = lowest_of(turned);
+  std::vector<Vector2d> touching;
+  for (const Vector3d& point : turned)
+    if (point.z() <= lowest + kTouching) touching.push_back(point.head<2>());
   SoleDescription sole;
-  sole.link = link.name;
-  sole.frame = (poses[link.body] * link.pose).inverse() * Eigen::Translation3d(origin);
-  sole.polygon = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+  sole.link = link->name;
+  Isometry3d frame = Isometry3d::Identity();  // root frame
+  frame.linear() = turn.transpose();
+  frame.translation() = ankle + turn.transpose() * Vector3d(0, 0, lowest);
+  sole.frame = (poses[foot.body] * link->pose).inverse() * frame;
+  sole.polygon = thinned(ConvexPolygon(touching).vertices());
+  const auto first = std::min_element(
+      sole.polygon.begin(), sole.polygon.end(),
+      [](const Vector2d& a, const Vector2d& b) { return a.sum() < b.sum() - kTouching; });
+  std::rotate(sole.polygon.begin(), first, sole.polygon.end());
   return sole;
 }
 
-double area(const SoleDescription& sole) {
-  return sole.polygon.empty() ? 0 : (sole.polygon[2] - sole.polygon[0]).prod();
+Vector2d extent(const SoleDescription& sole) {
+  Vector2d low = sole.polygon[0], high = low;
+  for (const Vector2d& corner : sole.polygon) {
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  return high - low;
 }
 
-void infer_soles(const RobotModel& model, RobotDescription& robot) {
-  const std::vector<Eigen::Isometry3d> poses = zero_poses(model);
-  const FootCandidate left = lowest_foot(model, poses, 1), right = lowest_foot(model, poses, -1);
-  if (left.link < 0 || right.link < 0 || left.points.empty() || right.points.empty()) {
+void find_soles(RobotGuess& guess) {
+  RobotDescription& robot = guess.robot;
+  const RobotModel model(robot);
+  const std::vector<Isometry3d> poses = body_poses(model, zero_posture(model));
+  std::vector<Foot> feet = find_feet(model, poses);
+  if (feet.empty()) {
     robot.assumptions.push_back("no feet were recognised: the robot has no soles");
     return;
   }
-  std::map<std::string, SoleDescription> soles = {{"left", sole_of(model, poses, left)},
-                                                  {"right", sole_of(model, poses, right)}};
-  for (const auto& [side, sole] : soles)
-    if (!(area(sole) > 1e-6) || (sole.polygon[2] - sole.polygon[0]).maxCoeff() > kLargestSole) {
+  if (poses[feet[0].body].translation().y() < poses[feet[1].body].translation().y())
+    std::swap(feet[0], feet[1]);
+  std::map<std::string, SoleDescription> soles;
+  for (const int side : {0, 1}) {
+    const std::string name = side == 0 ? "left" : "right";
+    const SoleDescription sole = sole_of(model, poses, feet[side]);
+    if (sole.polygon.size() < 3 || extent(sole).prod() < kSmallestSole ||
+        extent(sole).maxCoeff() > kLargestSole) {
       robot.assumptions.push_back(
-          "the " + side + " foot " + sole.link +
+          "the " + name + " foot " + sole.link +
           " has no flat underside with every joint at 0: the robot has no soles");
       return;
     }
+    soles[name] = sole;
+  }
   for (const auto& [side, sole] : soles)
     robot.assumptions.push_back(
-        side + " sole: link " + sole.link + ", underside with every joint at 0, " +
-        text::fixed(1000 * (sole.polygon[2] - sole.polygon[0]).x(), 0) + " x " +
-        text::fixed(1000 * (sole.polygon[2] - sole.polygon[0]).y(), 0) + " mm");
+        side + " sole: link " + sole.link + ", hull of " + std::to_string(sole.polygon.size()) +
+        " corners, " + text::fixed(1000 * extent(sole).x(), 0) + " x " +
+        text::fixed(1000 * extent(sole).y(), 0) + " mm, of what touches the ground within 1 mm");
   robot.soles = soles;
+  const bool collisions = std::any_of(
+      model.links().begin(), model.links().end(),
+      [&](const Link& link) { return link.body == feet[0].body && !link.collisions.empty(); });
+  guess.sole_reason = {
+      "hull of everything of the foot's " +
+          std::string(collisions ? "collision shapes" : "visual shapes") +
+          " that touches the ground within 1 mm, with at most " + std::to_string(kMostCorners) +
+          " corners from the inside",
+      "the outline of the foot where it touches the ground; when in doubt, make it smaller"};
 }
 
-// COG height above the lowest point of the robot, every joint at 0.
+// ---- home posture
+
+double leg_reach(const RobotModel& model, const RobotData& data, double* straight) {
+  const auto& leg = model.leg(Side::left);
+  // The hip is where the last axis above the knee passes.
+  const InverseKinematics ik(model, zero_posture(model));
+  const int knee = ik.knee(Side::left);
+  Vector3d hip = data.pose(model.dofs()[leg.front()].body).translation();
+  for (const int dof : leg) {
+    if (dof == knee) break;
+    hip = data.pose(model.dofs()[dof].body).translation();
+  }
+  const Vector3d sole = sole_pose(model, data, Side::left).translation();
+  *straight = 0;
+  Vector3d from = hip;
+  bool below = false;
+  for (const int dof : leg) {
+    below |= dof == knee;
+    if (!below) continue;
+    const Vector3d to = data.pose(model.dofs()[dof].body).translation();
+    *straight += (to - from).norm();
+    from = to;
+  }
+  *straight += (sole - from).norm();
+  return (sole - hip).norm();
+}
+
+bool within_limits(const RobotModel& model, const InverseKinematics& ik, const VectorXd& theta) {
+  for (int i = 0; i < model.dof_count(); ++i) {
+    const Dof& dof = model.dofs()[i];
+    const double room = std::min(kLimitRoom, 0.25 * (dof.upper - dof.lower));
+    if (ik.solves(i) && (theta[i] < dof.lower + room || theta[i] > dof.upper - room)) return false;
+  }
+  return true;
+}
+
+// Knees bent and the COG over the middle of the soles; false: the legs reach no such posture.
+bool find_home(RobotGuess& guess) {
+  RobotDescription& robot = guess.robot;
+  const RobotModel model(robot);
+  if (!model.has_soles()) return false;
+  const VectorXd zero = zero_posture(model);
+  try {
+    const InverseKinematics ik(model, zero);
+    RobotData data(model);
+    RobotState state = model.rest_state();
+    state.theta = zero;
+    update_positions(model, state, data);
+    double straight = 0;
+    const double reach = leg_reach(model, data, &straight);
+    PostureTarget target;
+    target.trunk = data.rotation[model.trunk_body()];
+    Vector3d middle = Vector3d::Zero();
+    for (const Side side : {Side::left, Side::right}) {
+      const Isometry3d sole = sole_pose(model, data, side);
+      Isometry3d& foot = target.feet[static_cast<int>(side)];
+      foot.translation() = Vector3d(0, sole.translation().y(), 0);
+      const Vector2d center = model.sole(side).center;
+      middle += 0.5 * (foot * Vector3d(center.x(), center.y(), 0));
+    }
+    const double height =
+        data.cog.z() - 0.5 * (sole_pose(model, data, Side::left).translation().z() +
+                              sole_pose(model, data, Side::right).translation().z());
+    for (const double share : kReaches) {
+      target.cog = middle + Vector3d(0, 0, height - (reach - share * straight));
+      RobotState home = model.rest_state();
+      home.theta = ik.start();
+      home.base.position = target.cog - data.cog;
+      const PostureSolution solution = ik.solve(target, home, data);
+      if (!solution.reached || solution.knee_flipped || !within_limits(model, ik, home.theta))
+        continue;
+      auto& posture = robot.postures["home"];
+      for (int i = 0; i < model.dof_count(); ++i)
+        posture[model.dofs()[i].name] =
+            std::round(home.theta[i] / kOneDegree * 1e3) / 1e3 * kOneDegree;
+      const int knee = ik.knee(Side::left);
+      const std::string bend =
+          knee < 0 ? "" : ", knees at " + text::fixed(home.theta[knee] / kOneDegree, 0) + " deg";
+      robot.assumptions.push_back("home posture: COG over the middle of the soles, " +
+                                  text::fixed(1e3 * target.cog.z(), 0) + " mm high" + bend);
+      const bool human = knee < 0 ||
+                         ik.positive_bends_forward(Side::left) == (home.theta[knee] > zero[knee]) ||
+                         reach < 0.99 * straight;
+      guess.home_reason = {
+          "found by balancing: level soles, legs of " + text::fixed(100 * share, 1) +
+              " % of their straight length, COG " + text::fixed(1e3 * target.cog.z(), 0) +
+              " mm high over the middle of the soles, every joint inside its limits" +
+              (human ? ", knees in front as a human's"
+                     : "; the limits leave the knees no room to come forward, so they go back"),
+          "that the robot stands like this, and that the arms are clear of the body"};
+      return true;
+    }
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_model) throw;
+  }
+  return false;
+}
+
+// ---- servos
+
 double cog_height(const RobotModel& model) {
-  const std::vector<Eigen::Isometry3d> poses = zero_poses(model);
+  const std::vector<Isometry3d> poses = body_poses(model, zero_posture(model));
   double moment = 0, lowest = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < poses.size(); ++i)
     moment += model.bodies()[i].inertia.mass * (poses[i] * model.bodies()[i].inertia.com).z();
-  for (const Eigen::Isometry3d& pose : poses) lowest = std::min(lowest, pose.translation().z());
+  for (const Isometry3d& pose : poses) lowest = std::min(lowest, pose.translation().z());
   if (model.has_soles()) {
     const Sole& sole = model.sole(Side::left);
     lowest = std::min(lowest, (poses[sole.body] * sole.frame).translation().z());
@@ -124,47 +537,198 @@ double cog_height(const RobotModel& model) {
   return std::max(moment / model.mass() - lowest, 0.01);
 }
 
-void infer_servos(const RobotModel& model, RobotDescription& robot) {
-  const double z = cog_height(model), mass = model.mass();
-  ServoDescription servo;
-  servo.kp = 40 * mass * kGravity * z;
-  servo.kd = 0.13 * std::sqrt(z / kGravity) * servo.kp;
-  servo.rotor_inertia = 0.009 * mass * z * z;
-  bool sliders = false;
+const JointDescription& joint_of(const RobotModel& model, int dof) {
+  const auto& joints = model.description().joints;
+  return *std::find_if(joints.begin(), joints.end(), [&](const JointDescription& each) {
+    return each.name == model.dofs()[dof].name;
+  });
+}
+
+bool is_of_leg(const RobotModel& model, int dof) {
+  if (!model.has_soles()) return false;
+  for (const Side side : {Side::left, Side::right})
+    for (const int each : model.leg(side))
+      if (each == dof) return true;
+  return false;
+}
+
+bool is_placeholder(const std::vector<PlaceholderLimits>& placeholders, const std::string& what,
+                    const std::string& joint) {
+  return std::any_of(placeholders.begin(), placeholders.end(), [&](const PlaceholderLimits& each) {
+    return each.what == what &&
+           std::find(each.joints.begin(), each.joints.end(), joint) != each.joints.end();
+  });
+}
+
+double to_digits(double value, int digits) { return std::stod(text::brief(value, digits)); }
+
+void find_servos(RobotGuess& guess) {
+  RobotDescription& robot = guess.robot;
+  const RobotModel model(robot);
+  const double z = cog_height(model), weight = model.mass() * kGravity;
   robot.servos_inferred = true;
-  for (const Dof& dof : model.dofs()) {
-    sliders |= dof.prismatic;
-    const auto joint =
-        std::find_if(robot.joints.begin(), robot.joints.end(),
-                     [&](const JointDescription& each) { return each.name == dof.name; });
-    // A slider with the force of a turning joint at the lever of the COG's height.
-    const double scale = dof.prismatic ? 1 / (z * z) : 1;
-    robot.servos[dof.name] = {scale * servo.kp, scale * servo.kd, scale * servo.rotor_inertia,
-                              joint->damping, joint->friction};
+  size_t estimated = 0;
+  for (int i = 0; i < model.dof_count(); ++i) {
+    const Dof& dof = model.dofs()[i];
+    const JointDescription& joint = joint_of(model, i);
+    const bool leg = is_of_leg(model, i);
+    double effort = joint.effort;
+    if (effort <= 0 || is_placeholder(guess.placeholders, "effort limits", joint.name)) {
+      // A sliding joint has the force of a turning one at the lever of the COG's height.
+      effort = (leg ? kLegEffort : kOtherEffort) * weight * (dof.prismatic ? 1 : z);
+      ++estimated;
+    }
+    const double unit = dof.prismatic ? z : 1;  // [m] in the place of a radian
+    ServoDescription servo;
+    servo.kp = effort / (kFullEffortError * unit);
+    if (leg) servo.kp = std::max(servo.kp, kLegStiffness * weight * z / (unit * unit));
+    servo.kp = to_digits(servo.kp, 3);
+    servo.kd = to_digits(kDampingTime * std::sqrt(z / kGravity) * servo.kp, 2);
+    servo.rotor_inertia = to_digits(kInertiaPerEffort * effort / unit, 2);
+    servo.viscous = joint.damping;
+    servo.coulomb = joint.friction;
+    robot.servos[dof.name] = servo;
   }
-  robot.assumptions.push_back(
-      "servos: kp " + text::brief(servo.kp) + " N m/rad, kd " + text::brief(servo.kd) +
-      " N m s/rad, rotor inertia " + text::brief(servo.rotor_inertia) +
-      " kg m^2, scaled from mass and COG height" +
-      std::string(sliders
-                      ? "; the values of sliding joints are divided by the square of the COG height"
-                      : ""));
+  guess.servo_reason = {
+      "kp gives the full effort of the joint's own limit at an error of " +
+          text::brief(kFullEffortError) + " rad, and for legs at least " +
+          text::brief(kLegStiffness) + " m g z = " + text::brief(kLegStiffness * weight * z, 3) +
+          " N m/rad, with which they hold the robot; kd = " +
+          text::brief(kDampingTime * std::sqrt(z / kGravity), 2) + " s times kp" +
+          (estimated == 0
+               ? ""
+               : "; the effort limits of " + std::to_string(estimated) +
+                     " joints are missing or placeholders, so " + text::brief(kLegEffort) +
+                     " m g z = " + text::brief(kLegEffort * weight * z, 3) +
+                     " N m is taken for legs and " + text::brief(kOtherEffort) +
+                     " m g z for other joints"),
+      "gains and rotor inertia of your servos; `ayumi identify` finds them in a recording"};
+  robot.assumptions.push_back("servos: " + guess.servo_reason.why);
 }
 
 }  // namespace
 
-void infer_missing(RobotDescription& robot) {
-  if (robot.soles.empty()) infer_soles(RobotModel(robot), robot);
-  if (!robot.postures.contains("home")) {
-    const RobotModel model(robot);
-    robot.postures["home"] = model.description().postures.at("home");
-    robot.assumptions.push_back("home posture: every joint at 0, or at the limit nearest to 0");
+std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model) {
+  std::vector<PlaceholderLimits> found;
+  const double moment = model.mass() * kGravity * cog_height(model);
+  std::map<std::pair<double, double>, std::vector<std::string>> ranges;
+  std::map<double, std::vector<std::string>> speeds, efforts;
+  for (int i = 0; i < model.dof_count(); ++i) {
+    const JointDescription& joint = joint_of(model, i);
+    if (model.dofs()[i].prismatic) continue;
+    if (model.dofs()[i].limited) ranges[{joint.lower, joint.upper}].push_back(joint.name);
+    speeds[joint.velocity].push_back(joint.name);
+    efforts[joint.effort].push_back(joint.name);
   }
-  if (robot.servos.empty()) infer_servos(RobotModel(robot), robot);
-  if (robot.profiles.empty())
-    robot.assumptions.push_back(
+  const auto count = static_cast<double>(model.dof_count());
+  const bool many = static_cast<size_t>(model.dof_count()) >= kManyJoints;
+  for (const auto& [range, joints] : ranges)
+    if (many && static_cast<double>(joints.size()) >= kSameLimits * count)
+      found.push_back({"position limits",
+                       text::fixed(range.first / kOneDegree, 0) + " to " +
+                           text::fixed(range.second / kOneDegree, 0) + " deg",
+                       joints});
+  for (const auto& [speed, joints] : speeds)
+    if (speed > kGreatestSpeed)
+      found.push_back({"speed limits", text::brief(speed) + " rad/s", joints});
+  for (const auto& [effort, joints] : efforts)
+    if (effort > kGreatestEffort * moment ||
+        (many && effort > 0 && joints.size() == static_cast<size_t>(count) && effort > moment))
+      found.push_back({"effort limits", text::brief(effort) + " N m", joints});
+  return found;
+}
+
+std::string direction_in_words(const RobotModel& model, int dof) {
+  const VectorXd home = model.posture();
+  const std::vector<Isometry3d> poses = body_poses(model, home);
+  const int body = model.dofs()[dof].body;
+  if (model.has_soles()) {
+    const InverseKinematics ik(model, home);
+    for (const Side side : {Side::left, Side::right}) {
+      if (ik.knee(side) != dof) continue;
+      const bool bends = ik.positive_bends_forward(side);
+      return bends ? "positive bends the knee" : "positive straightens the knee";
+    }
+  }
+  // Motion of the centre of mass of what the joint carries, in the trunk's axes; where the axis
+  // passes through it, the turn itself.
+  VectorXd moved = home;
+  moved[dof] += 0.01;
+  const std::vector<Isometry3d> after = body_poses(model, moved);
+  double mass = 0;
+  Vector3d shift = Vector3d::Zero(), center = Vector3d::Zero();
+  for (size_t i = 1; i < poses.size(); ++i) {
+    if (!is_above(model, body, static_cast<int>(i))) continue;
+    const Inertia& inertia = model.bodies()[i].inertia;
+    mass += inertia.mass;
+    center += inertia.mass * (poses[i] * inertia.com);
+    shift += inertia.mass * (after[i] * inertia.com - poses[i] * inertia.com);
+  }
+  const Eigen::Matrix3d trunk = poses[model.trunk_body()].linear();
+  const Vector3d axis = trunk.transpose() * (poses[body].linear() * model.bodies()[body].axis) *
+                        model.bodies()[body].ratio;
+  const std::string carried = model.bodies()[body].name;
+  int major = 0;
+  axis.cwiseAbs().maxCoeff(&major);
+  if (!model.dofs()[dof].prismatic) {
+    const bool positive = axis[major] > 0;
+    if (major == 2) return "positive turns " + carried + " to the " + (positive ? "left" : "right");
+    if (major == 0 && model.has_soles() &&
+        (model.sole(Side::left).body == body || model.sole(Side::right).body == body))
+      return std::string("positive raises the ") + (positive ? "left" : "right") +
+             " edge of the foot";
+    if (major == 1 && model.has_soles())
+      for (const Side side : {Side::left, Side::right})
+        if (is_above(model, body, model.sole(side).body)) {
+          const InverseKinematics ik(model, home);
+          const int knee = ik.knee(side);
+          if (knee >= 0 && is_above(model, model.dofs()[knee].body, body))
+            return std::string("positive turns the toes ") + (positive ? "down" : "up");
+          return std::string("positive swings the leg ") + (positive ? "back" : "forward");
+        }
+  }
+  shift = trunk.transpose() * shift / std::max(mass, 1e-12);
+  shift.cwiseAbs().maxCoeff(&major);
+  const bool positive = shift[major] > 0;
+  const char* words[3][2] = {{"back", "forward"}, {"to the right", "to the left"}, {"down", "up"}};
+  return "positive moves " + carried + " " + words[major][positive ? 1 : 0];
+}
+
+RobotGuess guess_robot(RobotDescription robot) {
+  RobotGuess guess;
+  guess.robot = std::move(robot);
+  RobotDescription& files = guess.robot;
+  if (files.soles.empty()) {
+    if (files.sidecar_file.empty()) {
+      find_facing(RobotModel(files), guess);
+      turn_to_face_x(files, guess.facing);
+      if (guess.facing != "x")
+        files.assumptions.push_back("the robot faces " + guess.facing +
+                                    " of its root link: " + guess.facing_reason.why);
+    }
+    find_soles(guess);
+  }
+  guess.placeholders = placeholder_limits(RobotModel(files));
+  if (!files.postures.contains("home") && !find_home(guess)) {
+    const RobotModel model(files);
+    files.postures["home"] = model.description().postures.at("home");
+    guess.home_reason = {
+        "the legs reach no balanced posture with bent knees inside the position limits, so every "
+        "joint "
+        "is at 0, or at the limit nearest to 0",
+        "bend the knees by 30 to 45 deg; a straight leg has no room to move"};
+    files.assumptions.push_back("home posture: every joint at 0, or at the limit nearest to 0");
+  }
+  if (files.servos.empty()) find_servos(guess);
+  for (const PlaceholderLimits& each : guess.placeholders)
+    files.assumptions.push_back(each.what + " of " + each.value + " on " +
+                                std::to_string(each.joints.size()) +
+                                " joints are taken for placeholders");
+  if (files.profiles.empty())
+    files.assumptions.push_back(
         "actuator limits: velocity and effort of the URDF; a value of 0 means that there is no "
         "limit");
+  return guess;
 }
 
 }  // namespace ayumi

@@ -1,16 +1,54 @@
 #pragma once
-// What a bare URDF does not say: soles, home posture, servo constants. Each guess is added to
-// `assumptions`. Included by io/*.cpp only.
+// What a bare URDF does not say: the direction that the robot faces, its soles, its home posture,
+// its servos and sensors. Each guess has a reason. A bare URDF is read with these guesses, and
+// `ayumi init` writes them down. Included by io/*.cpp only.
 
-#include "ayumi/model/robot_description.hpp"
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
 
-/// Fills soles, home posture and servos of `robot` where they are empty. Soles are the undersides
-/// of the lowest body left and the lowest body right of the middle with every joint at 0 (x
-/// forward, z up in the root link): the bounding rectangle of what lies within 5 mm of the lowest
-/// point. Servo constants scale with mass m and COG height z: kp = 40 m g z, kd = 0.13 sqrt(z/g)
-/// kp, rotor inertia 0.009 m z^2.
-void infer_missing(RobotDescription& robot);
+/// Why the values of one key were chosen, and what a person should check.
+struct GuessReason {
+  std::string why, check;
+};
+
+/// A value that stands in a URDF because the format wants one: "position limits", "speed limits" or
+/// "effort limits".
+struct PlaceholderLimits {
+  std::string what;
+  std::string value;  ///< as it is written, with its unit
+  std::vector<std::string> joints;
+};
+
+/// A robot as guess_robot() completes it.
+struct RobotGuess {
+  RobotDescription robot;
+  std::string facing = "x";  ///< of the URDF's root link; `robot` faces x
+  GuessReason facing_reason, sole_reason, home_reason, servo_reason;
+  std::vector<PlaceholderLimits> placeholders;
+};
+
+/// Fills soles, home posture and servos where `robot` has none, and turns a robot without a sidecar
+/// so that it faces x.
+/// - Feet: the two lowest bodies beside each other with every joint at 0, or at the limit nearest
+///   to 0. Left and right, and so the front, follow from the names, else from the longer end of the
+///   feet.
+/// - Soles: the hull of what lies within 1 mm of the ground, thinned to at most 8 corners from the
+///   inside.
+/// - Home: bent knees, with the COG over the middle of the soles and all joints inside their
+/// limits.
+/// - Servos: full effort of each joint at an error of 0.2 rad, and for legs at least 4 m g z per
+/// rad. What was inferred is added to `assumptions`.
+RobotGuess guess_robot(RobotDescription robot);
+
+/// Limits that are placeholders. The same position limits on most joints, speeds above 60 rad/s,
+/// and efforts above five times m g z (mass, COG height) or the same on all joints.
+std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model);
+
+/// "positive bends the knee": the motion of a joint by a positive angle, in the home posture.
+std::string direction_in_words(const RobotModel& model, int dof);
 
 }  // namespace ayumi

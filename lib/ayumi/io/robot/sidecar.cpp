@@ -9,6 +9,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/io/robot/facing.hpp"
 #include "ayumi/io/robot/servo_reader.hpp"
 #include "ayumi/io/robot/urdf.hpp"
 #include "ayumi/io/run/sha256.hpp"
@@ -383,6 +384,7 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "locked_joints",
                                         "links",
                                         "position_limits_deg",
+                                        "facing",
                                         "trunk_link",
                                         "soles",
                                         "postures",
@@ -414,6 +416,7 @@ void check_counts(const JsonNode& root, const RobotDescription& robot) {
 
 void read_root(const JsonNode& root, RobotDescription& robot, std::string& files) {
   const std::vector<std::pair<const char*, std::function<void(const JsonNode&)>>> readers = {
+      {"facing", [&](const JsonNode& node) { turn_to_face_x(robot, node.one_of(facing_names())); }},
       {"locked_joints", [&](const JsonNode& node) { lock_joints(node, robot); }},
       {"position_limits_deg", [&](const JsonNode& node) { read_position_limits(node, robot); }},
       {"links", [&](const JsonNode& node) { read_links(node, robot); }},

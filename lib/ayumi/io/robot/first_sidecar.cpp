@@ -1,0 +1,343 @@
+#include "ayumi/io/robot/first_sidecar.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/inverse_kinematics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot/robot_guess.hpp"
+#include "ayumi/math/rotation.hpp"
+
+namespace ayumi {
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kRadian = 180 / std::numbers::pi;  // [deg]
+
+// Noise of sensors that nobody has measured yet. Source: data sheets of usual MEMS inertial units
+// and of hobby load cells; they act in simulations with noise only.
+constexpr double kAttitudeNoise = 0.002, kGyroNoise = 0.01, kAccelerometerNoise = 0.1,
+                 kForceNoise = 1;
+// Latency [s]. Chosen: two periods of 1 ms.
+constexpr double kLatency = 0.002;
+
+std::string json_text(const std::string& text) { return nlohmann::json(text).dump(); }
+
+// As many digits as make the written value the rounded one.
+std::string rounded_text(double value, int digits) {
+  const double unit = std::pow(10, digits);
+  return text::exact(std::round(value * unit) / unit + 0.0);
+}
+
+// Lines of at most `width` characters, each after "  // ".
+std::string remark(const std::string& sentence, const std::string& indent = "  ") {
+  constexpr size_t width = 96;
+  std::string lines, line;
+  size_t begin = 0;
+  while (begin < sentence.size()) {
+    const size_t end = std::min(sentence.find(' ', begin), sentence.size());
+    const std::string word = sentence.substr(begin, end - begin);
+    if (!line.empty() && indent.size() + 3 + line.size() + 1 + word.size() > width) {
+      lines += indent + "// " + line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+    begin = end + 1;
+  }
+  return line.empty() ? lines : lines + indent + "// " + line + "\n";
+}
+
+std::string guessed(const std::string& what, const GuessReason& reason) {
+  return remark(what + " Guess: " + reason.why + ".") +
+         (reason.check.empty() ? "" : remark("Check " + reason.check + "."));
+}
+
+// Towards the middle, so that a rounded sole is not wider than the true one.
+Vector2d rounded_inwards(const Vector2d& corner, const Vector2d& middle) {
+  Vector2d rounded;
+  for (int i = 0; i < 2; ++i) {
+    const double tenths = corner[i] * 1e4;  // of millimetres
+    rounded[i] =
+        1e-4 * (corner[i] > middle[i] ? std::floor(tenths + 1e-4) : std::ceil(tenths - 1e-4));
+  }
+  return rounded;
+}
+
+std::string sole_text(const SoleDescription& sole, const RobotModel& model, Side side) {
+  const Vector3d at = sole.frame.translation(), rpy = matrix_to_rpy(sole.frame.linear());
+  Vector2d middle = Vector2d::Zero();
+  for (const Vector2d& corner : sole.polygon)
+    middle += corner / static_cast<double>(sole.polygon.size());
+  std::vector<std::string> corners;
+  for (const Vector2d& corner : sole.polygon) {
+    const Vector2d p = rounded_inwards(corner, middle);
+    corners.push_back("[" + rounded_text(p.x(), 4) + ", " + rounded_text(p.y(), 4) + "]");
+  }
+  std::string text = "    " + json_text(name_of(side)) +
+                     ": {\n      \"link\": " + json_text(sole.link) + ",\n      \"origin\": [" +
+                     rounded_text(at.x(), 6) + ", " + rounded_text(at.y(), 6) + ", " +
+                     rounded_text(at.z(), 6) + "],\n";
+  if (rpy.norm() > 1e-6)
+    text += "      \"rpy\": [" + rounded_text(rpy.x(), 6) + ", " + rounded_text(rpy.y(), 6) + ", " +
+            rounded_text(rpy.z(), 6) + "],\n";
+  const Sole& whole = model.sole(side);
+  return text + "      \"polygon\": [" + text::join(corners, ", ") +
+         "],\n      \"stiffness\": " + text::brief(whole.stiffness, 3) +
+         ", \"damping_time\": " + text::exact(whole.damping_time) + "\n    }";
+}
+
+std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
+  if (!model.has_soles())
+    return remark(
+        "Soles: none was recognised, and without soles no motion can be made. State the link of "
+        "each foot, the pose of its sole frame (under the ankle, x forward, z up) and the corners "
+        "of its outline: \"soles\": {\"left\": {\"link\": ..., \"origin\": [x, y, z], \"polygon\": "
+        "[[x, y], ...]}, \"right\": ...}");
+  const auto& soles = model.description().soles;
+  return guessed("Soles: the frame lies on the sole plane under the ankle, x forward, z up [m].",
+                 guess.sole_reason) +
+         remark(
+             "Softness: stiffness [N/m] and damping time [s] of a whole sole on the ground. Guess: "
+             "the whole weight presses hard rubber in by 0.1 mm. Check it by loading a foot; soft "
+             "soles decide whether a walk falls.") +
+         "  \"soles\": {\n" + sole_text(soles.at("left"), model, Side::left) + ",\n" +
+         sole_text(soles.at("right"), model, Side::right) + "\n  },\n";
+}
+
+std::string home_text(const RobotModel& model, const RobotGuess& guess) {
+  const Eigen::VectorXd home = model.posture();
+  std::string text = guessed("Home posture [deg]: every motion starts here.", guess.home_reason) +
+                     remark(
+                         "Behind each joint stands what a positive angle does. Check it on the "
+                         "robot, one joint at a time.") +
+                     "  \"postures_deg\": {\n    \"home\": {\n";
+  std::string sliders;
+  std::vector<int> turning;
+  for (int i = 0; i < model.dof_count(); ++i) {
+    if (!model.dofs()[i].prismatic)
+      turning.push_back(i);
+    else if (home[i] != 0)
+      sliders += (sliders.empty() ? "" : ", ") + json_text(model.dofs()[i].name) + ": " +
+                 rounded_text(home[i], 5);
+  }
+  for (const int i : turning)
+    text += "      " + json_text(model.dofs()[i].name) + ": " + rounded_text(home[i] * kRadian, 3) +
+            (i == turning.back() ? "" : ",") + "  // " + direction_in_words(model, i) + "\n";
+  text += "    }\n  },\n";
+  if (!sliders.empty())
+    text += remark("Sliding joints would stand here in metres, in \"postures\": " + sliders);
+  return text;
+}
+
+// Names by which motion files may call the joints of the legs: l_hip_yaw to r_ankle_roll.
+std::map<std::string, std::string> leg_aliases(const RobotModel& model) {
+  std::map<std::string, std::string> aliases;
+  if (!model.has_soles()) return aliases;
+  const InverseKinematics ik(model, model.posture());
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const Eigen::Matrix3d trunk = data.rotation[model.trunk_body()];
+  for (const Side side : {Side::left, Side::right}) {
+    const std::string prefix = side == Side::left ? "l_" : "r_";
+    bool below = false;
+    std::map<std::string, std::vector<std::string>> roles;
+    for (const int dof : ik.leg(side)) {
+      const std::string& name = model.dofs()[dof].name;
+      if (dof == ik.knee(side)) {
+        below = true;
+        roles[prefix + "knee"].push_back(name);
+        continue;
+      }
+      int major = 0;
+      (trunk.transpose() * data.axis[model.dofs()[dof].body]).cwiseAbs().maxCoeff(&major);
+      const char* turns[] = {"roll", "pitch", "yaw"};
+      roles[prefix + (below ? "ankle_" : "hip_") + turns[major]].push_back(name);
+    }
+    for (const auto& [role, joints] : roles)
+      if (joints.size() == 1 && model.find_dof(role) < 0) aliases[role] = joints[0];
+  }
+  return aliases;
+}
+
+std::string aliases_text(const RobotModel& model) {
+  const auto aliases = leg_aliases(model);
+  if (aliases.empty()) return "";
+  std::string text = remark(
+      "Aliases: other names of the joints in motion files. Guess: the joints of the legs by their "
+      "axes. Add the names that your motion files use.");
+  text += "  \"aliases\": {\n";
+  size_t left = aliases.size();
+  for (const auto& [alias, joint] : aliases)
+    text += "    " + json_text(alias) + ": " + json_text(joint) + (--left ? "," : "") + "\n";
+  return text + "  },\n";
+}
+
+std::string joint_list(const std::vector<std::string>& joints) {
+  std::vector<std::string> names;
+  for (const std::string& joint : joints) names.push_back(json_text(joint));
+  return "[" + text::join(names, ", ") + "]";
+}
+
+std::string servos_text(const RobotModel& model, const RobotGuess& guess) {
+  using Values = std::array<double, 5>;
+  std::vector<std::pair<Values, std::vector<std::string>>> groups;
+  for (const Dof& dof : model.dofs()) {
+    const ServoDescription& servo = model.description().servos.at(dof.name);
+    const Values values = {servo.kp, servo.kd, servo.rotor_inertia, servo.viscous, servo.coulomb};
+    const auto same = std::find_if(groups.begin(), groups.end(),
+                                   [&](const auto& group) { return group.first == values; });
+    if (same == groups.end())
+      groups.push_back({values, {dof.name}});
+    else
+      same->second.push_back(dof.name);
+  }
+  std::string text =
+      guessed("Servos: kp [N m/rad], kd [N m s/rad], rotor inertia at the joint [kg m^2].",
+              guess.servo_reason) +
+      "  \"servo_period\": " + text::exact(model.description().servo_period) +
+      ",  // time between two targets [s]; check the cycle time of the robot's bus\n" +
+      "  \"servos\": [\n";
+  for (const auto& group : groups) {
+    const auto& [kp, kd, rotor, viscous, coulomb] = group.first;
+    text += "    { \"joints\": " + joint_list(group.second) +
+            ",\n      \"kp\": " + text::exact(kp) + ", \"kd\": " + text::exact(kd) +
+            ", \"rotor_inertia\": " + text::exact(rotor) +
+            ", \"viscous\": " + text::exact(viscous) + ", \"coulomb\": " + text::exact(coulomb) +
+            " }" + (&group == &groups.back() ? "\n" : ",\n");
+  }
+  return text + "  ],\n";
+}
+
+std::string profiles_text(const RobotModel& model, const RobotGuess& guess) {
+  const ActuatorLimits& limits = model.limits();
+  std::map<std::pair<double, double>, std::vector<std::string>> groups;
+  for (int i = 0; i < model.dof_count(); ++i)
+    if (std::isfinite(limits.speed[i]) || std::isfinite(limits.peak_torque[i]))
+      groups[{limits.speed[i], limits.peak_torque[i]}].push_back(model.dofs()[i].name);
+  std::string text = remark(
+      "Motors: speed [rad/s] and peak torque [N m] at the joint, from the URDF. The continuous "
+      "torque, which the motor bears without a time limit, is not in a URDF: add "
+      "\"continuous_torque\" to each group.");
+  for (const PlaceholderLimits& each : guess.placeholders)
+    text +=
+        remark("Placeholder: the " + each.what + " of " + each.value + " on " +
+               text::counted(each.joints.size(), "joint") +
+               (each.joints.size() <= 3 ? " (" + text::join(each.joints, ", ") + ")" : "") +
+               " stand in the URDF because the format wants a number. " +
+               (each.what == "position limits" ? "State the true ones in \"position_limits_deg\"."
+                                               : "Replace them by those of the motor."));
+  if (groups.empty()) return text;
+  text += "  \"profiles\": [\n    {\n      \"name\": \"urdf\",\n      \"limits\": [\n";
+  size_t left = groups.size();
+  for (const auto& [values, joints] : groups) {
+    text += "        { \"joints\": " + joint_list(joints);
+    if (std::isfinite(values.first)) text += ", \"speed\": " + text::exact(values.first);
+    if (std::isfinite(values.second)) text += ", \"peak_torque\": " + text::exact(values.second);
+    text += std::string(" }") + (--left ? ",\n" : "\n");
+  }
+  return text + "      ]\n    }\n  ],\n";
+}
+
+std::string imu_link(const RobotModel& model) {
+  for (const Link& link : model.links()) {
+    std::string name = link.name;
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (name.find("imu") != std::string::npos) return link.name;
+  }
+  return model.bodies()[model.trunk_body()].name;
+}
+
+std::string sensors_text(const RobotModel& model) {
+  return remark(
+             "Sensors: they act in simulations with --noise. Guess: an inertial unit of the usual "
+             "kind on this link, and load cells at the corners of the soles. Check place, latency "
+             "[s] and noise (standard deviations [rad, rad/s, m/s^2, N]).") +
+         "  \"sensors\": {\n    \"imu_link\": " + json_text(imu_link(model)) +
+         ", \"imu_position\": [0, 0, 0],\n    \"latency\": " + text::exact(kLatency) +
+         ", \"attitude_noise\": " + text::exact(kAttitudeNoise) +
+         ", \"gyro_noise\": " + text::exact(kGyroNoise) +
+         ",\n    \"accelerometer_noise\": " + text::exact(kAccelerometerNoise) +
+         ", \"force_noise\": " + text::exact(kForceNoise) + "\n  }\n";
+}
+
+std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& guess) {
+  std::vector<std::string> items;
+  items.push_back(
+      "Look at the picture: the robot stands upright, looks along the red arrow, and "
+      "its left leg is on its left side (facing: " +
+      guess.facing + " of the URDF).");
+  if (!model.has_soles()) {
+    items.push_back("State the soles of both feet; without them no motion can be made.");
+  } else {
+    items.push_back("Compare the outline of the soles with the real feet: link " +
+                    model.description().soles.at("left").link + " and " +
+                    model.description().soles.at("right").link + ".");
+    const InverseKinematics ik(model, model.posture());
+    if (ik.lacks_joints())
+      items.push_back(
+          "Know what the legs can do: a leg has fewer than six joints of its own, so the robot "
+          "stands, squats and shuffles with a trunk that leans; it cannot place a flat sole "
+          "anywhere.");
+    items.push_back("Measure how soft the soles are (stiffness).");
+  }
+  items.push_back(
+      "Move each joint alone by a small positive angle, and compare with the words "
+      "beside the home posture.");
+  for (const PlaceholderLimits& each : guess.placeholders)
+    items.push_back("Replace the placeholders: " + each.what + " of " + each.value + " on " +
+                    text::counted(each.joints.size(), "joint") + ".");
+  items.push_back(
+      "State kp, kd and rotor inertia of the servos, or find them with `ayumi identify`.");
+  items.push_back("State the continuous torque of the motors.");
+  items.push_back("State place, latency and noise of the sensors.");
+  return items;
+}
+
+}  // namespace
+
+FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path& folder,
+                           const RobotSearch& search) {
+  RobotDescription stated = load_robot_description(robot, search, {.meshes = true, .guess = false});
+  if (!stated.sidecar_file.empty())
+    fail(ErrorCode::usage, robot + ": this robot has a sidecar already, " + stated.sidecar_file +
+                               "; name its URDF to begin anew");
+  namespace fs = std::filesystem;
+  const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
+  const std::string urdf_as_written =
+      urdf.lexically_relative(fs::weakly_canonical(fs::absolute(folder))).generic_string();
+  const RobotGuess guess = guess_robot(std::move(stated));
+  const RobotModel model(guess.robot);
+  FirstSidecar result;
+  result.to_do = to_do_list(model, guess);
+  result.text =
+      "{\n" +
+      remark("The first sidecar of " + model.name() +
+             ", written by ayumi init. All values under \"Guess\" are to be checked; "
+             "docs/formats.md explains the keys.") +
+      "  \"format\": \"ayumi.robot/1\",\n  \"name\": " + json_text(model.name()) +
+      ",\n  \"urdf\": " + json_text(urdf_as_written) + ",\n" +
+      guessed(
+          "Facing: axis of the URDF's root link along which the robot looks; the root link of "
+          "this file is turned so that x is forward.",
+          guess.facing_reason) +
+      "  \"facing\": " + json_text(guess.facing) + ",\n" +
+      remark(
+          "Trunk: its tilt decides whether the robot has fallen. Guess: the root link, which "
+          "carries both legs.") +
+      "  \"trunk_link\": " + json_text(model.bodies()[0].name) + ",\n" + soles_text(model, guess) +
+      home_text(model, guess) + aliases_text(model) + servos_text(model, guess) +
+      profiles_text(model, guess) + sensors_text(model) + "}\n";
+  result.robot = guess.robot;
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,185 @@
+#include "ayumi/io/robot/first_sidecar.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/inverse_kinematics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot/robot_guess.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/urdf_biped.hpp"
+
+namespace ayumi::test {
+namespace {
+
+constexpr double kRightAngle = std::numbers::pi / 2;
+
+RobotDescription read(const UrdfBiped& kind, const TemporaryFolder& folder) {
+  return load_robot_description(folder.write(kind.name + ".urdf", kind.text()).string());
+}
+
+RobotGuess guess(const UrdfBiped& kind, const TemporaryFolder& folder) {
+  return guess_robot(load_robot_description(folder.write(kind.name + ".urdf", kind.text()).string(),
+                                            {}, {.guess = false}));
+}
+
+// Where the knee is ahead of the line from hip to ankle, from the positions of the bodies alone.
+double knee_ahead(const RobotModel& model, const std::string& side) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const auto at = [&](const std::string& joint) {
+    return Eigen::Vector3d(data.position[model.dofs()[model.find_dof(joint)].body]);
+  };
+  const Eigen::Vector3d hip = at(side + "hip_pitch"), knee = at(side + "knee"),
+                        ankle = at(side + "ankle_pitch");
+  const double share = (knee.z() - hip.z()) / (ankle.z() - hip.z());
+  return knee.x() - (hip + share * (ankle - hip)).x();
+}
+
+TEST(FirstSidecar, AnyFacingGivesTheSameRobot) {
+  const TemporaryFolder folder;
+  const RobotModel x(read({}, folder));
+  for (const auto& [angle, facing] : std::map<double, std::string>{
+           {0, "x"}, {kRightAngle, "y"}, {-kRightAngle, "-y"}, {2 * kRightAngle, "-x"}})
+    for (const bool named : {true, false}) {
+      const RobotGuess turned = guess(
+          {.facing = angle, .left = named ? "l_" : "one_", .right = named ? "r_" : "two_"}, folder);
+      EXPECT_EQ(turned.facing, facing) << named;
+      const RobotModel model(turned.robot);
+      EXPECT_LT((model.posture() - x.posture()).norm(), 1e-4);
+      for (const Side side : {Side::left, Side::right})
+        for (size_t i = 0; i < 4; ++i)
+          EXPECT_LT((model.sole(side).polygon[i] - x.sole(side).polygon[i]).norm(), 1e-6);
+      RobotData data(model), same(x);
+      update_positions(model, model.rest_state(), data);
+      update_positions(x, x.rest_state(), same);
+      EXPECT_LT((data.cog - same.cog).norm(), 1e-5);
+    }
+}
+
+TEST(FirstSidecar, SolesAreNotWiderThanWhatTouches) {
+  const TemporaryFolder folder;
+  const UrdfBiped kind{.spheres = true};
+  const RobotModel model(read(kind, folder));
+  for (const Side side : {Side::left, Side::right}) {
+    const auto& corners = model.sole(side).polygon;
+    ASSERT_EQ(corners.size(), 4u);
+    for (const Eigen::Vector2d& corner : corners) {
+      EXPECT_NEAR(std::abs(corner.y()), 0.4 * kind.foot_width, 1e-9);
+      EXPECT_NEAR(corner.x(), corner.x() > 0 ? 0.6 * kind.foot_length : -0.35 * kind.foot_length,
+                  1e-9);
+    }
+  }
+}
+
+TEST(FirstSidecar, HomeIsBalancedInsideTheLimits) {
+  const TemporaryFolder folder;
+  for (const UrdfBiped& kind :
+       {UrdfBiped{}, UrdfBiped{.size = 2.6, .mass = 4.2, .hips = "pry"}, UrdfBiped{.hips = "rpy"},
+        UrdfBiped{.ankle_roll = false}, UrdfBiped{.coupled_hips = true},
+        UrdfBiped{.thigh = 0.2, .shank = 0.15}}) {
+    const RobotModel model(read(kind, folder));
+    RobotData data(model);
+    RobotState home = model.rest_state();
+    update_positions(model, home, data);
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const Side side : {Side::left, Side::right}) {
+      const Sole& sole = model.sole(side);
+      const Eigen::Isometry3d pose = sole_pose(model, data, side);
+      middle += 0.5 * (pose * Eigen::Vector3d(sole.center.x(), sole.center.y(), 0));
+      EXPECT_GT(pose.linear()(2, 2), 1 - 1e-8);  // level
+    }
+    EXPECT_LT((data.cog - middle).head<2>().norm(), 1e-4 * kind.size);
+    for (const std::string side : {"l_", "r_"}) EXPECT_GT(knee_ahead(model, side), 0.02);
+    for (int i = 0; i < model.dof_count(); ++i) {
+      EXPECT_GE(home.theta[i], model.dofs()[i].lower);
+      EXPECT_LE(home.theta[i], model.dofs()[i].upper);
+    }
+  }
+}
+
+TEST(FirstSidecar, KneesOfOpposedAxesBothComeForward) {
+  const TemporaryFolder folder;
+  const RobotModel model(read({.opposed = true, .placeholders = true}, folder));
+  EXPECT_GT(knee_ahead(model, "l_"), 0.02);
+  EXPECT_GT(knee_ahead(model, "r_"), 0.02);
+  const Eigen::VectorXd home = model.posture();
+  EXPECT_NEAR(home[model.find_dof("l_knee")], -home[model.find_dof("r_knee")], 1e-4);
+  EXPECT_EQ(direction_in_words(model, model.find_dof("l_knee")), "positive bends the knee");
+  EXPECT_EQ(direction_in_words(model, model.find_dof("r_knee")), "positive straightens the knee");
+  EXPECT_EQ(direction_in_words(model, model.find_dof("l_hip_pitch")),
+            "positive swings the leg back");
+  EXPECT_EQ(direction_in_words(model, model.find_dof("r_ankle_pitch")),
+            "positive turns the toes up");
+  EXPECT_EQ(direction_in_words(model, model.find_dof("l_shoulder")), "positive moves l_arm back");
+}
+
+// The figures of a torque-controlled robot of 28 kg: efforts differ from joint to joint.
+TEST(FirstSidecar, ServosFollowTheEffortOfEachJoint) {
+  const TemporaryFolder folder;
+  UrdfBiped kind{.size = 2.6, .mass = 4.2};
+  kind.effort = [](const std::string& joint) {
+    return joint.ends_with("knee") ? 139.0 : joint.ends_with("shoulder") ? 25.0 : 88.0;
+  };
+  const RobotGuess guessed = guess(kind, folder);
+  EXPECT_TRUE(guessed.placeholders.empty());
+  const auto& servos = guessed.robot.servos;
+  EXPECT_NEAR(servos.at("l_shoulder").kp, 25 / 0.2, 0.5);
+  const RobotModel model(guessed.robot);
+  EXPECT_LT(servos.at("l_knee").kp, 8 * model.mass() * 9.81);
+  EXPECT_NEAR(servos.at("l_knee").rotor_inertia / servos.at("l_hip_roll").rotor_inertia, 139. / 88,
+              0.1);
+}
+
+TEST(FirstSidecar, PlaceholdersAreNamed) {
+  const TemporaryFolder folder;
+  const std::vector<PlaceholderLimits> found = guess({.placeholders = true}, folder).placeholders;
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].what + " " + found[0].value, "position limits -162 to 162 deg");
+  EXPECT_EQ(found[1].what + " " + found[1].value, "speed limits 100 rad/s");
+  EXPECT_EQ(found[2].what + " " + found[2].value, "effort limits 1000 N m");
+  for (const PlaceholderLimits& each : found) EXPECT_EQ(each.joints.size(), 14u);
+  EXPECT_TRUE(guess({}, folder).placeholders.empty());
+}
+
+// What is written reads back as what the bare URDF is read as.
+TEST(FirstSidecar, ReadsBackAsItWasGuessed) {
+  const TemporaryFolder folder;
+  for (const UrdfBiped& kind : {UrdfBiped{.name = "turned", .facing = -kRightAngle},
+                                UrdfBiped{.name = "five", .ankle_roll = false},
+                                UrdfBiped{.name = "coupled", .coupled_hips = true}}) {
+    const std::string urdf = folder.write(kind.name + ".urdf", kind.text()).string();
+    const FirstSidecar sidecar = first_sidecar(urdf, folder.path() / kind.name);
+    const RobotModel bare(load_robot_description(urdf)),
+        stated(load_robot_description(folder.write(kind.name + "/robot.json", sidecar.text)));
+    EXPECT_TRUE(stated.description().assumptions.empty() ||
+                stated.description().assumptions[0].find("placeholders") != std::string::npos);
+    EXPECT_LT((bare.posture() - stated.posture()).norm(), 1e-9);
+    EXPECT_EQ(bare.description().servos, stated.description().servos);
+    for (const Side side : {Side::left, Side::right}) {
+      EXPECT_LT((bare.sole(side).frame.matrix() - stated.sole(side).frame.matrix()).norm(), 1e-5);
+      for (size_t i = 0; i < bare.sole(side).polygon.size(); ++i) {
+        const Eigen::Vector2d wide = bare.sole(side).polygon[i],
+                              narrow = stated.sole(side).polygon[i];
+        EXPECT_LT((wide - narrow).norm(), 2e-4);
+        EXPECT_LE(std::abs(narrow.y()), std::abs(wide.y()) + 1e-8);
+      }
+      EXPECT_NEAR(stated.sole(side).stiffness / bare.sole(side).stiffness, 1, 0.01);
+    }
+    for (const char* word :
+         {"Facing", "Trunk", "Soles", "Softness", "Home posture", "Servos", "Motors", "Sensors"})
+      EXPECT_NE(sidecar.text.find(std::string("// ") + word), std::string::npos) << word;
+    EXPECT_GE(sidecar.to_do.size(), 6u);
+  }
+}
+
+TEST(FirstSidecar, RefusesARobotThatHasOne) {
+  const TemporaryFolder folder;
+  folder.write("robot/robot.urdf", UrdfBiped{}.text());
+  const std::string robot = (folder.path() / "robot").string();
+  folder.write("robot/robot.json", first_sidecar(robot, robot).text);
+  EXPECT_THROW(first_sidecar(robot, robot), Error);
+}
+
+}  // namespace
+}  // namespace ayumi::test
