@@ -61,6 +61,8 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
                 text::counted(written.phases.size(), "phase") + ", " +
                 text::counted(written.keyframes.size(), "keyframe") + "\n  COG " +
                 series.origin.at("cog") + "\n");
+  // Legs that lack joints do what they can; what they cannot is said here.
+  if (series.origin.contains("legs")) context.print("  " + series.origin.at("legs") + "\n");
   context.print_json(nlohmann::ordered_json{{"pattern", out},
                                             {"duration_s", series.duration()},
                                             {"phases", written.phases.size()},

@@ -12,11 +12,13 @@
 #include "ayumi/check/actuator_need.hpp"
 #include "ayumi/control/laws/viip.hpp"
 #include "ayumi/control/viip_goals.hpp"
+#include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/task/task.hpp"
+#include "motion_search.hpp"
 #include "new_pattern.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
@@ -34,7 +36,8 @@ struct NewOptions {
   double turn_deg = 0;
   std::string first = "right";
   double duration = 3.0;
-  double scale = 1;  // of the amplitudes of an excitation
+  double stand_height = 0;  // [m]; 0: of the home posture
+  double scale = 1;         // of the amplitudes of an excitation
   // Left out: HOAP-1's, scaled to the robot.
   std::vector<double> cog, velocity;  // goals of VIIP
   int viip_steps = 0;
@@ -55,6 +58,79 @@ void add_common(CLI::App& command, NewOptions& options) {
   command.add_option("-o,--out", options.out, "Pattern file to write.")->type_name("F")->required();
 }
 
+double rounded(double value, double unit) { return unit * std::round(value / unit); }
+
+Dial dial(const char* name, const char* unit, double value, double step, bool open,
+          const std::vector<double>& shares) {
+  Dial result{name, unit, {value}};
+  for (const double share : shares) {
+    const double other = rounded(share * value, step);
+    if (open && value != 0 && other != result.values.back()) result.values.push_back(other);
+  }
+  return result;
+}
+
+// COG heights around that of the generator, which is written as 0.
+Dial height_dial(const RobotModel& model, double given) {
+  Dial result = dial("--cog-height", "m", starting_height(model), 1e-3, given == 0,
+                     {0.97, 1.02, 0.94, 0.91, 0.88});
+  result.values.front() = given;
+  result.posture = true;
+  return result;
+}
+
+// The values of the dials with which the robot can do the motion; the defaults where there are
+// none. Says what was changed, and what limits the robot.
+std::vector<double> values_that_pass(
+    const Context& context, const RobotModel& model, const std::vector<Dial>& dials,
+    const std::function<Pattern(const std::vector<double>&)>& make) {
+  std::vector<double> defaults;
+  for (const Dial& each : dials) defaults.push_back(each.values.front());
+  if (!model.has_soles()) return defaults;
+  const SearchResult result = search_motion(model, dials, make, context.progress());
+  if (result.limit.empty()) return defaults;
+  if (result.found)
+    context.print("the default values are too much for " + model.name() + ": " + result.limit +
+                  "\n  found instead, after " + std::to_string(result.tried) +
+                  " trials: " + changed_values(dials, result) + "\n");
+  else if (result.tried > 1)
+    context.print("none of " + std::to_string(result.tried) +
+                  " combinations of height, length and time passes; the defaults fail by: " +
+                  result.limit + "\n");
+  return result.values;
+}
+
+// Fills what was left out of a walk in place or forward.
+void fit_walk(const Context& context, const RobotModel& model, const NewOptions& options,
+              WalkParameters& w) {
+  if (!model.has_soles() || w.turn != 0 || w.side != 0 || w.rise != 0) return;
+  // Legs without the roll of the ankle carry the COG aside by a few millimetres only, so that they
+  // step quickly and close to the other foot; another height does not help them.
+  const bool lacking = InverseKinematics(model, model.posture()).lacks_joints();
+  Dial inwards{"--zmp-inwards", "m", {w.zmp_inwards}};
+  if (lacking && w.zmp_inwards == 0)
+    for (const double share : {0.9, 0.7})
+      inwards.values.push_back(rounded(share * half_sole_width(model), 1e-3));
+  const Dial height =
+      lacking ? Dial{"--cog-height", "m", {w.cog_height}} : height_dial(model, w.cog_height);
+  const std::vector<double> paces =
+      lacking ? std::vector{0.55, 0.75} : std::vector{1.25, 1.6, 0.8, 2.2};
+  const std::vector<Dial> dials = {
+      height, dial("--stride", "m", w.stride, 1e-3, !options.stride, {0.75, 0.5, 0.25}),
+      dial("--period", "s", w.period, 0.01, !options.period, paces), inwards};
+  const auto with = [&](const std::vector<double>& values) {
+    WalkParameters walk = w;
+    walk.cog_height = values[0];
+    walk.stride = values[1];
+    walk.period = values[2];
+    walk.zmp_inwards = values[3];
+    return walk;
+  };
+  w = with(values_that_pass(context, model, dials, [&](const std::vector<double>& values) {
+    return walk_pattern(model, with(values));
+  }));
+}
+
 void new_walk(const Context& context, NewOptions options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
   const bool climbs = options.rise != 0;
@@ -67,6 +143,7 @@ void new_walk(const Context& context, NewOptions options) {
   w.lift = options.lift.value_or(scaled.lift);
   w.turn = options.turn_deg * std::numbers::pi / 180;
   w.first_swing = options.first == "left" ? Side::left : Side::right;
+  fit_walk(context, model, options, w);
   const std::vector<std::string> comments = {
       "Walk of " + std::to_string(w.steps) + " steps: stride " + text::brief(w.stride) +
           " m, period " + text::brief(w.period) + " s, double support " +
@@ -91,6 +168,7 @@ void new_step(const Context& context, NewOptions options) {
   w.period = options.period.value_or(scaled.period);
   w.lift = options.lift.value_or(scaled.lift);
   w.first_swing = options.first == "left" ? Side::left : Side::right;
+  fit_walk(context, model, options, w);
   const std::string where =
       w.stride == 0 ? "in place" : "of " + text::brief(w.stride) + " m forward";
   write_new(
@@ -107,6 +185,20 @@ void new_sway(const Context& context, NewOptions options) {
   SwayParameters& p = options.sway;
   p.side = options.side.value_or(p.forward != 0 ? 0 : scaled.side);
   p.period = options.period.value_or(scaled.period);
+  const std::vector<Dial> dials = {
+      height_dial(model, p.cog_height),
+      dial("--side", "m", p.side, 1e-3, !options.side, {0.75, 0.5, 0.25, 0.1}),
+      dial("--period", "s", p.period, 0.01, !options.period, {1.25, 1.6})};
+  const auto with = [&](const std::vector<double>& values) {
+    SwayParameters sway = p;
+    sway.cog_height = values[0];
+    sway.side = values[1];
+    sway.period = values[2];
+    return sway;
+  };
+  p = with(values_that_pass(context, model, dials, [&](const std::vector<double>& values) {
+    return sway_pattern(model, with(values));
+  }));
   write_new(
       context, model, sway_pattern(model, p), options,
       {"The COG sways " + std::to_string(p.cycles) + " times, " + text::brief(p.side) +
@@ -121,6 +213,20 @@ void new_squat(const Context& context, NewOptions options) {
   p.depth = options.depth.value_or(scaled.depth);
   p.period = options.period.value_or(scaled.period);
   p.hold = options.hold.value_or(scaled.hold);
+  const std::vector<Dial> dials = {
+      dial("--depth", "m", p.depth, 1e-3, !options.depth, {0.75, 0.5, 0.3, 0.15}),
+      height_dial(model, p.cog_height),
+      dial("--period", "s", p.period, 0.01, !options.period, {1.4, 2})};
+  const auto with = [&](const std::vector<double>& values) {
+    SquatParameters squat = p;
+    squat.depth = values[0];
+    squat.cog_height = values[1];
+    squat.period = values[2];
+    return squat;
+  };
+  p = with(values_that_pass(context, model, dials, [&](const std::vector<double>& values) {
+    return squat_pattern(model, with(values));
+  }));
   write_new(context, model, squat_pattern(model, p), options,
             {"Squats " + std::to_string(p.cycles) + " times by " + text::brief(p.depth) +
                  " m: COG height keys.",
@@ -223,8 +329,15 @@ void new_viip(const Context& context, const NewOptions& options) {
 
 void new_stand(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
-  write_new(context, model, stand_pattern(model, options.duration), options,
-            {"Standing on both feet in the home posture."});
+  const std::vector<Dial> dials = {height_dial(model, options.stand_height)};
+  const auto make = [&](const std::vector<double>& values) {
+    return stand_pattern(model, options.duration, values[0]);
+  };
+  const Pattern pattern = make(values_that_pass(context, model, dials, make));
+  write_new(context, model, pattern, options,
+            {pattern.cog_height == 0
+                 ? "Standing on both feet in the home posture."
+                 : "Standing on both feet, lower than in the home posture, with bent knees."});
 }
 
 // Amplitudes shrink until the check finds the pattern consistent.
@@ -252,6 +365,15 @@ void add_scaled(CLI::App& command, const char* name, std::optional<double>& valu
       ->type_name(type);
 }
 
+void add_height(CLI::App& command, double& height) {
+  command
+      .add_option(
+          "--cog-height", height,
+          "COG height [m]; 0 = that of the home posture, lower where the legs are straight.")
+      ->capture_default_str()
+      ->type_name("M");
+}
+
 void add_gait(CLI::App& command, NewOptions& options) {
   command
       .add_option("--steps", options.walk.steps,
@@ -267,6 +389,13 @@ void add_gait(CLI::App& command, NewOptions& options) {
                   "Share of the period in double support.")
       ->capture_default_str()
       ->type_name("SHARE");
+  add_height(command, options.walk.cog_height);
+  command
+      .add_option("--zmp-inwards", options.walk.zmp_inwards,
+                  "Distance of the ZMP from the middle of the standing sole towards the other foot "
+                  "[m], so that the COG sways less.")
+      ->capture_default_str()
+      ->type_name("M");
   command.add_option("--first", options.first, "Foot that swings first.")
       ->check(one_of({"left", "right"}))
       ->capture_default_str();
@@ -281,11 +410,6 @@ void add_walk(CLI::App& command, NewOptions& options) {
   add_scaled(command, "--stride", options.stride,
              "Distance between successive footholds [m], backwards if negative",
              WalkParameters().stride, "M");
-  command
-      .add_option("--cog-height", options.walk.cog_height,
-                  "COG height [m]; 0 = that of the home posture.")
-      ->capture_default_str()
-      ->type_name("M");
   command.add_option("--turn", options.turn_deg, "Turn per step to the left [deg].")
       ->capture_default_str()
       ->type_name("DEG");
@@ -324,6 +448,7 @@ void add_sway(CLI::App& command, NewOptions& options) {
       ->type_name("M");
   add_scaled(command, "--period", options.period, "Time of one cycle [s]", SwayParameters().period,
              "S");
+  add_height(command, options.sway.cog_height);
   command.add_option("--cycles", options.sway.cycles, "Number of cycles.")
       ->capture_default_str()
       ->type_name("N");
@@ -366,6 +491,7 @@ void add_squat(CLI::App& command, NewOptions& options) {
              "S");
   add_scaled(command, "--hold", options.hold, "Time at the lowest point [s]",
              SquatParameters().hold, "S");
+  add_height(command, options.squat.cog_height);
   command.add_option("--cycles", options.squat.cycles, "Number of cycles.")
       ->capture_default_str()
       ->type_name("N");
@@ -410,6 +536,7 @@ void add_new(CLI::App& app, Context& context) {
   CLI::App* stand = command->add_subcommand("stand", "stand on both feet");
   stand->footer("Examples:\n  ayumi new stand --duration 4 -o stand.json");
   add_common(*stand, options);
+  add_height(*stand, options.stand_height);
   stand->add_option("--duration", options.duration, "Duration of the pattern [s].")
       ->capture_default_str()
       ->type_name("S");

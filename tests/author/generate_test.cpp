@@ -228,5 +228,24 @@ TEST(StandPattern, StandsStill) {
   EXPECT_THROW(stand_pattern(model, 0), Error);
 }
 
+// The ZMP that a shuffle keys under a standing foot is nearer to the other foot by what was asked.
+TEST(Generate, ZmpInwardsOfTheStandingSole) {
+  const RobotModel model = test::biped();
+  WalkParameters p = walk_defaults(model);
+  p.steps = 3;
+  const auto keyed = [&](double inwards) {
+    p.zmp_inwards = inwards;
+    const CommandSeries series = sample(model, walk_pattern(model, p), {.dt = 0.005});
+    std::vector<double> sideways;
+    for (const CommandSample& sample : series.samples)
+      if (sample.support == Support::left || sample.support == Support::right)
+        sideways.push_back(sample.zmp.y() * (sample.support == Support::left ? 1 : -1));
+    return sideways;
+  };
+  const std::vector<double> middle = keyed(0), inner = keyed(0.02);
+  ASSERT_EQ(middle.size(), inner.size());
+  for (size_t i = 0; i < middle.size(); ++i) EXPECT_NEAR(middle[i] - inner[i], 0.02, 2e-3);
+}
+
 }  // namespace
 }  // namespace ayumi

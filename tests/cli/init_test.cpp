@@ -29,6 +29,66 @@ TEST(Init, ThreeCommandsToAWalk) {
   expect_walks_in_three_commands({.name = "opposed", .opposed = true, .placeholders = true});
 }
 
+// Without the roll of the ankles the COG hardly goes aside: the walk becomes a shuffle, and what
+// the legs cannot do is said once.
+TEST(Init, FiveJointLegsShuffle) {
+  Folder folder;
+  write(folder / "robot.urdf", UrdfBiped{.ankle_roll = false}.text());
+  ASSERT_EQ(ayumi(folder, {"init", "robot.urdf", "-o", "robot"}).exit_code, 0);
+  for (const std::string kind : {"stand", "squat", "walk"}) {
+    const Output made = ayumi(folder, {"new", kind, "--robot", "robot", "-o", kind + ".json"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_EQ(ayumi(folder, {"check", kind + ".json"}).exit_code, 0) << kind << made.out;
+    const std::string cannot =
+        "a leg has 5 joints, not six, and cannot place a level sole anywhere";
+    const size_t said = made.out.find(cannot);
+    EXPECT_EQ(said != std::string::npos, kind == "walk") << made.out;
+    EXPECT_EQ(made.out.rfind(cannot), said);  // once
+  }
+}
+
+// One joint turns both hips: a turn is done with it and with the trunk.
+TEST(Init, CoupledHipsTurn) {
+  Folder folder;
+  write(folder / "robot.urdf", UrdfBiped{.coupled_hips = true}.text());
+  const Output made = ayumi(folder, {"new", "walk", "--robot", "robot.urdf", "--steps", "4",
+                                     "--turn", "6", "-o", "turn.json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.out.find("one that moves both legs"), std::string::npos) << made.out;
+  const Output check = ayumi(folder, {"check", "turn.json"});
+  EXPECT_EQ(check.exit_code, 0) << check.out;
+}
+
+// A sidecar whose home posture is straight: every motion crouches by itself.
+TEST(Init, StraightHomeCrouches) {
+  Folder folder;
+  write(folder / "robot.urdf", UrdfBiped{}.text());
+  write(folder / "robot.json", R"({"format": "ayumi.robot/1", "urdf": "robot.urdf",
+                                   "postures_deg": {"home": {}}})");
+  for (const std::string kind : {"stand", "squat", "walk"}) {
+    const Output made = ayumi(folder, {"new", kind, "--robot", "robot.json", "-o", kind + ".json"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_EQ(ayumi(folder, {"check", kind + ".json"}).exit_code, 0) << kind << made.out;
+  }
+}
+
+// Long shanks, weak motors: values are found that pass, and what was too much is said.
+TEST(Init, ValuesThatPassAreFound) {
+  Folder folder;
+  UrdfBiped kind{.thigh = 0.22, .shank = 0.22, .speed = 1.2};
+  write(folder / "robot.urdf", kind.text());
+  const Output made = ayumi(folder, {"new", "walk", "--robot", "robot.urdf", "-o", "w.json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.out.find("the default values are too much for robot: "), std::string::npos)
+      << made.out;
+  EXPECT_NE(made.out.find("found instead, after "), std::string::npos);
+  EXPECT_EQ(ayumi(folder, {"check", "w.json"}).exit_code, 0);
+  // What is asked for stays.
+  const Output asked = ayumi(
+      folder, {"new", "walk", "--robot", "robot.urdf", "--stride", "0.06", "-o", "asked.json"});
+  EXPECT_EQ(asked.out.find("--stride"), std::string::npos) << asked.out;
+}
+
 TEST(Init, WritesThreeFilesOrNone) {
   Folder folder;
   write(folder / "robot.urdf", UrdfBiped{}.text());

@@ -38,9 +38,15 @@ constexpr double kLargestJointStep = 0.3;
 // reach shows at the feet and not at the COG.
 constexpr double kCogWeight = 100;
 
-// Weight of the trunk's attitude against the feet where legs lack joints. Chosen: an angle of 0.1
-// rad then moves the soles by less than 1e-6 m. No tested motion changes from half to twice.
-constexpr double kTrunkWeight = 1e-3;
+// Weights of the trunk's attitude against the feet where legs lack joints: of the roll of legs
+// without coupled joints, which carries the COG aside, and of all else. Chosen: a roll of 0.1 rad
+// then moves the soles by less than 0.01 mm. Feet that miss their places hold pitch and yaw so
+// weakly that a smaller weight lets them wander.
+constexpr double kRollWeight = 1e-3, kTrunkWeight = 3e-2;
+
+// Step of a joint with which a solution that leaves a residual ends [rad]. Chosen: angles are then
+// continuous in time to what rates at 1 kHz need.
+constexpr double kLastStep = 1e-10;
 
 // Share of an axis that lies across the trunk. Chosen: within 45 degrees.
 constexpr double kAcross = 0.7;
@@ -272,6 +278,9 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
   joints.insert(joints.end(), coupled_.begin(), coupled_.end());
   const auto n = static_cast<Eigen::Index>(joints.size());
   const Eigen::Index base = lacking_ ? 6 : 3, rows = lacking_ ? 18 : 15;
+  const double roll = coupled_.empty() ? kRollWeight : kTrunkWeight;
+  const Eigen::Matrix3d trunk =
+      Vector3d(roll, kTrunkWeight, kTrunkWeight).asDiagonal() * target.trunk.transpose();
   const auto limit = [&](VectorXd& theta) {
     for (const int dof : joints)
       theta[dof] = std::clamp(theta[dof], model_->dofs()[dof].lower, model_->dofs()[dof].upper);
@@ -280,7 +289,7 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
   const auto stack = [&](const Residual& e) {
     VectorXd r(rows);
     r.head<15>() << e.foot[0], e.foot[1], kCogWeight * e.cog;
-    if (lacking_) r.tail<3>() = kTrunkWeight * e.trunk;
+    if (lacking_) r.tail<3>() = trunk * e.trunk;
     return r;
   };
   Residual e = residual(target, state, data);
@@ -303,7 +312,9 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
         J.block<3, 3>(6 * s + 3, 3).setIdentity();
       }
       J.block<3, 3>(12, 3) = -kCogWeight * skew(data.cog - data.base_position);
-      J.block<3, 3>(15, 3) = kTrunkWeight * Eigen::Matrix3d::Identity();
+      // d log(A exp(-d)) = -(1 + [e]/2 + [e]^2/12 + ...) d at e = log A
+      const Eigen::Matrix3d turn = skew(e.trunk);
+      J.block<3, 3>(15, 3) = trunk * (Eigen::Matrix3d::Identity() + turn / 2 + turn * turn / 12);
     }
     const VectorXd r = stack(e), down = J.transpose() * r;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -313,7 +324,7 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
         J.col(base + i).setZero();
     }
     MatrixXd H = J.transpose() * J;
-    H.diagonal().array() += lambda * (lacking_ ? kTrunkWeight * kTrunkWeight : 1.0);
+    H.diagonal().array() += lambda * (lacking_ ? kRollWeight * kRollWeight : 1.0);
     VectorXd d = H.ldlt().solve(J.transpose() * r);
     const double longest = d.tail(base + n - 3).cwiseAbs().maxCoeff();
     if (longest > kLargestJointStep) d *= kLargestJointStep / longest;
@@ -327,11 +338,16 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     limit(trial.theta);
     const Residual next = residual(target, trial, data);
     const double gain = r.squaredNorm() - stack(next).squaredNorm();
+    // Where soles cannot meet their places, the residual stays and the steps vanish.
+    const bool ends = lacking_ && longest < kLastStep;
     if (gain > 0) {
       state = trial;
       e = next;
       lambda = std::max(1e-14, 0.2 * lambda);
-      if (gain < 1e-14 * r.squaredNorm()) break;
+      if (ends || gain < 1e-14 * r.squaredNorm()) break;
+    } else if (ends) {
+      residual(target, state, data);
+      break;
     } else {
       lambda *= 8;
       residual(target, state, data);

@@ -44,6 +44,13 @@ namespace {
   const double ground = job.feet.ground(t);
   const std::string where = in_file(job.pattern, "phases/" + std::to_string(job.feet.phase(t))) +
                             ": t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
+  if (job.ik.lacks_joints() && !solution.knee_flipped)
+    fail(ErrorCode::bad_pattern,
+         where + " foot is out of reach by " + millimetres(solution.missing) + ", of which " +
+             millimetres(kLackingTolerance) +
+             " are allowed because a leg has fewer than six joints; such legs cannot carry the COG "
+             "farther aside over level soles: let the COG sway less, by shorter steps in time or a "
+             "ZMP nearer to the other foot (new walk --zmp-inwards), or lower the COG height");
   const std::string remedy = "; lower the COG height (here " +
                              text::fixed(sample.cog.z() - ground, 4) + " m above the soles)" +
                              (job.tracks.torso ? ", tilt the torso less," : "") +
@@ -107,6 +114,9 @@ void require_body_tracks(const SampleJob& job) {
     }
   }
 }
+
+// Lean [rad] and miss [m] of a motion that are worth a sentence. Chosen: what a person sees.
+constexpr double kNotedLean = 1e-3, kNotedMiss = 1e-5;
 
 // Largest figures of a motion by legs that lack joints.
 struct Compromise {
@@ -192,14 +202,15 @@ void describe(const SampleJob& job, const CogPlan& plan, double worst, const Com
   }
   origin["feet"] = "phases and swings";
   origin["base"] = "solved from feet, torso and COG";
-  if (job.ik.lacks_joints()) {
+  if (job.ik.lacks_joints() && (most.lean > kNotedLean || most.miss > kNotedMiss)) {
     const size_t joints = std::min(job.ik.leg(Side::left).size(), job.ik.leg(Side::right).size());
-    origin["base"] +=
-        "; a leg has " + std::to_string(joints) +
-        (job.ik.coupled().empty() ? " joints, not six"
-                                  : " joints of its own and one that moves both legs, not six") +
-        ", so the trunk leans by up to " + text::fixed(most.lean * 180 / std::numbers::pi, 1) +
-        " deg and soles miss their places by up to " + millimetres(most.miss) + " (allowed " +
+    origin["legs"] =
+        "a leg has " + std::to_string(joints) +
+        (job.ik.coupled().empty() ? " joints, not six,"
+                                  : " joints of its own and one that moves both legs, not six,") +
+        " and cannot place a level sole anywhere: the trunk leans by up to " +
+        text::fixed(most.lean * 180 / std::numbers::pi, 1) +
+        " deg, and soles miss their places by up to " + millimetres(most.miss) + " (allowed " +
         millimetres(kLackingTolerance) + ")";
   }
   origin["joints"] = "legs by inverse kinematics, others from keys and default posture";

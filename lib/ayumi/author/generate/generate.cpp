@@ -100,6 +100,7 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   require_range("walk", "lift", p.lift, 0.01 * leg, 0.4 * leg, " m");
   require_range("walk", "side", p.side, -0.4 * leg, 0.4 * leg, " m");
   require_range("walk", "turn", p.turn * 180 / M_PI, -0.6 * 180 / M_PI, 0.6 * 180 / M_PI, " deg");
+  require_range("walk", "zmp_inwards", p.zmp_inwards, 0, half_sole_width(model), " m");
   if (p.cog_height != 0)
     require_range("walk", "cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
 }
@@ -117,15 +118,34 @@ Foothold foothold(const Vector3d& center, double yaw, double beside) {
   return result;
 }
 
-void write_step(PatternBuilder& writer, const WalkParameters& p, Side swing_foot,
-                const Foothold& to) {
+// The ZMP under the standing foot: in the middle of its sole, or nearer to the other foot.
+Keyframe stance_key(const RobotModel& model, const WalkParameters& p, Side stance,
+                    const Isometry3d& foot) {
+  Keyframe key;
+  if (p.zmp_inwards == 0) {
+    key.zmp = ZmpKey{place_of(stance), Eigen::Vector2d::Zero()};
+    return key;
+  }
+  const Eigen::Vector2d center = model.sole(stance).center;
+  const double inwards = stance == Side::left ? -p.zmp_inwards : p.zmp_inwards;
+  const Vector3d at = foot * Vector3d(center.x(), center.y() + inwards, 0);
+  key.zmp =
+      ZmpKey{ZmpKey::Place::point, {to_tenth_millimetre(at.x()), to_tenth_millimetre(at.y())}};
+  return key;
+}
+
+void write_step(PatternBuilder& writer, const RobotModel& model, const WalkParameters& p,
+                Side swing_foot, const Foothold& to, std::array<Isometry3d, 2>& feet) {
   const double single = p.period * (1 - p.double_support);
   const Side stance = other(swing_foot);
-  const ZmpKey::Place place = place_of(stance);
-  writer.key(writer.t, place);
+  const Keyframe key = stance_key(model, p, stance, feet[static_cast<int>(stance)]);
+  writer.add(writer.t, key);
   writer.phase(single, stance == Side::left ? Support::left : Support::right,
                Swing{swing_foot, to, to_tenth_millimetre(p.lift)});
-  writer.key(writer.t, place);
+  writer.add(writer.t, key);
+  Isometry3d& placed = feet[static_cast<int>(swing_foot)];
+  placed.linear() = rpy_to_matrix(to.rpy);
+  placed.translation() = to.position;
 }
 
 std::string title(const WalkParameters& p) {
@@ -139,6 +159,24 @@ std::string title(const WalkParameters& p) {
 }
 
 }  // namespace
+
+double half_sole_width(const RobotModel& model) {
+  double half = INFINITY;
+  for (const Side side : {Side::left, Side::right}) {
+    double low = INFINITY, high = -INFINITY;
+    for (const Eigen::Vector2d& p : model.sole(side).polygon) {
+      low = std::min(low, p.y());
+      high = std::max(high, p.y());
+    }
+    half = std::min(half, 0.5 * (high - low));
+  }
+  return half;
+}
+
+double starting_height(const RobotModel& model) {
+  const double bent = bent_height(model);
+  return bent != 0 ? bent : default_cog_height(model, {});
+}
 
 WalkParameters walk_defaults(const RobotModel& model) {
   const double size = size_beside_hoap1(model), slow = std::sqrt(size);
@@ -178,6 +216,7 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   if (p.cog_height == 0) pattern.cog_height = bent_height(model);
 
   const auto start = start_feet(model, pattern);
+  auto feet = start;
   const double beside = 0.5 * (start[0].translation() - start[1].translation()).norm();
   const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
   const double rest = to_millisecond(0.01 * std::round(100 * kZmpRest / omega));
@@ -208,7 +247,8 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
       center += rpy_to_matrix({0, 0, 0.5 * (yaw + turned)}) * move;
       yaw = turned;
     }
-    write_step(writer, p, swing, foothold(center, yaw, swing == Side::left ? beside : -beside));
+    write_step(writer, model, p, swing,
+               foothold(center, yaw, swing == Side::left ? beside : -beside), feet);
     if (!closing) writer.phase(both, Support::both);
     swing = other(swing);
   }
@@ -217,14 +257,14 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   return pattern;
 }
 
-Pattern stand_pattern(const RobotModel& model, double duration) {
+Pattern stand_pattern(const RobotModel& model, double duration, double cog_height) {
   if (!(duration >= 0.01 && duration <= 3600))
     fail(ErrorCode::usage, "stand: duration " + text::exact(duration) +
                                " s is out of range; it may be from 0.01 to 3600 s");
   Pattern pattern;
   pattern.name = "stand for " + text::brief(duration) + " s";
   pattern.robot = model.name();
-  pattern.cog_height = bent_height(model);
+  pattern.cog_height = cog_height != 0 ? to_tenth_millimetre(cog_height) : bent_height(model);
   PatternBuilder writer{pattern};
   writer.key(0, ZmpKey::Place::center);
   writer.phase(duration, Support::both);

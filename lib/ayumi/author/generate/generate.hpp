@@ -17,6 +17,8 @@ struct WalkParameters {
   double side = 0;               ///< sideways distance per pair of steps, left positive [m]
   double rise = 0;               ///< height of a stair [m]; not 0: every stride leads to the next
                                  ///< stair, the other foot follows, and the world has the stairs
+  double zmp_inwards = 0;        ///< of the ZMP from the middle of the standing sole towards the
+                                 ///< other foot, so that the COG sways less [m]
   Side first_swing = Side::right;
 };
 
@@ -32,8 +34,9 @@ WalkParameters stair_defaults(const RobotModel& model, double rise);
 /// Throws Error(usage) that names the parameter out of range.
 Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters);
 
-/// Both feet on the ground, home posture, for `duration` [s].
-Pattern stand_pattern(const RobotModel& model, double duration);
+/// Both feet on the ground, home posture, for `duration` [s]; `cog_height` 0: starting_height()
+/// [m].
+Pattern stand_pattern(const RobotModel& model, double duration, double cog_height = 0);
 
 /// The COG moves to and fro over both feet; every part starts and ends at rest.
 struct SwayParameters {
@@ -41,11 +44,19 @@ struct SwayParameters {
   double forward = 0;   ///< to the front and back of the middle [m]
   double period = 2.0;  ///< of one to and fro [s]
   int cycles = 2;
+  double cog_height = 0;  ///< 0: starting_height() [m]
 };
 SwayParameters sway_defaults(const RobotModel& model);
 
 /// COG keys: the middle, left (front), right (back), the middle. Throws as walk_pattern.
 Pattern sway_pattern(const RobotModel& model, const SwayParameters& parameters);
+
+/// Half of the width of the narrower sole [m].
+double half_sole_width(const RobotModel& model);
+
+/// COG height at which generated patterns begin: the home posture's, lower where its legs are
+/// straight [m].
+double starting_height(const RobotModel& model);
 
 /// The COG moves down and up over both feet.
 struct SquatParameters {
@@ -53,6 +64,7 @@ struct SquatParameters {
   double period = 2.0;  ///< of one cycle without the hold [s]
   double hold = 0.3;    ///< time at the lowest point [s]
   int cycles = 2;
+  double cog_height = 0;  ///< at the top; 0: starting_height() [m]
 };
 SquatParameters squat_defaults(const RobotModel& model);
 

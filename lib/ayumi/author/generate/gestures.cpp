@@ -25,11 +25,11 @@ Vector2d middle_of_feet(const RobotModel& model) {
   return FootPlan(model, standing).support_center(0).head<2>();
 }
 
-Pattern both_feet(const RobotModel& model, const std::string& name) {
+Pattern both_feet(const RobotModel& model, const std::string& name, double cog_height) {
   Pattern pattern;
   pattern.name = name;
   pattern.robot = model.name();
-  pattern.cog_height = bent_height(model);
+  pattern.cog_height = cog_height != 0 ? to_tenth_millimetre(cog_height) : bent_height(model);
   return pattern;
 }
 
@@ -49,7 +49,7 @@ Pattern sway_pattern(const RobotModel& model, const SwayParameters& p) {
   require_range("sway", "forward", p.forward, -0.5 * leg, 0.5 * leg, " m");
   require_range("sway", "period", p.period, 0.2, 60, " s");
   require_range("sway", "cycles", p.cycles, 1, 1000, "");
-  Pattern pattern = both_feet(model, "sway, " + std::to_string(p.cycles) + " times");
+  Pattern pattern = both_feet(model, "sway, " + std::to_string(p.cycles) + " times", p.cog_height);
   const Vector2d middle = middle_of_feet(model), aside(p.forward, p.side);
   const double rest = to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kRestTime);
   PatternBuilder writer{pattern};
@@ -86,7 +86,7 @@ Pattern squat_pattern(const RobotModel& model, const SquatParameters& p) {
   require_range("squat", "period", p.period, 0.2, 60, " s");
   require_range("squat", "hold", p.hold, 0, 60, " s");
   require_range("squat", "cycles", p.cycles, 1, 1000, "");
-  Pattern pattern = both_feet(model, "squat, " + std::to_string(p.cycles) + " times");
+  Pattern pattern = both_feet(model, "squat, " + std::to_string(p.cycles) + " times", p.cog_height);
   const double home = default_cog_height(model, pattern);
   const double rest = to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kRestTime);
   PatternBuilder writer{pattern};

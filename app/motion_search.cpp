@@ -1,0 +1,130 @@
+#include "motion_search.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/limits/limit.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/task/task.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+// Most motions that are sampled, and most that are checked in full. Chosen: a sample of a walk of
+// 12 s at kCoarse takes 0.05 s and a full check 0.5 s.
+constexpr int kMostSampled = 45, kMostChecked = 8;
+// Sample period of the first look [s]. Chosen: postures are judged, 45 of them in a swing of 0.45
+// s.
+constexpr double kCoarse = 0.01;
+
+bool cannot_be_done(const Error& error) {
+  return error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage;
+}
+
+std::string text_of(const Finding& finding) {
+  return std::string(name_of(finding.kind)) + " " + finding.where + " at " +
+         text::fixed(finding.at, 3) + " s: " + finding.hint;
+}
+
+// What is wrong with the postures of a motion; "" where nothing is.
+std::string wrong_posture(const RobotModel& model, const Pattern& pattern) {
+  const ConsistencyReport report =
+      check_consistency(model, sample(model, pattern, {.dt = kCoarse}));
+  for (const Finding& finding : report.findings)
+    if (finding.severity == Severity::error &&
+        (is_of_posture(finding) || finding.kind == FindingKind::table_position))
+      return text_of(finding);
+  return "";
+}
+
+// The same for all limits, by the profile of the robot that bears most.
+std::string wrong_motion(const RobotModel& model, const Pattern& pattern) {
+  const Judgement judged = judge(make_task(pattern, model, "", {}));
+  if (judged.good() || !judged.motion_need.sufficient.empty()) return "";
+  for (const Finding& finding : judged.report.findings)
+    if (finding.severity == Severity::error) return text_of(finding);
+  return judged.report.findings.empty() ? "the check does not accept it"
+                                        : text_of(judged.report.findings.front());
+}
+
+// Places in the lists of values, by their sum.
+std::vector<std::vector<size_t>> nearest_first(const std::vector<Dial>& dials) {
+  std::vector<std::vector<size_t>> all = {{}};
+  for (const Dial& dial : dials) {
+    std::vector<std::vector<size_t>> longer;
+    for (const auto& places : all)
+      for (size_t i = 0; i < dial.values.size(); ++i) {
+        longer.push_back(places);
+        longer.back().push_back(i);
+      }
+    all = std::move(longer);
+  }
+  const auto sum = [](const std::vector<size_t>& v) {
+    return std::accumulate(v.begin(), v.end(), size_t{0});
+  };
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const auto& a, const auto& b) { return sum(a) < sum(b); });
+  return all;
+}
+
+}  // namespace
+
+SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dials,
+                           const std::function<Pattern(const std::vector<double>&)>& make,
+                           const Progress& progress) {
+  SearchResult result;
+  int checked = 0;
+  // Places of the other dials where postures passed, but not speeds, torques or ZMP: another
+  // posture does not mend that.
+  std::set<std::vector<size_t>> hopeless;
+  for (const std::vector<size_t>& places : nearest_first(dials)) {
+    std::vector<size_t> others;
+    for (size_t i = 0; i < dials.size(); ++i)
+      if (!dials[i].posture) others.push_back(places[i]);
+    if (hopeless.contains(others)) continue;
+    std::vector<double> values;
+    for (size_t i = 0; i < dials.size(); ++i) values.push_back(dials[i].values[places[i]]);
+    std::string wrong;
+    try {
+      Pattern pattern = make(values);
+      pattern.file.clear();
+      wrong = wrong_posture(model, pattern);
+      if (wrong.empty()) {
+        ++checked;
+        wrong = wrong_motion(model, pattern);
+        if (!wrong.empty()) hopeless.insert(others);
+      }
+    } catch (const Error& error) {
+      if (!cannot_be_done(error)) throw;
+      wrong = error.what();
+    }
+    ++result.tried;
+    report(progress, {"look for a motion that passes", result.tried / double(kMostSampled), ""});
+    if (result.tried == 1) {
+      result.values = values;
+      result.limit = wrong;
+    }
+    if (wrong.empty()) {
+      result.found = true;
+      result.values = values;
+      break;
+    }
+    if (result.tried == kMostSampled || checked == kMostChecked) break;
+  }
+  return result;
+}
+
+std::string changed_values(const std::vector<Dial>& dials, const SearchResult& result) {
+  std::vector<std::string> changed;
+  for (size_t i = 0; i < dials.size(); ++i)
+    if (result.values[i] != dials[i].values.front())
+      changed.push_back(dials[i].name + " " + text::brief(result.values[i]) + " " + dials[i].unit);
+  return text::join(changed, ", ");
+}
+
+}  // namespace ayumi::app

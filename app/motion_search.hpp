@@ -1,0 +1,39 @@
+#pragma once
+// Which values of a generated motion the robot can do, where the default ones are too much for it.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ayumi/motion/pattern.hpp"
+#include "commands.hpp"
+
+namespace ayumi::app {
+
+/// One value of a motion that nobody asked for, and what it may be instead.
+struct Dial {
+  std::string name;  ///< as the option, e.g. "--stride"; with its unit in `unit`
+  std::string unit;
+  std::vector<double> values;  ///< the default first, then ever farther from it
+  bool posture = false;        ///< changes postures, hardly speeds and torques
+};
+
+struct SearchResult {
+  bool found = false;
+  std::vector<double> values;  ///< of the dials
+  int tried = 0;
+  std::string limit;  ///< what is wrong with the default values; "" where nothing is
+};
+
+/// Tries the values of the dials, those nearest to the defaults first, until the check accepts the
+/// motion for a profile of the robot. `make` returns the pattern for values of the dials; it may
+/// throw Error(bad_pattern) or Error(usage) for those that the robot cannot do. The number of
+/// trials is bounded, not their time, so that the same input gives the same result.
+SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dials,
+                           const std::function<Pattern(const std::vector<double>&)>& make,
+                           const Progress& progress = {});
+
+/// "--stride 0.02 m, --period 0.7 s": the values that are not the defaults.
+std::string changed_values(const std::vector<Dial>& dials, const SearchResult& result);
+
+}  // namespace ayumi::app
