@@ -102,6 +102,7 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
     } catch (const Error& error) {
       if (!cannot_be_done(error)) throw;
       wrong = error.what();
+      if (result.tried == 0) result.refused = true;
     }
     ++result.tried;
     report(progress, {"look for a motion that passes", result.tried / double(kMostSampled), ""});

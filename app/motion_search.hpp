@@ -22,7 +22,8 @@ struct SearchResult {
   bool found = false;
   std::vector<double> values;  ///< of the dials
   int tried = 0;
-  std::string limit;  ///< what is wrong with the default values; "" where nothing is
+  std::string limit;     ///< what is wrong with the default values; "" where nothing is
+  bool refused = false;  ///< the robot cannot do the default values at all
 };
 
 /// Tries the values of the dials, those nearest to the defaults first, until the check accepts the

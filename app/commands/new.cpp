@@ -93,7 +93,7 @@ std::vector<double> values_that_pass(
     context.print("the default values are too much for " + model.name() + ": " + result.limit +
                   "\n  found instead, after " + std::to_string(result.tried) +
                   " trials: " + changed_values(dials, result) + "\n");
-  else if (result.tried > 1)
+  else if (result.tried > 1 && !result.refused)  // else the error says it
     context.print("none of " + std::to_string(result.tried) +
                   " combinations of height, length and time passes; the defaults fail by: " +
                   result.limit + "\n");
