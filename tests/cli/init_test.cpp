@@ -89,6 +89,30 @@ TEST(Init, ValuesThatPassAreFound) {
   EXPECT_EQ(asked.out.find("--stride"), std::string::npos) << asked.out;
 }
 
+// Many points of a robot are on the ground before its pose is set: MuJoCo's warnings about them
+// reach neither standard output nor a file.
+TEST(Init, MujocoLeavesNothingBehind) {
+  Folder folder;
+  std::string urdf = UrdfBiped{}.text();
+  std::string boxes;
+  for (int i = 0; i < 10; ++i)
+    boxes += "<collision><origin xyz=\"0 0 -0.06\"/><geometry><box size=\"0.03 0.03 0.0" +
+             std::to_string(i + 1) + "\"/></geometry></collision>";
+  for (const std::string link : {"<link name=\"l_shank\">", "<link name=\"r_shank\">"})
+    urdf.insert(urdf.find(link) + link.size(), boxes);
+  write(folder / "robot.urdf", urdf);
+  const Output made =
+      ayumi(folder, {"new", "stand", "--duration", "0.5", "--robot", "robot.urdf", "-o", "s.json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Output run =
+      ayumi(folder, {"simulate", "s.json", "--plant", "mujoco", "--json", "-o", "run"});
+  if (run.err.find("libmujoco-dev") != std::string::npos) GTEST_SKIP() << "built without MuJoCo";
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out.front(), '{');
+  EXPECT_EQ(run.out.find("WARNING"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder / "MUJOCO_LOG.TXT"));
+}
+
 TEST(Init, WritesThreeFilesOrNone) {
   Folder folder;
   write(folder / "robot.urdf", UrdfBiped{}.text());

@@ -25,7 +25,7 @@ struct MujocoPlant::Impl {
         limits(actuators),
         world(ground_world),
         ground(ground_world),
-        points(contact_points(robot)),
+        points(outermost_points(contact_points(robot))),
         delay(actuators.servo),
         motor_torque(Eigen::VectorXd::Zero(robot.dof_count())),
         external(motor_torque) {

@@ -31,6 +31,12 @@ constexpr double kDepth = 0.2;
 /// Width of the ground around a height field that dips below the plane [m]. Chosen: longer than any
 /// run of a humanoid.
 constexpr double kWide = 50;
+/// Points of a body that are all kept. Chosen: the corners of four boxes; bodies with more are
+/// meshes.
+constexpr size_t kFewPoints = 32;
+/// Most contacts and rows of constraints at once. Chosen: every point of a robot of 20 bodies that
+/// lies on the ground.
+constexpr int kMostContacts = 600, kMostRows = 4000;
 constexpr const char* kUnderBall = "' contype='2' conaffinity='1'/>";
 constexpr const char* kUnderPlate = "' contype='8' conaffinity='4'/>";
 constexpr const char* kUnderBoth = "' contype='10' conaffinity='5'/>";
@@ -219,7 +225,12 @@ std::string servo_text(const ActuatorLimits& limits, int j) {
   return out + "/>";
 }
 
+// MuJoCo prints warnings and appends them to a file in the working folder; a full buffer of
+// contacts is the one that can occur, and the simulation then goes on with those it holds.
+void ignore_warning(const char*) {}
+
 MujocoModel compile(const std::string& robot, const std::string& xml) {
+  mju_user_warning = ignore_warning;
   const auto vfs = std::make_unique<mjVFS>();
   mj_defaultVFS(vfs.get());
   char error[1000] = "could not read the model";
@@ -261,7 +272,9 @@ MujocoModel mujoco_model(const RobotModel& model, const std::vector<ContactPoint
       "<mujoco><compiler angle='radian' boundmass='0'/><option gravity='0 0 " +
       text::exact(-kGravity) +
       "' integrator='implicit' cone='elliptic' solver='Newton' impratio='10' tolerance='1e-10' "
-      "iterations='100'/>"
+      "iterations='100'/><size nconmax='" +
+      std::to_string(kMostContacts) + "' njmax='" + std::to_string(kMostRows) +
+      "'/>"
       "<default><geom condim='3' solref='0.004 1' solimp='0.95 0.99 0.001' friction='0 0 0'/>"
       "</default>" +
       (world.fields.empty() ? std::string() : field_asset(world.fields[0])) + "<worldbody>" +
@@ -272,6 +285,29 @@ MujocoModel mujoco_model(const RobotModel& model, const std::vector<ContactPoint
   if (!world.fields.empty()) fill_field(world.fields[0], m.get());
   for (int i = 0; bumps && i < kMujocoBumps; ++i) set_bump(nullptr, i, m.get());
   return m;
+}
+
+std::vector<ContactPoint> outermost_points(const std::vector<ContactPoint>& points) {
+  std::vector<bool> kept(points.size(), false);
+  for (const PointGroup& group : group_points(points)) {
+    const auto first = static_cast<size_t>(group.first), count = static_cast<size_t>(group.count);
+    for (int k = 0; k < 27; ++k) {
+      const Vector3d way(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      const auto reach = [&](size_t i) {
+        return way.dot(points[i].position) + way.norm() * points[i].radius;
+      };
+      size_t farthest = first;
+      for (size_t i = first; i < first + count; ++i)
+        if (reach(i) > reach(farthest)) farthest = i;
+      kept[farthest] = true;
+    }
+    for (size_t i = first; i < first + count; ++i)
+      if (points[i].side >= 0 || count <= kFewPoints) kept[i] = true;
+  }
+  std::vector<ContactPoint> result;
+  for (size_t i = 0; i < points.size(); ++i)
+    if (kept[i]) result.push_back(points[i]);
+  return result;
 }
 
 void set_inertia(const Inertia& inertia, int body, mjModel* m) {

@@ -38,6 +38,10 @@ inline bool mujoco_has_gear(const ServoDescription& servo) {
 /// Index of a named object; -1 when there is none.
 int mujoco_id(const mjModel* m, mjtObj type, const std::string& name);
 
+/// Of bodies with many points, as meshes have them, those farthest out in 26 directions: MuJoCo
+/// moves and compares each point in each step.
+std::vector<ContactPoint> outermost_points(const std::vector<ContactPoint>& points);
+
 void set_inertia(const Inertia& inertia, int body, mjModel* m);
 /// Geom of a part of bump `i`: 0..7 are the rods of its edges, 8 is its cylinder.
 int bump_geom(const mjModel* m, int i, int part);
