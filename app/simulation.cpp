@@ -109,8 +109,8 @@ std::vector<std::string> built_plants() {
 #endif
 }
 
-SimulationLog simulate_once(const Context& context, const Task& input,
-                            const SimulationChoice& choice) {
+SimulateOptions simulation_options(const Context& context, const Task& input,
+                                   const SimulationChoice& choice) {
   SimulateOptions options = simulate_options(input);
   options.controller = chosen_controller(input, choice);
   refuse_unstable_gains(input, options.controller, choice.unstable);
@@ -123,7 +123,13 @@ SimulationLog simulate_once(const Context& context, const Task& input,
   options.substeps = choice.substeps;
   options.plant = plant_of(choice.plant);
   options.seed = context.seed;
-  return simulate(input, options, context.progress(), context.command_line);
+  return options;
+}
+
+SimulationLog simulate_once(const Context& context, const Task& input,
+                            const SimulationChoice& choice) {
+  return simulate(input, simulation_options(context, input, choice), context.progress(),
+                  context.command_line);
 }
 
 TableCaution table_caution(const Task& input, const SimulationLog& log,

@@ -35,6 +35,10 @@ void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool a
 /// The pattern's controller under the choice.
 ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choice);
 
+/// The task's options under the choice. Throws as refuse_unstable_gains().
+SimulateOptions simulation_options(const Context& context, const Task& input,
+                                   const SimulationChoice& choice);
+
 /// Runs the pattern; the log carries its provenance. Throws as refuse_unstable_gains().
 SimulationLog simulate_once(const Context& context, const Task& input,
                             const SimulationChoice& choice);

@@ -8,9 +8,12 @@
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/run/run_output.hpp"
+#include "ayumi/study/uncertain_task.hpp"
 #include "ayumi/task/servo_table.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "simulation.hpp"
+#include "uncertain_input.hpp"
 
 namespace ayumi::app {
 
@@ -20,7 +23,30 @@ struct SimulateCommand {
   std::string pattern, out;
   PatternOptions input;
   SimulationChoice choice;
+  std::string study;
+  long number = -1;  // of a case of `certify`; negative: none
 };
+
+/// One case of `certify`: the robot, ground and pushes that it draws.
+SimulationLog simulate_case(const Context& context, const Task& input,
+                            const SimulateCommand& options) {
+  const Study study = load_study(input, options.study);
+  const UncertainTask task(input.robot, input.series, study.uncertainty,
+                           simulation_options(context, input, options.choice));
+  const CaseNumbers numbers = task.numbers(context.seed, options.number);
+  const std::vector<double> drawn = task.draw(numbers);
+  task.check(drawn, "case " + std::to_string(options.number));
+  const RobotUnit robot = task.unit(drawn);
+  SimulateOptions simulate_options = task.options(numbers, drawn);
+  simulate_options.unit = &robot;
+  SimulationLog log = simulate(input, simulate_options, context.progress(), context.command_line);
+  std::string values;
+  for (size_t i = 0; i < drawn.size(); ++i)
+    values += (i == 0 ? ": " : ", ") + task.value_text(i, drawn[i]);
+  log.events.insert(log.events.begin(),
+                    {0, "case", "case " + std::to_string(options.number) + values});
+  return log;
+}
 
 RunFolder run_of(const Task& input, const SimulationLog& log) {
   RunFolder run;
@@ -39,6 +65,8 @@ RunFolder run_of(const Task& input, const SimulationLog& log) {
 }
 
 void simulate_pattern(Context& context, const SimulateCommand& options) {
+  if (!options.study.empty() && options.number < 0)
+    fail(ErrorCode::usage, "--study has an effect only with --case");
   plant_of(options.choice.plant);  // a missing plant is refused before anything is computed
   if (!options.out.empty())
     require_run_target(
@@ -46,11 +74,13 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
         {"run.json", "log_closed_loop.bin", "reference.csv", "reference_pushed.csv"});
   const Task input = load_pattern(context, options.pattern, options.input);
   const auto begin = std::chrono::steady_clock::now();
-  const SimulationLog log = simulate_once(context, input, options.choice);
+  const SimulationLog log = options.number < 0 ? simulate_once(context, input, options.choice)
+                                               : simulate_case(context, input, options);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   context.print(options.pattern + ": " + outcome_text(log) + "\n");
+  if (options.number >= 0) context.print("  " + log.events.front().text + "\n");
   if (!options.out.empty()) {
     const RunFolder run = run_of(input, log);
     RunOutput output(options.out, context.force);
@@ -74,12 +104,22 @@ void add_simulate(CLI::App& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi simulate patterns/hoap1_walk.json -o out/walk\n"
       "  ayumi simulate walk.json --controller none --scenario none\n"
-      "  ayumi simulate walk.json --profile hoap1-strong --gain ka=1 --json");
+      "  ayumi simulate walk.json --profile hoap1-strong --gain ka=1 --json\n"
+      "  ayumi simulate walk.json --study study.json --case 1234 -o out/case");
   auto options = std::make_shared<SimulateCommand>();
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
   command->add_option("-o,--out", options->out, "Folder for the run.")->type_name("DIR");
   add_pattern_options(*command, options->input);
   add_simulation_options(*command, options->choice);
+  command
+      ->add_option("--case", options->number,
+                   "Simulate the case of `ayumi certify` with this number.")
+      ->check(whole_number_within(0, 1000000000).description(""))
+      ->type_name("N");
+  command
+      ->add_option("--study", options->study,
+                   "Study file of that case (default: the pattern's uncertainty, or the robot's).")
+      ->type_name("F");
   command->callback([options, &context] { simulate_pattern(context, *options); });
 }
 

@@ -105,6 +105,7 @@ struct ThirdParty {
 inline const std::vector<ThirdParty>& third_parties() {
   static const std::vector<ThirdParty> table = {
       {"Eigen", std::regex("(unsupported/)?Eigen/.*"), {}},
+      {"Boost.Math", std::regex("boost/math/.*"), {"math"}},
       {"Ipopt", std::regex("Ip[A-Z].*|coin(-or)?/.*"), {"repair"}},
       {"Ceres", std::regex("ceres/.*"), {"identify"}},
       {"dynamic loader", std::regex("dlfcn\\.h"), {"repair"}},

@@ -21,9 +21,11 @@ TEST_F(PatternSchema, KnowsExactlyTheKeysOfTheReader) {
   const std::string folder = AYUMI_SOURCE_DIR "/docs/schemas/";
   const auto pattern = nlohmann::json::parse(read_file(folder + "pattern-1.schema.json"));
   const auto postures = nlohmann::json::parse(read_file(folder + "postures-1.schema.json"));
+  const auto study = nlohmann::json::parse(read_file(folder + "study-1.schema.json"));
   for (const auto& [kind, keys] : pattern_keys()) {
     SCOPED_TRACE(kind);
     const nlohmann::json& schema = kind == "pattern"         ? pattern
+                                   : kind == "study"         ? study
                                    : kind == "postures_file" ? postures
                                                              : pattern.at("$defs").at(kind);
     std::vector<std::string> sorted = keys;

@@ -140,7 +140,7 @@ Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
           kOrRepair};
 }
 
-Advice position_advice(const JudgedMotion& motion, const FindingWindow& window) {
+Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const Dof& dof = motion.model.dofs()[v.item];
   const double beyond = std::abs(v.value - v.limit);
@@ -165,7 +165,7 @@ std::string step_infeasibility(const Finding& f, double violation) {
          " of what `export` accepts";
 }
 
-std::string position_infeasibility(const Finding& f, double) {
+std::string table_position_infeasibility(const Finding& f, double) {
   return "the servo target of " + f.where + " reaches " + text::brief(f.worst, 6) + " " + f.unit +
          ", and `export` accepts " + text::brief(f.limit, 6);
 }
@@ -205,8 +205,8 @@ const Limit& exported_table_limit() {
                     .repair = {.is_of_one_joint = true},
                     .finding_unit = table_unit,
                     .place = joint_place,
-                    .advice = position_advice,
-                    .infeasibility = position_infeasibility},
+                    .advice = table_position_advice,
+                    .infeasibility = table_position_infeasibility},
                    {.kind = FindingKind::table_rest,
                     .limit_class = LimitClass::rate,
                     .unit = "rad/s",

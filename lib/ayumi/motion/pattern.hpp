@@ -15,6 +15,7 @@
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/controller_spec.hpp"
 #include "ayumi/motion/scenario.hpp"
+#include "ayumi/motion/uncertainty.hpp"
 #include "ayumi/motion/viip_goal.hpp"
 
 namespace ayumi {
@@ -148,6 +149,7 @@ struct Pattern {
   World world;  ///< the ground under the robot
   ControllerSpec controller;
   std::vector<Disturbance> scenario;
+  Uncertainty uncertainty;  ///< under which the pattern is certified; empty: that of the robot
 
   double duration() const;  ///< end of the last phase, keyframe or table row [s]
 };

@@ -169,6 +169,9 @@ bool FallMonitor::observe(double t, const CommandSample& command, const Simulati
 void FallMonitor::observe_feet(double t, const CommandSample& command, const RobotData& truth,
                                const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
+  const Isometry3d to_world = plan_to_world(*model_, truth, command, normal());
+  const Vector3d cog = to_world.inverse() * truth.cog;
+  largest_.cog = std::max(largest_.cog, (cog - command.cog).head<2>().norm());
   for (Side side : {Side::left, Side::right}) {
     const int i = static_cast<int>(side);
     double fz = 0;
@@ -181,11 +184,15 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
     unloaded_[i] = loaded ? 0.0 : unloaded_[i] + dt;
     // Slip is measured from the place where the foot first carried load in its stance.
     const bool stance = supports(command.support, side) && loaded;
-    const Vector3d place = ground_.inverse() * sole_pose(*model_, truth, side).translation();
+    const Isometry3d sole = sole_pose(*model_, truth, side);
+    const Vector3d place = ground_.inverse() * sole.translation();
     if (stance && !in_stance_[i]) stance_start_[i] = place;
     if (stance) {
       const double slip = (place - stance_start_[i]).head<2>().norm();
       result_.max_slip = std::max(result_.max_slip, slip);
+      const Vector3d planned = to_world.linear() * command.feet[i].linear().col(2);
+      const double tilt = std::acos(std::clamp(planned.dot(sole.linear().col(2)), -1.0, 1.0));
+      largest_.foot_tilt = std::max(largest_.foot_tilt, tilt);
     }
     in_stance_[i] = supports(command.support, side) && (in_stance_[i] || loaded);
   }

@@ -10,6 +10,12 @@
 
 namespace ayumi {
 
+/// The largest errors of a run until its end or its fall.
+struct LargestErrors {
+  double cog = 0;        ///< of the COG relative to the feet, horizontal [m]
+  double foot_tilt = 0;  ///< of a loaded foot that is planned to support the robot [rad]
+};
+
 /// Gathers a run's figures tick by tick.
 class FallMonitor {
  public:
@@ -28,6 +34,7 @@ class FallMonitor {
   SimulationResult conclude(const CommandSample& command, const RobotState& state);
 
   const std::vector<SimulationEvent>& events() const { return events_; }
+  const LargestErrors& largest_errors() const { return largest_; }
 
  private:
   void judge_zmp();
@@ -40,6 +47,7 @@ class FallMonitor {
 
   Eigen::Isometry3d ground_ = Eigen::Isometry3d::Identity();
   SimulationResult result_;
+  LargestErrors largest_;
   std::vector<SimulationEvent> events_;
   double zmp_square_sum_ = 0;
   long zmp_count_ = 0;

@@ -11,6 +11,7 @@
 
 namespace ayumi {
 
+class Controller;
 class PlantInterface;
 struct Estimate;
 
@@ -27,6 +28,13 @@ struct PlantKind {
 using TargetFunction = std::function<Eigen::VectorXd(
     double t, const Estimate& estimate, const CommandSample& plan, const Eigen::VectorXd& targets)>;
 
+/// One robot of a kind. It differs from the model by which its controller works: in masses, soles
+/// and sensors (model), and in its servos (actuators). Links, joints and their order are the same.
+struct RobotUnit {
+  RobotModel model;
+  ActuatorLimits actuators;
+};
+
 struct SimulateOptions {
   ControllerSpec controller;
   std::string profile;  ///< actuator profile; "" = default
@@ -39,6 +47,12 @@ struct SimulateOptions {
   std::uint64_t seed = 1;
   PlantKind plant;
   TargetFunction targets = {};  ///< empty: the servos receive the targets of the control law
+  /// The robot that is simulated, sensors included; it must outlive the run. Null: the robot is
+  /// equal to its model.
+  const RobotUnit* unit = nullptr;
+  /// A controller before its first tick, made with the same model, series and law, from which this
+  /// run's own is copied: that takes less time than making one. Null: the run makes its own.
+  const Controller* prepared = nullptr;
 };
 
 /// Throws Error(bad_model) when the robot has no soles or servos, Error(bad_pattern) for a

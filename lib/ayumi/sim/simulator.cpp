@@ -49,18 +49,20 @@ PlantInterface make_plant(const RobotModel& model, const ActuatorLimits& limits,
 
 Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
                      const SimulateOptions& options)
-    : model_(&model),
+    : model_(options.unit ? &options.unit->model : &model),
       series_(&checked(series, options)),
       options_(options),
-      limits_(model.limits(options.profile)),
+      limits_(options.unit ? options.unit->actuators : model.limits(options.profile)),
       h_(series.dt / options.substeps),
-      plant_(make_plant(model, limits_, options)),
-      sensors_(model, limits_, series.dt, options.sensor_noise && !options.true_state,
+      plant_(make_plant(*model_, limits_, options)),
+      sensors_(*model_, limits_, series.dt, options.sensor_noise && !options.true_state,
                options.seed),
       estimator_(model, series.dt),
-      monitor_(model, limits_, options.world),
-      schedule_(model, options.world, h_),
-      controller_(model, limits_, series, options.controller),
+      monitor_(*model_, limits_, options.world),
+      schedule_(*model_, options.world, h_),
+      controller_(options.prepared ? *options.prepared
+                                   : Controller(model, model.limits(options.profile), series,
+                                                options.controller)),
       saturated_(static_cast<size_t>(model.dof_count())) {
   model.sole(Side::left);  // throws when the robot has no soles
   set_scenario(options.scenario);
@@ -169,7 +171,7 @@ void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
   }
   s.contact_residual = report_.contact_residual;
   s.contact_iterations = report_.contact_iterations;
-  s.energy = energy();
+  if (keep_samples_) s.energy = energy();
   s.work = work_;
 }
 

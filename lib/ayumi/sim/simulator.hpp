@@ -26,7 +26,8 @@ class Simulator {
   /// Error(bad_pattern) for an unknown link.
   void set_scenario(const std::vector<Disturbance>& scenario);
 
-  /// Keeps a sample per tick (the default) or only the figures of the verdict.
+  /// Keeps a sample per tick (the default) or only the figures of the verdict. Without samples the
+  /// energy is not computed.
   void keep_samples(bool keep) { keep_samples_ = keep; }
 
   /// Advances by at most `ticks` control ticks. Returns false once the run is over: the series and
@@ -47,6 +48,8 @@ class Simulator {
 
   /// Verdict of the run up to now.
   SimulationResult result() const;
+  /// Largest errors up to now.
+  const LargestErrors& largest_errors() const { return monitor_.largest_errors(); }
 
   /// The log up to now with the verdict; the samples move into it.
   SimulationLog take_log();
@@ -60,11 +63,11 @@ class Simulator {
   void take_forces(const CommandSample& cmd);
   void note(double t, const std::vector<std::string>& texts);
 
-  const RobotModel* model_;
+  const RobotModel* model_;  // of the robot that is simulated
   const CommandSeries* series_;
   SimulateOptions options_;
-  ActuatorLimits limits_;
-  double h_;  // integrator step [s]
+  ActuatorLimits limits_;  // of the robot that is simulated
+  double h_;               // integrator step [s]
   PlantInterface plant_;
   Sensors sensors_;
   Estimator estimator_;

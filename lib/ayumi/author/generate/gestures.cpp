@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 namespace {
 
 /// Time of rest at both ends for HOAP-1 [s]; scaled with the root of the size. Chosen: 3/omega.
-constexpr double kRestTime = 0.5;
+constexpr double kGestureRestTime = 0.5;
 
 double to_hundredth_second(double t) { return 0.01 * std::round(100 * t); }
 
@@ -51,7 +51,7 @@ Pattern sway_pattern(const RobotModel& model, const SwayParameters& p) {
   require_range("sway", "cycles", p.cycles, 1, 1000, "");
   Pattern pattern = both_feet(model, "sway, " + std::to_string(p.cycles) + " times", p.cog_height);
   const Vector2d middle = middle_of_feet(model), aside(p.forward, p.side);
-  const double rest = to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kRestTime);
+  const double rest = to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kGestureRestTime);
   PatternBuilder writer{pattern};
   const auto at = [&](double t, double share) {
     const Vector2d place = middle + share * aside;
@@ -88,7 +88,7 @@ Pattern squat_pattern(const RobotModel& model, const SquatParameters& p) {
   require_range("squat", "cycles", p.cycles, 1, 1000, "");
   Pattern pattern = both_feet(model, "squat, " + std::to_string(p.cycles) + " times", p.cog_height);
   const double home = default_cog_height(model, pattern);
-  const double rest = to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kRestTime);
+  const double rest = to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kGestureRestTime);
   PatternBuilder writer{pattern};
   writer.key(0, ZmpKey::Place::center);
   const auto at = [&](double t, double height) {

@@ -166,6 +166,8 @@ void read_rest(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
       pattern.tolerances[kind] = read_number(value, scope, 0, kLargestNumber);
   if (const auto wishes = root.find("repair"))
     pattern.repair = read_repair(*wishes, static_cast<int>(pattern.keyframes.size()), scope);
+  if (const auto uncertainty = root.find("uncertainty"))
+    pattern.uncertainty = read_uncertainty(*uncertainty, scope);
 }
 
 }  // namespace

@@ -9,10 +9,10 @@ namespace ayumi {
 
 const std::map<std::string, std::vector<std::string>>& pattern_keys() {
   static const std::map<std::string, std::vector<std::string>> keys = {
-      {"pattern",
-       {"$schema",    "format",   "name",       "robot",    "profile",    "units",     "parameters",
-        "include",    "postures", "defaults",   "start",    "phases",     "keyframes", "table",
-        "correction", "world",    "controller", "scenario", "tolerances", "repair"}},
+      {"pattern", {"$schema",    "format",  "name",       "robot",    "profile",    "units",
+                   "parameters", "include", "postures",   "defaults", "start",      "phases",
+                   "keyframes",  "table",   "correction", "world",    "controller", "scenario",
+                   "tolerances", "repair",  "uncertainty"}},
       {"postures_file", {"$schema", "format", "robot", "units", "postures"}},
       {"units", {"angle", "length", "time", "mass", "force"}},
       {"defaults", {"interpolation", "posture", "cog_height", "cog_model"}},
@@ -42,6 +42,15 @@ const std::map<std::string, std::vector<std::string>>& pattern_keys() {
       {"correction", {"begin", "spacing", "columns", "coefficients"}},
       {"repair", {"lock", "weights", "trust", "margin", "safety"}},
       {"lock", {"joints", "feet", "keyframes", "windows"}},
+      {"study", {"$schema", "format", "name", "units", "uncertainty"}},
+      {"uncertainty", {"factors", "quantities", "pushes"}},
+      {"factor", {"name", "source"}},
+      {"quantity",
+       {"what", "name", "on", "axis", "each", "point", "uniform", "normal", "truncated", "choice",
+        "weights", "factor", "correlation", "source"}},
+      {"uncertain_push", {"name", "unit", "size", "direction", "time", "on", "duration"}},
+      {"spread",
+       {"uniform", "normal", "truncated", "choice", "weights", "factor", "correlation", "source"}},
   };
   return keys;
 }

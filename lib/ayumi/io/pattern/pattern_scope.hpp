@@ -55,6 +55,7 @@ World read_world(const JsonNode& node, PatternScope& scope);
 ControllerSpec read_controller(const JsonNode& node, PatternScope& scope);
 Disturbance read_disturbance(const JsonNode& node, PatternScope& scope);
 CorrectionTrack read_correction(const JsonNode& node);
+Uncertainty read_uncertainty(const JsonNode& node, PatternScope& scope);
 /// `keyframes`: how many the pattern has.
 RepairPreferences read_repair(const JsonNode& node, int keyframes, PatternScope& scope);
 

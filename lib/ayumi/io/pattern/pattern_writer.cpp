@@ -37,6 +37,8 @@ class Writer {
              [this](const Disturbance& each) { return disturbance_text(each, pattern_.degrees); });
     add_tolerances(top);
     add_repair(top);
+    if (!pattern_.uncertainty.empty())
+      top.add("uncertainty", uncertainty_text(pattern_.uncertainty, pattern_.degrees));
     if (pattern_.correction) top.add("correction", correction_text(*pattern_.correction));
     return top.lines('{', '}', "") + "\n";
   }

@@ -68,6 +68,8 @@ inline std::string vector_text(const Eigen::Ref<const Eigen::VectorXd>& v) {
 }
 
 std::string world_text(const World& world, bool in_degrees);
+/// "uncertainty" of a pattern file.
+std::string uncertainty_text(const Uncertainty& uncertainty, bool in_degrees);
 std::string disturbance_text(const Disturbance& disturbance, bool in_degrees);
 
 }  // namespace ayumi

@@ -1,0 +1,176 @@
+#include "certify_results.hpp"
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+
+namespace ayumi::app {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kFormat = "ayumi.certify/1";
+
+Outcome outcome_of(const std::string& name) {
+  for (const Outcome each : {Outcome::stands, Outcome::unsettled, Outcome::fell})
+    if (name == name_of(each)) return each;
+  throw std::out_of_range(name);
+}
+
+Json case_json(const CaseResult& r) {
+  return {name_of(r.outcome), r.fell_at, r.cog_error, r.torque, r.foot_tilt};
+}
+
+CaseResult case_of(const Json& json) {
+  return {.outcome = outcome_of(json.at(0)),
+          .fell_at = json.at(1),
+          .cog_error = json.at(2),
+          .torque = json.at(3),
+          .foot_tilt = json.at(4)};
+}
+
+/// JSON has no infinite numbers.
+Json bound_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+}  // namespace
+
+std::string case_results_text(const Json& study, const std::string& shard,
+                              const KnownResults& results) {
+  Json head = {{"format", kFormat}, {"study", study}};
+  if (!shard.empty()) head["shard"] = shard;
+  head["columns"] = {"case",        "outcome",      "fell_at_s",
+                     "cog_error_m", "torque_ratio", "foot_tilt_rad"};
+  std::string text = head.dump(1);
+  text.resize(text.size() - 2);  // the end of the object
+  text += ",\n \"cases\": [";
+  const char* separator = "\n";
+  for (size_t i = 0; i < results.size(); ++i) {
+    if (!results[i]) continue;
+    Json row = Json::array({i});
+    for (const Json& cell : case_json(*results[i])) row.push_back(cell);
+    text += separator + row.dump();
+    separator = ",\n";
+  }
+  return text + "\n ]\n}\n";
+}
+
+std::string add_case_results(const std::filesystem::path& file, const Json& study, bool must_exist,
+                             size_t count, KnownResults& results) {
+  if (!must_exist && !std::filesystem::exists(file)) return "";
+  std::string shard;
+  const auto refuse = [&](const std::string& why) {
+    fail(ErrorCode::bad_file, file.string() + ": " + why);
+  };
+  const std::string bytes = read_file(file);
+  try {
+    const Json json = Json::parse(bytes);
+    if (json.at("format") != kFormat) refuse("this is not a file of certify results");
+    // The order of keys says nothing.
+    const auto theirs = nlohmann::json::parse(json.at("study").dump());
+    const auto ours = nlohmann::json::parse(study.dump());
+    if (theirs != ours) {
+      std::string key;
+      for (const auto& [name, value] : ours.items())
+        if (key.empty() && (!theirs.contains(name) || theirs.at(name) != value)) key = name;
+      refuse("this file holds the results of another study ('" + key +
+             "' differs); choose another name, or replace the file with --force");
+    }
+    shard = json.value("shard", "");
+    results.resize(std::max(results.size(), count));
+    for (const Json& row : json.at("cases")) {
+      const size_t number = row.at(0);
+      if (number >= count) continue;
+      const CaseResult result = case_of(Json(row.begin() + 1, row.end()));
+      if (results[number] && !(*results[number] == result))
+        refuse("case " + std::to_string(number) +
+               " has another result than in another file of the same study");
+      results[number] = result;
+    }
+  } catch (const Json::exception&) {
+    refuse("this is not a file of certify results, or a part of it is missing");
+  } catch (const std::out_of_range&) {
+    refuse("this file has an unknown outcome");
+  }
+  return shard;
+}
+
+std::string case_table(const UncertainTask& task, std::uint64_t seed, const KnownResults& results) {
+  std::string text = "case,outcome,fell_at[s],cog_error[m],torque_ratio[1],foot_tilt[rad]";
+  for (const DrawnValue& value : task.values()) text += "," + value.name;
+  text += "\n";
+  for (size_t i = 0; i < results.size(); ++i) {
+    if (!results[i]) continue;
+    const CaseResult& r = *results[i];
+    text += std::to_string(i) + "," + name_of(r.outcome) + ",";
+    if (r.fell_at >= 0) text += text::exact(r.fell_at);
+    for (const double figure : {r.cog_error, r.torque, r.foot_tilt})
+      text += "," + text::exact(figure);
+    for (const double value : task.draw(task.numbers(seed, static_cast<long>(i))))
+      text += "," + text::exact(value);
+    text += "\n";
+  }
+  return text;
+}
+
+Json certificate_json(const Certificate& c, const CertifyOptions& options) {
+  Json bounds = nullptr;
+  if (c.largest.runs > 0)
+    bounds = {{"quantile", 1 - options.failure},
+              {"runs", c.largest.runs},
+              {"cog_error_m", bound_json(c.largest.cog_error)},
+              {"torque_ratio", bound_json(c.largest.torque)},
+              {"foot_tilt_rad", bound_json(c.largest.foot_tilt)}};
+  return {{"certified", c.outcome.certified},
+          {"decided", c.outcome.stopped},
+          {"failure", options.failure},
+          {"confidence", options.confidence},
+          {"runs", c.outcome.runs},
+          {"failures", c.outcome.failures},
+          {"falls", c.falls},
+          {"unsettled", c.unsettled},
+          {"failure_upper_bound", c.upper},
+          {"failure_lower_bound", c.lower},
+          {"upper_bounds_of_quantiles", bounds}};
+}
+
+Json influences_json(const std::vector<ValueInfluence>& influences) {
+  Json list = Json::array();
+  for (const ValueInfluence& each : influences) {
+    Json halves = Json::array();
+    for (size_t half = 0; half < 2; ++half)
+      halves.push_back({{"failures", each.failures[half]},
+                        {"runs", each.runs[half]},
+                        {"low", each.rate[half].low},
+                        {"high", each.rate[half].high}});
+    list.push_back({{"value", each.name},
+                    {"rank_correlation", each.correlation},
+                    {"lower_half", halves[0]},
+                    {"upper_half", halves[1]}});
+  }
+  return list;
+}
+
+Json worst_cases_json(const UncertainTask& task, std::uint64_t seed, const KnownResults& results,
+                      const std::vector<long>& numbers) {
+  Json list = Json::array();
+  for (const long number : numbers) {
+    const CaseResult& r = *results[static_cast<size_t>(number)];
+    const CaseNumbers drawn_numbers = task.numbers(seed, number);
+    const std::vector<double> drawn = task.draw(drawn_numbers);
+    Json values = Json::object();
+    for (size_t i = 0; i < drawn.size(); ++i) values[task.values()[i].name] = drawn[i];
+    Json entry = {{"case", number},
+                  {"outcome", name_of(r.outcome)},
+                  {"cog_error_m", r.cog_error},
+                  {"torque_ratio", r.torque},
+                  {"foot_tilt_rad", r.foot_tilt},
+                  {"noise_seed", drawn_numbers.noise}};
+    if (r.fell_at >= 0) entry["fell_at_s"] = r.fell_at;
+    entry["values"] = values;
+    list.push_back(entry);
+  }
+  return list;
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,34 @@
+#pragma once
+// Results of certify as JSON and CSV: the file from which a stopped study goes on, and which shards
+// are merged from.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/study/certify.hpp"
+
+namespace ayumi::app {
+
+/// The finished cases of a study. `study` says what was asked; it must be the same to go on.
+/// `shard`: "1/4", or empty.
+std::string case_results_text(const nlohmann::ordered_json& study, const std::string& shard,
+                              const KnownResults& results);
+
+/// Adds the cases of a file of at most `count` cases. Nothing where the file does not exist and
+/// `must_exist` is false. Throws Error(bad_file) when it is no file of results or another study's,
+/// and when a case has another result than the one that is known. Returns the shard of the file.
+std::string add_case_results(const std::filesystem::path& file, const nlohmann::ordered_json& study,
+                             bool must_exist, size_t count, KnownResults& results);
+
+/// One row for each case: its number, outcome, figures, and all values that were drawn.
+std::string case_table(const UncertainTask& task, std::uint64_t seed, const KnownResults& results);
+
+nlohmann::ordered_json certificate_json(const Certificate& certificate,
+                                        const CertifyOptions& options);
+nlohmann::ordered_json influences_json(const std::vector<ValueInfluence>& influences);
+/// The chosen cases with their figures and values.
+nlohmann::ordered_json worst_cases_json(const UncertainTask& task, std::uint64_t seed,
+                                        const KnownResults& results,
+                                        const std::vector<long>& numbers);
+
+}  // namespace ayumi::app

@@ -1,0 +1,407 @@
+// Robustness under declared uncertainty: a sequential test with exact bounds, what matters, the
+// worst cases, a paired comparison, and rare failures.
+
+#include "ayumi/study/certify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/plot/influence_plot.hpp"
+#include "ayumi/study/subset_simulation.hpp"
+#include "certify_results.hpp"
+#include "option_checks.hpp"
+#include "pattern_input.hpp"
+#include "simulation.hpp"
+#include "uncertain_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Cases that are listed as the worst. Definition.
+constexpr size_t kWorst = 10;
+/// Values whose influence is printed; the JSON and the picture have all. Chosen: one screen.
+constexpr size_t kShownInfluences = 8;
+
+struct CertifyCommand {
+  std::string pattern, study, out, table, map, shard, against, against_controller;
+  std::vector<std::string> merge;
+  PatternOptions input;
+  SimulationChoice choice;
+  CertifyOptions certify;
+  bool rare = false;
+  SubsetOptions subset;
+};
+
+/// What decides the result of a case.
+Json study_json(const Context& context, const Task& input, const Study& study,
+                const SimulateOptions& simulate) {
+  Json gains = Json::object();
+  for (const auto& [name, value] : simulate.controller.gains) gains[name] = value;
+  return {{"version", version()},
+          {"pattern_sha256", input.pattern.sha256},
+          {"parameters", input.pattern.parameters},
+          {"robot_sha256", input.robot.description().sha256},
+          {"study_sha256", study.sha256},
+          {"profile", input.profile},
+          {"controller", {{"type", name_of(simulate.controller.type)}, {"gains", gains}}},
+          {"scenario", words_of(simulate.scenario)},
+          {"substeps", simulate.substeps},
+          {"true_state", simulate.true_state},
+          {"plant", simulate.plant.name},
+          {"seed", context.seed}};
+}
+
+std::string in_percent(double share) { return text::brief(100 * share, 3) + " %"; }
+
+std::string counts_text(const Certificate& c) {
+  std::string text =
+      text::counted(c.outcome.runs, "run") + ", " + std::to_string(c.outcome.failures) + " failed";
+  if (c.outcome.failures > 0)
+    text += " (" + text::counted(c.falls, "fall") + ", " + std::to_string(c.unsettled) +
+            " not settled)";
+  return text;
+}
+
+void print_certificate(const Context& context, const Certificate& c, const KnownResults& results,
+                       const CertifyOptions& options) {
+  const std::string confidence = in_percent(options.confidence) + " confidence";
+  std::string text = c.outcome.certified ? "certified: " : "not certified: ";
+  text += counts_text(c);
+  if (c.outcome.certified)
+    text += "; the robot fails with a probability of at most " + in_percent(c.upper) + ", with " +
+            confidence;
+  else if (c.outcome.stopped)
+    text += "; a failure probability of " + in_percent(options.failure) +
+            " or less can no longer be " + "shown within " +
+            text::counted(most_cases(options), "run");
+  else
+    text += "; more runs are needed";
+  context.print(text + "\n");
+  if (c.outcome.stopped)
+    context.print("  failure probability: at least " + in_percent(c.lower) + " and at most " +
+                  in_percent(c.upper) + ", each with " + confidence + "\n");
+  const auto done =
+      std::count_if(results.begin(), results.end(), [](const auto& r) { return r.has_value(); });
+  if (options.all && done > c.outcome.runs) {
+    const auto failed = std::count_if(results.begin(), results.end(),
+                                      [](const auto& r) { return r && r->failed(); });
+    context.print("  all " + text::counted(done, "run") + ": " + std::to_string(failed) +
+                  " failed; the failure probability is at least " +
+                  in_percent(lower_bound(failed, done, options.confidence)) + " and at most " +
+                  in_percent(upper_bound(failed, done, options.confidence)) + ", each with " +
+                  confidence + "\n");
+  }
+  if (c.largest.runs > 0) {
+    const auto figure = [](double value, double factor, const std::string& unit) {
+      return std::isfinite(value) ? text::brief(factor * value, 3) + unit
+                                  : std::string("no bound (a run fell)");
+    };
+    context.print("  " + in_percent(1 - options.failure) + " of all runs stay below, each with " +
+                  confidence + ": COG error " + figure(c.largest.cog_error, 1e3, " mm") +
+                  ", torque " + figure(c.largest.torque, 100, " % of the limit") + ", foot tilt " +
+                  figure(c.largest.foot_tilt, 180 / std::numbers::pi, " deg") + "\n");
+  }
+}
+
+void print_influences(const Context& context, std::vector<ValueInfluence> influences) {
+  std::stable_sort(influences.begin(), influences.end(),
+                   [](const ValueInfluence& a, const ValueInfluence& b) {
+                     return std::abs(a.correlation) > std::abs(b.correlation);
+                   });
+  context.print(
+      "  what matters: rank correlation with the severity, failures in the lower and "
+      "the upper half of the values\n");
+  for (size_t i = 0; i < std::min(influences.size(), kShownInfluences); ++i) {
+    const ValueInfluence& each = influences[i];
+    context.print("    " + text::fixed(each.correlation, 2) + "  " + each.name + ": " +
+                  std::to_string(each.failures[0]) + " of " + std::to_string(each.runs[0]) + ", " +
+                  std::to_string(each.failures[1]) + " of " + std::to_string(each.runs[1]) + "\n");
+  }
+}
+
+void print_worst(const Context& context, const KnownResults& results,
+                 const std::vector<long>& numbers) {
+  context.print("  worst cases (ayumi simulate --case N shows one):\n");
+  for (const long number : numbers) {
+    const CaseResult& r = *results[static_cast<size_t>(number)];
+    context.print("    case " + std::to_string(number) + ": " + name_of(r.outcome) +
+                  (r.fell_at >= 0 ? " at " + text::fixed(r.fell_at, 2) + " s" : "") +
+                  ", COG error " + text::fixed(1e3 * r.cog_error, 1) + " mm, torque " +
+                  text::fixed(100 * r.torque, 0) + " %, foot tilt " +
+                  text::fixed(r.foot_tilt * 180 / std::numbers::pi, 1) + " deg\n");
+  }
+}
+
+void print_sources(const Context& context, const Study& study) {
+  size_t assumed = 0, all = 0;
+  const auto count = [&](const UncertainQuantity& q) {
+    if (q.source.empty()) return;
+    ++all;
+    assumed += is_assumed(q.source);
+  };
+  for (const UncertainQuantity& q : study.uncertainty.quantities) count(q);
+  for (const UncertainPush& push : study.uncertainty.pushes)
+    for (const UncertainQuantity* q : {&push.size, &push.direction, &push.time, &push.link})
+      count(*q);
+  context.print("  uncertainty of " + study.file + ": " + text::counted(all, "distribution") +
+                ", of which " + std::to_string(assumed) + " assumed\n");
+}
+
+/// "2/4" as the remainder 1 of 4.
+void read_shard(const std::string& word, CertifyOptions& options) {
+  if (word.empty()) return;
+  int read = 0;
+  if (std::sscanf(word.c_str(), "%ld/%ld%n", &options.shard, &options.shards, &read) != 2 ||
+      static_cast<size_t>(read) != word.size() || options.shards < 1 || options.shard < 1 ||
+      options.shard > options.shards)
+    fail(ErrorCode::usage, "--shard " + word +
+                               ": give the number of the shard and how many there "
+                               "are, for example 1/4");
+  --options.shard;
+}
+
+/// The cases of the merged files. Every case that the verdict needs must be there.
+KnownResults merged(const CertifyCommand& options, const Json& study) {
+  KnownResults results(static_cast<size_t>(most_cases(options.certify)));
+  std::string shard;
+  for (const std::string& file : options.merge) {
+    const std::string theirs = add_case_results(file, study, true, results.size(), results);
+    if (shard.empty()) shard = theirs;
+  }
+  const Certificate c = certificate(options.certify, results);
+  const auto first = std::find(results.begin(), results.end(), std::nullopt);
+  const bool complete = first == results.end();
+  if (!complete && (!c.outcome.stopped || options.certify.all)) {
+    const long number = first - results.begin();
+    const size_t slash = shard.find('/');
+    std::string which;
+    if (slash != std::string::npos) {
+      const long shards = std::stol(shard.substr(slash + 1));
+      which = "; shard " + std::to_string(number % shards + 1) + "/" + std::to_string(shards) +
+              " is missing or not finished";
+    }
+    fail(ErrorCode::bad_file,
+         "--merge: case " + std::to_string(number) + " is in none of the files" + which);
+  }
+  if (!options.certify.all)
+    std::fill(results.begin() + c.outcome.runs, results.end(), std::nullopt);
+  return results;
+}
+
+Json compare_with(Context& context, const CertifyCommand& options, const Task& input,
+                  const Study& study, const UncertainTask& first, const KnownResults& known) {
+  SimulationChoice choice = options.choice;
+  if (!options.against_controller.empty()) choice.controller = options.against_controller;
+  const std::string file = options.against.empty() ? options.pattern : options.against;
+  const Task other = load_pattern(context, file, options.input);
+  const UncertainTask second(other.robot, other.series, study.uncertainty,
+                             simulation_options(context, other, choice));
+  CertifyOptions pairs = options.certify;
+  pairs.all = true;
+  if (pairs.most == 0) pairs.most = failure_free_runs(pairs.failure, pairs.confidence);
+  KnownResults start = known;
+  start.resize(static_cast<size_t>(pairs.most));
+  const KnownResults a = run_cases(first, pairs, start, {}, context.progress());
+  const KnownResults b = run_cases(second, pairs, {}, {}, context.progress());
+  const PairedComparison c = compare(a, b, pairs.confidence);
+  const std::string name = options.against.empty() ? options.against_controller : file;
+  const long ours = c.both + c.only_first, theirs = c.both + c.only_second;
+  context.print("  compared with " + name + " in the same " + text::counted(c.pairs, "case") +
+                ": " + std::to_string(ours) + " failures against " + std::to_string(theirs) + ", " +
+                std::to_string(c.only_first) + " of " + input.pattern.name + " alone and " +
+                std::to_string(c.only_second) + " of the other alone\n");
+  context.print("  difference of the failure probabilities: " + in_percent(c.difference.low) +
+                " to " + in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +
+                " confidence; McNemar's exact test: p = " + text::brief(c.p_value, 3) + "\n");
+  return {{"with", name},
+          {"pairs", c.pairs},
+          {"both_failed", c.both},
+          {"only_first_failed", c.only_first},
+          {"only_second_failed", c.only_second},
+          {"mcnemar_p", c.p_value},
+          {"difference_low", c.difference.low},
+          {"difference_high", c.difference.high}};
+}
+
+Json rare_failures(Context& context, const CertifyCommand& options, const UncertainTask& task) {
+  SubsetOptions subset = options.subset;
+  subset.seed = context.seed;
+  subset.threads = context.threads;
+  const SubsetResult r = subset_simulation(
+      task.dimension(),
+      [&](const CaseNumbers& numbers) {
+        task.check(task.draw(numbers), "a sample of the rare failures");
+        return severity(task.run(numbers));
+      },
+      kFailedSeverity, options.certify.confidence, subset, context.progress());
+  if (r.reached)
+    context.print("  rare failures: probability " + text::brief(r.probability, 3) + ", about " +
+                  text::brief(r.interval.low, 2) + " to " + text::brief(r.interval.high, 2) +
+                  " (subset simulation, " + text::counted(r.levels.size(), "level") + ", " +
+                  text::counted(r.runs, "run") + "; the interval is approximate)\n");
+  else
+    context.print("  rare failures: none found in " + text::counted(r.levels.size(), "level") +
+                  "; the probability is about " + text::brief(r.probability, 2) + " or less\n");
+  return {{"probability", r.probability}, {"variation", r.variation}, {"low", r.interval.low},
+          {"high", r.interval.high},      {"levels", r.levels},       {"runs", r.runs},
+          {"reached", r.reached}};
+}
+
+void refuse_targets(const Context& context, const CertifyCommand& options) {
+  if (!options.map.empty()) {
+    const std::string type = std::filesystem::path(options.map).extension().string();
+    if (type != ".svg" && type != ".png")
+      fail(ErrorCode::usage, "--map " + options.map + ": the name must end in .svg or .png");
+    refuse_overwriting(context, options.map);
+  }
+  if (!options.table.empty()) refuse_overwriting(context, options.table);
+  if (!options.out.empty()) require_file_target(options.out);
+  if (options.certify.shards > 1 && options.out.empty())
+    fail(ErrorCode::usage, "--shard needs -o, a file from which the shards are merged");
+  if (options.certify.shards > 1 && !options.merge.empty())
+    fail(ErrorCode::usage, "--shard and --merge exclude each other");
+}
+
+void certify_pattern(Context& context, CertifyCommand& options) {
+  read_shard(options.shard, options.certify);
+  options.certify.seed = context.seed;
+  options.certify.threads = context.threads;
+  refuse_targets(context, options);
+  plant_of(options.choice.plant);
+  const Task input = load_pattern(context, options.pattern, options.input);
+  const Study study = load_study(input, options.study);
+  SimulateOptions simulate = simulation_options(context, input, options.choice);
+  const UncertainTask task(input.robot, input.series, study.uncertainty, simulate);
+  if (!study.uncertainty.pushes.empty()) simulate.scenario.clear();
+  const Json asked = study_json(context, input, study, simulate);
+  const std::string shard = options.certify.shards > 1 ? options.shard : "";
+  const auto save = [&](const KnownResults& results) {
+    if (!options.out.empty()) write_file(options.out, case_results_text(asked, shard, results));
+  };
+  KnownResults results;
+  if (!options.merge.empty()) {
+    results = merged(options, asked);
+  } else {
+    KnownResults known;
+    if (!options.out.empty() && !context.force)
+      add_case_results(options.out, asked, false, static_cast<size_t>(most_cases(options.certify)),
+                       known);
+    results = run_cases(task, options.certify, known, save, context.progress());
+  }
+  save(results);
+  if (!options.table.empty()) write_file(options.table, case_table(task, context.seed, results));
+  if (options.certify.shards > 1) {
+    const auto cases = std::count_if(results.begin(), results.end(),
+                                     [](const auto& result) { return result.has_value(); });
+    context.print("shard " + shard + ": " + text::counted(cases, "case") + " written to " +
+                  options.out + "\n");
+    context.print_json(Json({{"shard", shard}, {"cases", cases}}).dump(2));
+    return;
+  }
+  const Certificate found = certificate(options.certify, results);
+  const std::vector<ValueInfluence> influence = influences(task, options.certify, results);
+  const std::vector<long> worst = worst_cases(results, kWorst);
+  const std::string law = name_of(simulate.controller.type);
+  context.print(options.pattern + ", " + input.robot.name() + ", " + law + "\n");
+  print_certificate(context, found, results, options.certify);
+  print_sources(context, study);
+  if (!influence.empty()) print_influences(context, influence);
+  print_worst(context, results, worst);
+  Json json = {{"study", asked},
+               {"certificate", certificate_json(found, options.certify)},
+               {"influences", influences_json(influence)},
+               {"worst_cases", worst_cases_json(task, context.seed, results, worst)}};
+  if (!options.against.empty() || !options.against_controller.empty())
+    json["comparison"] = compare_with(context, options, input, study, task, results);
+  if (options.rare) json["rare_failures"] = rare_failures(context, options, task);
+  if (!options.map.empty()) {
+    write_drawing(options.map,
+                  draw_influences(input.pattern.name + ", " + input.robot.name() + ", " + law +
+                                      ": " + counts_text(found),
+                                  influence),
+                  2);
+    context.print("  drawn in " + options.map + "\n");
+  }
+  for (const std::string& file : {options.out, options.table})
+    if (!file.empty()) context.print("  written to " + file + "\n");
+  context.print_json(json.dump(2));
+  context.exit_code = found.outcome.certified ? 0 : 1;
+}
+
+}  // namespace
+
+void add_certify(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand(
+      "certify", "bound the probability that the robot fails under declared uncertainty");
+  command->footer(
+      "Examples:\n  ayumi certify patterns/hoap1_walk.json --failure 0.01 --confidence 0.95\n"
+      "  ayumi certify walk.json --study study.json -o out/cases.json --map out/matters.svg\n"
+      "  ayumi certify walk.json --against-controller none --runs 299\n"
+      "Run again with the same -o to go on. Exit code 0: certified; 1: not certified.");
+  auto options = std::make_shared<CertifyCommand>();
+  CertifyOptions& certify = options->certify;
+  command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
+  command
+      ->add_option("--study", options->study,
+                   "Study file with the uncertainty (default: the pattern's, or the robot's).")
+      ->type_name("F");
+  command->add_option("--failure", certify.failure, "Failure probability to be shown.")
+      ->check(number_within(1e-6, 0.5).description(""))
+      ->type_name("P")
+      ->capture_default_str();
+  command->add_option("--confidence", certify.confidence, "Confidence of every statement.")
+      ->check(number_within(0.5, 0.999999).description(""))
+      ->type_name("P")
+      ->capture_default_str();
+  command
+      ->add_option("--runs", certify.most,
+                   "Largest number of runs (default: ten times those without a failure).")
+      ->check(whole_number_within(1, 100000000).description(""))
+      ->type_name("N");
+  command->add_flag("--all", certify.all,
+                    "Do all --runs, also after the verdict, to see what matters.");
+  command
+      ->add_option("-o,--out", options->out,
+                   "Results as JSON; run again with the same file to go on.")
+      ->type_name("F");
+  command->add_option("--table", options->table, "Cases with all values that were drawn, as CSV.")
+      ->type_name("F");
+  command->add_option("--map", options->map, "Draw what matters, .svg or .png.")->type_name("F");
+  command
+      ->add_option("--against", options->against, "Compare with another pattern in the same cases.")
+      ->type_name("F");
+  command
+      ->add_option("--against-controller", options->against_controller,
+                   "Compare with another controller in the same cases.")
+      ->type_name("NAME");
+  command->add_flag("--rare", options->rare,
+                    "Also estimate the failure probability by subset simulation.");
+  command
+      ->add_option("--rare-runs", options->subset.runs,
+                   "Runs of each level of --rare, a multiple of 10.")
+      ->check(whole_number_within(10, 1000000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--shard", options->shard, "Run only one part of the cases, for example 1/4.")
+      ->type_name("I/N");
+  command
+      ->add_option("--merge", options->merge,
+                   "Take the cases from the files of all shards; nothing is simulated.")
+      ->type_name("F")
+      ->allow_extra_args(false);
+  add_pattern_options(*command, options->input);
+  add_simulation_options(*command, options->choice);
+  command->callback([options, &context] { certify_pattern(context, *options); });
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,16 @@
+#pragma once
+// The uncertainty of a pattern on the command line: that of --study, else that of the pattern, else
+// the default one of its robot.
+
+#include <string>
+
+#include "ayumi/io/pattern/study_file.hpp"
+#include "ayumi/task/task.hpp"
+
+namespace ayumi::app {
+
+/// `file` is the argument of --study, "" where it was not given. Throws as read_study(), and
+/// Error(bad_pattern) where there is no uncertainty.
+Study load_study(const Task& input, const std::string& file);
+
+}  // namespace ayumi::app

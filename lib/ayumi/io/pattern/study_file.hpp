@@ -1,0 +1,30 @@
+#pragma once
+// Study files ("ayumi.study/1"): the uncertainty under which a pattern is certified. The same
+// object may stand in a pattern. docs/formats.md is the specification.
+
+#include <filesystem>
+#include <string>
+
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/uncertainty.hpp"
+
+namespace ayumi {
+
+struct Study {
+  std::string name;
+  std::string file;    ///< source, for messages
+  std::string sha256;  ///< of its bytes
+  Uncertainty uncertainty;
+};
+
+/// Strict, as read_pattern(): throws Error(bad_pattern) "file: /json/pointer: what, what to do",
+/// and Error(bad_file) when the file cannot be read.
+Study read_study(const std::filesystem::path& path);
+/// The same of the bytes of a study file; `path` names it in messages.
+Study study_of_text(const std::string& text, const std::filesystem::path& path);
+
+/// The default uncertainty of a robot, `uncertainty.json` beside its sidecar; empty where there is
+/// none.
+std::filesystem::path default_study(const RobotModel& robot);
+
+}  // namespace ayumi

@@ -1,0 +1,17 @@
+#pragma once
+// A picture of what matters in a study of many runs: for every uncertain value its rank correlation
+// with the severity of the run, and the failure rates in the two halves of its range.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/plot/drawing.hpp"
+#include "ayumi/study/certify.hpp"
+
+namespace ayumi {
+
+/// The values in the order of their correlation, the strongest first. Throws Error(usage) when
+/// there is no value.
+Drawing draw_influences(const std::string& title, const std::vector<ValueInfluence>& influences);
+
+}  // namespace ayumi

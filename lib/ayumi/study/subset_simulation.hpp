@@ -1,0 +1,42 @@
+#pragma once
+// Probability of rare failures by subset simulation (S.-K. Au, J. L. Beck, "Estimation of small
+// failure probabilities in high dimensions by subset simulation", 2001). The rare event is divided
+// into a chain of likelier ones: the severity of a run exceeds a level that a tenth of the samples
+// exceeds, then the next level among those, until the level is that of a failure. The samples of a
+// level come from Markov chains that start at the worst samples of the level before.
+// docs/certify.md, "Rare failures".
+
+#include <functional>
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/math/statistics.hpp"
+#include "ayumi/study/uncertain_task.hpp"
+
+namespace ayumi {
+
+struct SubsetOptions {
+  long runs = 1000;    ///< of each level; a multiple of 1 / share
+  double share = 0.1;  ///< of the samples that exceed the next level
+  int levels = 8;      ///< at most; the smallest probability is then share^levels
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: all cores; results do not depend on it
+};
+
+struct SubsetResult {
+  double probability = 0;
+  /// Coefficient of variation of the estimate, with the correlation within the chains.
+  double variation = 0;
+  /// Approximate, from a normal distribution of the logarithm; not exact, as clopper_pearson() is.
+  RateInterval interval;
+  std::vector<double> levels;  ///< of the severity
+  long runs = 0;
+  bool reached = false;  ///< false: no failure was found; `probability` is then an upper figure
+};
+
+/// Probability that `severity` is at least `threshold`. `severity` is called from several threads.
+SubsetResult subset_simulation(size_t dimension,
+                               const std::function<double(const CaseNumbers&)>& severity,
+                               double threshold, double confidence, const SubsetOptions& options,
+                               const Progress& progress = {});
+
+}  // namespace ayumi

@@ -1,0 +1,106 @@
+#pragma once
+// A task under uncertainty: from the number of a case to the values of all uncertain quantities,
+// the robot that has them, and its run. Every value is drawn from its own random numbers, which
+// depend on the seed of the study, the number of the case and the name of the value. So a case has
+// the same values under every law and in every pattern, and a new quantity changes no other one.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ayumi/control/capture_bound.hpp"
+#include "ayumi/control/controller.hpp"
+#include "ayumi/motion/uncertainty.hpp"
+#include "ayumi/sim/simulate.hpp"
+#include "ayumi/study/push.hpp"
+
+namespace ayumi {
+
+/// One value that is drawn.
+struct DrawnValue {
+  std::string name;  ///< "mass", "mass of l_foot", "push: direction"
+  const UncertainQuantity* quantity = nullptr;
+  std::vector<int> targets;           ///< links or dofs that have this value
+  int push = -1;                      ///< index of the push that it belongs to
+  size_t own = 0;                     ///< its own normal number
+  std::optional<size_t> factor = {};  ///< the normal number of its factor
+};
+
+/// All random numbers of one case: independent standard normal ones, and the seed of the noise of
+/// its sensors and of the heights of its ground.
+struct CaseNumbers {
+  std::vector<double> normal;
+  std::uint64_t noise = 1;
+};
+
+/// What is kept of one run.
+struct CaseResult {
+  Outcome outcome = Outcome::unsettled;
+  double fell_at = -1;   ///< [s]; negative when it did not fall
+  double cog_error = 0;  ///< largest [m]
+  double torque = 0;     ///< largest, in units of the limit
+  double foot_tilt = 0;  ///< largest of a supporting foot [rad]
+  bool failed() const { return outcome != Outcome::stands; }
+  bool operator==(const CaseResult&) const = default;
+};
+
+/// Severity from which a run has failed. Definition: larger than any COG error in m.
+inline constexpr double kFailedSeverity = 1e3;
+/// How bad a run is: the largest COG error of a run that stands [m]; runs that do not settle are
+/// worse than all of these, and falls are worse still, the earlier the worse.
+double severity(const CaseResult& result);
+
+class UncertainTask {
+ public:
+  /// Model, series and uncertainty outlive it. `options`: law, profile, world and scenario; the
+  /// pushes of the uncertainty replace the scenario. Throws Error(bad_pattern) "file: place: what"
+  /// for a quantity or factor that nothing in this robot or study uses.
+  UncertainTask(const RobotModel& model, const CommandSeries& series,
+                const Uncertainty& uncertainty, const SimulateOptions& options);
+
+  const std::vector<DrawnValue>& values() const { return values_; }
+  /// Number of independent normal numbers of a case.
+  size_t dimension() const { return dimension_; }
+
+  CaseNumbers numbers(std::uint64_t seed, long number) const;
+  /// The values of a case, in the order of values().
+  std::vector<double> draw(const CaseNumbers& numbers) const;
+  /// The share of all draws of each value that is below the one of this case.
+  std::vector<double> shares(const CaseNumbers& numbers) const;
+
+  /// Throws Error(bad_pattern) for a value that no robot can have, such as a negative mass. `which`
+  /// names the case.
+  void check(const std::vector<double>& drawn, const std::string& which) const;
+
+  /// The robot of a case, and the options of its run. The caller sets SimulateOptions::unit to the
+  /// robot. Throws as check().
+  RobotUnit unit(const std::vector<double>& drawn) const;
+  SimulateOptions options(const CaseNumbers& numbers, const std::vector<double>& drawn) const;
+
+  /// Runs a case until its end, or until the robot fell.
+  CaseResult run(const CaseNumbers& numbers) const;
+
+  /// A value in words: "mass of torso: 1.032", with the name of a phase or link where it has one.
+  std::string value_text(size_t value, double drawn) const;
+
+ private:
+  void add_quantity(const UncertainQuantity& quantity);
+  void add_value(const std::string& name, const UncertainQuantity& quantity,
+                 std::vector<int> targets, int push);
+  Disturbance push(size_t index, const std::vector<double>& drawn) const;
+  HeightField hollows(double depth, std::uint64_t seed) const;
+
+  const RobotModel* model_;
+  const CommandSeries* series_;
+  Controller controller_;  // before its first tick
+  const Uncertainty* uncertainty_;
+  SimulateOptions options_;
+  std::vector<DrawnValue> values_;
+  std::vector<std::string> normal_names_;  // of the independent numbers
+  size_t dimension_ = 0;
+  std::vector<PushPhase> phases_;       // where a push names phases
+  std::vector<CaptureRegion> regions_;  // of these phases
+};
+
+}  // namespace ayumi

@@ -1,0 +1,113 @@
+// ayumi certify: the same bytes for any number of threads and shards, goes on where it was stopped,
+// and its cases can be simulated one by one.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Json = nlohmann::json;
+
+struct CertifyStudy {
+  Folder folder;
+  CertifyStudy() {
+    const Output made = run({"new", "stand", "--duration", "1.5", "-o", "stand.json"});
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    write(folder / "study.json", R"({
+      "format": "ayumi.study/1", "units": {"angle": "deg"},
+      "uncertainty": {
+        "quantities": [{"what": "mass", "uniform": [0.95, 1.05], "source": "assumed: test"}],
+        "pushes": [{"unit": "B", "size": {"uniform": [0.3, 1.2], "source": "assumed: test"},
+                    "direction": {"uniform": [0, 360], "source": "assumed: test"}, "time": 0.5}]}})");
+  }
+  Output run(const std::vector<std::string>& words) const {
+    return run_program(words, folder.path());
+  }
+  Output certify(const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"certify",   "stand.json", "--quiet", "--study", "study.json",
+                                      "--failure", "0.1",        "--runs",  "40",      "--all"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+};
+
+TEST(CertifyCommand, SameBytesForThreadsAndShards) {
+  const CertifyStudy study;
+  const Output one =
+      study.certify({"-o", "one.json", "--threads", "1", "--table", "t.csv", "--map", "m.svg"});
+  ASSERT_EQ(one.exit_code, 1) << one.err;
+  EXPECT_NE(one.out.find("not certified: "), std::string::npos) << one.out;
+  EXPECT_NE(one.out.find("push: size"), std::string::npos);
+  EXPECT_NE(one.out.find("3 distributions, of which 3 assumed"), std::string::npos) << one.out;
+  EXPECT_NE(contents(study.folder / "m.svg").find("<svg"), std::string::npos);
+  EXPECT_EQ(study.certify({"-o", "two.json", "--threads", "2"}).exit_code, 1);
+  const std::string whole = contents(study.folder / "one.json");
+  EXPECT_EQ(whole, contents(study.folder / "two.json"));
+  ASSERT_EQ(study.certify({"-o", "a.json", "--shard", "1/2"}).exit_code, 0);
+  const Output missing = study.certify({"--merge", "a.json", "-o", "merged.json"});
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_NE(missing.err.find("--merge: case 1 is in none of the files; shard 2/2 is missing"),
+            std::string::npos)
+      << missing.err;
+  ASSERT_EQ(study.certify({"-o", "b.json", "--shard", "2/2"}).exit_code, 0);
+  const Output merged =
+      study.certify({"--merge", "b.json", "--merge", "a.json", "-o", "merged.json"});
+  EXPECT_EQ(merged.exit_code, 1) << merged.err;
+  EXPECT_EQ(whole, contents(study.folder / "merged.json"));
+}
+
+TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
+  const CertifyStudy study;
+  ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
+  const std::string whole = contents(study.folder / "cases.json");
+  Json partly = Json::parse(whole);
+  for (int i = 0; i < 20; ++i) partly["cases"].erase(3);
+  partly["cases"][0][4] = 0.125;  // taken over, not simulated again
+  write(study.folder / "cases.json", partly.dump());
+  ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
+  Json again = Json::parse(contents(study.folder / "cases.json"));
+  EXPECT_EQ(again["cases"][0][4], 0.125);
+  again["cases"][0][4] = Json::parse(whole)["cases"][0][4];
+  EXPECT_EQ(again, Json::parse(whole));
+  const Output other = study.certify({"-o", "cases.json", "--seed", "2"});
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_NE(other.err.find("the results of another study ('seed' differs)"), std::string::npos)
+      << other.err;
+}
+
+TEST(CertifyCommand, ACaseCanBeSimulatedAlone) {
+  const CertifyStudy study;
+  const Output all = study.certify({"--json"});
+  const Json worst = Json::parse(all.out).at("worst_cases").at(0);
+  const std::string number = std::to_string(worst.at("case").get<long>());
+  const Output alone = study.run({"simulate", "stand.json", "--quiet", "--study", "study.json",
+                                  "--case", number, "--json", "-o", "run"});
+  ASSERT_EQ(alone.exit_code, 1) << alone.err;
+  const Json json = Json::parse(alone.out);
+  EXPECT_EQ(json.at("outcome"), worst.at("outcome"));
+  EXPECT_EQ(json.at("fell_at_s"), worst.at("fell_at_s"));
+  EXPECT_EQ(json.at("max_torque_ratio"), worst.at("torque_ratio"));
+  EXPECT_TRUE(fs::exists(study.folder / "run/log_closed_loop.bin"));
+}
+
+TEST(CertifyCommand, ComparesLawsAndRefusesBadInput) {
+  const CertifyStudy study;
+  const Output compared = study.certify({"--against-controller", "none"});
+  EXPECT_NE(compared.out.find("compared with none in the same 40 cases"), std::string::npos)
+      << compared.out << compared.err;
+  EXPECT_NE(compared.out.find("McNemar's exact test"), std::string::npos);
+  EXPECT_EQ(study.certify({"--shard", "3/2", "-o", "x.json"}).exit_code, 2);
+  EXPECT_EQ(study.run({"simulate", "stand.json", "--study", "study.json"}).exit_code, 2);
+  write(study.folder / "bad.json", R"({"format": "ayumi.study/1", "uncertainty": {"quantities": [
+    {"what": "mass", "normal": [0.1, 1], "source": "assumed: test"}]}})");
+  const Output negative = study.run({"certify", "stand.json", "--quiet", "--study", "bad.json"});
+  EXPECT_EQ(negative.exit_code, 3);
+  EXPECT_NE(negative.err.find("bad.json: /uncertainty/quantities/0: case "), std::string::npos)
+      << negative.err;
+  EXPECT_NE(negative.err.find("must be above 0"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ayumi::test
