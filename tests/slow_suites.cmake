@@ -1,7 +1,7 @@
 # Suites that are left out of `ctest -L quick`: each takes more than two seconds alone.
 set(ayumi_slow_suites
   check.Consequence check.Consistency check.FaultsOnPatterns check.PlantedFault check.SecondRoute
-  check.SecondRouteOfClearance cli.BrokenInput cli.CheckRepair cli.CompareCommand cli.Edit cli.ExplainCommand
+  check.SecondRouteOfClearance cli.BrokenInput cli.CertifyCommand cli.CheckRepair cli.CompareCommand cli.Edit cli.ExplainCommand
   cli.Export cli.GainsCommand cli.Infeasible cli.NewJump cli.NewViip cli.NewWalk cli.OneSet cli.PushCommand
   cli.Repeat cli.RobotPath cli.Run cli.TuneCommand control.FootholdShift docs.CommandsOfPage
   identify.Compare identify.ExciteBacklash identify.ExciteRoundTrip identify.Identify identify.IdentifyHoap3 identify.IdentifyIntervals model.Diagnose plan.Sample plant_mujoco.MujocoDisturbance plant_mujoco.MujocoJump
@@ -9,4 +9,4 @@ set(ayumi_slow_suites
   plant_mujoco.RepairedWalk render.Batch render.Clip render.Commands render.Renderer
   repair.ConstraintRows repair.CorrectionProblem repair.Faults repair.JumpRepair repair.Landing
   repair.LeastChange repair.Repair repair.ThrownKnee report.Report scenarios.Hoap1Walk
-  scenarios.SensorLatency scenarios.ViipHoap1 sim.Walking study.Push study.Retime)
+  scenarios.SensorLatency scenarios.ViipHoap1 sim.Walking study.Certify study.Push study.Retime study.SequentialTest)

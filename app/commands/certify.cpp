@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
@@ -285,6 +286,9 @@ void certify_pattern(Context& context, CertifyCommand& options) {
   if (!study.uncertainty.pushes.empty()) simulate.scenario.clear();
   const Json asked = study_json(context, input, study, simulate);
   const std::string shard = options.certify.shards > 1 ? options.shard : "";
+  // Two programs that write the same file would lose cases of each other.
+  std::optional<FolderLock> lock;
+  if (!options.out.empty()) lock.emplace(options.out + ".lock");
   const auto save = [&](const KnownResults& results) {
     if (!options.out.empty()) write_file(options.out, case_results_text(asked, shard, results));
   };

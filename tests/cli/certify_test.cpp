@@ -19,7 +19,7 @@ struct CertifyStudy {
       "format": "ayumi.study/1", "units": {"angle": "deg"},
       "uncertainty": {
         "quantities": [{"what": "mass", "uniform": [0.95, 1.05], "source": "assumed: test"}],
-        "pushes": [{"unit": "B", "size": {"uniform": [0.3, 1.2], "source": "assumed: test"},
+        "pushes": [{"unit": "B", "size": {"uniform": [0.3, 2.0], "source": "assumed: test"},
                     "direction": {"uniform": [0, 360], "source": "assumed: test"}, "time": 0.5}]}})");
   }
   Output run(const std::vector<std::string>& words) const {
@@ -87,6 +87,7 @@ TEST(CertifyCommand, ACaseCanBeSimulatedAlone) {
   ASSERT_EQ(alone.exit_code, 1) << alone.err;
   const Json json = Json::parse(alone.out);
   EXPECT_EQ(json.at("outcome"), worst.at("outcome"));
+  EXPECT_EQ(worst.at("outcome"), "fell");
   EXPECT_EQ(json.at("fell_at_s"), worst.at("fell_at_s"));
   EXPECT_EQ(json.at("max_torque_ratio"), worst.at("torque_ratio"));
   EXPECT_TRUE(fs::exists(study.folder / "run/log_closed_loop.bin"));

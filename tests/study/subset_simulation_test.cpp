@@ -34,26 +34,27 @@ TEST(SubsetSimulation, FindsRareEventsOfAClosedForm) {
     }
     // Twelve studies of 1000 runs a level, whose variation is 0.2 to 0.4 at 1e-5.
     EXPECT_NEAR(mean / exact, 1, 0.3) << exact;
-    EXPECT_GE(covered, 9) << exact;
+    // The interval is approximate: over 200 studies it covers in 90 % at 1e-5, in 95 % at 1e-3.
+    EXPECT_GE(covered, 8) << exact;
   }
 }
 
-// The noise of the sensors is a part of what is drawn.
+// The noise of the sensors is a part of what is drawn: here half of the variance.
 TEST(SubsetSimulation, DrawsNewNoiseToo) {
   const auto severity = [](const CaseNumbers& numbers) {
-    return -std::log2(static_cast<double>(numbers.noise >> 11) * 0x1.0p-53);
+    const double u = (static_cast<double>(numbers.noise >> 11) + 0.5) * 0x1.0p-53;
+    return (numbers.normal[0] + normal_quantile(u)) / std::sqrt(2.0);
   };
   double mean = 0;
   constexpr int kStudies = 12;
   for (int study = 0; study < kStudies; ++study) {
     SubsetOptions options;
     options.seed = static_cast<std::uint64_t>(study + 1);
-    const SubsetResult r = subset_simulation(1, severity, 10, 0.95, options);
+    const SubsetResult r = subset_simulation(1, severity, -normal_quantile(1e-3), 0.95, options);
     EXPECT_TRUE(r.reached);
     mean += r.probability / kStudies;
   }
-  // Chains that move by new noise alone seldom move, so the variation of each study is about 0.5.
-  EXPECT_NEAR(mean * 1024, 1, 0.45);
+  EXPECT_NEAR(mean / 1e-3, 1, 0.3);
 }
 
 TEST(SubsetSimulation, DoesNotDependOnThreads) {
@@ -76,7 +77,8 @@ TEST(SubsetSimulation, SaysWhenNothingFails) {
   options.levels = 3;
   const SubsetResult r = subset_simulation(2, sum_of, 50, 0.95, options);
   EXPECT_FALSE(r.reached);
-  EXPECT_LE(r.probability, 0.0011);
+  // Equal severities make the shares larger than a tenth.
+  EXPECT_LE(r.probability, 0.005);
 }
 
 }  // namespace

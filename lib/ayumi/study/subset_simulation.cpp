@@ -111,11 +111,16 @@ SubsetResult subset_simulation(size_t dimension,
     result.levels.push_back(next);
     result.reached = next >= threshold;
     if (result.reached || level + 1 >= options.levels) break;
-    // The worst samples start the chains. Each chain has as many samples as keep their number.
+    // Samples above the level start the chains. Where equal severities make them more than are
+    // needed, every so many of them starts one, so that the choice does not depend on the severity.
+    // Each chain has as many samples as keep their number.
+    std::vector<size_t> starts;
+    for (size_t i = 0; i < samples.size(); ++i)
+      if (above[i]) starts.push_back(i);
     std::vector<Sample> chains(samples.size());
     in_parallel(kept, options.threads, stop, [&](size_t c) {
       Random random = chain_random(options.seed, level + 1, c);
-      Sample state = samples[order[c]];
+      Sample state = samples[starts[c * starts.size() / kept]];
       for (size_t i = 0; i < length; ++i) {
         Sample other = proposal(state, random);
         other.severity = severity(other.numbers);
