@@ -30,7 +30,7 @@ RateInterval clopper_pearson(long k, long n, double confidence);
 /// the same probability; 1 without such pairs.
 double mcnemar(long only_first, long only_second);
 
-/// RateInterval of p(first) - p(second) from `pairs` pairs: the difference of two intervals of Clopper
+/// Interval of p(first) - p(second) from `pairs` pairs: the difference of two intervals of Clopper
 /// and Pearson, each with half of the error. Coverage is at least `confidence`.
 RateInterval paired_difference(long only_first, long only_second, long pairs, double confidence);
 

@@ -68,7 +68,7 @@ Certificate certificate(const CertifyOptions& options, const KnownResults& resul
 /// The failures of two laws or patterns in the same cases.
 struct PairedComparison {
   long pairs = 0, both = 0, only_first = 0, only_second = 0;
-  double p_value = 1;   ///< McNemar's exact test, two-sided
+  double p_value = 1;       ///< McNemar's exact test, two-sided
   RateInterval difference;  ///< of the failure probabilities, first - second
 };
 PairedComparison compare(const KnownResults& first, const KnownResults& second, double confidence);
