@@ -399,7 +399,7 @@ LAWS = [
     ("`washout=0`: offsets are not forgotten", gain("washout=0")),
     ("`ankle=0`: a tipped foot is not levelled", gain("ankle=0")),
     ("`conform=0`: ankles do not yield on bumps", gain("conform=0")),
-    ("`trunk=0`: the trunk does not turn", gain("trunk=0")),
+    ("`momentum=0`: trunk and arms do not turn", gain("momentum=0")),
     ("`as_printed=1`: printed sign of D", gain("as_printed=1")),
     ("`step=1`: footholds move", gain("step=1")),
 ]
@@ -427,7 +427,8 @@ def law_gains():
                  "ZMP error, `--noise` [mm]")
     for words in ["", "ka=0.5", "ka=2", "ks=0.9 kd=0.9", "ks=3.6 kd=3.6", "ka=2.5 ks=2 kd=2",
                   "damp=4", "damp=16", "q=0.125", "q=0.5", "tau_z=0.005", "tau_z=0.02",
-                  "ankle=0.25", "ankle=1"]:
+                  "ankle=0.25", "ankle=1",
+                  "momentum=1", "momentum=3", "momentum=12"]:
         study = push_study(WALK, *FOUR, "--allow-unstable", *gain(words))
         lines.append(row(f"`{words}`" if words else "defaults", in_bounds(cases(study, False)),
                          in_bounds(cases(study, True)), zmp_error(*gain(words)),

@@ -114,14 +114,6 @@ TEST(SampleErrors, CogTooHigh) {
                {"phases/0", "t = 0.000 s", "out of reach"});
 }
 
-TEST(SampleErrors, WeightThatChanges) {
-  expect_words(message_of([](Pattern& p) {
-                 p.keyframes[0].weights["l_knee"] = 2;
-                 p.keyframes[1].weights["l_knee"] = 3;
-               }),
-               {"/keyframes/1", "l_knee", "whole pattern"});
-}
-
 TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
   expect_words(message_of([](Pattern& p) {
                  for (Phase& phase : p.phases) phase.swing.reset();

@@ -2,6 +2,10 @@
 // real actuators of HOAP-1. The limits are those a user relies on.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/random.hpp"
@@ -58,6 +62,54 @@ TEST(Hoap1Walk, PushFellsReplayAndTheLiteralLawButNotDtad) {
   expect_stands(run(pushed("dtad")), 0.002);
   EXPECT_EQ(run(pushed("none")).outcome, Outcome::fell);
   EXPECT_EQ(run(pushed("dtad-literal")).outcome, Outcome::fell);
+}
+
+/// Largest turn of an arm's joint against the plan [rad], where the standing robot is pushed to the
+/// left so hard that no ZMP inside its soles holds it.
+double arm_turn(const std::map<std::string, double>& weights, double t) {
+  Pattern pattern = stand_pattern(walk().model, 2);
+  Keyframe key;
+  key.t = t;
+  key.weights = weights;
+  pattern.keyframes.push_back(key);
+  const CommandSeries series = sample(walk().model, pattern);
+  SimulateOptions options = unpushed("dtad");
+  options.scenario = {{.at = 0.5,
+                       .duration = 0.02,
+                       .what = Push{.magnitude = 3.2, .direction = Eigen::Vector3d::UnitY()}}};
+  const SimulationLog log = simulate(walk().model, series, options);
+  EXPECT_EQ(log.result.outcome, Outcome::stands);
+  double most = 0;
+  for (const SimulationSample& s : log.samples)
+    for (const char* joint : {"l_shoulder_roll", "r_shoulder_roll", "l_shoulder_twist"}) {
+      const int j = walk().model.find_dof(joint);
+      most = std::max(most, std::abs(s.reference_theta[j] - series.samples.front().state.theta[j]));
+    }
+  return most;
+}
+
+TEST(Hoap1Walk, ArmsTakeUpMomentumAsTheirWeightsInTheKeyframesSay) {
+  const std::map<std::string, double> heavy = {{"l_shoulder_pitch", 1e6}, {"r_shoulder_pitch", 1e6},
+                                               {"l_shoulder_roll", 1e6},  {"r_shoulder_roll", 1e6},
+                                               {"l_shoulder_twist", 1e6}, {"r_shoulder_twist", 1e6},
+                                               {"l_elbow", 1e6},          {"r_elbow", 1e6}};
+  const double free = arm_turn({}, 0.1);
+  EXPECT_GT(free, 0.1);
+  EXPECT_LT(arm_turn(heavy, 0.1), 0.02 * free);
+  EXPECT_GT(arm_turn(heavy, 1.5), 0.9 * free);  // after the push they change nothing
+}
+
+// What the support cannot give, the angular momentum gives: 3.45 N s, 1.19 times the capture bound.
+TEST(Hoap1Walk, StandsAPushThatNeedsAngularMomentum) {
+  const CommandSeries series = sample(walk().model, stand_pattern(walk().model, 2));
+  SimulateOptions options = unpushed("dtad");
+  options.profile = "hoap1-strong";
+  options.scenario = {{.at = 0.5,
+                       .duration = 0.02,
+                       .what = Push{.magnitude = 3.45, .direction = Eigen::Vector3d::UnitY()}}};
+  EXPECT_EQ(simulate(walk().model, series, options).result.outcome, Outcome::stands);
+  options.controller.gains = {{"momentum", 0}};
+  EXPECT_EQ(simulate(walk().model, series, options).result.outcome, Outcome::fell);
 }
 
 TEST(Hoap1Walk, PushOnSlipperyGround) {

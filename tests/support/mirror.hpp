@@ -112,7 +112,7 @@ inline CommandSeries mirrored(const RobotModel& model, const RobotModel& image, 
       s.support = s.support == Support::left ? Support::right : Support::left;
     s.feet = {mirrored(s.feet[1]), mirrored(s.feet[0])};
   }
-  c.joint_weight = mirrored(model, image, c.joint_weight);
+  for (JointWeight& w : c.joint_weight) w.value = mirrored(model, image, w.value);
   return c;
 }
 

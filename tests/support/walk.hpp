@@ -104,7 +104,7 @@ inline void complete_series(const RobotModel& model, CommandSeries& series, doub
     s.fz = force[2];
     s.zmp = ground_reaction(s.state.base.position, force.head<6>(), ground).zmp;
   }
-  series.joint_weight = model.joint_weight();
+  series.joint_weight = {{0, model.joint_weight()}};
 }
 
 /// Standing at the home posture, soles level at z = 0.

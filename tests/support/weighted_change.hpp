@@ -13,7 +13,7 @@ inline double weighted_change(const RobotModel& model, const CommandSeries& seri
                               const CorrectionTrack& track) {
   Eigen::VectorXd weight(model.velocity_count());
   weight << Eigen::VectorXd::Constant(3, 1000), Eigen::VectorXd::Constant(3, 4),
-      series.joint_weight;
+      series.joint_weight.front().value;
   double sum = 0;
   for (double t = 0; t < series.duration(); t += 0.001) {
     const SplineWeights w = correction_weights(track, t);

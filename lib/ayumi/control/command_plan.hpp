@@ -26,6 +26,9 @@ class CommandPlan {
   /// Sample of the series that now() comes from; a moved plan has a clock of its own.
   long sample() const;
 
+  /// W of now() [dof]; null: the robot's own.
+  const Eigen::VectorXd* joint_weight() const { return series_->joint_weight_at(sample()); }
+
   /// Goes on at tick k after another law: the command is turned to where the feet of `from` are. A
   /// foot that is not quite there stays until it next swings; an offset of the COG is taken back
   /// slowly.

@@ -118,6 +118,11 @@ void Controller::set_goal(const ViipSpan& span, long k) {
 
 const ControlOutput& Controller::update(const Estimate& estimate) {
   out_.notes.clear();
+  // The other laws have a plan that knows its weights.
+  if (const Eigen::VectorXd* weight = series_->joint_weight_at(tick_)) {
+    if (Viip* viip = std::get_if<Viip>(&law_)) viip->weigh(*weight);
+    if (ViipJump* jump = std::get_if<ViipJump>(&law_)) jump->weigh(*weight);
+  }
   std::visit([&](auto& law) { law.update(estimate, out_); }, law_);
   target_ = out_.target;
   ++tick_;

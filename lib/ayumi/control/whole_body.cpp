@@ -222,13 +222,15 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     commanded = work.planned->rotation[trunk];
     commanded_rate = work.planned->angular_velocity[trunk];
   }
-  if (!options.lean.isZero(0)) commanded = exp_rotation(options.lean) * commanded;
-  commanded_rate += options.lean_rate;
+  if (!options.turn.lean.isZero(0)) commanded = exp_rotation(options.turn.lean) * commanded;
+  commanded_rate += options.turn.lean_rate;
   u.tail<3>() = length * (commanded_rate - anchor_rate +
                           options.trunk_rate * rotation_between(data.rotation[trunk], commanded));
 
   // (22): the commanded rates, zero in (28), and the pull towards the posture.
   work.bias = command.state.dtheta + options.posture_rate * (command.state.theta - reference.theta);
+  if (options.turn.joints.size() == n)
+    work.bias += options.turn.joint_rates + options.posture_rate * options.turn.joints;
 
   result.held.clear();
   result.limiting_dof = -1;

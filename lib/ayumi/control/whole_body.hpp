@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/control/angular_momentum.hpp"
 #include "ayumi/control/law.hpp"
 #include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
@@ -41,10 +42,8 @@ struct ResolverOptions {
   double damping = 1e-5;        ///< of J_U W^-1 J_U', times trace / rows
   double angular_length = 0.2;  ///< makes angular rows comparable with linear ones [m]
   double speed_share = 0.98;    ///< of a joint's speed limit that may be used
-  Eigen::Vector3d lean = Eigen::Vector3d::Zero();       ///< of the trunk against the command, as a
-                                                        ///< rotation vector in world axes [rad]
-  Eigen::Vector3d lean_rate = Eigen::Vector3d::Zero();  ///< [rad/s]
-  bool in_order = true;  ///< tasks give way one after the other; false: all of them together
+  UpperBodyTurn turn = {};      ///< of the trunk and the arms against their command
+  bool in_order = true;         ///< tasks give way one after the other; false: all of them together
 };
 
 /// Tasks that may give way to a joint's limit, in this order.
@@ -122,11 +121,11 @@ class ReferenceBody {
   /// Turns of the two joints nearest to each foot [rad], by dof. Holds until the next call.
   const Eigen::VectorXd& ankle_offsets(const Estimate& estimate, const AnkleLaw& law);
 
-  /// The trunk leans by this rotation vector against its command, at this rate [rad, rad/s].
-  void lean(const Eigen::Vector3d& angle, const Eigen::Vector3d& rate) {
-    options_.lean = angle;
-    options_.lean_rate = rate;
-  }
+  /// The trunk and the arms turn against their command from now on.
+  void turn(const UpperBodyTurn& turn) { options_.turn = turn; }
+
+  /// W = diag(weight) from now on [dof].
+  void weigh(const Eigen::VectorXd& weight) { weight_ = weight; }
 
   /// Integrates ref.ddcog (both bounded; the bounds scale with the COG height z [m]), moves the
   /// posture by (22)(23) and fills everything of `out` but the COG. `offsets` are added to the

@@ -33,12 +33,19 @@ struct ViipSpan {
   ViipGoal goal;
 };
 
+/// W = diag(value) from a sample on [dof].
+struct JointWeight {
+  long from = 0;
+  Eigen::VectorXd value;
+  bool operator==(const JointWeight&) const = default;
+};
+
 struct CommandSeries {
   double dt = 0.001;  ///< [s]
   std::vector<CommandSample> samples;
   std::vector<ViipSpan> viip;                 ///< in time order
   std::map<std::string, std::string> origin;  ///< source of each track, in words
-  Eigen::VectorXd joint_weight;               ///< diagonal of W [dof]
+  std::vector<JointWeight> joint_weight;      ///< in time order; none: the robot's own
   /// The joints come from a table of servo targets without their lead; it is replayed unchanged.
   bool servo_commands = false;
   /// What the servos receive in open loop in place of the command with its feedforward, dof x
@@ -47,6 +54,14 @@ struct CommandSeries {
   /// The rows of an imported sequence, which a robot receives as they were; none: its table is
   /// computed of the samples.
   std::optional<ReferenceTrajectory> kept = {};
+
+  /// W of sample k; null: the robot's own.
+  const Eigen::VectorXd* joint_weight_at(long k) const {
+    const Eigen::VectorXd* weight = nullptr;
+    for (const JointWeight& w : joint_weight)
+      if (w.from <= k) weight = &w.value;
+    return weight;
+  }
 
   double duration() const { return dt * static_cast<double>(samples.size() - 1); }
 };

@@ -44,7 +44,8 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
                       sample_count(pattern, feet.duration(), options.dt),
                       progress};
   CommandSeries series = tracks.joint_driven ? sample_joint_driven(job) : sample_body_driven(job);
-  series.joint_weight = tracks.weight;
+  for (const auto& [t, weight] : tracks.weight)
+    series.joint_weight.push_back({std::lround(t / options.dt), weight});
   return series;
 }
 

@@ -145,20 +145,25 @@ Keys with_flights(const FootPlan& feet, const Keys& keys, double acceleration) {
   return result;
 }
 
-Eigen::VectorXd read_weights(const RobotModel& model, const Pattern& pattern) {
-  Eigen::VectorXd weight = model.joint_weight();
-  std::map<int, double> set;
-  for (const Keyframe& key : pattern.keyframes)
+// A weight holds until a later key gives the joint another one.
+std::vector<std::pair<double, Eigen::VectorXd>> read_weights(const RobotModel& model,
+                                                             const Pattern& pattern) {
+  std::vector<std::pair<double, Eigen::VectorXd>> result = {{0, model.joint_weight()}};
+  for (const Keyframe& key : pattern.keyframes) {
+    Eigen::VectorXd weight = result.back().second;
     for (const auto& [joint, value] : key.weights) {
       const int dof = find_joint(model, joint, key.place + "/weights");
       if (!(value > 0) || !std::isfinite(value))
         complain(key, "weight of " + joint + " must be above 0");
-      if (set.contains(dof) && set[dof] != value)
-        complain(key, "the weight of " + joint + " is already " + text::exact(set[dof]) +
-                          "; one value holds for the whole pattern");
-      set[dof] = weight[dof] = value;
+      weight[dof] = value;
     }
-  return weight;
+    if (key.weights.empty()) continue;
+    if (key.t <= result.back().first)
+      result.back().second = weight;
+    else
+      result.emplace_back(key.t, weight);
+  }
+  return result;
 }
 
 void check_keyframe_order(const Pattern& pattern) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ayumi/model/robot_model.hpp"
@@ -27,8 +28,8 @@ struct PatternTracks {
   std::optional<std::array<Track, 3>> base;      ///< position from a table [m]
   std::optional<std::array<Track, 4>> attitude;  ///< w, x, y, z from a table, unnormalised
   bool rest_ends = true;                         ///< false: a table may start or end moving
-  Eigen::VectorXd weight;                        ///< diagonal of W
-  std::map<std::string, std::string> origin;     ///< of the given tracks, in words
+  std::vector<std::pair<double, Eigen::VectorXd>> weight;  ///< times [s], and W from then on
+  std::map<std::string, std::string> origin;               ///< of the given tracks, in words
 };
 
 /// `solved` marks the leg joints that inverse kinematics can solve. Throws Error(bad_pattern)

@@ -20,12 +20,13 @@ namespace {
 CommandSeries slowed(const CommandSeries& series, const Finding& f, double factor) {
   CommandSeries part;
   part.dt = series.dt * factor;
-  part.joint_weight = series.joint_weight;
   const auto count = static_cast<long>(series.samples.size());
   const long first = std::clamp(
       std::lround(f.begin / series.dt) - policy::infeasible::kSamplesAround, 0L, count - 1);
   const long last = std::clamp(std::lround(f.end / series.dt) + policy::infeasible::kSamplesAround,
                                first, count - 1);
+  if (const Eigen::VectorXd* weight = series.joint_weight_at(first))
+    part.joint_weight = {{0, *weight}};
   for (long k = first; k <= last; ++k) {
     CommandSample s = series.samples[static_cast<size_t>(k)];
     s.state.base_velocity /= factor;

@@ -39,7 +39,9 @@ VectorXd change_weights(const RobotModel& model, const CommandSeries& series,
   VectorXd weight(model.velocity_count());
   weight.head<3>().setConstant(policy::change_weight::kBasePosition);
   weight.segment<3>(3).setConstant(policy::change_weight::kBaseRotation);
-  weight.tail(dof) = series.joint_weight.size() == dof ? series.joint_weight : model.joint_weight();
+  weight.tail(dof) = series.joint_weight.empty() ? model.joint_weight() : VectorXd::Zero(dof);
+  for (const JointWeight& w : series.joint_weight)
+    weight.tail(dof) = weight.tail(dof).cwiseMax(w.value);
   if (factors.size() == dof) weight.tail(dof) = weight.tail(dof).cwiseProduct(factors);
   return weight;
 }

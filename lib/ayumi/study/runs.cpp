@@ -9,7 +9,8 @@ namespace ayumi {
 CommandSeries standing_series(const CommandSeries& series) {
   CommandSeries stand;
   stand.dt = series.dt;
-  stand.joint_weight = series.joint_weight;
+  if (const Eigen::VectorXd* weight = series.joint_weight_at(0))
+    stand.joint_weight = {{0, *weight}};
   const double duration = kStandingPush + kStandingAfter;
   stand.samples.assign(static_cast<size_t>(std::lround(duration / series.dt)) + 1,
                        series.samples.front());

@@ -37,15 +37,6 @@ namespace {
 // change by less than 5 % from half to twice.
 constexpr double kOffsetLimit = 0.09;
 
-// Rate at which the trunk turns back after a push, times omega, critically damped. Chosen: slower
-// than the DCM, so that turning back does not undo what the turn was for. Half: crossing walk, tilt
-// 0.2 to 0.225 rad; twice: 0.176 rad.
-constexpr double kLeanReturnRate = 0.7;
-
-// Largest turn of the trunk [rad]: 20 deg. Chosen: arms and legs of both bundled robots stay clear.
-// No measured case changes from half to twice (constants.md).
-constexpr double kLeanLimit = 0.35;
-
 // Time after which the tilt of a foot that lies on the ground counts as the ground's, in 1/omega:
 // 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". Half: pushed walk, touchdowns 6 to
 // 5; twice: rough walk, touchdowns 6 to 7.
@@ -62,7 +53,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
       {"margin", &p.margin},        {"kz", &p.height_stiffness},
       {"dz", &p.height_damping},    {"kaz", &p.fz_gain},
       {"washout", &p.offset_time},  {"ankle", &p.ankle_share},
-      {"conform", &p.compliance},   {"trunk", &p.trunk_gain},
+      {"conform", &p.compliance},   {"momentum", &p.momentum_gain},
       {"step", &p.step_share},      {"hurry", &p.time_scale_limit},
       {"long", &p.long_term},       {"as_printed", &p.as_printed}};
   std::vector<std::string> names = {"k", "d"};
@@ -131,6 +122,7 @@ Dtad::Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadPara
       command_(std::move(command)),
       torque_lead_(std::move(torque_lead)),
       body_(model, limits, command_.dt(), plan().state, target),
+      momentum_(model, limits),
       filter_(plan().zmp.head<2>(), plan().fz) {
   if (plan().support == Support::right) anchor_ = Side::right;
 }
@@ -199,23 +191,21 @@ Vector2d Dtad::zmp_gap(const Vector2d& ref_zmp, double w, double z) {
   return gap;
 }
 
-// A moment about the COG moves the line of the ground force, and so does what the ZMP cannot:
-// L' / (m g) = z x (Z* - refZ) needs L' about the trunk. The trunk turns back by itself.
-void Dtad::lean_trunk(double w, double z) {
-  const Vector3d push = Vector3d(-outside_.y(), outside_.x(), 0) / z;
-  const Vector3d rate = params_.trunk_gain * w * w * push -
-                        kLeanReturnRate * kLeanReturnRate * w * w * lean_ -
-                        2 * kLeanReturnRate * w * lean_rate_;
-  lean_rate_ += command_.dt() * rate;
-  lean_ += command_.dt() * lean_rate_;
-  if (lean_.norm() > kLeanLimit) lean_ *= kLeanLimit / lean_.norm(), lean_rate_.setZero();
-  body_.lean(lean_, lean_rate_);
+// L' = m g e_z x (Z* - ref Z): a moment about the COG does to the COG what the ZMP cannot.
+void Dtad::turn_upper_body(double w) {
+  const Vector3d moment =
+      model_->mass() * kGravity * params_.momentum_gain * Vector3d(-outside_.y(), outside_.x(), 0);
+  body_.turn(momentum_.update(moment, body_.data(), plan().state.theta, w, command_.dt()));
 }
 
 void Dtad::update(const Estimate& estimate, ControlOutput& out) {
   const auto torque_lead = lead_at(*torque_lead_, command_.sample());
   const CommandSample& next = command_.look_ahead(estimate);
   const CommandSample& command = plan();
+  if (const VectorXd* weight = command_.joint_weight()) {
+    body_.weigh(*weight);
+    momentum_.weigh(*weight);
+  }
   if (command.support == Support::left) anchor_ = Side::left;
   if (command.support == Support::right) anchor_ = Side::right;
   body_.anchor(anchor_, command.feet[static_cast<size_t>(anchor_)]);
@@ -227,7 +217,7 @@ void Dtad::update(const Estimate& estimate, ControlOutput& out) {
                            .slope_time = params_.offset_time / w,
                            .contact_tilt_time = params_.offset_time > 0 ? kContactTiltTime / w : 0};
   offsets_ = torque_lead + body_.ankle_offsets(estimate, ankles);
-  if (params_.trunk_gain > 0) lean_trunk(w, z);
+  if (params_.momentum_gain > 0) turn_upper_body(w);
   body_.advance(wanted, z, command, next, offsets_, out);
   command_.advance();
 }

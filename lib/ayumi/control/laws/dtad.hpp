@@ -34,7 +34,8 @@ struct DtadParams {
   double ankle_share = 0.5;  ///< [ankle] share of the stance foot's tilt turned back at the ankle
   double compliance = 0.5;   ///< [conform] share of one foot's ground slope against the ground at
                              ///< large that its ankle gives in to
-  double trunk_gain = 1;     ///< [trunk] turn of the trunk where the ZMP wanted is outside; 0: off
+  double momentum_gain = 6;  ///< [momentum] moment that trunk and arms take up, as a multiple of
+                             ///< the one that a ZMP wanted outside the support stands for; 0: off
   double step_share = 0;     ///< [step] of the error the supports leave over, answered by
                              ///< footholds; 0: off
   double time_scale_limit = 2.5;  ///< [hurry] fastest clock of a pattern whose footholds move
@@ -73,22 +74,21 @@ class Dtad {
  private:
   CogReference cog_reference(const Estimate& estimate);
   Eigen::Vector2d zmp_gap(const Eigen::Vector2d& ref_zmp, double omega, double z);
-  void lean_trunk(double omega, double z);
+  void turn_upper_body(double omega);
 
   const RobotModel* model_;
   DtadParams params_;
   CommandPlan command_;
   std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   ReferenceBody body_;
+  AngularMomentumTask momentum_;
   SupportRegion region_;
   Eigen::VectorXd offsets_;  // of the servo targets: ankles and torque [rad]
   Side anchor_ = Side::left;
-  ReactionFilter filter_;                                // measured ZMP and f_z
-  Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();     // accepted offset of the ZMP [m]
-  Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();    // ZMP wanted less the one asked for [m]
-  Eigen::Vector3d lean_ = Eigen::Vector3d::Zero();       // of the trunk [rad]
-  Eigen::Vector3d lean_rate_ = Eigen::Vector3d::Zero();  // [rad/s]
-  bool first_ = true;                                    // no tick yet, from rest
+  ReactionFilter filter_;                              // measured ZMP and f_z
+  Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();   // accepted offset of the ZMP [m]
+  Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();  // ZMP wanted less the one asked for [m]
+  bool first_ = true;                                  // no tick yet, from rest
 };
 
 }  // namespace ayumi

@@ -81,6 +81,9 @@ class Viip {
 
   void update(const Estimate& estimate, ControlOutput& out);
 
+  /// W = diag(weight) of (29) from now on [dof].
+  void weigh(const Eigen::VectorXd& weight) { body_.weigh(weight); }
+
   Handover handover() const {
     return {body_.state(), body_.dcog(), body_.target(), plan_, command_};
   }

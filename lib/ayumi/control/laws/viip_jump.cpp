@@ -309,7 +309,7 @@ Resolution ViipJump::resolve_standing(const Vector3d& trunk_rate, double level) 
   options.trunk_rate *= level;
   options.in_order = false;  // docs/theory.md says why
   const double yaw = heading_of_feet(plan_.feet);
-  options.lean = lean() * Vector3d(-std::sin(yaw), std::cos(yaw), 0);
+  options.turn.lean = lean() * Vector3d(-std::sin(yaw), std::cos(yaw), 0);
   return resolve(*model_, limits_, reference_, data_, anchor_, dcog_, wanted, wanted, dt_, weight_,
                  options);
 }

@@ -28,6 +28,9 @@ class ViipJump {
 
   void update(const Estimate& estimate, ControlOutput& out);
 
+  /// W = diag(weight) of (29) from now on [dof].
+  void weigh(const Eigen::VectorXd& weight) { weight_ = weight; }
+
   Handover handover() const { return {reference_, dcog_, target_, plan_, command_}; }
 
  private:
