@@ -56,17 +56,6 @@ std::vector<bool> carried_bodies(const RobotModel& model) {
   return carried;
 }
 
-// The three joints of each leg that are nearest to the trunk.
-std::vector<int> hips(const RobotModel& model) {
-  std::vector<int> result;
-  for (const Side side : {Side::left, Side::right}) {
-    const std::vector<int>& leg = model.leg(side);
-    result.insert(result.end(), leg.begin(),
-                  leg.begin() + std::min<std::ptrdiff_t>(3, std::ssize(leg)));
-  }
-  return result;
-}
-
 Matrix3d about_origin(const Inertia& inertia, const Matrix3d& rotation, const Vector3d& com) {
   return rotation * inertia.about_com * rotation.transpose() +
          inertia.mass * (com.squaredNorm() * Matrix3d::Identity() - com * com.transpose());
@@ -85,8 +74,13 @@ AngularMomentumTask::AngularMomentumTask(const RobotModel& model, const Actuator
   }
   const auto n = static_cast<Eigen::Index>(joints_.size()) + 2;
   weight_.resize(n), speed_.resize(n), torque_.resize(n), rotor_.setZero(n);
+  for (const Side side : {Side::left, Side::right}) {  // the three joints nearest to the trunk
+    const std::vector<int>& leg = model.leg(side);
+    hips_.insert(hips_.end(), leg.begin(),
+                 leg.begin() + std::min<std::ptrdiff_t>(3, std::ssize(leg)));
+  }
   double hip_speed = INFINITY, hip_torque = INFINITY;
-  for (const int j : hips(model)) {
+  for (const int j : hips_) {
     hip_speed = std::min(hip_speed, limits.speed[j]);
     hip_torque = std::min(hip_torque, limits.peak_torque[j]);
   }
@@ -110,7 +104,7 @@ AngularMomentumTask::AngularMomentumTask(const RobotModel& model, const Actuator
 
 void AngularMomentumTask::weigh(const VectorXd& weight) {
   double hip_weight = 0;
-  for (const int j : hips(*model_)) hip_weight = std::max(hip_weight, weight[j]);
+  for (const int j : hips_) hip_weight = std::max(hip_weight, weight[j]);
   weight_.head<2>().setConstant(hip_weight);
   for (size_t i = 0; i < joints_.size(); ++i)
     weight_[static_cast<Eigen::Index>(i) + 2] = weight[joints_[i]];

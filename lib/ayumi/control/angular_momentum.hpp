@@ -49,7 +49,7 @@ class AngularMomentumTask {
   void accelerate(const Eigen::Vector3d& moment);
 
   const RobotModel* model_;
-  std::vector<int> joints_;
+  std::vector<int> joints_, hips_;
   std::vector<bool> carried_;                   // by body: the trunk, or carried by it
   Eigen::VectorXd weight_;                      // by coordinate
   Eigen::VectorXd speed_, torque_;              // by coordinate [rad/s], [N m]
