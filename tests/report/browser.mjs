@@ -1,11 +1,11 @@
 // node browser.mjs CHROMEDRIVER PAGE.html: loads the page in headless Chromium and tries it as a
 // person would. Prints one line per broken expectation, then "ok" or "failed".
 
-import { spawn } from "node:child_process";
-import { writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
+import { startDriver, until } from "./driver.mjs";
 
 const [driver, page, shot] = process.argv.slice(2);
+const address = pathToFileURL(page).href;
 let failures = 0;
 const expect = (good, words) => {
   if (good) return;
@@ -13,45 +13,9 @@ const expect = (good, words) => {
   console.log("broken: " + words);
 };
 
-const service = spawn(driver, ["--port=0"], { stdio: ["ignore", "pipe", "ignore"] });
-const port = await new Promise((resolve, reject) => {
-  service.stdout.on("data", (words) => {
-    const found = /successfully on port (\d+)/.exec(String(words));
-    if (found) resolve(found[1]);
-  });
-  service.on("exit", () => reject(new Error("chromedriver ended")));
-});
-const base = `http://127.0.0.1:${port}/session`;
-
-async function call(method, path, body) {
-  const answer = await fetch(base + path, { method, body: body && JSON.stringify(body) });
-  const { value } = await answer.json();
-  if (value && value.error) throw new Error(value.error + ": " + value.message);
-  return value;
-}
-
-async function open() {
-  const args = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1100,900",
-    "--enable-unsafe-swiftshader", "--use-angle=swiftshader"];
-  const { sessionId } = await call("POST", "", { capabilities: { alwaysMatch: {
-    browserName: "chrome", "goog:chromeOptions": { args },
-    "goog:loggingPrefs": { browser: "ALL", performance: "ALL" } } } });
-  const run = (script, ...args) => call("POST", `/${sessionId}/execute/sync`, { script, args });
-  const load = () => call("POST", `/${sessionId}/url`, { url: pathToFileURL(page).href });
-  const tool = (cmd, params) => call("POST", `/${sessionId}/goog/cdp/execute`, { cmd, params });
-  return { id: sessionId, run, load, tool, log: (type) => call("POST", `/${sessionId}/se/log`, { type }),
-    end: () => call("DELETE", `/${sessionId}`),
-    shoot: async (name) => { if (shot) writeFileSync(shot + name,
-      Buffer.from(await call("GET", `/${sessionId}/screenshot`), "base64")); } };
-}
-
 async function withScript(tab) {
-  await tab.load();
-  let state;
-  for (let i = 0; i < 300 && !state; ++i) {
-    state = await tab.run("return document.documentElement.dataset.replay");
-    if (!state) await new Promise((resolve) => setTimeout(resolve, 100));
-  }
+  await tab.load(address);
+  const state = await until(() => tab.run("return document.documentElement.dataset.replay"), 30);
   expect(state === "ready", "the replay says " + state + ": " +
     await tab.run("return document.getElementById('replay-state').textContent"));
   const at = (t) => tab.run(`
@@ -120,7 +84,7 @@ async function withScript(tab) {
     "the console: " + errors.map((entry) => entry.message).join(" | "));
   const requests = (await tab.log("performance")).map((entry) => JSON.parse(entry.message).message)
     .filter((m) => m.method === "Network.requestWillBeSent").map((m) => m.params.request.url)
-    .filter((url) => !/^(data|blob|about|chrome):/.test(url) && url !== pathToFileURL(page).href);
+    .filter((url) => !/^(data|blob|about|chrome):/.test(url) && url !== address);
   expect(requests.length === 0, "requests: " + requests.join(" "));
 }
 
@@ -129,7 +93,7 @@ async function withoutScript(tab) {
   await tab.tool("Emulation.setScriptExecutionDisabled", { value: true });
   await tab.tool("Emulation.setEmulatedMedia", { features: [
     { name: "prefers-color-scheme", value: "dark" }] });
-  await tab.load();
+  await tab.load(address);
   const replay = await tab.run("return document.documentElement.dataset.replay || 'none'");
   expect(replay === "none", "scripts are held back: " + replay);
   await tab.shoot("dark.png");
@@ -147,14 +111,16 @@ async function withoutScript(tab) {
   expect(Math.max(...light) < 60, "the dark page is dark: " + seen.ground);
 }
 
+let driving;
 try {
-  const tab = await open();
+  driving = await startDriver(driver, shot);
+  const tab = await driving.open();
   await withScript(tab);
   await withoutScript(tab);
   await tab.end();
 } catch (error) {
   expect(false, error.message);
 }
-service.kill();
+driving?.end();
 console.log(failures ? "failed" : "ok");
 process.exit(failures ? 1 : 0);

@@ -4,6 +4,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/report/html.hpp"
+#include "ayumi/report/page.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/render/box_robot.hpp"
 
@@ -110,6 +111,31 @@ TEST(Report, LoadsAndReplaysInABrowser) {
   write(folder / "report.html", whole_page().html);
   const Output said = run_program(
       {AYUMI_SOURCE_DIR "/tests/report/browser.mjs", AYUMI_CHROMEDRIVER, folder / "report.html"},
+      folder.path(), AYUMI_NODE);
+  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+  EXPECT_EQ(said.out, "ok\n");
+}
+
+TEST(AuthorPage, PartsThatNeedNoBrowser) {
+  if (std::string(AYUMI_NODE).empty()) GTEST_SKIP() << "node is not installed";
+  const Folder folder;
+  const Output said = run_program({"--test", AYUMI_SOURCE_DIR "/tests/report/author_parts.mjs"},
+                                  folder.path(), AYUMI_NODE);
+  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+}
+
+TEST(AuthorPage, IsWorkedWithInABrowser) {
+  if (kAuthorPage.empty()) GTEST_SKIP() << "built without npm: there is no page to try";
+  if (std::string(AYUMI_CHROMEDRIVER).empty())
+    GTEST_SKIP() << "chromium-driver is not installed: the page is not tried in a browser";
+  const Folder folder;
+  write(folder / "page.html", std::string(kAuthorPage));
+  write(folder / "walk.json", contents(kWalk));
+  const std::string scripts = AYUMI_SOURCE_DIR "/tests/report/";
+  const Output said = run_program(
+      {scripts + "author_browser.mjs", AYUMI_CHROMEDRIVER, folder / "walk.json", "--", AYUMI_NODE,
+       scripts + "author_fixture.mjs", program_under_test(), "walk.json", folder.path(),
+       folder / "page.html", AYUMI_SOURCE_DIR "/robots/hoap1/robot.urdf"},
       folder.path(), AYUMI_NODE);
   EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
   EXPECT_EQ(said.out, "ok\n");

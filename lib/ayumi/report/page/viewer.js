@@ -35,14 +35,14 @@ function arrow(color) {
 
 /// Lines of a grid over -reach..reach, cut at every crossing: some renderers lose a line that
 /// begins behind the eye, and then only its nearest piece goes.
-function grid(reach, spacing, color) {
+function grid(reach, spacing) {
   const ends = [], count = Math.round(reach / spacing);
   const cuts = Array.from({ length: 2 * count + 1 }, (_, i) => (i - count) * spacing);
   for (const a of cuts)
     for (let i = 0; i + 1 < cuts.length; ++i)
       ends.push(a, cuts[i], 0, a, cuts[i + 1], 0, cuts[i], a, 0, cuts[i + 1], a, 0);
   return new LineSegments(new BufferGeometry().setAttribute("position",
-    new BufferAttribute(new Float32Array(ends), 3)), new LineBasicMaterial({ color }));
+    new BufferAttribute(new Float32Array(ends), 3)), new LineBasicMaterial());
 }
 
 function makeMarks(size) {
@@ -110,6 +110,7 @@ export class Viewer {
     this.take(motion);
     this.scene.remove(this.floor);
     this.scene.add(this.ground());
+    this.paintGround();
     this.show(this.time);
   }
 
@@ -120,9 +121,13 @@ export class Viewer {
   buildScene(gltf) {
     this.scene = new Scene();
     const dark = matchMedia("(prefers-color-scheme: dark)");
-    const paint = () => { this.scene.background = new Color(dark.matches ? 0x23272d : 0xdfe4e9); };
-    dark.addEventListener("change", () => { paint(); this.draw(); });
-    paint();
+    this.paintGround = () => {
+      this.scene.background = new Color(dark.matches ? 0x23272d : 0xdfe4e9);
+      const [fine, coarse] = this.grid.children;
+      fine.material.color.set(dark.matches ? 0x3d444d : 0xb4bac2);
+      coarse.material.color.set(dark.matches ? 0x626b76 : 0x747b84);
+    };
+    dark.addEventListener("change", () => { this.paintGround(); this.draw(); });
     this.scene.add(new HemisphereLight(0xffffff, 0x99938c, 1.6), new AmbientLight(0xffffff, 0.5));
     this.sun = new DirectionalLight(0xffffff, 2.0);
     this.sun.castShadow = true;
@@ -133,6 +138,7 @@ export class Viewer {
     this.sun.shadow.normalBias = 0.004 * this.config.height;
     this.scene.add(this.sun, this.sun.target);
     this.scene.add(this.ground());
+    this.paintGround();
     this.actors = [];
     if (gltf.animations.length > 0) this.addActor(gltf.scene, gltf.animations[0], false);
     for (const clip of gltf.animations.slice(1)) this.addActor(gltf.scene.clone(true), clip, true);
@@ -143,7 +149,7 @@ export class Viewer {
   /// Grid, what stands on it and what comes up from it, in the floor's frame.
   ground() {
     const ground = this.floor = new Group(), plane = new Group();
-    this.grid = new Group().add(grid(3, 0.1, 0xb4bac2), grid(10, 1, 0x747b84));
+    this.grid = new Group().add(grid(3, 0.1), grid(10, 1));
     const floor = new Mesh(new PlaneGeometry(40, 40), new ShadowMaterial({ opacity: 0.3 }));
     floor.receiveShadow = true;
     this.grid.add(floor);
@@ -214,7 +220,9 @@ export class Viewer {
       if (!part.isMesh) return;
       part.castShadow = !ghost;
       if (ghost) part.material = new MeshLambertMaterial({ color: colors.ghost, transparent: true,
-        opacity: 0.28, depthWrite: false });
+        opacity: 0.28, depthWrite: false,
+        // Where a ghost and the robot are at the same place, the robot is seen, without speckle.
+        polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 8 });
     });
     actor.root.visible = !ghost;
     this.scene.add(actor.root);

@@ -1,0 +1,34 @@
+// Elements of the page, made and found.
+
+export const byId = (id) => document.getElementById(id);
+
+/// element("button", { type: "button", onclick: f, "aria-label": "..." }, "text", child)
+export function element(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (name === "value") made.value = value;
+    else made.setAttribute(name, value === true ? "" : value);
+  }
+  made.append(...children.filter((child) => child !== null && child !== undefined));
+  return made;
+}
+
+export function shape(tag, attributes, ...children) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.append(...children);
+  return made;
+}
+
+export const seconds = (t) => t.toFixed(3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "") + " s";
+
+/// Fills `parent` anew; what had the focus has it again where it is still there (by data-id).
+export function refill(parent, children) {
+  const id = parent.contains(document.activeElement) ? document.activeElement.dataset.id : undefined;
+  parent.replaceChildren(...children);
+  if (id === undefined) return;
+  const same = [...parent.querySelectorAll("[data-id]")].find((one) => one.dataset.id === id);
+  same?.focus({ preventScroll: true });
+}

@@ -1,0 +1,83 @@
+// What the author does, as edits of the pattern's text: lists of { kind, pointer, value }. The server
+// writes them into the text and leaves everything else as it is.
+
+/// Times are written to the millisecond.
+export const roundedTime = (t) => Number(t.toFixed(3));
+
+const sameTime = (a, b) => Math.abs(a - b) < 5e-4;
+
+/// A number where the words are one, else the words: an expression or a name.
+export function written(words) {
+  const text = words.trim();
+  return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
+}
+
+/// A time that is an expression is the author's to change.
+export const canDrag = (value) => typeof value === "number";
+
+/// Times between which a keyframe may lie: its neighbours'.
+export function roomOfKey(keyframes, pointer) {
+  const i = keyframes.findIndex((frame) => pointer.startsWith(frame.pointer + "/"));
+  return [i > 0 ? keyframes[i - 1].time + 0.001 : 0,
+    i >= 0 && i + 1 < keyframes.length ? keyframes[i + 1].time - 0.001 : 3600];
+}
+
+export function roomOfPhase(phases, index) {
+  return [phases[index].from + 0.001,
+    index + 1 < phases.length ? phases[index + 1].until - 0.001 : 3600];
+}
+
+export function moveKey(key, time) {
+  return canDrag(key.time_value) && !sameTime(key.time, time)
+    ? [{ kind: "set", pointer: key.time_pointer, value: roundedTime(time) }] : [];
+}
+
+/// The end of a phase, and with `along` the keyframes that stand at that end and may follow there.
+export function movePhase(state, index, time, along) {
+  const phase = state.phases[index];
+  if (!canDrag(phase.until_value) || sameTime(phase.until, time)) return [];
+  const edits = [{ kind: "set", pointer: phase.until_pointer, value: roundedTime(time) }];
+  if (!along) return edits;
+  for (const [i, frame] of state.keyframes.entries()) {
+    if (!sameTime(frame.time, phase.until) || !canDrag(frame.time_value)) continue;
+    const before = state.keyframes[i - 1], after = state.keyframes[i + 1];
+    if ((before && before.time >= time) || (after && after.time <= time)) continue;
+    edits.push({ kind: "set", pointer: frame.pointer + "/t", value: roundedTime(time) });
+  }
+  return edits;
+}
+
+/// `value` under `name` in the keyframe at this time; a new keyframe where there is none.
+export function putKey(keyframes, time, name, value) {
+  const there = keyframes.find((frame) => sameTime(frame.time, time));
+  if (there) return [{ kind: "set", pointer: `${there.pointer}/${name}`, value }];
+  const next = keyframes.find((frame) => frame.time > time);
+  return [{ kind: "insert", pointer: next ? next.pointer : "/keyframes/-",
+    value: { t: roundedTime(time), [name]: value } }];
+}
+
+/// A key without its keyframe's other tracks; a keyframe with nothing else goes as a whole.
+export function removeKey(state, key) {
+  const frame = state.keyframes.find((one) => key.pointer.startsWith(one.pointer + "/"));
+  const others = state.tracks.flatMap((track) => track.keys).filter((one) => one !== key &&
+    frame && one.pointer.startsWith(frame.pointer + "/"));
+  if (frame && others.length === 0 && !frame.more)
+    return [{ kind: "remove", pointer: frame.pointer }];
+  return [{ kind: "remove", pointer: key.pointer }];
+}
+
+/// What the motion has at a time, as the value of a key of that track.
+export function valueFromRow(track, row, columns, angleUnit) {
+  const metres = (name) => Number(row[columns[name]].toFixed(4));
+  if (track === "zmp") return [metres("zmp.x"), metres("zmp.y")];
+  if (track === "cog") return { x: metres("cog.x"), y: metres("cog.y"), height: metres("cog.z") };
+  if (track === "fz") return Number(row[columns.fz].toFixed(1));
+  const angle = row[columns["q." + track]];
+  return angleUnit === "deg" ? Number((angle * 180 / Math.PI).toFixed(2)) : Number(angle.toFixed(4));
+}
+
+export function addDisturbance({ type, at, duration, direction, size, on }) {
+  const value = { type, at: roundedTime(at), duration, direction, [type]: size };
+  if (on && on !== "cog") value.on = on;
+  return [{ kind: "insert", pointer: "/scenario/-", value }];
+}

@@ -1,0 +1,148 @@
+// Feet, hands, trunk and COG as points in the picture that can be dragged, and pushes as arrows that
+// are drawn there. The server answers with the posture that brings the point to its place.
+
+import { Mesh, MeshBasicMaterial, Plane, Raycaster, SphereGeometry, Vector2, Vector3 } from "three";
+import { byId } from "./dom.js";
+import { bodyOf } from "./viewer.js";
+
+const reach = 14;  // [px] around a point within which the pointer takes it
+
+export class Handles {
+  constructor(page) {
+    this.page = page;
+    this.marks = [];
+    this.raycaster = new Raycaster();
+    const stage = page.viewer.stage;
+    stage.addEventListener("pointerdown", (event) => this.down(event), true);
+    stage.addEventListener("pointermove", (event) => {
+      if (event.buttons) return;
+      stage.style.cursor = this.page.drawing ? "crosshair" : this.near(event) ? "grab" : "";
+    });
+  }
+
+  /// The points of this robot.
+  take(handles) {
+    const { viewer } = this.page, size = viewer.config.height;
+    for (const mark of this.marks) viewer.scene.remove(mark.ball);
+    this.marks = handles.map((handle) => {
+      const ball = new Mesh(new SphereGeometry(0.016 * size, 16, 12),
+        new MeshBasicMaterial({ color: 0xffffff, depthTest: false, transparent: true, opacity: 0.85 }));
+      const rim = new Mesh(new SphereGeometry(0.022 * size, 16, 12),
+        new MeshBasicMaterial({ color: 0x0b57a4, depthTest: false, transparent: true, opacity: 0.8 }));
+      rim.renderOrder = 6;
+      ball.renderOrder = 7;
+      ball.add(rim);
+      viewer.scene.add(ball);
+      return { handle, ball };
+    });
+  }
+
+  /// Where the point of a handle is, for a row of the motion.
+  placeOf(handle, row) {
+    const { viewer } = this.page;
+    if (handle.body === undefined) return viewer.vector("cog", row);
+    return bodyOf(viewer.actors[0], handle.body).localToWorld(new Vector3(...handle.point));
+  }
+
+  place(row) {
+    const shown = byId("show-handles").checked && this.page.can("pose.drag") && !this.page.viewer.playing;
+    for (const { handle, ball } of this.marks) {
+      ball.visible = shown;
+      if (shown) ball.position.copy(this.placeOf(handle, row));
+    }
+  }
+
+  pixels(event) {
+    const box = this.page.viewer.renderer.domElement.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top, box.width, box.height];
+  }
+
+  near(event) {
+    const [x, y, wide, high] = this.pixels(event);
+    let best = null, least = reach;
+    for (const mark of this.marks) {
+      if (!mark.ball.visible) continue;
+      const at = mark.ball.position.clone().project(this.page.viewer.camera);
+      const far = Math.hypot((at.x + 1) / 2 * wide - x, (1 - at.y) / 2 * high - y);
+      if (far < least) [best, least] = [mark, far];
+    }
+    return best;
+  }
+
+  /// Where the pointer's ray meets the plane; null where it does not.
+  hit(event, plane) {
+    const [x, y, wide, high] = this.pixels(event);
+    this.raycaster.setFromCamera(new Vector2(2 * x / wide - 1, 1 - 2 * y / high), this.page.viewer.camera);
+    return this.raycaster.ray.intersectPlane(plane, new Vector3());
+  }
+
+  down(event) {
+    if (event.button !== 0) return;
+    const mark = this.page.drawing ? null : this.near(event);
+    if (!mark && !this.page.drawing) return;
+    event.stopPropagation();
+    event.preventDefault();
+    const { viewer } = this.page, stage = viewer.stage;
+    viewer.play(false);
+    const drag = mark ? this.dragOf(mark, event) : this.arrowOf(event);
+    if (!drag) return;
+    stage.setPointerCapture(event.pointerId);
+    const moved = (e) => drag.move(e);
+    const finish = (write) => {
+      stage.removeEventListener("pointermove", moved);
+      stage.removeEventListener("pointerup", up);
+      stage.removeEventListener("pointercancel", cancel);
+      removeEventListener("keydown", escape, true);
+      drag.end(write);
+    };
+    const up = () => finish(true), cancel = () => finish(false);
+    const escape = (e) => { if (e.key === "Escape") finish(false); };
+    stage.addEventListener("pointermove", moved);
+    stage.addEventListener("pointerup", up);
+    stage.addEventListener("pointercancel", cancel);
+    addEventListener("keydown", escape, true);
+  }
+
+  /// In the plane that faces the eye; with Shift upright only.
+  dragOf({ handle, ball }, event) {
+    const facing = this.page.viewer.camera.getWorldDirection(new Vector3());
+    const plane = new Plane().setFromNormalAndCoplanarPoint(facing, ball.position);
+    const begin = ball.position.clone(), first = this.hit(event, plane);
+    if (!first) return null;
+    let changed = false;
+    return {
+      move: (e) => {
+        const at = this.hit(e, plane);
+        if (!at) return;
+        const to = begin.clone().add(at.sub(first));
+        if (e.shiftKey) to.set(begin.x, begin.y, to.z);
+        changed = changed || to.distanceTo(begin) > 5e-4;
+        if (changed) this.page.pose.ask({ drag: handle.name, to: to.toArray() });
+      },
+      end: (write) => write && changed ? this.page.pose.write() : this.page.pose.drop(),
+    };
+  }
+
+  /// An arrow from the COG in a level plane: the way and the size of a push.
+  arrowOf(event) {
+    const { viewer } = this.page, cog = viewer.vector("cog", this.page.row());
+    const plane = new Plane().setFromNormalAndCoplanarPoint(new Vector3(0, 0, 1), cog);
+    if (!this.hit(event, plane)) return null;
+    let way = new Vector3();
+    return {
+      move: (e) => {
+        const at = this.hit(e, plane);
+        if (!at) return;
+        way = at.sub(cog);
+        way.clampLength(0, 2 * viewer.config.height);
+        viewer.point(viewer.marks.push, cog, way, 1);
+        viewer.draw();
+        this.page.pushes.drawn(way, false);
+      },
+      end: (write) => {
+        this.page.pushes.drawn(way, write && way.length() > 0.02 * viewer.config.height);
+        viewer.show(this.page.time);
+      },
+    };
+  }
+}

@@ -1,0 +1,140 @@
+// What is selected on the timeline, with its values to be typed; and new keys at the cursor.
+
+import { byId, element, seconds } from "./dom.js";
+import { putKey, removeKey, valueFromRow, written } from "./edits.js";
+import { nameOfTrack } from "./timeline.js";
+
+/// Unit of a value by the names that lead to it.
+export function unitOf(path, angle) {
+  const name = path.at(-1), track = path[0];
+  if (["t", "at", "until", "duration"].includes(name)) return "s";
+  if (["x", "y", "z", "height", "lift", "radius"].includes(name)) return "m";
+  if (["roll", "pitch", "yaw", "turn"].includes(name) || track === "joints" || track === "joint" ||
+    (track === "posture" && path.length > 1)) return angle;
+  if (track === "zmp" || track === "cog" || name === "to" || path.includes("to") || track === "position" || track === "point")
+    return path.includes("to") && path.at(-1) === 3 ? angle : "m";
+  if (track === "feet" || track === "foot") return path.at(-1) === 3 ? angle : "m";
+  return { fz: "N", impulse: "N s", force: "N", torque: "N m", mass: "kg", latency: "s", coulomb: "N m" }[name] || "";
+}
+
+const places = ["forward", "left", "up", "yaw"];
+const wordOf = (name, list) => typeof name === "number" && list <= 4 ? places[name] : String(name);
+
+export class Inspector {
+  constructor(page) {
+    this.page = page;
+    byId("add-key").addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.addKey();
+    });
+  }
+
+  /// One input for each value of a JSON text; a change is an edit of that value alone.
+  inputs(pointer, value, path, choices = {}) {
+    if (value && typeof value === "object")
+      return Object.entries(value).flatMap(([name, part]) => this.inputs(`${pointer}/${name.replaceAll("~", "~0").replaceAll("/", "~1")}`,
+        part, [...path, Array.isArray(value) ? Number(name) : name], choices)).map((row) => {
+        row.dataset.list = Array.isArray(value) ? value.length : "";
+        return row;
+      });
+    const unit = unitOf(path, this.page.state.angle_unit), last = path.at(-1);
+    const name = [...path.slice(1, -1).filter((p) => typeof p === "string"), wordOf(last, path.length > 1 ? 4 : 9)].join(" ");
+    const options = choices[last];
+    const input = options
+      ? element("select", {}, ...options.map((one) => element("option", { value: one }, one)))
+      : element("input", { type: "text", inputmode: "decimal", spellcheck: "false", autocomplete: "off" });
+    input.value = String(value);
+    input.dataset.id = pointer;
+    input.disabled = !this.page.can("edit");
+    input.addEventListener("change", () => {
+      const next = typeof value === "boolean" ? input.value === "true" : written(input.value);
+      if (next !== value && next !== "") this.page.edit([{ kind: "set", pointer, value: next }]);
+    });
+    return [element("label", { class: "value" }, element("span", {}, name), input,
+      element("span", { class: "unit" }, options ? "" : unit))];
+  }
+
+  selected() {
+    const { state, selection } = this.page;
+    if (!selection) return null;
+    if (selection.kind === "phase") return state.phases.find((one) => one.pointer === selection.pointer);
+    if (selection.kind === "disturbance")
+      return (state.disturbances || []).find((one) => one.pointer === selection.pointer);
+    for (const track of state.tracks || [])
+      for (const key of track.keys) if (key.pointer === selection.pointer) return { ...key, track, original: key };
+    return null;
+  }
+
+  render() {
+    const thing = this.selected(), box = byId("selected"), { selection, state } = this.page;
+    const active = document.activeElement?.dataset?.id;
+    box.replaceChildren(...!thing ? [element("p", { class: "soft" },
+      "Nothing is selected. Choose a key, a phase or a disturbance on the timeline.")]
+      : this[selection.kind](thing, state));
+    if (active) [...box.querySelectorAll("[data-id]")].find((one) => one.dataset.id === active)?.focus();
+    byId("add-key").hidden = !this.page.can("edit");
+    this.offerTracks(state);
+    this.moved();
+  }
+
+  remove(edits, words) {
+    return this.page.can("edit") ? element("button", { type: "button",
+      onclick: () => this.page.edit(edits()) }, words) : null;
+  }
+
+  key(key, state) {
+    const name = nameOfTrack(key.track);
+    const named = typeof key.value === "string" && !key.value.includes("${");
+    const choices = !named ? {} : key.track.name === "posture" ? { posture: state.postures || [key.value] }
+      : key.track.name === "zmp" ? { zmp: ["left", "center", "right"] } : {};
+    const path = key.track.kind === "joint" ? ["joint"] : key.track.kind === "foot" ? ["feet"] : [key.track.name];
+    const others = state.tracks.flatMap((track) => track.keys.filter((one) =>
+      one.time_pointer === key.time_pointer && one.pointer !== key.pointer).map(() => nameOfTrack(track)));
+    return [element("h3", {}, `${name} key at ${seconds(key.time)}`),
+      ...this.inputs(key.time_pointer, key.time_value, ["t"]).map((row) => { row.firstChild.textContent = "time"; return row; }),
+      ...this.inputs(key.pointer, key.value, path, choices),
+      others.length ? element("p", { class: "soft" }, `The same keyframe has keys of: ${others.join(", ")}. They move together.`) : null,
+      key.track.name === "zmp" && named && this.page.can("edit") ? element("button", { type: "button",
+        title: "Write the point [x, y] in place of the name", onclick: () => this.page.edit([{ kind: "set", pointer: key.pointer,
+          value: valueFromRow("zmp", this.page.row(), this.page.motion.columns, state.angle_unit) }]) }, "Use numbers") : null,
+      this.remove(() => removeKey(state, key.original), "Remove this key")].filter(Boolean);
+  }
+
+  phase(phase, state) {
+    const index = state.phases.indexOf(phase);
+    return [element("h3", {}, `Phase ${index + 1}, ${seconds(phase.from)} to ${seconds(phase.until)}`),
+      ...this.inputs(phase.until_pointer, phase.until_value, ["until"]),
+      ...phase.support ? this.inputs(phase.pointer + "/support", phase.support, ["support"],
+        { support: ["both", "left", "right", "none"] }) : [],
+      ...phase.swing ? this.inputs(phase.pointer + "/swing", phase.swing, ["swing"], { foot: ["left", "right"] }) : [],
+      state.phases.length > 1 ? this.remove(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null].filter(Boolean);
+  }
+
+  disturbance(one) {
+    return [element("h3", {}, `Disturbance at ${seconds(one.from)}`),
+      ...Object.entries(one.value || {}).flatMap(([name, value]) => this.inputs(`${one.pointer}/${name}`, value, [name])),
+      this.remove(() => [{ kind: "remove", pointer: one.pointer }], "Remove this disturbance")].filter(Boolean);
+  }
+
+  offerTracks(state) {
+    const select = byId("key-track"), chosen = select.value;
+    const known = [["zmp", "ZMP"], ["cog", "COG"], ["fz", "vertical force"]];
+    select.replaceChildren(...known.map(([value, label]) => element("option", { value }, label)),
+      element("optgroup", { label: "Joints" }, ...(state.joints || []).map((one) => element("option", { value: one.name }, one.name))));
+    if (chosen) select.value = chosen;
+  }
+
+  addKey() {
+    const { state } = this.page, track = byId("key-track").value;
+    const value = valueFromRow(track, this.page.row(), this.page.motion.columns, state.angle_unit);
+    const whole = ["zmp", "cog", "fz"].includes(track);
+    const there = state.keyframes.find((frame) => Math.abs(frame.time - this.page.time) < 5e-4);
+    this.page.edit(whole ? putKey(state.keyframes, this.page.time, track, value)
+      : there ? [{ kind: "set", pointer: `${there.pointer}/joints/${track}`, value }]
+        : putKey(state.keyframes, this.page.time, "joints", { [track]: value }));
+  }
+
+  moved() {
+    byId("key-time").textContent = seconds(this.page.time);
+  }
+}

@@ -1,0 +1,73 @@
+// Pushes on the robot: typed, or drawn as an arrow in the picture, at the time of the cursor.
+
+import { Vector3 } from "three";
+import { byId, element, seconds } from "./dom.js";
+import { addDisturbance } from "./edits.js";
+
+const units = { impulse: "N s", force: "N" };
+
+/// An arrow as long as half of the robot is tall stands for a push that changes the COG's velocity by
+/// 0.3 m/s, about the largest that a robot on level ground survives; a force acts for `duration`.
+export function sizeOfArrow(length, height, weight, type, duration) {
+  const impulse = 0.3 * (weight / 9.80665) * length / (0.5 * height);
+  const size = type === "impulse" ? impulse : impulse / Math.max(0.001, duration);
+  return Number(size.toPrecision(2));
+}
+
+export class Pushes {
+  constructor(page) {
+    this.page = page;
+    byId("push-type").addEventListener("change", () => this.units());
+    byId("new-push").addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.add();
+    });
+    byId("draw-push").addEventListener("click", () => this.draw(!this.page.drawing));
+    this.units();
+  }
+
+  units() {
+    byId("push-unit").textContent = units[byId("push-type").value];
+  }
+
+  draw(on) {
+    this.page.drawing = on;
+    byId("draw-push").setAttribute("aria-pressed", String(on));
+    this.page.say(on ? "Drag an arrow in the picture, away from the robot's COG. Escape ends this." : "");
+  }
+
+  /// While an arrow is drawn; `done` when it is let go.
+  drawn(way, done) {
+    const { config } = this.page.viewer, type = byId("push-type").value;
+    const size = sizeOfArrow(way.length(), config.height, config.weight, type, Number(byId("push-duration").value));
+    byId("push-size").value = String(size);
+    byId("push-angle").value = String(Math.round(Math.atan2(way.y, way.x) * 180 / Math.PI));
+    this.page.say(`Push of ${size} ${units[type]} towards ${byId("push-angle").value} degrees`);
+    if (!done) return;
+    this.draw(false);
+    this.add();
+  }
+
+  add() {
+    const angle = Number(byId("push-angle").value) * Math.PI / 180;
+    const direction = new Vector3(Math.cos(angle), Math.sin(angle), 0).toArray()
+      .map((x) => Number(x.toFixed(3)) + 0);
+    return this.page.edit(addDisturbance({ type: byId("push-type").value, at: this.page.time,
+      duration: Number(byId("push-duration").value), size: Number(byId("push-size").value), direction }));
+  }
+
+  render() {
+    const { state } = this.page;
+    byId("new-push").hidden = !this.page.can("edit");
+    byId("pushes").replaceChildren(...(state.disturbances || []).map((one) => element("li", {},
+      element("button", { type: "button", class: "line",
+        onclick: () => this.page.select({ kind: "disturbance", pointer: one.pointer }, one.from) },
+      `${seconds(one.from)}: ${one.type}, ${one.text}`))));
+    byId("no-pushes").hidden = Boolean(state.disturbances?.length);
+    this.moved();
+  }
+
+  moved() {
+    byId("push-time").textContent = seconds(this.page.time);
+  }
+}

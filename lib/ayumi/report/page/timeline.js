@@ -1,0 +1,271 @@
+// Phases, keys, disturbances and findings over time. Keys, ends of phases and disturbances are moved
+// by dragging, or with Ctrl and the arrow keys.
+
+import { byId, element, refill, seconds } from "./dom.js";
+import { canDrag, moveKey, movePhase, removeKey, roomOfKey, roomOfPhase, roundedTime } from "./edits.js";
+import { snapped } from "./time_axis.js";
+
+const supportWords = { both: "both", left: "left", right: "right", none: "flight" };
+const trackWords = { zmp: "ZMP", cog: "COG", fz: "Vertical force", torso: "Trunk",
+  trunk: "Trunk", posture: "Posture", weights: "Weights" };
+
+export const nameOfTrack = (track) => trackWords[track.name] ||
+  (track.kind === "joint" ? track.joint : track.name[0].toUpperCase() + track.name.slice(1));
+
+export function valueWords(value) {
+  if (typeof value === "string") return value;
+  if (Array.isArray(value)) return value.map(valueWords).join(", ");
+  if (value && typeof value === "object")
+    return Object.entries(value).map(([name, v]) => `${name} ${valueWords(v)}`).join(", ");
+  return String(value);
+}
+
+export class Timeline {
+  constructor(page) {
+    this.page = page;
+    this.dragged = null;
+  }
+
+  lane(name, contents, kind) {
+    const plot = element("div", { class: "plot" }, ...contents);
+    return element("div", { class: "lane " + kind, role: "group", "aria-label": name },
+      element("div", { class: "label", title: name }, name), plot);
+  }
+
+  render() {
+    if (this.dragged) {
+      this.late = true;
+      return;
+    }
+    const { state } = this.page;
+    this.renderRuler();
+    refill(byId("lane-phases"), [this.phases(state)]);
+    const tracks = (state.tracks || []).map((track) => this.track(track));
+    refill(byId("lane-tracks"), tracks);
+    const rest = [];
+    if (state.disturbances?.length) rest.push(this.disturbances(state));
+    rest.push(this.findings(state));
+    refill(byId("lane-events"), rest);
+  }
+
+  renderRuler() {
+    const { axis } = this.page, ruler = byId("ruler");
+    const wide = ruler.clientWidth || 600;
+    ruler.replaceChildren(...axis.ticks(wide / 70).map(({ time, text }) => element("span",
+      { style: `left:${(100 * axis.shareOf(time)).toFixed(3)}%` }, text)));
+  }
+
+  place(from, to) {
+    const { axis } = this.page, begin = 100 * axis.shareOf(from);
+    return `left:${begin.toFixed(3)}%` + (to === undefined ? ""
+      : `;width:${Math.max(0, 100 * axis.shareOf(to) - begin).toFixed(3)}%`);
+  }
+
+  /// Pixels that a duration takes.
+  wide(duration) {
+    return duration / (this.page.axis.to - this.page.axis.from) * (byId("ruler").clientWidth || 600);
+  }
+
+  visible(from, to) {
+    return to >= this.page.axis.from - 1e-9 && from <= this.page.axis.to + 1e-9;
+  }
+
+  phases(state) {
+    const parts = [];
+    state.phases.forEach((phase, i) => {
+      if (!this.visible(phase.from, phase.until)) return;
+      const words = phase.viip || !phase.support ? "VIIP" : supportWords[phase.support] || phase.support;
+      const thing = { kind: "phase", pointer: phase.pointer };
+      parts.push(element("button", { type: "button", class: "phase " + (phase.support || "viip"),
+        style: this.place(phase.from, phase.until), "data-id": phase.pointer,
+        title: `${words}, ${seconds(phase.from)} to ${seconds(phase.until)}`,
+        "aria-label": `Phase ${i + 1}: ${words}, ${seconds(phase.from)} to ${seconds(phase.until)}`,
+        "aria-pressed": String(this.page.isSelected(thing)),
+        onclick: () => this.page.select(thing, phase.from) },
+      this.wide(phase.until - phase.from) > 7.5 * words.length ? element("span", {}, words) : null));
+    });
+    state.phases.forEach((phase, i) => {
+      if (!this.page.can("edit") || !canDrag(phase.until_value) || !this.visible(phase.until, phase.until)) return;
+      const grip = element("button", { type: "button", class: "grip", style: this.place(phase.until),
+        "data-id": phase.until_pointer, title: `End of phase ${i + 1}: drag, or Ctrl and arrow keys`,
+        "aria-label": `End of phase ${i + 1} at ${seconds(phase.until)}` });
+      this.movable(grip, { time: phase.until, room: roomOfPhase(state.phases, i), words: "phase",
+        edits: (t) => movePhase(this.page.state, i, t, byId("keys-along").checked) });
+      parts.push(grip);
+    });
+    return this.lane("Phases", parts, "phases");
+  }
+
+  track(track) {
+    const parts = [], name = nameOfTrack(track);
+    for (const key of track.keys) {
+      if (!this.visible(key.time, key.time)) continue;
+      const thing = { kind: "key", pointer: key.pointer };
+      const mark = element("button", { type: "button", class: "key", style: this.place(key.time),
+        "data-id": key.pointer, "data-time": key.time_pointer,
+        title: `${name} ${valueWords(key.value)} at ${seconds(key.time)}` +
+          (canDrag(key.time_value) ? "" : ` (written as ${key.time_value})`),
+        "aria-label": `${name} key at ${seconds(key.time)}: ${valueWords(key.value)}`,
+        "aria-pressed": String(this.page.isSelected(thing)),
+        onclick: () => this.page.select(thing, key.time) });
+      this.dropPosture(mark, key);
+      if (this.page.can("edit") && canDrag(key.time_value))
+        this.movable(mark, { time: key.time, room: roomOfKey(this.page.state.keyframes, key.pointer),
+          words: "key", edits: (t) => moveKey(key, t),
+          together: `[data-time="${key.time_pointer}"]` });
+      if (this.page.can("edit"))
+        mark.addEventListener("keydown", (event) => {
+          if (event.key !== "Delete") return;
+          event.preventDefault();
+          this.page.edit(removeKey(this.page.state, key));
+        });
+      this.between(mark);
+      parts.push(mark);
+    }
+    return this.lane(name, parts, "track");
+  }
+
+  /// The arrow keys go from key to key of a lane; only one of them is a stop of the Tab key.
+  between(mark) {
+    mark.addEventListener("keydown", (event) => {
+      if (event.ctrlKey || !["ArrowLeft", "ArrowRight"].includes(event.key)) return;
+      event.preventDefault();
+      const next = event.key === "ArrowRight" ? mark.nextElementSibling : mark.previousElementSibling;
+      next?.focus();
+      next?.click();
+    });
+  }
+
+  /// A posture that is dropped on a key becomes the posture of its keyframe.
+  dropPosture(mark, key) {
+    mark.addEventListener("dragover", (event) => {
+      if (!event.dataTransfer.types.includes("text/ayumi-posture")) return;
+      event.preventDefault();
+      mark.classList.add("over");
+    });
+    mark.addEventListener("dragleave", () => mark.classList.remove("over"));
+    mark.addEventListener("drop", (event) => {
+      event.preventDefault();
+      this.page.putPosture(event.dataTransfer.getData("text/ayumi-posture"), key.time);
+    });
+  }
+
+  disturbances(state) {
+    const parts = [];
+    for (const one of state.disturbances) {
+      const until = Math.max(one.until ?? one.from, one.from);
+      if (!this.visible(one.from, until)) continue;
+      const thing = { kind: "disturbance", pointer: one.pointer };
+      const mark = element("button", { type: "button", class: "disturbance",
+        style: this.place(one.from, Math.min(until, state.duration)), "data-id": one.pointer,
+        title: `${one.type}: ${one.text}, from ${seconds(one.from)}`,
+        "aria-label": `Disturbance ${one.type}, ${one.text}, at ${seconds(one.from)}`,
+        "aria-pressed": String(this.page.isSelected(thing)),
+        onclick: () => this.page.select(thing, one.from) }, element("span", {}, one.text));
+      if (this.page.can("edit") && one.at_pointer && canDrag(one.at_value))
+        this.movable(mark, { time: one.from, room: [0, 3600], words: "disturbance",
+          edits: (t) => [{ kind: "set", pointer: one.at_pointer, value: roundedTime(t) }] });
+      parts.push(mark);
+    }
+    return this.lane("Disturbances", parts, "events");
+  }
+
+  findings(state) {
+    const parts = [];
+    (state.findings || []).forEach((finding, i) => {
+      if (!this.visible(finding.begin, finding.end)) return;
+      parts.push(element("button", { type: "button", class: "finding " + finding.severity,
+        style: this.place(finding.begin, finding.end), "data-id": "finding " + i,
+        title: finding.message, "aria-label": `${finding.severity}: ${finding.message}`,
+        onclick: () => this.page.showFinding(finding) }));
+    });
+    for (const mark of state.result?.marks || [])
+      if (this.visible(mark.time, mark.time))
+        parts.push(element("button", { type: "button", class: "mark", style: this.place(mark.time),
+          title: `${mark.text}, ${seconds(mark.time)}`,
+          "aria-label": `Result: ${mark.text}, ${seconds(mark.time)}`,
+          onclick: () => this.page.show(mark.time) }));
+    return this.lane("Findings", parts, "events");
+  }
+
+  /// Drag by pointer, or Ctrl and the arrow keys (with Shift by 1 ms), which are written after a rest.
+  movable(mark, { time, room, edits, together }) {
+    let shown = time, timer = 0;
+    const clamp = (t) => Math.min(room[1], Math.max(room[0], t));
+    const move = (t) => {
+      shown = roundedTime(clamp(t));
+      const shift = together ? byId("lane-tracks").querySelectorAll(together) : [mark];
+      for (const one of shift) one.style.left = `${100 * this.page.axis.shareOf(shown)}%`;
+      byId("time-tip").textContent = seconds(shown);
+      byId("said").textContent = seconds(shown);
+    };
+    const end = (write) => {
+      this.dragged = null;
+      byId("time-tip").hidden = true;
+      mark.classList.remove("dragged");
+      const list = write ? edits(shown) : [];
+      if (list.length) this.page.edit(list);
+      else this.render();
+      if (this.late) {
+        this.late = false;
+        this.render();
+      }
+    };
+    mark.classList.add("movable");
+    mark.addEventListener("pointerdown", (down) => {
+      if (down.button !== 0) return;
+      const plot = mark.parentElement.getBoundingClientRect(), begin = down.clientX;
+      const others = this.times().filter((t) => Math.abs(t - time) > 5e-4);
+      let begun = false;
+      mark.setPointerCapture(down.pointerId);
+      const moved = (event) => {
+        if (!begun && Math.abs(event.clientX - begin) < 4) return;
+        if (!begun) {
+          begun = true;
+          this.dragged = mark;
+          mark.classList.add("dragged");
+          byId("time-tip").hidden = false;
+        }
+        const perPixel = (this.page.axis.to - this.page.axis.from) / plot.width;
+        const wanted = time + (event.clientX - begin) * perPixel;
+        move(event.shiftKey ? wanted : snapped(wanted, others, 6 * perPixel));
+        byId("time-tip").style.left = `${event.clientX}px`;
+        byId("time-tip").style.top = `${event.clientY - 34}px`;
+      };
+      const stop = (write) => {
+        mark.removeEventListener("pointermove", moved);
+        mark.removeEventListener("pointerup", up);
+        mark.removeEventListener("pointercancel", cancel);
+        removeEventListener("keydown", escape, true);
+        if (begun) end(write);
+      };
+      const up = () => stop(true), cancel = () => stop(false);
+      const escape = (event) => { if (event.key === "Escape") stop(false); };
+      mark.addEventListener("pointermove", moved);
+      mark.addEventListener("pointerup", up);
+      mark.addEventListener("pointercancel", cancel);
+      addEventListener("keydown", escape, true);
+    });
+    mark.addEventListener("keydown", (event) => {
+      const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+      if (event.key === "Escape" && timer) {
+        clearTimeout(timer);
+        timer = 0;
+        end(false);
+      }
+      if (!way || !event.ctrlKey) return;
+      event.preventDefault();
+      this.dragged = mark;
+      clearTimeout(timer);
+      move(shown + way * (event.shiftKey ? 0.001 : 0.01));
+      timer = setTimeout(() => { timer = 0; end(true); }, 500);
+    });
+  }
+
+  /// Times that a dragged thing snaps to.
+  times() {
+    const { state, time } = this.page;
+    return [time, ...state.phases.map((phase) => phase.until),
+      ...(state.keyframes || []).map((frame) => frame.time)];
+  }
+}

@@ -1,0 +1,332 @@
+// node author_browser.mjs CHROMEDRIVER PATTERN [SHOTS] -- SERVER ARGUMENTS...: starts the server of the
+// live page (it prints the address) on PATTERN, loads the page in headless Chromium and works with it
+// as a person would. Prints one line per broken expectation, then "ok" or "failed".
+
+import { spawn } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
+import { startDriver, until, wait } from "./driver.mjs";
+
+const cut = process.argv.indexOf("--");
+const [driver, pattern, shots] = process.argv.slice(2, cut);
+const [program, ...programArguments] = process.argv.slice(cut + 1);
+let failures = 0;
+const expect = (good, words) => {
+  if (good) return;
+  ++failures;
+  console.log("broken: " + words);
+};
+
+const server = spawn(program, programArguments, { stdio: ["ignore", "pipe", "inherit"] });
+const address = await new Promise((resolve, reject) => {
+  server.stdout.on("data", (words) => {
+    const found = /http:\/\/127\.0\.0\.1:\d+\/\S*/.exec(String(words));
+    if (found) resolve(found[0]);
+  });
+  server.on("exit", () => reject(new Error("the server ended")));
+});
+
+const text = () => readFileSync(pattern, "utf8");
+const data = () => JSON.parse(text());
+
+/// A page with what the trials need.
+async function openPage(driver_, width, height) {
+  const tab = await driver_.open(`${width},${height}`);
+  tab.size = (w, h) => tab.tool("Emulation.setDeviceMetricsOverride",
+    { width: w, height: h, deviceScaleFactor: 1, mobile: false });
+  await tab.size(width, height);
+  await tab.load(address);
+  const state = await until(() => tab.run("return document.documentElement.dataset.author"), 60);
+  expect(state === "ready", "the page says " + state);
+  tab.version = () => tab.run("return Number(document.documentElement.dataset.version)");
+  tab.after = async (doing) => {
+    const before = await tab.version();
+    await doing();
+    const now = await until(async () => (await tab.version()) > before);
+    expect(now, "a new version is shown after: " + doing);
+  };
+  tab.click = (selector) => tab.run(`const e = document.querySelector(${JSON.stringify(selector)});
+    e.focus(); e.click();`);
+  tab.key = (selector, key, more = {}) => tab.run(`document.querySelector(arguments[0]).dispatchEvent(
+    new KeyboardEvent("keydown", { key: arguments[1], bubbles: true, cancelable: true, ...arguments[2] }));`,
+  selector, key, more);
+  tab.type = (selector, value, event = "change") => tab.run(`const e = document.querySelector(arguments[0]);
+    e.focus(); e.value = arguments[1]; e.dispatchEvent(new Event(arguments[2], { bubbles: true })); e.blur();`,
+  selector, String(value), event);
+  tab.box = (selector) => tab.run(`const b = document.querySelector(arguments[0]).getBoundingClientRect();
+    return [b.left + b.width / 2, b.top + b.height / 2, b.width, b.height];`, selector);
+  tab.drag = (from, by) => tab.act([{ type: "pointer", id: "mouse", parameters: { pointerType: "mouse" }, actions: [
+    { type: "pointerMove", duration: 0, x: Math.round(from[0]), y: Math.round(from[1]) },
+    { type: "pointerDown", button: 0 },
+    { type: "pointerMove", duration: 50, x: Math.round(from[0] + by[0] / 2), y: Math.round(from[1] + by[1] / 2) },
+    { type: "pointerMove", duration: 50, x: Math.round(from[0] + by[0]), y: Math.round(from[1] + by[1]) },
+    { type: "pause", duration: 300 }, { type: "pointerUp", button: 0 }] }]);
+  return tab;
+}
+
+const keySelector = (i) => `[data-id="/keyframes/${i}/zmp"]`;
+
+async function looks(tab) {
+  const seen = await tab.run(`
+    const inside = (id) => { const b = document.getElementById(id).getBoundingClientRect();
+      return b.width > 0 && b.height > 0 && b.top >= 0 && b.top + Math.min(b.height, 100) <= innerHeight; };
+    return { stage: inside("stage"), curves: inside("curves"), phases: document.querySelectorAll(".phase").length,
+      keys: document.querySelectorAll(".key").length, verdict: document.getElementById("verdict").textContent,
+      wide: document.documentElement.scrollWidth };`);
+  expect(seen.stage && seen.curves, "picture and curves are on one screen: " + JSON.stringify(seen));
+  expect(seen.phases === data().phases.length, seen.phases + " phases");
+  expect(seen.keys === data().keyframes.length, seen.keys + " keys");
+  expect(seen.wide <= 1280, "nothing sticks out: " + seen.wide);
+  expect(seen.verdict === "consistent", "the verdict: " + seen.verdict);
+  const at = (t) => tab.run(`window.ayumiAuthor.page.show(arguments[0]);
+    return { base: window.ayumiAuthor.position(0), time: Number(document.getElementById("scrub").value),
+      cursor: document.getElementById("cursor").getBoundingClientRect().left,
+      plot: (b => [b.left, b.width])(document.getElementById("ruler").getBoundingClientRect()),
+      end: window.ayumiAuthor.page.axis.to };`, t);
+  const first = await at(0), later = await at(4);
+  expect(Math.hypot(...first.base.map((x, i) => x - later.base[i])) > 0.05, "the robot walks");
+  const wanted = later.plot[0] + later.plot[1] * later.time / later.end;
+  expect(Math.abs(later.cursor - wanted) < 2, `the cursor is at ${later.cursor}, not ${wanted}`);
+  const colors = await tab.run(`
+    window.ayumiAuthor.page.viewer.draw();
+    const small = document.createElement("canvas");
+    small.width = 64; small.height = 36;
+    const flat = small.getContext("2d");
+    flat.drawImage(document.querySelector("#stage canvas"), 0, 0, 64, 36);
+    return new Set(new Uint32Array(flat.getImageData(0, 0, 64, 36).data.buffer)).size;`);
+  expect(colors > 100, `the picture has ${colors} colours`);
+  await tab.shoot("author.png");
+}
+
+async function namesEverything(tab) {
+  const unnamed = await tab.run(`
+    const named = (e) => e.labels?.length || e.textContent.trim() || e.getAttribute("aria-label");
+    return [...document.querySelectorAll("button, input, select, canvas, svg, progress")]
+      .filter((e) => !named(e)).map((e) => e.outerHTML.slice(0, 120));`);
+  expect(unnamed.length === 0, "without a name: " + unnamed.join(" "));
+  const reached = await tab.run(`return [...document.querySelectorAll("button, input, select")]
+    .filter((e) => e.getClientRects().length && e.tabIndex < 0 && e.getAttribute("role") !== "tab").length;`);
+  expect(reached === 0, reached + " controls that the keyboard does not reach");
+}
+
+async function editsByKeyboard(tab) {
+  const before = data().keyframes[2].t;
+  await tab.click(keySelector(2));
+  expect(await tab.run("return !document.getElementById('tab-edit').hidden"), "a key opens the Edit panel");
+  await tab.after(() => tab.key(keySelector(2), "ArrowRight", { ctrlKey: true }));
+  expect(Math.abs(data().keyframes[2].t - before - 0.01) < 1e-9, `Ctrl and arrow: ${data().keyframes[2].t}`);
+  await tab.after(() => tab.key("body", "z", { ctrlKey: true }));
+  expect(data().keyframes[2].t === before, "undone: " + data().keyframes[2].t);
+  await tab.after(() => tab.key("body", "Z", { ctrlKey: true, shiftKey: true }));
+  expect(Math.abs(data().keyframes[2].t - before - 0.01) < 1e-9, "redone: " + data().keyframes[2].t);
+  await tab.after(() => tab.click("#undo"));
+  await tab.click(keySelector(2));
+  await tab.key(keySelector(2), "ArrowRight");
+  const focus = await tab.run("return document.activeElement.dataset.id");
+  expect(focus === "/keyframes/3/zmp", "the arrow key goes to the next key: " + focus);
+  await tab.after(() => tab.type('#selected [data-id="/keyframes/3/zmp"]', "center"));
+  expect(data().keyframes[3].zmp === "center", "a typed value: " + JSON.stringify(data().keyframes[3]));
+  await tab.after(() => tab.click("#undo"));
+}
+
+async function dragsInTime(tab) {
+  const before = data(), along = await tab.run("return document.getElementById('keys-along').checked");
+  expect(along, "keys follow the ends of phases");
+  const key = await tab.box(keySelector(1));
+  await tab.after(() => tab.drag(key, [40, 0]));
+  expect(data().keyframes[1].t > before.keyframes[1].t + 0.1, "a dragged key: " + data().keyframes[1].t);
+  await tab.after(() => tab.click("#undo"));
+  const grip = await tab.box('[data-id="/phases/0/until"]');
+  await tab.after(() => tab.drag([grip[0], grip[1]], [-30, 0]));
+  const now = data();
+  expect(now.phases[0].until < before.phases[0].until - 0.1, "a dragged phase: " + now.phases[0].until);
+  expect(now.keyframes[2].t === now.phases[0].until, `its key follows: ${now.keyframes[2].t}`);
+  await tab.after(() => tab.click("#undo"));
+  expect(JSON.stringify(data()) === JSON.stringify(before), "all is as before");
+}
+
+async function showsFindings(tab) {
+  const good = text();
+  const wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 3.7);
+  wrong.keyframes[i].zmp = [0.12, 0.085];
+  await tab.after(() => writeFileSync(pattern, JSON.stringify(wrong, null, 1)));
+  const seen = await tab.run(`
+    const findings = window.ayumiAuthor.page.state.findings;
+    const joint = findings.findIndex((one) => one.joint);
+    document.querySelectorAll("#findings button")[joint].click();
+    const page = window.ayumiAuthor.page;
+    return { count: findings.length, at: findings[joint].at, time: page.time, red: window.ayumiAuthor.wrongBodies(),
+      curves: page.curves.chosen, joint: findings[joint].joint, ghost: page.viewer.actors[1].root.visible,
+      verdict: document.getElementById("verdict").textContent };`);
+  expect(seen.count >= 2 && / error/.test(seen.verdict), "findings: " + JSON.stringify(seen));
+  expect(Math.abs(seen.time - seen.at) < 1e-6, `a click goes to the instant: ${seen.time}`);
+  expect(seen.red.length > 0, "the limb is red");
+  expect(seen.curves.includes("q." + seen.joint), "its curve is shown");
+  expect(seen.ghost, "the last consistent motion is the ghost");
+  await tab.shoot("finding.png");
+  const sole = await tab.run(`
+    const page = window.ayumiAuthor.page;
+    page.showFinding(page.state.findings.find((one) => one.kind === "support_margin"));
+    return page.viewer.marks.outline.material.color.getHex();`);
+  expect(sole === 0xd6261f, "the support polygon is red: " + sole);
+  await tab.key("body", "n");
+  await tab.key("body", "Escape");
+  expect(await tab.run("return window.ayumiAuthor.wrongBodies().length") === 0, "Escape ends it");
+  // What cannot be read: the line is named, the old motion is grey.
+  await tab.after(() => writeFileSync(pattern, good.replace('"phases"', "phases")));
+  const line = good.slice(0, good.indexOf('"phases"')).split("\n").length;
+  const told = await tab.run(`document.getElementById("error-go").click();
+    const page = window.ayumiAuthor.page;
+    return { place: document.getElementById("error-place").textContent, hidden: document.getElementById("error").hidden,
+      shown: document.querySelector("#text .wrong")?.textContent, stale: page.state.stale,
+      grey: page.rig.meshes.every(({ mesh, material }) => mesh.material !== material) };`);
+  expect(!told.hidden && told.place === `Line ${line}:`, "the error's line: " + JSON.stringify(told));
+  expect(/phases/.test(told.shown), "the line is shown: " + told.shown);
+  expect(told.stale && told.grey, "the old motion is grey");
+  await tab.shoot("error.png");
+  await tab.after(() => writeFileSync(pattern, good));
+  expect(await tab.run("return document.getElementById('error').hidden"), "the error is gone");
+}
+
+async function keepsBothVersions(tab) {
+  const before = data();
+  // The page is kept from hearing of the change, as when both happen at once.
+  await tab.run("window.ayumiAuthor.page.load = () => Promise.resolve();");
+  const changed = { ...before, name: "changed elsewhere" };
+  writeFileSync(pattern, JSON.stringify(changed, null, 1));
+  await wait(300);
+  const edit = (value) => tab.run(`window.ayumiAuthor.page.edit([{ kind: "set", pointer: "/keyframes/0/zmp", value: arguments[0] }]);`, value);
+  await edit("left");
+  expect(await until(() => tab.run("return document.getElementById('conflict').open")), "the page asks");
+  expect(data().keyframes[0].zmp === before.keyframes[0].zmp, "nothing is overwritten");
+  const shown = await tab.run("return [...document.querySelectorAll('#versions .old, #versions .new')].map((e) => e.textContent)");
+  expect(shown.some((line) => /left/.test(line)), "the difference is shown: " + shown.join(" | ").slice(0, 300));
+  await tab.shoot("conflict.png");
+  await tab.run("delete window.ayumiAuthor.page.load; document.querySelector('#conflict button[value=theirs]').click();");
+  await until(() => tab.run("return window.ayumiAuthor.page.state.text.includes('changed elsewhere')"));
+  expect(data().name === "changed elsewhere" && data().keyframes[0].zmp !== "left", "the file is kept");
+  await tab.run("window.ayumiAuthor.page.load = () => Promise.resolve();");
+  writeFileSync(pattern, JSON.stringify({ ...changed, name: "changed again" }, null, 1));
+  await wait(300);
+  await edit("left");
+  await until(() => tab.run("return document.getElementById('conflict').open"));
+  await tab.run("delete window.ayumiAuthor.page.load; document.querySelector('#conflict button[value=mine]').click();");
+  await until(() => data().keyframes[0].zmp === "left");
+  expect(data().keyframes[0].zmp === "left", "my version is written");
+  writeFileSync(pattern, JSON.stringify(before, null, 1));
+  await until(() => tab.run("return window.ayumiAuthor.page.state.text.includes(arguments[0])", before.name));
+}
+
+async function poses(tab) {
+  await tab.run("window.ayumiAuthor.page.show(2.4); document.getElementById('to-pose').click();");
+  const place = () => tab.run("return window.ayumiAuthor.position(window.ayumiAuthor.page.state.handles.find((h) => h.name === 'left_hand').body)");
+  const before = await place(), frames = data().keyframes.length;
+  const name = await tab.run("return window.ayumiAuthor.page.state.joints.find((j) => /^l_shoulder_pitch/.test(j.name)).name");
+  await tab.type(`#joints input[type=number][aria-label^="${name} "]`, 40, "input");
+  await until(() => tab.run("return window.ayumiAuthor.page.previewed !== null"));
+  const moved = await place();
+  expect(Math.hypot(...moved.map((x, i) => x - before[i])) > 0.005, "the arm follows its slider");
+  expect(data().keyframes.length === frames, "nothing is written while it is tried");
+  await tab.after(() => tab.click("#write-pose"));
+  const written = data().keyframes.find((frame) => Math.abs(frame.t - 2.4) < 1e-6);
+  expect(Math.abs(written?.joints?.[name] - 40) < 0.1, "a key of the joint: " + JSON.stringify(written));
+  await tab.after(() => tab.click("#undo"));
+  // The COG is dragged in the picture.
+  await tab.run("window.ayumiAuthor.page.viewer.look('front'); window.ayumiAuthor.page.show(0.4);");
+  const pixel = await tab.run("return window.ayumiAuthor.pixelOf('cog')");
+  await tab.after(() => tab.drag(pixel, [24, 0]));
+  const cog = data().keyframes.find((frame) => frame.cog && Math.abs(frame.t - 0.4) < 1e-6);
+  expect(cog && Math.abs(cog.cog.y) > 0.005, "the COG is dragged: " + JSON.stringify(cog));
+  await tab.after(() => tab.click("#undo"));
+}
+
+async function postures(tab) {
+  await tab.run(`document.getElementById("to-postures").click();
+    document.getElementById("posture-name").value = "mine";`);
+  await tab.after(() => tab.click('#capture button[value="plain"]'));
+  expect(data().postures?.mine, "a posture is captured: " + JSON.stringify(data().postures));
+  await tab.run("window.ayumiAuthor.page.show(0.71);");
+  await tab.after(() => tab.run(`[...document.querySelectorAll("#postures li")].find((li) =>
+    li.querySelector(".name").textContent === "mine").querySelector("button").click();`));
+  expect(data().keyframes[1].posture === "mine", "it is put on a key: " + JSON.stringify(data().keyframes[1]));
+  await tab.after(() => tab.click("#undo"));
+  await tab.after(() => tab.click("#undo"));
+}
+
+async function pushesTheRobot(tab) {
+  const before = data().scenario?.length || 0;
+  await tab.run("document.getElementById('to-pushes').click(); window.ayumiAuthor.page.viewer.look('top'); window.ayumiAuthor.page.show(1);");
+  await tab.click("#draw-push");
+  const box = await tab.box("#stage");
+  await tab.after(() => tab.drag(box, [0, -60]));
+  const push = data().scenario.at(-1);
+  expect(data().scenario.length === before + 1 && push.at === 1 && push.impulse > 0, "a drawn push: " + JSON.stringify(push));
+  expect(Math.abs(Math.hypot(...push.direction) - 1) < 0.01 && push.direction[2] === 0, "its direction: " + push.direction);
+  await tab.after(() => tab.click("#undo"));
+}
+
+async function works(tab) {
+  await tab.click("#job-check");
+  expect(await until(() => tab.run("return !document.getElementById('job').hidden")), "work shows its progress");
+  expect(await until(() => tab.run("return document.getElementById('job').hidden")), "work ends");
+  await tab.click("#job-simulate");
+  await until(() => tab.run("return !document.getElementById('job').hidden"));
+  await tab.click("#cancel");
+  expect(await until(() => tab.run("return document.getElementById('job').hidden")), "work is cancelled");
+  expect(/cancelled/.test(await tab.run("return document.getElementById('said').textContent")), "and the page says so");
+}
+
+/// Two pages on one pattern, and many quick saves.
+async function followsTheFile(driver_, tab) {
+  const other = await openPage(driver_, 820, 1100);
+  await other.shoot("narrow.png");
+  expect(await other.run("return document.documentElement.scrollWidth") <= 820, "nothing sticks out at 820 px");
+  await tab.after(() => tab.run("window.ayumiAuthor.page.edit([{ kind: 'set', pointer: '/keyframes/0/zmp', value: 'left' }]);"));
+  expect(await until(() => other.run("return window.ayumiAuthor.page.state.tracks[0].keys[0].value === 'left'")), "the other page follows");
+  await tab.after(() => tab.click("#undo"));
+  const good = data();
+  for (let i = 0; i < 100; ++i) {
+    writeFileSync(pattern, JSON.stringify({ ...good, name: "save " + i }, null, 1));
+    await wait(5);
+  }
+  for (const one of [tab, other])
+    expect(await until(() => one.run("return window.ayumiAuthor.page.state.text.includes('save 99')"), 60), "the last of a hundred saves is shown");
+  writeFileSync(pattern, JSON.stringify(good, null, 1));
+  await other.tool("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
+  await other.shoot("dark.png");
+  const ground = await other.run("return getComputedStyle(document.body).backgroundColor");
+  expect(Math.max(...ground.match(/\d+/g).map(Number)) < 60, "the dark page is dark: " + ground);
+  await quiet(other);
+  await other.end();
+}
+
+async function quiet(tab) {
+  const errors = (await tab.log("browser")).filter((entry) => entry.level === "SEVERE" && !/status of (404|409|422)/.test(entry.message));
+  expect(errors.length === 0, "the console: " + errors.map((entry) => entry.message).join(" | "));
+  const requests = (await tab.log("performance")).map((entry) => JSON.parse(entry.message).message)
+    .filter((m) => m.method === "Network.requestWillBeSent").map((m) => m.params.request.url)
+    .filter((url) => !/^(data|blob|about|chrome):/.test(url) && !url.startsWith(address));
+  expect(requests.length === 0, "requests: " + requests.join(" "));
+}
+
+let driving;
+try {
+  driving = await startDriver(driver, shots);
+  const tab = await openPage(driving, 1280, 800);
+  for (const trial of [looks, namesEverything, editsByKeyboard, dragsInTime, showsFindings, keepsBothVersions,
+    poses, postures, pushesTheRobot, works]) {
+    try {
+      await trial(tab);
+    } catch (error) {
+      expect(false, `${trial.name}: ${error.message}`);
+    }
+  }
+  await followsTheFile(driving, tab);
+  await quiet(tab);
+  await tab.end();
+} catch (error) {
+  expect(false, error.message);
+}
+driving?.end();
+server.kill();
+console.log(failures ? "failed" : "ok");
+process.exit(failures ? 1 : 0);

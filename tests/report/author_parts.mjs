@@ -1,0 +1,148 @@
+// node --test author_parts.mjs: the parts of the live page that need no browser.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { TimeAxis, snapped } from "../../lib/ayumi/report/page/time_axis.js";
+import * as edits from "../../lib/ayumi/report/page/edits.js";
+import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
+import { sideBySide, nearDifferences } from "../../lib/ayumi/report/page/text_difference.js";
+
+const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-9, `${a} is not ${b}`);
+
+test("a place of the axis is the place of its time, at every zoom", () => {
+  const axis = new TimeAxis(7);
+  for (const factor of [1, 3, 10, 0.2]) {
+    axis.zoom(factor, 2);
+    for (const share of [0, 0.25, 1]) near(axis.shareOf(axis.timeOf(share)), share);
+    assert.ok(axis.from >= 0 && axis.to <= 7 + 1e-9 && axis.to > axis.from);
+  }
+  axis.zoom(0.001, 2);
+  assert.deepEqual([axis.from, axis.to], [0, 7]);
+});
+
+test("zooming keeps the time under the pointer where it is", () => {
+  const axis = new TimeAxis(10), before = axis.shareOf(4);
+  axis.zoom(4, 4);
+  near(axis.shareOf(4), before);
+  near(axis.to - axis.from, 2.5);
+  axis.reveal(9);
+  assert.ok(axis.from <= 9 && axis.to >= 9);
+});
+
+test("a longer motion is shown whole only where the whole was shown", () => {
+  const whole = new TimeAxis(5), part = new TimeAxis(5);
+  part.show(1, 2);
+  whole.stretch(8);
+  part.stretch(8);
+  assert.deepEqual([whole.from, whole.to, part.from, part.to], [0, 8, 1, 2]);
+  part.stretch(1.5);
+  assert.deepEqual([part.from, part.to], [0.5, 1.5]);
+});
+
+test("ticks are round, inside, and not more than asked for", () => {
+  for (const [from, to, most] of [[0, 7.1, 10], [1.234, 1.301, 6], [0, 3600, 12], [0, 0.05, 3]]) {
+    const axis = new TimeAxis(3600);
+    axis.show(from, to);
+    const ticks = axis.ticks(most);
+    assert.ok(ticks.length >= 1 && ticks.length <= most + 1, `${ticks.length} ticks`);
+    for (const { time, text } of ticks) {
+      assert.ok(time >= axis.from - 1e-6 && time <= axis.to + 1e-6);
+      near(Number(text), Number(time.toFixed(9)));
+    }
+  }
+});
+
+test("a time snaps to the nearest candidate within the tolerance", () => {
+  assert.equal(snapped(1.03, [1, 1.05, 2], 0.05), 1.05);
+  assert.equal(snapped(1.2, [1, 1.05, 2], 0.05), 1.2);
+});
+
+const state = {
+  keyframes: [0, 0.7, 1.1, 1.6].map((time, i) => ({ time, time_value: time, pointer: `/keyframes/${i}` })),
+  phases: [{ from: 0, until: 1.1, until_value: 1.1, until_pointer: "/phases/0/until" },
+    { from: 1.1, until: 1.6, until_value: "${t} + 1", until_pointer: "/phases/1/until" },
+    { from: 1.6, until: 2, until_value: 2, until_pointer: "/phases/2/until" }],
+  tracks: [{ name: "zmp", keys: [{ pointer: "/keyframes/1/zmp" }, { pointer: "/keyframes/2/zmp" }] },
+    { name: "cog", keys: [{ pointer: "/keyframes/2/cog" }] }],
+};
+
+test("a phase's end takes the keys that stand at it along, as far as their order allows", () => {
+  assert.deepEqual(edits.movePhase(state, 0, 1.25, true), [
+    { kind: "set", pointer: "/phases/0/until", value: 1.25 }, { kind: "set", pointer: "/keyframes/2/t", value: 1.25 }]);
+  assert.deepEqual(edits.movePhase(state, 0, 1.25, false).length, 1);
+  assert.deepEqual(edits.movePhase(state, 0, 0.6, true).length, 1, "a key does not pass the one before it");
+  assert.deepEqual(edits.movePhase(state, 1, 1.7, true), [], "a time that is an expression stays");
+  assert.deepEqual(edits.movePhase(state, 0, 1.1002, true), [], "nothing is written for nothing");
+});
+
+test("a key stays between its neighbours", () => {
+  const rooms = [edits.roomOfKey(state.keyframes, "/keyframes/1/zmp"),
+    edits.roomOfKey(state.keyframes, "/keyframes/3/zmp"), edits.roomOfPhase(state.phases, 0)];
+  [[0.001, 1.099], [1.101, 3600], [0.001, 1.599]].forEach((room, i) => room.forEach((t, k) => near(rooms[i][k], t)));
+});
+
+test("a value goes into the keyframe of its time, or into a new one in order", () => {
+  assert.deepEqual(edits.putKey(state.keyframes, 1.1003, "zmp", "left"),
+    [{ kind: "set", pointer: "/keyframes/2/zmp", value: "left" }]);
+  assert.deepEqual(edits.putKey(state.keyframes, 1.30049, "zmp", "left"),
+    [{ kind: "insert", pointer: "/keyframes/3", value: { t: 1.3, zmp: "left" } }]);
+  assert.deepEqual(edits.putKey(state.keyframes, 5, "fz", 60)[0].pointer, "/keyframes/-");
+});
+
+test("a removed key takes its keyframe only where nothing else is in it", () => {
+  const [one, two] = state.tracks[0].keys;
+  assert.deepEqual(edits.removeKey(state, one), [{ kind: "remove", pointer: "/keyframes/1" }]);
+  assert.deepEqual(edits.removeKey(state, two), [{ kind: "remove", pointer: "/keyframes/2/zmp" }]);
+});
+
+test("words that are numbers are written as numbers", () => {
+  assert.deepEqual(["0.03", " 1e-2 ", "${a}*2", "left", "0x", ""].map(edits.written),
+    [0.03, 0.01, "${a}*2", "left", "0x", ""]);
+});
+
+test("a key from the motion has the author's angle unit", () => {
+  const columns = { "q.l_knee": 0, "zmp.x": 1, "zmp.y": 2 }, row = [Math.PI / 6, 0.01234567, -0.02];
+  assert.equal(edits.valueFromRow("l_knee", row, columns, "deg"), 30);
+  assert.equal(edits.valueFromRow("l_knee", row, columns, "rad"), 0.5236);
+  assert.deepEqual(edits.valueFromRow("zmp", row, columns, "deg"), [0.0123, -0.02]);
+});
+
+test("strain grows towards the limit for margins and for shares", () => {
+  const margin = { sense: "low", limit: 0, warn: 10, values: [20, 10, 5, -1, null] };
+  const share = { sense: "high", limit: 100, warn: 70, values: [] };
+  assert.deepEqual([10, 5, 0].map((v) => strain(margin, v)), [0, 0.5, 1]);
+  assert.deepEqual([70, 85, 100].map((v) => strain(share, v)), [0, 0.5, 1]);
+  assert.equal(strain(margin, null), null);
+  assert.deepEqual(worstIn(margin, 0.01, 0, 0.03), { share: 0.5, index: 2 });
+  assert.equal(worstIn(margin, 0.01, 0.04, 0.05), null);
+  assert.deepEqual(worstIn(margin, 0.01, 0, Infinity).index, 3);
+});
+
+test("nothing has the colour of good that is not good", () => {
+  const green = (share) => {
+    const [r, g] = /rgb\((\d+),(\d+)/.exec(colorOf(share)).slice(1).map(Number);
+    return g > 1.5 * r;
+  };
+  assert.ok(green(-1) && green(0));
+  for (const share of [0.5, 0.8, 1, 1.01, 5]) assert.ok(!green(share), `at ${share}`);
+  assert.ok(heightOf(1.01) > heightOf(1) && heightOf(1) > heightOf(0) && heightOf(null) === 0);
+});
+
+test("texts beside each other: every line once, equal lines as equal", () => {
+  let seed = 7;
+  const random = (n) => (seed = (seed * 16807) % 2147483647) % n;
+  for (let round = 0; round < 50; ++round) {
+    const left = Array.from({ length: random(12) }, () => "abc"[random(3)]);
+    const right = left.flatMap((line) => random(4) ? [line] : random(2) ? [] : [line, "x"]);
+    for (const most of [100, 0]) {
+      const rows = sideBySide(left.join("\n"), right.join("\n"), most);
+      assert.equal(rows.map((row) => row.left).filter((line) => line !== null).join("\n"), left.join("\n"));
+      assert.equal(rows.map((row) => row.right).filter((line) => line !== null).join("\n"), right.join("\n"));
+      for (const row of rows) if (row.same) assert.equal(row.left, row.right);
+    }
+  }
+  const one = sideBySide("a\nb\nc\nd\ne\nf\ng\nh", "a\nb\nc\nd\ne\nf\ng\nH");
+  assert.equal(one.filter((row) => !row.same).length, 1);
+  assert.deepEqual(nearDifferences(one, 1)[0], { gap: 6 });
+});
