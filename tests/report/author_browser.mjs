@@ -104,7 +104,8 @@ async function namesEverything(tab) {
       .filter((e) => !named(e)).map((e) => e.outerHTML.slice(0, 120));`);
   expect(unnamed.length === 0, "without a name: " + unnamed.join(" "));
   const reached = await tab.run(`return [...document.querySelectorAll("button, input, select")]
-    .filter((e) => e.getClientRects().length && e.tabIndex < 0 && e.getAttribute("role") !== "tab").length;`);
+    .filter((e) => e.getClientRects().length && e.tabIndex < 0 && e.getAttribute("role") !== "tab" &&
+      [...e.parentElement.querySelectorAll("button")].filter((other) => other.tabIndex === 0).length !== 1).length;`);
   expect(reached === 0, reached + " controls that the keyboard does not reach");
 }
 
@@ -132,7 +133,9 @@ async function dragsInTime(tab) {
   const before = data(), along = await tab.run("return document.getElementById('keys-along').checked");
   expect(along, "keys follow the ends of phases");
   const key = await tab.box(keySelector(1));
+  await tab.run("window.ayumiAuthor.page.show(2);");
   await tab.after(() => tab.drag(key, [40, 0]));
+  expect(await tab.run("return window.ayumiAuthor.page.time") === 2, "a drag does not move the cursor");
   expect(data().keyframes[1].t > before.keyframes[1].t + 0.1, "a dragged key: " + data().keyframes[1].t);
   await tab.after(() => tab.click("#undo"));
   const grip = await tab.box('[data-id="/phases/0/until"]');
@@ -261,6 +264,9 @@ async function pushesTheRobot(tab) {
   const push = data().scenario.at(-1);
   expect(data().scenario.length === before + 1 && push.at === 1 && push.impulse > 0, "a drawn push: " + JSON.stringify(push));
   expect(Math.abs(Math.hypot(...push.direction) - 1) < 0.01 && push.direction[2] === 0, "its direction: " + push.direction);
+  await tab.after(() => tab.key(`[data-id="/scenario/${before}"]`, "Delete"));
+  expect(data().scenario.length === before, "the Delete key removes it");
+  await tab.after(() => tab.click("#undo"));
   await tab.after(() => tab.click("#undo"));
 }
 
@@ -273,6 +279,29 @@ async function works(tab) {
   await tab.click("#cancel");
   expect(await until(() => tab.run("return document.getElementById('job').hidden")), "work is cancelled");
   expect(/cancelled/.test(await tab.run("return document.getElementById('said').textContent")), "and the page says so");
+}
+
+/// A server that can do little: nothing is shown that does not work, and nothing breaks.
+async function showsNoDeadControls(tab) {
+  const seen = await tab.run(`
+    const page = window.ayumiAuthor.page, { version, file, text, hash, duration, replay } = page.state;
+    return page.take({ version, file, text, hash, duration, replay }).then(() => {
+      for (const tab of ["answers", "edit", "pushes", "text"]) document.getElementById("to-" + tab).click();
+      return [...document.querySelectorAll("header button, header select, main button, main select, main input")]
+        .filter((e) => e.getClientRects().length).map((e) => e.id || e.textContent);
+    });`);
+  for (const id of ["undo", "redo", "job-check", "job-repair", "job-simulate", "law", "job-push", "job-export",
+    "to-pose", "to-postures", "keys-along", "draw-push"])
+    expect(!seen.includes(id), `without its feature ${id} is not shown`);
+  expect(seen.includes("play") && seen.includes("to-text"), "the rest is there: " + seen.join(" "));
+  // A pattern that could not be read from the start has no motion at all.
+  const shown = await tab.run(`
+    const page = window.ayumiAuthor.page, { version, file, text, hash } = page.state;
+    return page.take({ version, file, text, hash, error: { message: "no phases", line: 2 } }).then(() =>
+      [document.documentElement.dataset.author, document.getElementById("error").textContent]);`);
+  expect(shown[0] === "error" && /Line 2:.*no phases/s.test(shown[1]), "an unreadable start: " + shown);
+  await tab.run("return window.ayumiAuthor.page.load();");
+  expect(await tab.run("return document.documentElement.dataset.author") === "ready", "and back");
 }
 
 /// Two pages on one pattern, and many quick saves.
@@ -313,7 +342,7 @@ try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
   for (const trial of [looks, namesEverything, editsByKeyboard, dragsInTime, showsFindings, keepsBothVersions,
-    poses, postures, pushesTheRobot, works]) {
+    poses, postures, pushesTheRobot, works, showsNoDeadControls]) {
     try {
       await trial(tab);
     } catch (error) {
@@ -322,6 +351,8 @@ try {
   }
   await followsTheFile(driving, tab);
   await quiet(tab);
+  server.kill();
+  expect(await until(() => tab.run("return !document.getElementById('lost').hidden")), "the page says that the server is gone");
   await tab.end();
 } catch (error) {
   expect(false, error.message);

@@ -6,7 +6,7 @@ import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { Vector3 } from "three";
 import { chooseVersion } from "./conflict.js";
 import { Curves } from "./curves.js";
-import { byId, element, refill, seconds } from "./dom.js";
+import { byId, element, fixed, refill, seconds } from "./dom.js";
 import { Handles } from "./handles.js";
 import { Inspector } from "./inspector.js";
 import { Jobs } from "./jobs.js";
@@ -24,6 +24,11 @@ import { Viewer, bodyOf } from "./viewer.js";
 const motionWords = { plan: "the pattern", ghost: "last consistent", repair: "repaired",
   open_loop: "run in open loop", closed_loop: "run with the control law" };
 const tabs = ["answers", "edit", "pose", "postures", "pushes", "text"];
+
+/// What a state has where the server says nothing of it.
+const nothing = { features: [], motions: ["plan"], findings: [], phases: [], tracks: [], keyframes: [],
+  disturbances: [], joints: [], handles: [], postures: [], own_postures: [], strip: [], strip_dt: 0.01,
+  result: null, error: null, stale: false };
 
 class Page {
   constructor() {
@@ -54,7 +59,7 @@ class Page {
   }
 
   can(feature) {
-    return (this.state?.features || []).includes(feature);
+    return this.state.features.includes(feature);
   }
 
   // ---- what the server knows
@@ -77,8 +82,8 @@ class Page {
     return this.loading;
   }
 
-  async take(state) {
-    const before = this.state;
+  async take(latest) {
+    const state = { ...nothing, ...latest };
     this.state = state;
     document.title = `${state.file} – Ayumi author`;
     byId("file").textContent = state.file;
@@ -86,14 +91,14 @@ class Page {
     if (state.replay) {
       this.columns = Object.fromEntries(state.replay.columns.map((name, i) => [name, i]));
       this.chooseMotions(state);
-      await this.fetchMotions(before);
+      await this.fetchMotions();
       if (!this.viewer) await this.build();
       else this.viewer.replace(this.whole());
       this.axis.stretch(Math.max(state.duration, this.viewer.last));
       byId("scrub").max = String(this.viewer.last);
-      this.handles.take(state.handles || []);
+      this.handles.take(state.handles);
       this.previewed = null;
-      if (this.finding && !state.findings?.some((one) => one.message === this.finding.message)) this.leaveFinding();
+      if (this.finding && !state.findings.some((one) => one.message === this.finding.message)) this.leaveFinding();
       this.render();
     } else this.renderText();
     document.documentElement.dataset.author = state.replay ? "ready" : "error";
@@ -107,7 +112,7 @@ class Page {
 
   /// Which motion is shown and which is the ghost, of those that there are now.
   chooseMotions(state) {
-    const there = state.motions || ["plan"];
+    const there = state.motions;
     const fill = (select, names, wanted) => {
       const known = select.options.length > 0;
       select.replaceChildren(...names.map(([value, words]) => element("option", { value }, words)));
@@ -120,7 +125,7 @@ class Page {
 
   ghostName() {
     const chosen = byId("ghost").value, { state } = this, shown = byId("which").value;
-    const there = state.motions || [];
+    const there = state.motions;
     if (chosen !== "auto") return chosen === shown ? "" : chosen;
     if (state.stale) return "";
     if (shown === "plan" && there.includes("repair")) return "repair";
@@ -200,7 +205,7 @@ class Page {
     const feet = ["left", "right"].filter((side) => row[this.columns[side + "_planned"]] > 0.5);
     const support = feet.length === 2 ? "both feet" : feet.length ? feet[0] + " foot" : "flight";
     byId("scrub").setAttribute("aria-valuetext", `${time.toFixed(2)} seconds, ${support}`);
-    const mm = (name) => (1000 * row[this.columns[name]]).toFixed(1);
+    const mm = (name) => fixed(1000 * row[this.columns[name]], 1);
     byId("readout").textContent = `t ${time.toFixed(3)} s · ${support} · COG ${["x", "y", "z"].map((a) => mm("cog." + a)).join(", ")} mm · ` +
       `ZMP ${["x", "y"].map((a) => mm("zmp." + a)).join(", ")} mm · f_z ${row[this.columns.fz].toFixed(1)} N`;
     this.moveCursor();
@@ -296,12 +301,12 @@ class Page {
   }
 
   render() {
-    const { state, viewer } = this, findings = state.findings || [];
+    const { state, viewer } = this, { findings } = state;
     const errors = findings.filter((one) => one.severity === "error").length;
     const verdict = byId("verdict");
     verdict.className = state.error ? "bad" : state.consistent ? "good" : "bad";
     verdict.textContent = state.error ? "cannot be read" : state.consistent ? "consistent"
-      : errors === 1 ? "1 error" : `${errors} errors`;
+      : state.consistent === undefined ? "" : errors === 1 ? "1 error" : `${errors} errors`;
     for (const [id, count] of [["undo", state.undo], ["redo", state.redo]]) {
       byId(id).parentElement.hidden = !this.can("undo");
       byId(id).disabled = !count;
@@ -309,7 +314,7 @@ class Page {
     byId("keys-along").parentElement.hidden = !this.can("edit");
     byId("show-handles").parentElement.hidden = !this.can("pose.drag");
     byId("to-pose").hidden = !this.can("pose.joints") && !this.can("pose.drag");
-    byId("to-postures").hidden = !this.can("posture") && !state.postures?.length;
+    byId("to-postures").hidden = !this.can("posture") && !state.postures.length;
     this.renderFindings();
     this.renderText();
     this.renderTime();
@@ -329,7 +334,7 @@ class Page {
   }
 
   renderFindings() {
-    const { findings = [], error } = this.state;
+    const { findings, error } = this.state;
     const count = { error: 0, warning: 0 };
     for (const one of findings) ++count[one.severity];
     byId("to-answers").textContent = findings.length ? `Answers (${findings.length})` : "Answers";
@@ -342,7 +347,7 @@ class Page {
     element("span", {}, one.message),
     one.hint ? element("span", { class: "soft" }, one.hint) : null))]
       : [element("p", { class: error ? "soft" : "good" }, error ? "The file cannot be read, so there are no findings."
-        : "Nothing is wrong: the motion is consistent.")]);
+        : this.state.consistent ? "Nothing is wrong: the motion is consistent." : "")]);
   }
 
   renderText() {
@@ -436,7 +441,7 @@ class Page {
     if (job.error) return;
     this.openTab("answers");
     if (job.kind !== "simulate") return;
-    const run = ["closed_loop", "open_loop"].find((name) => this.state.motions?.includes(name));
+    const run = ["closed_loop", "open_loop"].find((name) => this.state.motions.includes(name));
     if (run) {
       byId("which").value = run;
       await this.changeMotions();
@@ -452,7 +457,7 @@ class Page {
   }
 
   nextFinding(way) {
-    const all = [...this.state.findings || []].sort((a, b) => a.at - b.at);
+    const all = [...this.state.findings].sort((a, b) => a.at - b.at);
     if (!all.length) return;
     const i = all.findIndex((one) => one === this.finding);
     this.showFinding(all[i < 0 ? (way > 0 ? 0 : all.length - 1) : (i + way + all.length) % all.length]);

@@ -1,6 +1,6 @@
 // Curves over time of the quantities that the reader chooses; quantities of one unit share a panel.
 
-import { byId, element, refill, shape } from "./dom.js";
+import { byId, element, fixed, refill, shape } from "./dom.js";
 import { rowAt } from "./series.js";
 
 const high = 84, top = 8, bottom = 6;
@@ -139,7 +139,7 @@ export class Curves {
         inner.append(shape("line", { class: "level", x1: 0, x2: wide, y1: y(value), y2: y(value) }));
         inner.append(shape("text", { class: "scale", x: 3, y: y(value) - 2 }, `${value} ${list[0].unit}`));
       }
-      const joint = list[0].joint && state.joints?.find((one) => one.name === list[0].joint);
+      const joint = list[0].joint && state.joints.find((one) => one.name === list[0].joint);
       for (const limit of joint ? [joint.low, joint.high] : []) {
         const value = limit * list[0].scale;
         if (value > low && value < most)
@@ -160,6 +160,6 @@ export class Curves {
     const row = rowAt(motion, time);
     for (const { list } of this.panels || [])
       for (const one of list)
-        one.value.textContent = `${(one.scale * row[motion.columns[one.name]]).toFixed(1)} ${one.unit}`;
+        one.value.textContent = `${fixed(one.scale * row[motion.columns[one.name]], 1)} ${one.unit}`;
   }
 }

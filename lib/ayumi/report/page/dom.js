@@ -22,6 +22,9 @@ export function shape(tag, attributes, ...children) {
   return made;
 }
 
+/// As toFixed, without a minus before zero.
+export const fixed = (value, digits) => value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
+
 export const seconds = (t) => t.toFixed(3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "") + " s";
 
 /// Fills `parent` anew; what had the focus has it again where it is still there (by data-id).
@@ -30,5 +33,8 @@ export function refill(parent, children) {
   parent.replaceChildren(...children);
   if (id === undefined) return;
   const same = [...parent.querySelectorAll("[data-id]")].find((one) => one.dataset.id === id);
-  same?.focus({ preventScroll: true });
+  if (!same) return;
+  for (const one of same.parentElement.children) if (one.tabIndex === 0 && same.tabIndex < 0) one.tabIndex = -1;
+  if (same.tabIndex < 0) same.tabIndex = 0;
+  same.focus({ preventScroll: true });
 }

@@ -59,8 +59,8 @@ export class Inspector {
     if (!selection) return null;
     if (selection.kind === "phase") return state.phases.find((one) => one.pointer === selection.pointer);
     if (selection.kind === "disturbance")
-      return (state.disturbances || []).find((one) => one.pointer === selection.pointer);
-    for (const track of state.tracks || [])
+      return state.disturbances.find((one) => one.pointer === selection.pointer);
+    for (const track of state.tracks)
       for (const key of track.keys) if (key.pointer === selection.pointer) return { ...key, track, original: key };
     return null;
   }
@@ -85,7 +85,7 @@ export class Inspector {
   key(key, state) {
     const name = nameOfTrack(key.track);
     const named = typeof key.value === "string" && !key.value.includes("${");
-    const choices = !named ? {} : key.track.name === "posture" ? { posture: state.postures || [key.value] }
+    const choices = !named ? {} : key.track.name === "posture" ? { posture: state.postures }
       : key.track.name === "zmp" ? { zmp: ["left", "center", "right"] } : {};
     const path = key.track.kind === "joint" ? ["joint"] : key.track.kind === "foot" ? ["feet"] : [key.track.name];
     const others = state.tracks.flatMap((track) => track.keys.filter((one) =>
@@ -120,7 +120,7 @@ export class Inspector {
     const select = byId("key-track"), chosen = select.value;
     const known = [["zmp", "ZMP"], ["cog", "COG"], ["fz", "vertical force"]];
     select.replaceChildren(...known.map(([value, label]) => element("option", { value }, label)),
-      element("optgroup", { label: "Joints" }, ...(state.joints || []).map((one) => element("option", { value: one.name }, one.name))));
+      element("optgroup", { label: "Joints" }, ...state.joints.map((one) => element("option", { value: one.name }, one.name))));
     if (chosen) select.value = chosen;
   }
 

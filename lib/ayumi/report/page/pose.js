@@ -1,7 +1,7 @@
 // The posture at the time of the cursor: sliders of the joints, and places of feet, hands, trunk and
 // COG. The picture shows what is asked for; it is written into the pattern as a key.
 
-import { byId, element, seconds } from "./dom.js";
+import { byId, element, fixed, seconds } from "./dom.js";
 
 const words = { x: "forward", y: "left", z: "up" };
 
@@ -23,11 +23,11 @@ export class Pose {
     byId("joints-part").hidden = !this.page.can("pose.joints");
     byId("place-part").hidden = !this.page.can("pose.drag");
     const handles = byId("handle"), chosen = handles.value;
-    handles.replaceChildren(...(state.handles || []).map((one) =>
+    handles.replaceChildren(...state.handles.map((one) =>
       element("option", { value: one.name }, one.label)));
     if (chosen) handles.value = chosen;
-    const names = (state.joints || []).map((one) => one.name).join();
-    if (names !== this.names) this.sliders(state.joints || []);
+    const names = state.joints.map((one) => one.name).join();
+    if (names !== this.names) this.sliders(state.joints);
     this.names = names;
     this.moved(this.page.row());
   }
@@ -80,14 +80,14 @@ export class Pose {
     for (const { joint, scale, slide, number } of this.rows || []) {
       const value = scale * row[columns["q." + joint.name]];
       if (document.activeElement !== slide) slide.value = String(value);
-      if (document.activeElement !== number) number.value = value.toFixed(scale === 1 ? 3 : 1);
+      if (document.activeElement !== number) number.value = fixed(value, scale === 1 ? 3 : 1);
     }
     byId("pose-time").textContent = seconds(this.page.time);
     if (this.asked?.drag === undefined) this.fillPlace();
   }
 
   handle() {
-    return (this.page.state.handles || []).find((one) => one.name === byId("handle").value);
+    return this.page.state.handles.find((one) => one.name === byId("handle").value);
   }
 
   fillPlace() {
@@ -96,7 +96,7 @@ export class Pose {
     const at = this.page.handles.placeOf(handle, this.page.row());
     for (const axis of Object.keys(words))
       if (document.activeElement !== byId("place-" + axis))
-        byId("place-" + axis).value = (1000 * at[axis]).toFixed(1);
+        byId("place-" + axis).value = fixed(1000 * at[axis], 1);
   }
 
   typed() {

@@ -28,8 +28,8 @@ export class Postures {
   render() {
     const { state } = this.page;
     byId("capture").hidden = !this.page.can("posture");
-    const own = new Set(state.own_postures || []);
-    byId("postures").replaceChildren(...(state.postures || []).map((name) => {
+    const own = new Set(state.own_postures);
+    byId("postures").replaceChildren(...state.postures.map((name) => {
       const words = `Put ${name} on the key at the cursor`;
       const chip = element("li", { draggable: this.page.can("edit") ? "true" : null },
         element("span", { class: "name" }, name),

@@ -59,11 +59,11 @@ export class Pushes {
   render() {
     const { state } = this.page;
     byId("new-push").hidden = !this.page.can("edit");
-    byId("pushes").replaceChildren(...(state.disturbances || []).map((one) => element("li", {},
+    byId("pushes").replaceChildren(...state.disturbances.map((one) => element("li", {},
       element("button", { type: "button", class: "line",
         onclick: () => this.page.select({ kind: "disturbance", pointer: one.pointer }, one.from) },
       `${seconds(one.from)}: ${one.type}, ${one.text}`))));
-    byId("no-pushes").hidden = Boolean(state.disturbances?.length);
+    byId("no-pushes").hidden = Boolean(state.disturbances.length);
     this.moved();
   }
 

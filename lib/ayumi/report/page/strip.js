@@ -1,10 +1,10 @@
 // The stability strip: one lane of colour over time for each margin or share of a limit.
 
-import { byId, element, seconds } from "./dom.js";
+import { byId, element, fixed, seconds } from "./dom.js";
 import { colorOf, heightOf, strain, worstIn } from "./strip_colors.js";
 
 const worded = (lane, value) => value === null || value === undefined ? "no value"
-  : value.toFixed(lane.digits ?? 1) + " " + lane.unit;
+  : fixed(value, lane.digits ?? 1) + " " + lane.unit;
 
 /// The name, and where the motion is nearest to the limit, in words.
 function summary(lane, dt) {
@@ -23,7 +23,7 @@ export class Strip {
 
   render() {
     const { state } = this.page, box = byId("strip");
-    this.lanes = (state.strip || []).map((lane) => {
+    this.lanes = state.strip.map((lane) => {
       const canvas = element("canvas", { role: "img", "aria-label": summary(lane, state.strip_dt),
         title: summary(lane, state.strip_dt) });
       const value = element("span", { class: "value" });

@@ -27,6 +27,7 @@ export class Timeline {
   }
 
   lane(name, contents, kind) {
+    this.onestop(contents);
     const plot = element("div", { class: "plot" }, ...contents);
     return element("div", { class: "lane " + kind, role: "group", "aria-label": name },
       element("div", { class: "label", title: name }, name), plot);
@@ -40,10 +41,10 @@ export class Timeline {
     const { state } = this.page;
     this.renderRuler();
     refill(byId("lane-phases"), [this.phases(state)]);
-    const tracks = (state.tracks || []).map((track) => this.track(track));
+    const tracks = state.tracks.map((track) => this.track(track));
     refill(byId("lane-tracks"), tracks);
     const rest = [];
-    if (state.disturbances?.length) rest.push(this.disturbances(state));
+    if (state.disturbances.length) rest.push(this.disturbances(state));
     rest.push(this.findings(state));
     refill(byId("lane-events"), rest);
   }
@@ -57,8 +58,9 @@ export class Timeline {
 
   place(from, to) {
     const { axis } = this.page, begin = 100 * axis.shareOf(from);
-    return `left:${begin.toFixed(3)}%` + (to === undefined ? ""
-      : `;width:${Math.max(0, 100 * axis.shareOf(to) - begin).toFixed(3)}%`);
+    if (to === undefined) return `left:${begin.toFixed(3)}%`;
+    const left = Math.max(0, begin), right = Math.min(100, 100 * axis.shareOf(to));
+    return `left:${left.toFixed(3)}%;width:${Math.max(0, right - left).toFixed(3)}%`;
   }
 
   /// Pixels that a duration takes.
@@ -83,8 +85,6 @@ export class Timeline {
         "aria-pressed": String(this.page.isSelected(thing)),
         onclick: () => this.page.select(thing, phase.from) },
       this.wide(phase.until - phase.from) > 7.5 * words.length ? element("span", {}, words) : null));
-    });
-    state.phases.forEach((phase, i) => {
       if (!this.page.can("edit") || !canDrag(phase.until_value) || !this.visible(phase.until, phase.until)) return;
       const grip = element("button", { type: "button", class: "grip", style: this.place(phase.until),
         "data-id": phase.until_pointer, title: `End of phase ${i + 1}: drag, or Ctrl and arrow keys`,
@@ -119,21 +119,27 @@ export class Timeline {
           event.preventDefault();
           this.page.edit(removeKey(this.page.state, key));
         });
-      this.between(mark);
       parts.push(mark);
     }
     return this.lane(name, parts, "track");
   }
 
-  /// The arrow keys go from key to key of a lane; only one of them is a stop of the Tab key.
-  between(mark) {
-    mark.addEventListener("keydown", (event) => {
-      if (event.ctrlKey || !["ArrowLeft", "ArrowRight"].includes(event.key)) return;
-      event.preventDefault();
-      const next = event.key === "ArrowRight" ? mark.nextElementSibling : mark.previousElementSibling;
-      next?.focus();
-      next?.click();
-    });
+  /// The Tab key stops at one thing of a lane, the arrow keys go from one to the next.
+  onestop(parts) {
+    const first = parts.find((part) => part.getAttribute("aria-pressed") === "true") || parts[0];
+    for (const part of parts) {
+      part.tabIndex = part === first ? 0 : -1;
+      part.addEventListener("keydown", (event) => {
+        if (event.ctrlKey || !["ArrowLeft", "ArrowRight"].includes(event.key)) return;
+        event.preventDefault();
+        const next = event.key === "ArrowRight" ? part.nextElementSibling : part.previousElementSibling;
+        if (!next) return;
+        part.tabIndex = -1;
+        next.tabIndex = 0;
+        next.focus();
+        if (next.classList.contains("key")) next.click();
+      });
+    }
   }
 
   /// A posture that is dropped on a key becomes the posture of its keyframe.
@@ -162,6 +168,12 @@ export class Timeline {
         "aria-label": `Disturbance ${one.type}, ${one.text}, at ${seconds(one.from)}`,
         "aria-pressed": String(this.page.isSelected(thing)),
         onclick: () => this.page.select(thing, one.from) }, element("span", {}, one.text));
+      if (this.page.can("edit"))
+        mark.addEventListener("keydown", (event) => {
+          if (event.key !== "Delete") return;
+          event.preventDefault();
+          this.page.edit([{ kind: "remove", pointer: one.pointer }]);
+        });
       if (this.page.can("edit") && one.at_pointer && canDrag(one.at_value))
         this.movable(mark, { time: one.from, room: [0, 3600], words: "disturbance",
           edits: (t) => [{ kind: "set", pointer: one.at_pointer, value: roundedTime(t) }] });
@@ -172,7 +184,7 @@ export class Timeline {
 
   findings(state) {
     const parts = [];
-    (state.findings || []).forEach((finding, i) => {
+    state.findings.forEach((finding, i) => {
       if (!this.visible(finding.begin, finding.end)) return;
       parts.push(element("button", { type: "button", class: "finding " + finding.severity,
         style: this.place(finding.begin, finding.end), "data-id": "finding " + i,
@@ -237,7 +249,12 @@ export class Timeline {
         mark.removeEventListener("pointerup", up);
         mark.removeEventListener("pointercancel", cancel);
         removeEventListener("keydown", escape, true);
-        if (begun) end(write);
+        if (!begun) return;
+        // The click that ends a drag selects nothing.
+        const swallow = (event) => event.stopImmediatePropagation();
+        mark.addEventListener("click", swallow, { capture: true, once: true });
+        setTimeout(() => mark.removeEventListener("click", swallow, true));
+        end(write);
       };
       const up = () => stop(true), cancel = () => stop(false);
       const escape = (event) => { if (event.key === "Escape") stop(false); };
@@ -266,6 +283,6 @@ export class Timeline {
   times() {
     const { state, time } = this.page;
     return [time, ...state.phases.map((phase) => phase.until),
-      ...(state.keyframes || []).map((frame) => frame.time)];
+      ...state.keyframes.map((frame) => frame.time)];
   }
 }
