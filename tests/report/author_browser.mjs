@@ -281,6 +281,45 @@ async function works(tab) {
   expect(/cancelled/.test(await tab.run("return document.getElementById('said').textContent")), "and the page says so");
 }
 
+/// A repair is shown as a ghost and can be taken; a run is shown in the pattern's place.
+async function showsResults(tab) {
+  const name = data().name;
+  await tab.click("#job-repair");
+  expect(await until(() => tab.run("const p = window.ayumiAuthor.page; return p.state.result?.kind === 'repair' && p.ghostName() === 'repair' && p.viewer.actors[1].root.visible")),
+    "the repaired motion is the ghost");
+  await tab.shoot("repair.png");
+  await tab.after(() => tab.run("[...document.querySelectorAll('#result button')].find((b) => /Take/.test(b.textContent)).click();"));
+  expect(data().name === "repaired", "it is taken: " + data().name);
+  await tab.after(() => tab.click("#undo"));
+  expect(data().name === name, "and given back");
+  const whole = await tab.run("return window.ayumiAuthor.page.viewer.last");
+  await tab.click("#job-simulate");
+  expect(await until(() => tab.run("return document.getElementById('which').value === 'closed_loop' && window.ayumiAuthor.page.viewer.last < arguments[0] - 1", whole)),
+    "the run is shown: " + await tab.run("return document.getElementById('which').value"));
+  await tab.after(() => tab.run("window.ayumiAuthor.page.edit([{ kind: 'set', pointer: '/keyframes/0/zmp', value: 'left' }]);"));
+  const back = await tab.run("return [document.getElementById('which').value, window.ayumiAuthor.page.viewer.last]");
+  expect(back[0] === "plan" && Math.abs(back[1] - whole) < 1e-6, "an edit shows the pattern again: " + back);
+  await tab.after(() => tab.click("#undo"));
+}
+
+/// What is being typed or tried is not lost when the file changes meanwhile, and stays on its key.
+async function keepsWhatIsBeingTyped(tab) {
+  const before = data();
+  await tab.click(keySelector(4));
+  await tab.run(`const e = document.querySelector('#selected [data-id="/keyframes/4/t"]'); e.focus(); e.value = "1.7";`);
+  const added = structuredClone(before);
+  added.keyframes.splice(1, 0, { t: 0.3, fz: 63 });
+  await tab.after(() => writeFileSync(pattern, JSON.stringify(added, null, 1)));
+  const after = await tab.run(`return [window.ayumiAuthor.page.selection.pointer, document.querySelector("#selected h3").textContent];`);
+  expect(after[0] === "/keyframes/5/zmp" && after[1].includes(String(before.keyframes[4].t)), "the selection stays on its key: " + after);
+  await tab.after(() => writeFileSync(pattern, JSON.stringify(before, null, 1)));
+  await tab.run(`const e = document.querySelector('#selected [data-id="/keyframes/4/t"]'); e.focus(); e.value = "1.7";`);
+  await tab.after(() => writeFileSync(pattern, JSON.stringify({ ...before, name: "other" }, null, 1)));
+  const typed = await tab.run("return [document.activeElement.dataset.id, document.activeElement.value]");
+  expect(typed[0] === "/keyframes/4/t" && typed[1] === "1.7", "what is typed stays: " + typed);
+  await tab.after(() => writeFileSync(pattern, JSON.stringify(before, null, 1)));
+}
+
 /// A server that can do little: nothing is shown that does not work, and nothing breaks.
 async function showsNoDeadControls(tab) {
   const seen = await tab.run(`
@@ -342,7 +381,7 @@ try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
   for (const trial of [looks, namesEverything, editsByKeyboard, dragsInTime, showsFindings, keepsBothVersions,
-    poses, postures, pushesTheRobot, works, showsNoDeadControls]) {
+    poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]) {
     try {
       await trial(tab);
     } catch (error) {

@@ -23,7 +23,8 @@ function program(args) {
 
 // ---- the robot: its picture from a report, its joints from its URDF
 
-program(["new", "stand", "--duration", "0.1", "-o", "fixture_stand.json", "--force"]);
+const robotName = JSON.parse(readFileSync(join(folder, pattern), "utf8").replace(/^\s*\/\/.*$/gm, "")).robot;
+program(["new", "stand", "--robot", robotName, "--duration", "0.1", "-o", "fixture_stand.json", "--force"]);
 program(["run", "fixture_stand.json", "-o", "fixture_run", "--force"]);
 const report = readFileSync(join(folder, "fixture_run/report.html"), "utf8");
 const embedded = (id) => new RegExp(`id="${id}"[^>]*>(.*?)</script>`, "s").exec(report)[1].trim();
@@ -49,16 +50,20 @@ const bodies = nodes.filter((n) => n.extras?.body !== undefined).sort((a, b) => 
     position: j.position, quaternion: quaternion(j.rpy) }
     : { joint: -1, ratio: 1, offset: 0, axis: [0, 0, 1], prismatic: false, position: [0, 0, 0], quaternion: [0, 0, 0, 1] };
 });
-const body = (name) => nodes.find((n) => n.name === name).extras.body;
+const body = (name) => nodes.find((n) => n.name === name)?.extras.body ?? -1;
+const handles = [{ name: "left_foot", label: "left foot", body: body("l_foot"), point: [0, 0, -0.037] },
+  { name: "right_foot", label: "right foot", body: body("r_foot"), point: [0, 0, -0.037] },
+  { name: "left_hand", label: "left hand", body: body("l_forearm"), point: [0.02, 0, -0.1] },
+  { name: "right_hand", label: "right hand", body: body("r_forearm"), point: [0.02, 0, -0.1] },
+  { name: "trunk", label: "trunk", body: 0, point: [0, 0, 0.12] }, { name: "cog", label: "COG" }];
 
 // ---- the motion
 
 const columns = [...config.columns, "base.x", "base.y", "base.z", "base.qx", "base.qy", "base.qz", "base.qw",
   ...names.map((name) => "q." + name)];
 let version = 0, text, hash, data, error = null, findings = [], table = null, ghost = null, consistent = false, stale = false;
-let repaired = null;
+let repaired = null, run = null, result = null;
 const undo = [], redo = [], listeners = new Set();
-let result = null;
 
 function sampled(file) {
   program(["export", file, "--format", "csv", "--ramp", "0", "--hold", "0", "--servo", "ideal", "--rate", String(rate),
@@ -111,7 +116,8 @@ function read() {
         side: null, joint: names.includes(f.where) ? f.where : null, pointer: null }));
       consistent = said.verdict === "consistent";
       table = sampled(pattern);
-      repaired = null;
+      repaired = run = null;
+      result = null;
     } else error = { message: said.error || "the pattern cannot be sampled", line: 1, pointer: "/phases/7" };
   }
   stale = Boolean(error);
@@ -165,18 +171,16 @@ function state() {
     return one;
   });
   const sizes = { impulse: "N s", force: "N", torque: "N m" };
-  return { version, file: pattern, text, hash, error, stale, robot: "hoap1", duration, dt: 0.001, features,
+  return { version, file: pattern, text, hash, error, stale, robot: robotName, duration, dt: 0.001, features,
     angle_unit: data.units?.angle || "rad", consistent, findings, phases, tracks: tracks(),
     keyframes: data.keyframes.map((f, i) => ({ time: f.t, time_value: f.t, pointer: `/keyframes/${i}` })),
     disturbances: (data.scenario || []).map((d, i) => ({ type: d.type, from: d.at, until: d.at + (d.duration || 0), pointer: `/scenario/${i}`,
       at_pointer: `/scenario/${i}/at`, at_value: d.at, duration: d.duration, size: d[d.type], unit: sizes[d.type], direction: d.direction,
       link: d.on || "cog", text: `${d[d.type]} ${sizes[d.type]} on ${d.on || "cog"}`, value: d })),
     joints: joints.map(({ name, low, high }) => ({ name, low, high, prismatic: false })),
-    handles: [{ name: "left_foot", label: "left foot", body: body("l_foot"), point: [0, 0, -0.037] }, { name: "right_foot", label: "right foot", body: body("r_foot"), point: [0, 0, -0.037] },
-      { name: "left_hand", label: "left hand", body: body("l_forearm"), point: [0.1, 0, 0] }, { name: "right_hand", label: "right hand", body: body("r_forearm"), point: [0.1, 0, 0] },
-      { name: "trunk", label: "trunk", body: 0, point: [0, 0, 0.12] }, { name: "cog", label: "COG" }],
+    handles: handles.filter((one) => one.body !== -1),
     postures: ["home", "zero", ...Object.keys(data.postures || {})], own_postures: Object.keys(data.postures || {}),
-    motions: ["plan", ...ghost ? ["ghost"] : [], ...repaired ? ["repair"] : []],
+    motions: ["plan", ...ghost ? ["ghost"] : [], ...repaired ? ["repair"] : [], ...run ? ["closed_loop"] : []],
     replay: { ...config, columns, rate, bodies, joints: names, pushes: [], start: 0 },
     strip: strip(), strip_dt: 1 / rate, result, undo: undo.length, redo: redo.length };
 }
@@ -241,7 +245,8 @@ function startJob(kind, options) {
       clearInterval(timer);
       running.delete(id);
       if (kind === "repair") repaired = table.map((v, i) => i % columns.length === columns.indexOf("base.y") ? v + 0.02 : v);
-      result = { kind, verdict: kind === "simulate" ? "The robot stands." : "Done.", good: true, lines: ["law: " + (options.law || "none")], marks: [{ time: 3, text: "push" }], files: [] };
+      if (kind === "simulate") run = table.subarray(0, Math.floor(table.length / columns.length / 2) * columns.length);
+      result = { kind, text: kind === "repair" ? text.replace(/"name": "[^"]*"/, '"name": "repaired"') : undefined, verdict: kind === "simulate" ? "The robot stands." : "Done.", good: true, lines: ["law: " + (options.law || "none")], marks: [{ time: 3, text: "push" }], files: [] };
       ++version;
       tell("job", { id, kind, progress: 1, text: "", done: true, error: null });
       tell("state", { version });
@@ -261,7 +266,7 @@ const server = createServer(async (request, response) => {
     if (path === "model.glb") return bytes(model);
     if (path === "scenery") return bytes(Buffer.from(embedded("replay-scenery"), "base64"));
     if (path === "series") {
-      const which = { plan: table, ghost, repair: repaired }[query.get("which")];
+      const which = { plan: table, ghost, repair: repaired, closed_loop: run }[query.get("which")];
       return which ? bytes(which) : json(404, {});
     }
     if (path === "events") {

@@ -84,6 +84,7 @@ class Page {
 
   async take(latest) {
     const state = { ...nothing, ...latest };
+    if (this.state) this.follow(this.state, state);
     this.state = state;
     document.title = `${state.file} – Ayumi author`;
     byId("file").textContent = state.file;
@@ -100,9 +101,21 @@ class Page {
       this.previewed = null;
       if (this.finding && !state.findings.some((one) => one.message === this.finding.message)) this.leaveFinding();
       this.render();
+      if (this.pose.asked) this.pose.ask({ ...this.pose.asked });
     } else this.renderText();
     document.documentElement.dataset.author = state.replay ? "ready" : "error";
     document.documentElement.dataset.version = String(state.version);
+  }
+
+  /// The selected key stays selected where keys before it have come or gone.
+  follow(before, now) {
+    if (this.selection?.kind !== "key") return;
+    for (const track of before.tracks) {
+      const key = track.keys.find((one) => one.pointer === this.selection.pointer);
+      const same = key && now.tracks.find((one) => one.name === track.name)?.keys
+        .find((one) => Math.abs(one.time - key.time) < 5e-4);
+      if (same) this.selection = { kind: "key", pointer: same.pointer };
+    }
   }
 
   whole() {
@@ -177,8 +190,11 @@ class Page {
 
   show(t) {
     if (!this.viewer) return;
-    this.pose.forget();
-    this.previewed = null;
+    if (this.pose.asked && Math.abs(t - this.time) > 1e-6) {
+      this.say(`The change of the posture at ${seconds(this.time)} was not written.`);
+      this.pose.forget();
+      this.previewed = null;
+    }
     this.viewer.show(t);
     if (this.time < this.axis.from || this.time > this.axis.to) {
       this.axis.reveal(this.time);
@@ -208,6 +224,7 @@ class Page {
     const mm = (name) => fixed(1000 * row[this.columns[name]], 1);
     byId("readout").textContent = `t ${time.toFixed(3)} s · ${support} · COG ${["x", "y", "z"].map((a) => mm("cog." + a)).join(", ")} mm · ` +
       `ZMP ${["x", "y"].map((a) => mm("zmp." + a)).join(", ")} mm · f_z ${row[this.columns.fz].toFixed(1)} N`;
+    if (this.viewer.playing) this.previewed = null;
     this.moveCursor();
     this.strip.moved(time);
     this.curves.moved(time);

@@ -16,7 +16,9 @@ export class Handles {
     stage.addEventListener("pointerdown", (event) => this.down(event), true);
     stage.addEventListener("pointermove", (event) => {
       if (event.buttons) return;
-      stage.style.cursor = this.page.drawing ? "crosshair" : this.near(event) ? "grab" : "";
+      const mark = this.page.drawing ? null : this.near(event);
+      stage.style.cursor = this.page.drawing ? "crosshair" : mark ? "grab" : "";
+      stage.title = mark ? `${mark.handle.label}: drag it, with Shift only up and down` : "";
     });
   }
 

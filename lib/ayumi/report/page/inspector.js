@@ -45,6 +45,7 @@ export class Inspector {
       : element("input", { type: "text", inputmode: "decimal", spellcheck: "false", autocomplete: "off" });
     input.value = String(value);
     input.dataset.id = pointer;
+    input.dataset.written = String(value);
     input.disabled = !this.page.can("edit");
     input.addEventListener("change", () => {
       const next = typeof value === "boolean" ? input.value === "true" : written(input.value);
@@ -67,14 +68,22 @@ export class Inspector {
 
   render() {
     const thing = this.selected(), box = byId("selected"), { selection, state } = this.page;
-    const active = document.activeElement?.dataset?.id;
+    const active = document.activeElement, typed = box.contains(active) && active.matches("input") ? active.value : null;
     box.replaceChildren(...!thing ? [element("p", { class: "soft" },
       "Nothing is selected. Choose a key, a phase or a disturbance on the timeline.")]
       : this[selection.kind](thing, state));
-    if (active) [...box.querySelectorAll("[data-id]")].find((one) => one.dataset.id === active)?.focus();
+    this.restore(box, active?.dataset?.id, typed !== active?.dataset?.written ? typed : null);
     byId("add-key").hidden = !this.page.can("edit");
     this.offerTracks(state);
     this.moved();
+  }
+
+  /// What was being typed when a new version came is still there.
+  restore(box, id, typed) {
+    const same = id && [...box.querySelectorAll("[data-id]")].find((one) => one.dataset.id === id);
+    if (!same) return;
+    same.focus();
+    if (typed !== null) same.value = typed;
   }
 
   remove(edits, words) {
