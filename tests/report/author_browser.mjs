@@ -3,7 +3,7 @@
 // as a person would. Prints one line per broken expectation, then "ok" or "failed".
 
 import { spawn } from "node:child_process";
-import { readFileSync, writeFileSync } from "node:fs";
+import { readFileSync, renameSync, writeFileSync } from "node:fs";
 import { startDriver, until, wait } from "./driver.mjs";
 
 const cut = process.argv.indexOf("--");
@@ -26,6 +26,10 @@ const address = await new Promise((resolve, reject) => {
 });
 
 const text = () => readFileSync(pattern, "utf8");
+const save = (words) => {
+  writeFileSync(pattern + ".saved", words);
+  renameSync(pattern + ".saved", pattern);
+};
 const data = () => JSON.parse(text());
 
 /// A page with what the trials need.
@@ -129,6 +133,22 @@ async function editsByKeyboard(tab) {
   await tab.after(() => tab.click("#undo"));
 }
 
+async function addsPhasesAndKeys(tab) {
+  const before = data();
+  await tab.click('[data-id="/phases/0"]');
+  await tab.run("window.ayumiAuthor.page.show(0.4);");
+  const press = (words) => tab.run("[...document.querySelectorAll('#selected button')].find((b) => b.textContent === arguments[0]).click();", words);
+  await tab.after(() => press("Cut at the cursor"));
+  expect(data().phases.length === before.phases.length + 1 && data().phases[0].until === 0.4 &&
+    data().phases[1].until === before.phases[0].until, "a phase is cut: " + JSON.stringify(data().phases.slice(0, 2)));
+  await tab.after(() => tab.click("#undo"));
+  await tab.run("document.getElementById('to-edit').click(); document.getElementById('key-track').value = 'torso';");
+  await tab.after(() => tab.click("#add-key button"));
+  expect(data().keyframes[1].t === 0.4 && data().keyframes[1].torso, "a key of the trunk: " + JSON.stringify(data().keyframes[1]));
+  await tab.after(() => tab.click("#undo"));
+  expect(JSON.stringify(data()) === JSON.stringify(before), "all is as before");
+}
+
 async function dragsInTime(tab) {
   const before = data(), along = await tab.run("return document.getElementById('keys-along').checked");
   expect(along, "keys follow the ends of phases");
@@ -151,7 +171,7 @@ async function showsFindings(tab) {
   const good = text();
   const wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 3.7);
   wrong.keyframes[i].zmp = [0.12, 0.085];
-  await tab.after(() => writeFileSync(pattern, JSON.stringify(wrong, null, 1)));
+  await tab.after(() => save(JSON.stringify(wrong, null, 1)));
   const seen = await tab.run(`
     const findings = window.ayumiAuthor.page.state.findings;
     const joint = findings.findIndex((one) => one.joint);
@@ -175,7 +195,7 @@ async function showsFindings(tab) {
   await tab.key("body", "Escape");
   expect(await tab.run("return window.ayumiAuthor.wrongBodies().length") === 0, "Escape ends it");
   // What cannot be read: the line is named, the old motion is grey.
-  await tab.after(() => writeFileSync(pattern, good.replace('"phases"', "phases")));
+  await tab.after(() => save(good.replace('"phases"', "phases")));
   const line = good.slice(0, good.indexOf('"phases"')).split("\n").length;
   const told = await tab.run(`document.getElementById("error-go").click();
     const page = window.ayumiAuthor.page;
@@ -186,7 +206,7 @@ async function showsFindings(tab) {
   expect(/phases/.test(told.shown), "the line is shown: " + told.shown);
   expect(told.stale && told.grey, "the old motion is grey");
   await tab.shoot("error.png");
-  await tab.after(() => writeFileSync(pattern, good));
+  await tab.after(() => save(good));
   expect(await tab.run("return document.getElementById('error').hidden"), "the error is gone");
 }
 
@@ -195,7 +215,7 @@ async function keepsBothVersions(tab) {
   // The page is kept from hearing of the change, as when both happen at once.
   await tab.run("window.ayumiAuthor.page.load = () => Promise.resolve();");
   const changed = { ...before, name: "changed elsewhere" };
-  writeFileSync(pattern, JSON.stringify(changed, null, 1));
+  save(JSON.stringify(changed, null, 1));
   await wait(300);
   const edit = (value) => tab.run(`window.ayumiAuthor.page.edit([{ kind: "set", pointer: "/keyframes/0/zmp", value: arguments[0] }]);`, value);
   await edit("left");
@@ -208,14 +228,14 @@ async function keepsBothVersions(tab) {
   await until(() => tab.run("return window.ayumiAuthor.page.state.text.includes('changed elsewhere')"));
   expect(data().name === "changed elsewhere" && data().keyframes[0].zmp !== "left", "the file is kept");
   await tab.run("window.ayumiAuthor.page.load = () => Promise.resolve();");
-  writeFileSync(pattern, JSON.stringify({ ...changed, name: "changed again" }, null, 1));
+  save(JSON.stringify({ ...changed, name: "changed again" }, null, 1));
   await wait(300);
   await edit("left");
   await until(() => tab.run("return document.getElementById('conflict').open"));
   await tab.run("delete window.ayumiAuthor.page.load; document.querySelector('#conflict button[value=mine]').click();");
   await until(() => data().keyframes[0].zmp === "left");
   expect(data().keyframes[0].zmp === "left", "my version is written");
-  writeFileSync(pattern, JSON.stringify(before, null, 1));
+  save(JSON.stringify(before, null, 1));
   await until(() => tab.run("return window.ayumiAuthor.page.state.text.includes(arguments[0])", before.name));
 }
 
@@ -309,15 +329,15 @@ async function keepsWhatIsBeingTyped(tab) {
   await tab.run(`const e = document.querySelector('#selected [data-id="/keyframes/4/t"]'); e.focus(); e.value = "1.7";`);
   const added = structuredClone(before);
   added.keyframes.splice(1, 0, { t: 0.3, fz: 63 });
-  await tab.after(() => writeFileSync(pattern, JSON.stringify(added, null, 1)));
+  await tab.after(() => save(JSON.stringify(added, null, 1)));
   const after = await tab.run(`return [window.ayumiAuthor.page.selection.pointer, document.querySelector("#selected h3").textContent];`);
   expect(after[0] === "/keyframes/5/zmp" && after[1].includes(String(before.keyframes[4].t)), "the selection stays on its key: " + after);
-  await tab.after(() => writeFileSync(pattern, JSON.stringify(before, null, 1)));
+  await tab.after(() => save(JSON.stringify(before, null, 1)));
   await tab.run(`const e = document.querySelector('#selected [data-id="/keyframes/4/t"]'); e.focus(); e.value = "1.7";`);
-  await tab.after(() => writeFileSync(pattern, JSON.stringify({ ...before, name: "other" }, null, 1)));
+  await tab.after(() => save(JSON.stringify({ ...before, name: "other" }, null, 1)));
   const typed = await tab.run("return [document.activeElement.dataset.id, document.activeElement.value]");
   expect(typed[0] === "/keyframes/4/t" && typed[1] === "1.7", "what is typed stays: " + typed);
-  await tab.after(() => writeFileSync(pattern, JSON.stringify(before, null, 1)));
+  await tab.after(() => save(JSON.stringify(before, null, 1)));
 }
 
 /// A server that can do little: nothing is shown that does not work, and nothing breaks.
@@ -353,12 +373,12 @@ async function followsTheFile(driver_, tab) {
   await tab.after(() => tab.click("#undo"));
   const good = data();
   for (let i = 0; i < 100; ++i) {
-    writeFileSync(pattern, JSON.stringify({ ...good, name: "save " + i }, null, 1));
+    save(JSON.stringify({ ...good, name: "save " + i }, null, 1));
     await wait(5);
   }
   for (const one of [tab, other])
     expect(await until(() => one.run("return window.ayumiAuthor.page.state.text.includes('save 99')"), 60), "the last of a hundred saves is shown");
-  writeFileSync(pattern, JSON.stringify(good, null, 1));
+  save(JSON.stringify(good, null, 1));
   await other.tool("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
   await other.shoot("dark.png");
   const ground = await other.run("return getComputedStyle(document.body).backgroundColor");
@@ -380,7 +400,7 @@ let driving;
 try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
-  for (const trial of [looks, namesEverything, editsByKeyboard, dragsInTime, showsFindings, keepsBothVersions,
+  for (const trial of [looks, namesEverything, editsByKeyboard, addsPhasesAndKeys, dragsInTime, showsFindings, keepsBothVersions,
     poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]) {
     try {
       await trial(tab);

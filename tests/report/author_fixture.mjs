@@ -5,7 +5,7 @@
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { createServer } from "node:http";
-import { readFileSync, writeFileSync, watch } from "node:fs";
+import { readFileSync, renameSync, writeFileSync, watch } from "node:fs";
 import { join } from "node:path";
 
 const [ayumi, pattern, folder, page, urdfFile] = process.argv.slice(2);
@@ -204,7 +204,8 @@ function edited(edits) {
 
 function save(now, from, to) {
   if (from) from.push(text);
-  writeFileSync(join(folder, pattern), now);
+  writeFileSync(join(folder, pattern + ".new"), now);
+  renameSync(join(folder, pattern + ".new"), join(folder, pattern));
   read();
   return [200, { version }];
 }

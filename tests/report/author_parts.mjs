@@ -96,6 +96,26 @@ test("a removed key takes its keyframe only where nothing else is in it", () => 
   assert.deepEqual(edits.removeKey(state, two), [{ kind: "remove", pointer: "/keyframes/2/zmp" }]);
 });
 
+test("a phase is cut only within it, and never in its swing", () => {
+  const phase = { from: 1, until: 2, support: "left", pointer: "/phases/4" };
+  assert.deepEqual(edits.splitPhase(phase, 1.2504),
+    [{ kind: "insert", pointer: "/phases/4", value: { until: 1.25, support: "left" } }]);
+  for (const [one, t] of [[phase, 1], [phase, 2], [{ ...phase, swing: {} }, 1.5], [{ ...phase, support: undefined }, 1.5]])
+    assert.deepEqual(edits.splitPhase(one, t), []);
+  assert.deepEqual(edits.appendPhase([phase]), [{ kind: "insert", pointer: "/phases/-", value: { until: 2.5, support: "both" } }]);
+});
+
+test("the trunk's attitude comes back from its quaternion", () => {
+  const [roll, pitch, yaw] = [0.2, -0.3, 0.4];
+  const half = (angle) => [Math.cos(angle / 2), Math.sin(angle / 2)];
+  const [[cr, sr], [cp, sp], [cy, sy]] = [roll, pitch, yaw].map(half);
+  const q = { x: sr * cp * cy - cr * sp * sy, y: cr * sp * cy + sr * cp * sy, z: cr * cp * sy - sr * sp * cy,
+    w: cr * cp * cy + sr * sp * sy };
+  const columns = { "base.qx": 0, "base.qy": 1, "base.qz": 2, "base.qw": 3 };
+  assert.deepEqual(edits.valueFromRow("torso", [q.x, q.y, q.z, q.w], columns, "rad"), { roll, pitch, yaw });
+  assert.deepEqual(edits.valueFromRow("torso", [0, 0, 0, 1], columns, "deg"), { pitch: 0 });
+});
+
 test("words that are numbers are written as numbers", () => {
   assert.deepEqual(["0.03", " 1e-2 ", "${a}*2", "left", "0x", ""].map(edits.written),
     [0.03, 0.01, "${a}*2", "left", "0x", ""]);

@@ -66,14 +66,33 @@ export function removeKey(state, key) {
   return [{ kind: "remove", pointer: key.pointer }];
 }
 
-/// What the motion has at a time, as the value of a key of that track.
+/// What the motion has at a time (the trunk's attitude as roll, pitch and yaw about z, y, x), as the value of a key of that track.
 export function valueFromRow(track, row, columns, angleUnit) {
   const metres = (name) => Number(row[columns[name]].toFixed(4));
   if (track === "zmp") return [metres("zmp.x"), metres("zmp.y")];
   if (track === "cog") return { x: metres("cog.x"), y: metres("cog.y"), height: metres("cog.z") };
   if (track === "fz") return Number(row[columns.fz].toFixed(1));
-  const angle = row[columns["q." + track]];
-  return angleUnit === "deg" ? Number((angle * 180 / Math.PI).toFixed(2)) : Number(angle.toFixed(4));
+  const inUnit = (angle) => angleUnit === "deg" ? Number((angle * 180 / Math.PI).toFixed(2))
+    : Number(angle.toFixed(4));
+  if (track !== "torso") return inUnit(row[columns["q." + track]]);
+  const [x, y, z, w] = ["x", "y", "z", "w"].map((name) => row[columns["base.q" + name]]);
+  const turns = { roll: Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
+    pitch: Math.asin(Math.max(-1, Math.min(1, 2 * (w * y - z * x)))),
+    yaw: Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) };
+  const kept = Object.entries(turns).map(([name, angle]) => [name, inUnit(angle)]).filter(([, angle]) => angle);
+  return kept.length ? Object.fromEntries(kept) : { pitch: 0 };
+}
+
+/// A phase is cut in two at a time within it; a phase with a swing stays whole.
+export function splitPhase(phase, time) {
+  if (phase.swing || !phase.support || time <= phase.from + 5e-4 || time >= phase.until - 5e-4) return [];
+  return [{ kind: "insert", pointer: phase.pointer, value: { until: roundedTime(time), support: phase.support } }];
+}
+
+/// A phase behind the last one, as long as it takes to look at.
+export function appendPhase(phases) {
+  return [{ kind: "insert", pointer: "/phases/-",
+    value: { until: roundedTime(phases.at(-1).until + 0.5), support: "both" } }];
 }
 
 export function addDisturbance({ type, at, duration, direction, size, on }) {

@@ -1,7 +1,7 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { putKey, removeKey, valueFromRow, written } from "./edits.js";
+import { appendPhase, putKey, removeKey, splitPhase, valueFromRow, written } from "./edits.js";
 import { nameOfTrack } from "./timeline.js";
 
 /// Unit of a value by the names that lead to it.
@@ -18,7 +18,15 @@ export function unitOf(path, angle) {
 }
 
 const places = ["forward", "left", "up", "yaw"];
-const wordOf = (name, list) => typeof name === "number" && list <= 4 ? places[name] : String(name);
+const words = { to: "lands", joint: "angle", zmp: "ZMP", cog: "COG", fz: "force", t: "time", x: "forward", y: "left" };
+const wholes = ["cog", "torso", "feet", "posture", "swing"];
+
+/// What a value is called, by the names that lead to it.
+export function nameOf(path) {
+  const from = wholes.includes(path[0]) && path.length > 1 ? 1 : 0;
+  return path.slice(from).map((name) => typeof name === "number" ? places[name] ?? String(name + 1)
+    : words[name] || name).join(" ");
+}
 
 export class Inspector {
   constructor(page) {
@@ -33,12 +41,9 @@ export class Inspector {
   inputs(pointer, value, path, choices = {}) {
     if (value && typeof value === "object")
       return Object.entries(value).flatMap(([name, part]) => this.inputs(`${pointer}/${name.replaceAll("~", "~0").replaceAll("/", "~1")}`,
-        part, [...path, Array.isArray(value) ? Number(name) : name], choices)).map((row) => {
-        row.dataset.list = Array.isArray(value) ? value.length : "";
-        return row;
-      });
+        part, [...path, Array.isArray(value) ? Number(name) : name], choices));
     const unit = unitOf(path, this.page.state.angle_unit), last = path.at(-1);
-    const name = [...path.slice(1, -1).filter((p) => typeof p === "string"), wordOf(last, path.length > 1 ? 4 : 9)].join(" ");
+    const name = nameOf(path);
     const options = choices[last];
     const input = options
       ? element("select", {}, ...options.map((one) => element("option", { value: one }, one)))
@@ -86,7 +91,7 @@ export class Inspector {
     if (typed !== null) same.value = typed;
   }
 
-  remove(edits, words) {
+  button(edits, words) {
     return this.page.can("edit") ? element("button", { type: "button",
       onclick: () => this.page.edit(edits()) }, words) : null;
   }
@@ -100,13 +105,13 @@ export class Inspector {
     const others = state.tracks.flatMap((track) => track.keys.filter((one) =>
       one.time_pointer === key.time_pointer && one.pointer !== key.pointer).map(() => nameOfTrack(track)));
     return [element("h3", {}, `${name} key at ${seconds(key.time)}`),
-      ...this.inputs(key.time_pointer, key.time_value, ["t"]).map((row) => { row.firstChild.textContent = "time"; return row; }),
+      ...this.inputs(key.time_pointer, key.time_value, ["t"]),
       ...this.inputs(key.pointer, key.value, path, choices),
       others.length ? element("p", { class: "soft" }, `The same keyframe has keys of: ${others.join(", ")}. They move together.`) : null,
       key.track.name === "zmp" && named && this.page.can("edit") ? element("button", { type: "button",
         title: "Write the point [x, y] in place of the name", onclick: () => this.page.edit([{ kind: "set", pointer: key.pointer,
           value: valueFromRow("zmp", this.page.row(), this.page.motion.columns, state.angle_unit) }]) }, "Use numbers") : null,
-      this.remove(() => removeKey(state, key.original), "Remove this key")].filter(Boolean);
+      this.button(() => removeKey(state, key.original), "Remove this key")].filter(Boolean);
   }
 
   phase(phase, state) {
@@ -116,18 +121,20 @@ export class Inspector {
       ...phase.support ? this.inputs(phase.pointer + "/support", phase.support, ["support"],
         { support: ["both", "left", "right", "none"] }) : [],
       ...phase.swing ? this.inputs(phase.pointer + "/swing", phase.swing, ["swing"], { foot: ["left", "right"] }) : [],
-      state.phases.length > 1 ? this.remove(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null].filter(Boolean);
+      this.splitter = this.button(() => splitPhase(phase, this.page.time), "Cut at the cursor"),
+      index === state.phases.length - 1 ? this.button(() => appendPhase(state.phases), "Add a phase behind it") : null,
+      state.phases.length > 1 ? this.button(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null].filter(Boolean);
   }
 
   disturbance(one) {
     return [element("h3", {}, `Disturbance at ${seconds(one.from)}`),
       ...Object.entries(one.value || {}).flatMap(([name, value]) => this.inputs(`${one.pointer}/${name}`, value, [name])),
-      this.remove(() => [{ kind: "remove", pointer: one.pointer }], "Remove this disturbance")].filter(Boolean);
+      this.button(() => [{ kind: "remove", pointer: one.pointer }], "Remove this disturbance")].filter(Boolean);
   }
 
   offerTracks(state) {
     const select = byId("key-track"), chosen = select.value;
-    const known = [["zmp", "ZMP"], ["cog", "COG"], ["fz", "vertical force"]];
+    const known = [["zmp", "ZMP"], ["cog", "COG"], ["fz", "vertical force"], ["torso", "trunk"]];
     select.replaceChildren(...known.map(([value, label]) => element("option", { value }, label)),
       element("optgroup", { label: "Joints" }, ...state.joints.map((one) => element("option", { value: one.name }, one.name))));
     if (chosen) select.value = chosen;
@@ -136,7 +143,7 @@ export class Inspector {
   addKey() {
     const { state } = this.page, track = byId("key-track").value;
     const value = valueFromRow(track, this.page.row(), this.page.motion.columns, state.angle_unit);
-    const whole = ["zmp", "cog", "fz"].includes(track);
+    const whole = ["zmp", "cog", "fz", "torso"].includes(track);
     const there = state.keyframes.find((frame) => Math.abs(frame.time - this.page.time) < 5e-4);
     this.page.edit(whole ? putKey(state.keyframes, this.page.time, track, value)
       : there ? [{ kind: "set", pointer: `${there.pointer}/joints/${track}`, value }]
@@ -145,5 +152,7 @@ export class Inspector {
 
   moved() {
     byId("key-time").textContent = seconds(this.page.time);
+    const thing = this.page.selection?.kind === "phase" ? this.selected() : null;
+    if (thing && this.splitter) this.splitter.hidden = !splitPhase(thing, this.page.time).length;
   }
 }
