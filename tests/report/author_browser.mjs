@@ -91,7 +91,7 @@ async function looks(tab) {
   const wanted = later.plot[0] + later.plot[1] * later.time / later.end;
   expect(Math.abs(later.cursor - wanted) < 2, `the cursor is at ${later.cursor}, not ${wanted}`);
   const colors = await tab.run(`
-    window.ayumiAuthor.page.viewer.draw();
+    window.ayumiAuthor.page.viewer.paint();
     const small = document.createElement("canvas");
     small.width = 64; small.height = 36;
     const flat = small.getContext("2d");

@@ -589,7 +589,7 @@ window.ayumiAuthor = {
   },
   pixelOf: (name) => {
     const { viewer, handles } = page;
-    viewer.actors[0].root.updateMatrixWorld(true);
+    viewer.paint();
     const mark = handles.marks.find((one) => one.handle.name === name);
     const at = mark.ball.position.clone().project(viewer.camera);
     const box = viewer.renderer.domElement.getBoundingClientRect();

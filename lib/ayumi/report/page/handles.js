@@ -24,6 +24,9 @@ export class Handles {
 
   /// The points of this robot.
   take(handles) {
+    const same = JSON.stringify(handles);
+    if (same === this.taken) return;
+    this.taken = same;
     const { viewer } = this.page, size = viewer.config.height;
     for (const mark of this.marks) viewer.scene.remove(mark.ball);
     this.marks = handles.map((handle) => {

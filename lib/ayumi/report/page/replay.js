@@ -101,7 +101,10 @@ function start(gltf) {
   document.documentElement.dataset.replay = "ready";
   window.ayumiReplay = {
     get time() { return replay.time; },
-    show: (t) => replay.show(t),
+    show: (t) => {
+      replay.show(t);
+      replay.paint();
+    },
     row: () => Object.fromEntries(config.columns.map((name, i) => [name,
       rowAt(series, replay.time)[i]])),
     floor: () => ({ height: replay.floor.position.z, turn: replay.floor.quaternion.toArray(),

@@ -16,13 +16,13 @@ export class Server {
   }
 
   async state() {
-    const answer = await fetch("state");
+    const answer = await fetch("state", { cache: "no-store" });
     if (!answer.ok) throw new Error(`the server answers ${answer.status}`);
     return answer.json();
   }
 
   async bytes(path) {
-    const answer = await fetch(path);
+    const answer = await fetch(path, { cache: "no-store" });
     return answer.ok ? answer.arrayBuffer() : null;
   }
 

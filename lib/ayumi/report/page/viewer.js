@@ -109,6 +109,10 @@ export class Viewer {
   replace(motion) {
     this.take(motion);
     this.scene.remove(this.floor);
+    this.floor.traverse((part) => {
+      part.geometry?.dispose();
+      part.material?.dispose();
+    });
     this.scene.add(this.ground());
     this.paintGround();
     this.show(this.time);
@@ -391,7 +395,14 @@ export class Viewer {
     this.show(this.time);
   }
 
+  /// One picture for all that changes until the browser shows the next one.
   draw() {
+    this.frame ??= requestAnimationFrame(() => this.paint());
+  }
+
+  paint() {
+    cancelAnimationFrame(this.frame);
+    this.frame = null;
     this.renderer.render(this.scene, this.camera);
   }
 
