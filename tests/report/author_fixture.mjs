@@ -1,6 +1,7 @@
 // node author_fixture.mjs AYUMI PATTERN FOLDER PAGE.html ROBOT.urdf: a server of the live page's contract, for
-// trials of the page alone. What it serves is made by the program AYUMI: its check, its table, its
-// model. It knows pattern files without comments, and only edits them whole.
+// trials of the page alone. Findings, motion and model are made by the program AYUMI. The lanes of the
+// strip, the results of jobs and the inverse kinematics only have the form of the real ones. It writes
+// a pattern anew as a whole, without its comments.
 
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
