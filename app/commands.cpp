@@ -1,6 +1,10 @@
 #include "commands.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -218,8 +222,27 @@ RobotSearch robot_search(const Context& context) {
   return search;
 }
 
-int run(int argc, char** argv) {
-  watch_for_stop();
+namespace {
+
+// A file opened later would otherwise take the number of a closed standard stream, and what the
+// program prints would go into that file. Writing to a closed standard output still fails.
+void fill_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+      static_cast<void>(::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY));
+}
+
+// A result that nobody receives is no success.
+int exit_code_after_printing(int exit_code) {
+  errno = 0;
+  const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+  if (!failed || exit_code > 1) return exit_code;
+  complain("standard output cannot be written" +
+           (errno ? std::string(" (") + std::strerror(errno) + ")" : std::string()));
+  return exit_code_of(ErrorCode::bad_file);
+}
+
+int parse_and_run(int argc, char** argv) {
   Context context;
   context.command_line = recorded_command_line(argc, argv);
   CLI::App app("", "ayumi");
@@ -233,6 +256,14 @@ int run(int argc, char** argv) {
   }
   app.require_subcommand(1);
   return parse_and_run(app, context, argc, argv);
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  fill_closed_streams();
+  watch_for_stop();
+  return exit_code_after_printing(parse_and_run(argc, argv));
 }
 
 }  // namespace ayumi::app

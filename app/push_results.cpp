@@ -124,7 +124,11 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
     // The order of keys says nothing.
     if (nlohmann::json::parse(json.at("study").dump()) != nlohmann::json::parse(study.dump()))
       refuse("this file holds the results of a study with other settings");
-    for (const Json& entry : json.at("cases")) known.at(entry.at("index")) = case_from(entry);
+    for (const Json& entry : json.at("cases")) {
+      if (entry.at("limits").size() != study.at("controllers").size())
+        refuse("a push has another number of results than the study has controllers");
+      known.at(entry.at("index")) = case_from(entry);
+    }
   } catch (const Json::exception&) {
     refuse("this is not a file of push results");
   } catch (const std::out_of_range&) {

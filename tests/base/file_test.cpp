@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -37,6 +38,25 @@ TEST(WriteFile, WritesTheWholeFileOrLeavesTheOlderOne) {
   write_file(file, "newer");
   EXPECT_EQ(read_file(file), "newer");
   EXPECT_EQ(file_count(folder.path()), 1u);
+}
+
+TEST(ReadFile, OpensRegularFilesOnlyAndNeverWaits) {
+  const test::TemporaryFolder folder;
+  const auto error = [](const fs::path& path, size_t most = 100) {
+    return test::error_message([&] { read_file(path, most); }, ErrorCode::bad_file);
+  };
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(error(pipe), pipe.string() + ": is a device or a named pipe, a regular file is needed");
+  EXPECT_EQ(error("/dev/zero"), "/dev/zero: is a device or a named pipe, a regular file is needed");
+  EXPECT_EQ(error(folder.path()),
+            folder.path().string() + ": this is a folder, but a file is needed");
+  const fs::path file = folder.write("a.txt", "12345");
+  EXPECT_EQ(read_file(file, 5), "12345");
+  EXPECT_EQ(error(file, 4), file.string() + ": 5 bytes, more than the 4 that are read");
+  EXPECT_EQ(read_file(folder.write("empty.txt", "")), "");
+  EXPECT_FALSE(read_file("/proc/self/status").empty()) << "a file that states no size";
+  EXPECT_EQ(error("/proc/self/maps", 64).find("/proc/self/maps: "), 0u);
 }
 
 TEST(FolderLock, IsHeldByOneAtATime) {

@@ -174,5 +174,18 @@ TEST_F(Usage, JsonIsOneObjectAndNothingElse) {
   EXPECT_EQ(object.at("soles").size(), 2u);
 }
 
+TEST_F(Usage, OutputThatCannotBeWrittenIsNoSuccess) {
+  const auto shell = [&](const std::string& redirection) {
+    return run_program({"-c", "'" + program_under_test() + "' robots " + redirection},
+                       folder.path(), "/bin/sh");
+  };
+  EXPECT_EQ(shell("").exit_code, 0);
+  const Output full = shell("> /dev/full");
+  EXPECT_EQ(full.exit_code, 3);
+  EXPECT_EQ(full.err, "ayumi: standard output cannot be written (No space left on device)\n");
+  EXPECT_EQ(shell(">&-").exit_code, 3);
+  EXPECT_EQ(shell("2>&- <&-").exit_code, 0);
+}
+
 }  // namespace
 }  // namespace ayumi::test

@@ -106,6 +106,22 @@ TEST(BrokenRobot, WhatIsNoUrdf) {
   EXPECT_EQ(urdf_error("<robot name=\"r\"/>"), "r.urdf: the robot has no link; add one");
 }
 
+// Each took minutes, gigabytes or the stack.
+TEST(BrokenRobot, WhatIsFarTooLarge) {
+  std::string chain = link("l0");
+  for (int i = 1; i < 10'000; ++i) {
+    const std::string before = "l" + std::to_string(i - 1), name = "l" + std::to_string(i);
+    chain += link(name) + joint("j" + std::to_string(i), before, name, "fixed");
+  }
+  EXPECT_NE(urdf_error(urdf(chain)).find("more than 1000 links; simplify the robot"),
+            std::string::npos);
+  std::string attributes;
+  for (int i = 0; i < 50'000; ++i) attributes += " a" + std::to_string(i) + "='='";
+  EXPECT_EQ(urdf_error("<robot name=\"r\">\n<link name=\"l\"" + attributes + "/></robot>"),
+            "r.urdf:2: an element has more than 100 attributes");
+  EXPECT_EQ(urdf_error(urdf("<!-- " + std::string(200, '=') + " -->" + kBody)), "no error");
+}
+
 TEST(BrokenRobot, WrongMassesAndNumbers) {
   const auto with_trunk = [](const std::string& inside) {
     return urdf_error(urdf(link("trunk", inside) + link("l") + joint("j", "trunk", "l")));

@@ -25,6 +25,17 @@ TEST(JsonReader, NamesLineAndColumnOfASyntaxError) {
             "f.json: the key 'b' appears twice in one object; keep one");
 }
 
+TEST(JsonReader, RefusesTextThatNestsTooDeeply) {
+  const auto nested = [](int depth) {
+    return std::string(static_cast<size_t>(depth), '[') +
+           std::string(static_cast<size_t>(depth), ']');
+  };
+  EXPECT_NO_THROW(parse_json(nested(200), "f.json", ErrorCode::bad_pattern));
+  EXPECT_EQ(
+      parse_error(nested(300'000)),
+      "f.json:1:201: more than 200 arrays and objects inside each other; Ayumi's files need few");
+}
+
 TEST(JsonReader, AllowsComments) {
   const Json document = parse_json("// x\n{\"a\": /* y */ 1}", "f.json", ErrorCode::bad_pattern);
   EXPECT_EQ(document["a"], 1);

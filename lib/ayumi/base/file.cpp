@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 #include "ayumi/base/error.hpp"
 
@@ -17,23 +16,43 @@ namespace ayumi {
 namespace fs = std::filesystem;
 
 std::string read_file(const fs::path& path, size_t max_bytes) {
-  std::error_code status_error;
-  const fs::file_status status = fs::status(path, status_error);
-  if (!fs::status_known(status))
-    fail(ErrorCode::bad_file, path.string() + ": cannot be read (" + status_error.message() + ")");
-  if (!fs::exists(status)) fail(ErrorCode::bad_file, path.string() + ": no such file");
-  if (fs::is_directory(status))
-    fail(ErrorCode::bad_file, path.string() + ": this is a folder, but a file is needed");
-  if (fs::is_regular_file(status) && fs::file_size(path) > max_bytes)
-    fail(ErrorCode::bad_file, path.string() + ": " + std::to_string(fs::file_size(path)) +
-                                  " bytes, more than the " + std::to_string(max_bytes) +
-                                  " that are read");
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    fail(ErrorCode::bad_file, path.string() + ": cannot be read (" + std::strerror(errno) + ")");
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) fail(ErrorCode::bad_file, path.string() + ": reading failed");
+  const auto refuse = [&](const std::string& reason) {
+    fail(ErrorCode::bad_file, path.string() + ": " + reason);
+  };
+  // The question is asked of the open file, which nobody can exchange any more. O_NONBLOCK: opening
+  // a named pipe would wait for its writer.
+  const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (opened < 0 && errno == ENOENT) refuse("no such file");
+  if (opened < 0 && errno == ENXIO) refuse("is a socket or a device, a regular file is needed");
+  if (opened < 0) refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
+  struct Closer {
+    int descriptor;
+    ~Closer() { ::close(descriptor); }
+  } const closer{opened};
+  struct stat about {};
+  if (::fstat(opened, &about) != 0)
+    refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
+  if (S_ISDIR(about.st_mode)) refuse("this is a folder, but a file is needed");
+  if (!S_ISREG(about.st_mode)) refuse("is a device or a named pipe, a regular file is needed");
+  const auto too_large = [&](size_t size) {
+    refuse(std::to_string(size) + " bytes, more than the " + std::to_string(max_bytes) +
+           " that are read");
+  };
+  const auto size = static_cast<size_t>(about.st_size);
+  if (size > max_bytes) too_large(size);
+  // Some files, as those of /proc, state no size, and a file may grow while it is read.
+  std::string bytes(size + 1, '\0');
+  size_t got = 0;
+  while (true) {
+    if (got == bytes.size()) bytes.resize(2 * bytes.size());
+    const ssize_t more = ::read(opened, bytes.data() + got, bytes.size() - got);
+    if (more < 0 && errno == EINTR) continue;
+    if (more < 0) refuse(std::string("reading failed (") + std::strerror(errno) + ")");
+    if (more == 0) break;
+    got += static_cast<size_t>(more);
+    if (got > max_bytes) too_large(got);
+  }
+  bytes.resize(got);
   return bytes;
 }
 

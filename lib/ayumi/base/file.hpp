@@ -8,7 +8,8 @@
 namespace ayumi {
 
 /// The bytes of a regular file. Throws Error(bad_file) naming the path and the reason when it is
-/// missing, a directory, unreadable, or larger than `max_bytes`.
+/// missing, a directory, a device, a named pipe, a socket, unreadable, or larger than `max_bytes`.
+/// It never waits. Every reader of Ayumi opens files by this function.
 std::string read_file(const std::filesystem::path& path, size_t max_bytes = size_t{1} << 30);
 
 /// Throws Error(bad_file) naming the path where no regular file can be written: it is a folder, a

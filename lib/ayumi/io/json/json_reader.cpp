@@ -11,6 +11,10 @@ namespace ayumi {
 
 namespace {
 
+// Nested arrays and objects. Chosen: Ayumi's files need ten; functions that descend by recursion
+// need less than 1 kB of the 8 MB stack for each.
+constexpr int kDeepestNesting = 200;
+
 std::string kind_of(const Json& value) {
   switch (value.type()) {
     case Json::value_t::null:
@@ -37,6 +41,26 @@ std::string line_and_column(const std::string& bytes, size_t offset) {
   return std::to_string(line) + ":" + std::to_string(column);
 }
 
+// Where the text opens the first array or object that lies too deep. Brackets in comments count as
+// well, which can only move the place that a message names.
+size_t too_deep_at(const std::string& bytes) {
+  int depth = 0;
+  bool in_string = false;
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    if (in_string && bytes[i] == '\\')
+      ++i;
+    else if (bytes[i] == '"')
+      in_string = !in_string;
+    else if (in_string)
+      continue;
+    else if (bytes[i] == '[' || bytes[i] == '{') {
+      if (++depth > kDeepestNesting) return i;
+    } else if (bytes[i] == ']' || bytes[i] == '}')
+      --depth;
+  }
+  return bytes.size();
+}
+
 // "[json.exception...] parse error at line 1, column 2: what" -> "what"; "[...] what" -> "what"
 std::string reason_of(const std::string& message) {
   const size_t at = message.find("column ");
@@ -59,7 +83,11 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
   if (blank) fail(code, file + ": the file is empty; it must hold JSON");
   std::vector<std::set<std::string>> keys;  // of the objects that are open
   std::string duplicate;
-  const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
+  const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > kDeepestNesting)
+      fail(code, file + ":" + line_and_column(bytes, too_deep_at(bytes)) + ": more than " +
+                     std::to_string(kDeepestNesting) +
+                     " arrays and objects inside each other; Ayumi's files need few");
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
     if (event == Json::parse_event_t::object_end && !keys.empty()) keys.pop_back();
     if (event == Json::parse_event_t::key && !keys.empty() && duplicate.empty() &&

@@ -20,6 +20,13 @@ namespace {
 // Nested elements. Chosen: a URDF needs five, and the stack holds far more.
 constexpr int kDeepestNesting = 200;
 
+// Links of a robot. Chosen: humanoids with hands have about a hundred; urdfdom and the tree of the
+// robot descend a chain of links by recursion, and some steps take the square of their number.
+constexpr size_t kMostLinks = 1000;
+// Attributes of an element. Chosen: URDF knows at most eight; TinyXML compares all of an element
+// with each other.
+constexpr int kMostAttributes = 100;
+
 // A numeric attribute and how many numbers it holds.
 struct NumericAttribute {
   const char* element;  // "*": any
@@ -198,11 +205,42 @@ void refuse_deep_nesting(const std::string& bytes, const std::string& file) {
   }
 }
 
+// A byte '=' outside a quotation stands for one attribute.
+void refuse_many_attributes(const std::string& bytes, const std::string& file) {
+  int line = 1, count = 0;
+  char quote = 0;
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    if (bytes[i] == '\n') ++line;
+    if (quote != 0) {
+      if (bytes[i] == quote) quote = 0;
+      continue;
+    }
+    if (bytes.compare(i, 4, "<!--") == 0) {
+      const size_t end = std::min(bytes.find("-->", i + 4), bytes.size());
+      line += static_cast<int>(std::count(bytes.begin() + i, bytes.begin() + end, '\n'));
+      i = end;
+      continue;
+    }
+    if (bytes[i] == '<') count = 0;
+    if (bytes[i] != '=') continue;
+    if (++count > kMostAttributes)
+      fail(ErrorCode::bad_file, file + ":" + std::to_string(line) + ": an element has more than " +
+                                    std::to_string(kMostAttributes) + " attributes");
+    size_t value = i + 1;
+    while (value < bytes.size() && std::isspace(static_cast<unsigned char>(bytes[value]))) ++value;
+    if (value >= bytes.size() || (bytes[value] != '"' && bytes[value] != '\'')) continue;
+    line += static_cast<int>(std::count(bytes.begin() + i + 1, bytes.begin() + value, '\n'));
+    quote = bytes[value];
+    i = value;
+  }
+}
+
 void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::string& file) {
   const bool blank =
       std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
   if (blank) fail(ErrorCode::bad_file, file + ": the file is empty, a URDF is needed");
   refuse_deep_nesting(bytes, file);
+  refuse_many_attributes(bytes, file);
   document.Parse(bytes.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (document.Error() && !document.RootElement())
     fail(ErrorCode::bad_file, file + ": not XML (" + document.ErrorDesc() + "); a URDF is needed");
@@ -255,6 +293,9 @@ UrdfText check_urdf(const std::string& bytes, const std::string& file) {
     if (each->ValueStr().starts_with("xacro:"))
       checker.complain(each, "this is a xacro macro file; expand it to a URDF first");
     if (each->ValueStr() == "link") checker.link(each, tree, text);
+    if (tree.links.size() > kMostLinks)
+      checker.complain(each,
+                       "more than " + std::to_string(kMostLinks) + " links; simplify the robot");
     if (each->ValueStr() == "joint") checker.joint(each, tree, text);
     if (each->ValueStr() == "material") checker.numbers(each, "material: ");
   }
