@@ -132,6 +132,60 @@ TEST(DtadGaits, TheExportedReferenceReplaysToTheSameLoci) {
   EXPECT_GT(apart(closed, simulate(hoap1(), sample(hoap1(), replay), options)), 4e-4);
 }
 
+/// A keyed jump of `height` [m] as the robot's profile does it.
+SimulationLog jump(const RobotModel& model, const Pattern& pattern, ControllerKind law,
+                   const std::string& profile, const std::vector<Disturbance>& scenario) {
+  SimulateOptions options;
+  options.profile = profile;
+  options.controller.type = law;
+  options.scenario = scenario;
+  options.settle = 2;
+  return simulate(model, sample(model, pattern), options);
+}
+
+double largest_force(const SimulationLog& log) {
+  double most = 0;
+  for (const SimulationSample& s : log.samples) most = std::max(most, s.fz);
+  return most;
+}
+
+// Off the ground the law asks for no force. The robot lands no harder than without a law, on stiff
+// servos and on soft ones.
+TEST(DtadGaits, JumpsLandSoftly) {
+  for (const double height : {0.01, 0.03}) {
+    const Pattern pattern = jump_pattern(hoap1(), {.height = height});
+    for (const char* profile : {"hoap1-strong", "hoap1-strong-soft"}) {
+      SCOPED_TRACE(testing::Message() << height << " m, " << profile);
+      const SimulationLog open = jump(hoap1(), pattern, ControllerKind::none, profile, {});
+      const SimulationLog law = jump(hoap1(), pattern, ControllerKind::dtad, profile, {});
+      EXPECT_EQ(law.result.outcome, Outcome::stands);
+      EXPECT_LE(largest_force(law), largest_force(open));
+      EXPECT_NEAR(law.result.apex, height, 0.002);
+      for (const SimulationSample& s : law.samples) {
+        if (s.command_fz == 0) {
+          EXPECT_EQ(s.reference_fz, 0);
+        }
+      }
+    }
+  }
+}
+
+// The push turns the robot and carries it away in the air: the legs stay upright, and the law takes
+// up the rest after the landing.
+TEST(DtadGaits, APushInFlight) {
+  const Pattern pattern = jump_pattern(hoap1(), {.height = 0.02, .times = 3});
+  const double middle = 0.5 * (pattern.phases[0].until + pattern.phases[1].until);
+  for (const double angle : {0.0, M_PI / 2, M_PI}) {
+    SCOPED_TRACE(angle);
+    const std::vector<Disturbance> pushed = {push(middle, angle, 2.2)};
+    const auto outcome = [&](ControllerKind law) {
+      return jump(hoap1(), pattern, law, "hoap1-strong", pushed).result.outcome;
+    };
+    EXPECT_EQ(outcome(ControllerKind::none), Outcome::fell);
+    EXPECT_EQ(outcome(ControllerKind::dtad), Outcome::stands);
+  }
+}
+
 TEST(DtadGaits, TheLargeRobotWalksUnderItsPush) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/humanoid30");
   const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/humanoid30_walk.json");

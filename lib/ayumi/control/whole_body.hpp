@@ -121,6 +121,15 @@ class ReferenceBody {
   /// Turns of the two joints nearest to each foot [rad], by dof. Holds until the next call.
   const Eigen::VectorXd& ankle_offsets(const Estimate& estimate, const AnkleLaw& law);
 
+  /// Off the ground: puts the base where the plan has it and works out positions and COG.
+  void release(const CommandSample& command);
+
+  /// One tick off the ground, in the place of advance(): the joints return to their command, and
+  /// the legs turn at the hips against `tilt`, by which the trunk is turned from its plan [rad].
+  /// Nothing is integrated: the COG moves as planned.
+  void fly(const Eigen::Vector3d& tilt, const CommandSample& command, const CommandSample& next,
+           const Eigen::VectorXd& offsets, ControlOutput& out);
+
   /// The trunk and the arms turn against their command from now on.
   void turn(const UpperBodyTurn& turn) { options_.turn = turn; }
 
@@ -134,7 +143,9 @@ class ReferenceBody {
                const CommandSample& next, const Eigen::VectorXd& offsets, ControlOutput& out);
 
  private:
-  void bound_target(ControlOutput& out);
+  void send(const Eigen::VectorXd& dtheta, const CommandSample& command, const CommandSample& next,
+            const Eigen::VectorXd& offsets, ControlOutput& out);
+  void bound_target(const CommandSample& command, const CommandSample& next, ControlOutput& out);
 
   const RobotModel* model_;
   ActuatorLimits limits_;

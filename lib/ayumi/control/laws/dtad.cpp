@@ -22,6 +22,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/torque_feedforward.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -198,6 +199,30 @@ void Dtad::turn_upper_body(double w) {
   body_.turn(momentum_.update(moment, body_.data(), plan().state.theta, w, command_.dt()));
 }
 
+// A planned flight lasts until its end is planned and the load cells feel the ground.
+bool Dtad::in_flight(const Estimate& estimate) {
+  const bool planned = plan().support == Support::none;
+  flying_ = planned || (flying_ && !estimate.contact);
+  return flying_;
+}
+
+// Off the ground nothing that a law does moves the COG, and the measured one says where the feet
+// are, not where the robot is. The posture returns to the command, the legs to the vertical.
+void Dtad::fly(const Estimate& e, const CommandSample& next, ControlOutput& out) {
+  const CommandSample& command = plan();
+  body_.release(command);
+  out.cog = body_.cog();
+  out.cog_reference.zmp = command.zmp;
+  out.cog_reference.fz = 0;
+  out.cog_reference.ddcog = command.ddcog;
+  const Eigen::Quaterniond turned = e.state.base.attitude * command.state.base.attitude.conjugate();
+  Vector3d tilt = log_rotation(turned);
+  tilt.z() = 0;
+  outside_.setZero();
+  filter_ = ReactionFilter(e.contact ? e.zmp.head<2>() : command.zmp.head<2>(), e.fz);
+  body_.fly(tilt, command, next, offsets_, out);
+}
+
 void Dtad::update(const Estimate& estimate, ControlOutput& out) {
   const auto torque_lead = lead_at(*torque_lead_, command_.sample());
   const CommandSample& next = command_.look_ahead(estimate);
@@ -205,6 +230,12 @@ void Dtad::update(const Estimate& estimate, ControlOutput& out) {
   if (const VectorXd* weight = command_.joint_weight()) {
     body_.weigh(*weight);
     momentum_.weigh(*weight);
+  }
+  if (in_flight(estimate)) {
+    offsets_ = torque_lead;
+    fly(estimate, next, out);
+    command_.advance();
+    return;
   }
   if (command.support == Support::left) anchor_ = Side::left;
   if (command.support == Support::right) anchor_ = Side::right;

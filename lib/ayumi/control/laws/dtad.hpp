@@ -75,6 +75,8 @@ class Dtad {
   CogReference cog_reference(const Estimate& estimate);
   Eigen::Vector2d zmp_gap(const Eigen::Vector2d& ref_zmp, double omega, double z);
   void turn_upper_body(double omega);
+  bool in_flight(const Estimate& estimate);
+  void fly(const Estimate& estimate, const CommandSample& next, ControlOutput& out);
 
   const RobotModel* model_;
   DtadParams params_;
@@ -89,6 +91,7 @@ class Dtad {
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();   // accepted offset of the ZMP [m]
   Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();  // ZMP wanted less the one asked for [m]
   bool first_ = true;                                  // no tick yet, from rest
+  bool flying_ = false;                                // from the planned lift-off to the landing
 };
 
 }  // namespace ayumi
