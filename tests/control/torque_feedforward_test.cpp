@@ -27,7 +27,7 @@ const CommandSeries& squat() {
 TEST(TorqueFeedforward, WorksAsTheWeightDoes) {
   const std::vector<CommandSample>& samples = squat().samples;
   const Eigen::MatrixXd lead = torque_feedforward(hoap1(), hoap1().limits("hoap1-strong"), squat());
-  ASSERT_EQ(lead.cols(), static_cast<Eigen::Index>(samples.size()));
+  ASSERT_EQ(lead.cols(), static_cast<Eigen::Index>(samples.size()) + 1);  // one at rest
   size_t deepest = 0;
   for (size_t k = 0; k < samples.size(); ++k)
     if (samples[k].cog.z() < samples[deepest].cog.z()) deepest = k;

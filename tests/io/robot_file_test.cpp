@@ -83,8 +83,8 @@ TEST(Hoap1, BareUrdfIsInferred) {
     for (int i = 0; i < 4; ++i)
       EXPECT_LT((model.sole(side).polygon[i] - full.sole(side).polygon[i]).norm(), 1e-4);
   }
-  // Full effort, 3 N m, at 0.2 rad is less than the 4 m g z that a leg needs.
-  EXPECT_NEAR(model.limits().servo[0].kp / (4 * model.mass() * 9.80665 * 0.25), 1, 0.1);
+  // Full effort, 3 N m, at 0.2 rad is less than the 20 m g z that a leg needs.
+  EXPECT_NEAR(model.limits().servo[0].kp / (20 * model.mass() * 9.80665 * 0.25), 1, 0.1);
   EXPECT_GE(model.description().assumptions.size(), 4u);
 }
 

@@ -2,14 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/plant/contact_points.hpp"
 #include "ayumi/sim/plant/plant.hpp"
 #include "tests/support/block.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/urdf_biped.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi {
@@ -74,6 +79,23 @@ struct Stack {
   RobotModel model;
   Plant plant;
 };
+
+// The ankle of a robot is a cylinder 2 mm above the ground and inside the outline of the foot. When
+// the leg leans, the foot is between it and the ground; the shank above is not shielded.
+TEST(ContactPoints, TheSoleShieldsTheAnkle) {
+  const auto bodies = [](double ankle_shape) {
+    const test::TemporaryFolder folder;
+    const test::UrdfBiped kind{.ankle_shape = ankle_shape};
+    const RobotModel model = load_robot(folder.write("robot.urdf", kind.text()).string());
+    std::set<std::string> names;
+    for (const ContactPoint& point : contact_points(model))
+      if (point.side < 0) names.insert(model.bodies()[static_cast<size_t>(point.body)].name);
+    return names;
+  };
+  const std::set<std::string> plain = bodies(0);
+  EXPECT_EQ(plain.count("l_shank"), 1u);
+  EXPECT_EQ(bodies(0.002), plain);
+}
 
 TEST(Stack, IsAtRestWithoutCreep) {
   Stack stack;

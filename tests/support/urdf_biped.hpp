@@ -26,6 +26,7 @@ struct UrdfBiped {
   double hip = 0.05, thigh = 0.12, shank = 0.12, ankle = 0.04, foot_length = 0.13,
          foot_width = 0.07;    ///< [m]
   double trunk_bottom = 0.03;  ///< above the hips [m]
+  double ankle_shape = 0;  ///< height of a wide cylinder at the ankle above the ground [m]; 0: none
   std::function<double(const std::string&)> effort = [](const std::string&) { return 10; };
   double speed = 8;  ///< [rad/s]
 
@@ -108,7 +109,13 @@ struct UrdfBiped {
       std::string below = side + "shank";
       double down = -shank;
       if (ankle_roll) {
-        link(side + "ankle", 0.1, 0, 0, 0, 0.03, 0.03, 0.03, false);
+        const std::string shape =
+            ankle_shape > 0 ? "<collision><origin xyz=\"0 0 0\" rpy=\"1.5707963 0 0\"/><geometry>"
+                              "<cylinder radius=\"" +
+                                  exact(size * ankle - ankle_shape) + "\" length=\"" +
+                                  exact(0.8 * size * foot_width) + "\"/></geometry></collision>"
+                            : "";
+        link(side + "ankle", 0.1, 0, 0, 0, 0.03, 0.03, 0.03, false, shape);
         joint(side + "ankle_pitch", below, side + "ankle", 0, 0, down, 0, 1, 0, -1.2, 1.2);
         below = side + "ankle";
         down = 0;

@@ -30,11 +30,14 @@ constexpr double kFootBlend = 0.2;
 }  // namespace
 
 CommandPlan::CommandPlan(const CommandSeries& series)
-    : series_(&series), now_(series.samples.front()), next_(now_) {}
+    : series_(&series), rest_(series.samples.back()), now_(series.samples.front()), next_(now_) {
+  if (rest_.support != Support::none) rest_plan(rest_);
+}
 
 const CommandSample& CommandPlan::sampled(long k) const {
   const std::vector<CommandSample>& samples = series_->samples;
-  return samples[std::min<size_t>(static_cast<size_t>(k), samples.size() - 1)];
+  const auto sample = static_cast<size_t>(k);
+  return sample < samples.size() ? samples[sample] : rest_;
 }
 
 CommandSample CommandPlan::at(long k) const {

@@ -20,7 +20,8 @@ class CommandPlan {
   /// The command of the coming tick.
   const CommandSample& now() const { return now_; }
 
-  /// The command of tick k where the feet are; after the end of the series its last sample.
+  /// The command of tick k where the feet are; after the end of the series its last posture, at
+  /// rest.
   CommandSample at(long k) const;
 
   /// Sample of the series that now() comes from; a moved plan has a clock of its own.
@@ -61,6 +62,7 @@ class CommandPlan {
   const CommandSeries* series_;
   Placement placement_;
   std::optional<FootholdShift> footholds_;
+  CommandSample rest_;  // after the end
   CommandSample now_, next_;
   long tick_ = 0;  // of now_
 };

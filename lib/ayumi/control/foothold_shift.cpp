@@ -126,6 +126,7 @@ void command_between(const CommandSeries& series, double phase, CommandSample& c
   const std::vector<CommandSample>& s = series.samples;
   if (phase >= static_cast<double>(s.size() - 1)) {
     c = s.back();
+    if (phase > static_cast<double>(s.size() - 1) && c.support != Support::none) rest_plan(c);
     return;
   }
   const size_t k = static_cast<size_t>(phase);

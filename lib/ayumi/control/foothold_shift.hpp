@@ -22,7 +22,7 @@ struct PlannedSwing {
 /// The swings that end in a double support, in time order.
 std::vector<PlannedSwing> swings_of(const CommandSeries& series);
 
-/// The command at a phase between samples; after the end that of the last sample.
+/// The command at a phase between samples; after the end the last posture, at rest.
 CommandSample command_between(const CommandSeries& series, double phase);
 void command_between(const CommandSeries& series, double phase, CommandSample& command);
 

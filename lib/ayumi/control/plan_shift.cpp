@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
@@ -37,6 +38,17 @@ void turn_plan(const Isometry3d& turn, CommandSample& plan) {
   plan.ddcog = turn.linear() * plan.ddcog;
   plan.zmp = turn * plan.zmp;
   for (Isometry3d& foot : plan.feet) foot = turn * foot;
+}
+
+void rest_plan(CommandSample& plan) {
+  plan.fz *= kGravity / (kGravity + plan.ddcog.z());  // f_z = m (g + ddz)
+  plan.zmp.head<2>() = plan.cog.head<2>();
+  plan.dcog.setZero();
+  plan.ddcog.setZero();
+  plan.acceleration.setZero();
+  plan.state.dtheta.setZero();
+  plan.state.base_velocity.setZero();
+  plan.state.base_angular_velocity.setZero();
 }
 
 Isometry3d pose_between(const std::array<Isometry3d, 2>& feet) {

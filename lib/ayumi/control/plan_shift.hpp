@@ -29,6 +29,9 @@ void shift_plan(const PlanShift& shift, CommandSample& plan);
 /// Carries the whole of `plan` by the rigid motion `turn` of the ground.
 void turn_plan(const Eigen::Isometry3d& turn, CommandSample& plan);
 
+/// Stops a `plan` on the ground: its posture at rest, ZMP under the COG, f_z the weight.
+void rest_plan(CommandSample& plan);
+
 /// Level pose in the middle between two soles: position, and the mean of their headings.
 Eigen::Isometry3d pose_between(const std::array<Eigen::Isometry3d, 2>& feet);
 

@@ -159,7 +159,10 @@ bool FallMonitor::observe(double t, const CommandSample& command, const Simulati
   else if ((ground_.inverse() * sample.cog).z() < kFallHeight * (command.cog.z() - command.zmp.z()))
     reason = "COG at " + text::fixed((ground_.inverse() * sample.cog).z(), 3) + " m";
   else if (report.body_contact)
-    reason = "a part other than a foot touched the ground";
+    reason = report.touching_body < 0
+                 ? "a part other than a foot touched the ground"
+                 : model_->bodies()[static_cast<size_t>(report.touching_body)].name +
+                       " touched the ground";
   if (reason.empty()) return false;
   r.fell_at = t;
   events_.push_back({t, "fell", reason});

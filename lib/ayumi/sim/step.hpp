@@ -77,6 +77,7 @@ struct StepReport {
   Eigen::VectorXd motor, motor_rate;
   std::array<std::vector<SoleForce>, 2> soles;  ///< by Side, in the order of the sole's polygon
   bool body_contact = false;                    ///< a body that is no sole touches the ground
+  int touching_body = -1;                       ///< the first such body; -1: none, or not known
   std::vector<int> saturated;                   ///< dofs whose torque is at its limit
   int contact_iterations = 0;
   double contact_residual = 0;  ///< [m/s]

@@ -147,7 +147,10 @@ CogReference Dtad::cog_reference(const Estimate& estimate) {
   CogReference ref;
   const ConvexPolygon& polygon =
       region_.update(*model_, command.feet, command.support, p.margin * z);
-  const Vector2d wanted = long_term_zmp(command.zmp.head<2>(), K, D, error);
+  // A planned ZMP outside the support, as imported motions have it, is no error to be answered.
+  const Vector2d planned =
+      polygon.empty() ? Vector2d(command.zmp.head<2>()) : polygon.project(command.zmp.head<2>());
+  const Vector2d wanted = long_term_zmp(planned, K, D, error);
   ref.zmp = command.zmp;
   ref.zmp.head<2>() = polygon.empty() ? wanted : polygon.project(wanted);
   outside_ = wanted - ref.zmp.head<2>();
@@ -157,8 +160,8 @@ CogReference Dtad::cog_reference(const Estimate& estimate) {
   // At rest the ZMP is under the COG. Its distance from the one asked for is an offset already:
   // servos that sag, a floor that slopes.
   if (first_ && p.offset_time > 0 && !polygon.empty()) {
-    const Vector2d asked = polygon.project(command.zmp.head<2>() - K * error.position.head<2>());
-    offset_ = -error.position.head<2>() - (asked - command.zmp.head<2>());
+    const Vector2d asked = polygon.project(planned - K * error.position.head<2>());
+    offset_ = -error.position.head<2>() - (asked - planned);
   }
   first_ = false;
 

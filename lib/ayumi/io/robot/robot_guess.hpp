@@ -40,7 +40,7 @@ struct RobotGuess {
 ///   inside.
 /// - Home: bent knees, with the COG over the middle of the soles and all joints inside their
 /// limits.
-/// - Servos: full effort of each joint at an error of 0.2 rad, and for legs at least 4 m g z per
+/// - Servos: full effort of each joint at an error of 0.2 rad, and for legs at least 20 m g z per
 /// rad. What was inferred is added to `assumptions`.
 RobotGuess guess_robot(RobotDescription robot);
 

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/geometry/box_corner.hpp"
 #include "ayumi/geometry/mesh_hull.hpp"
+#include "ayumi/math/polygon.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -48,6 +51,31 @@ std::vector<ContactPoint> touch_points(const PlacedShape& placed) {
   return points;
 }
 
+/// Whether the sole lies between the ground and a point of the link above the foot's body when the
+/// robot stands at home: an ankle whose shape is nearly as low as the foot does not touch the
+/// ground when the leg leans.
+class ShieldedByFoot {
+ public:
+  explicit ShieldedByFoot(const RobotModel& model) : model_(model), data_(model) {
+    update_positions(model, model.rest_state(), data_);
+  }
+
+  bool operator()(int body, const Vector3d& position) const {
+    for (Side side : {Side::left, Side::right}) {
+      const Sole& sole = model_.sole(side);
+      if (model_.bodies()[static_cast<size_t>(sole.body)].parent != body) continue;
+      const Vector3d place =
+          sole_pose(model_, data_, side).inverse() * (data_.pose(body) * position);
+      if (place.z() > 0 && ConvexPolygon(sole.polygon).margin(place.head<2>()) > 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  const RobotModel& model_;
+  RobotData data_;
+};
+
 }  // namespace
 
 double body_stiffness(const RobotModel& model) {
@@ -72,6 +100,8 @@ std::vector<ContactPoint> contact_points(const RobotModel& model) {
       points.push_back(point);
     }
   }
+  std::optional<ShieldedByFoot> shielded;
+  if (model.has_soles()) shielded.emplace(model);
   for (const Link& link : model.links()) {
     const bool foot = model.has_soles() && (link.body == model.sole(Side::left).body ||
                                             link.body == model.sole(Side::right).body);
@@ -80,6 +110,7 @@ std::vector<ContactPoint> contact_points(const RobotModel& model) {
       for (ContactPoint point : touch_points(shape)) {
         point.body = link.body;
         point.position = link.pose * point.position;
+        if (shielded && (*shielded)(link.body, point.position)) continue;
         point.axis = link.pose.linear() * point.axis;
         point.stiffness = body_stiffness(model);
         point.damping_time = kBodyDamping;

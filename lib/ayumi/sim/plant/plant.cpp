@@ -94,6 +94,7 @@ void Plant::clear_report() {
   for (std::vector<SoleForce>& sole : report_.soles)
     for (SoleForce& cell : sole) cell = SoleForce{};
   report_.body_contact = false;
+  report_.touching_body = -1;
   report_.saturated.clear();
   std::fill(limited_.begin(), limited_.end(), 0);
   report_.contact_iterations = 0;
@@ -134,10 +135,12 @@ void Plant::report_contacts(double whole) {
     const Vector3d impulse = system_.in_world(contact.to_contact.transpose() * contact.impulse);
     system_.external().linear += impulse;
     system_.external().angular += system_.in_world(contact.position - data().cog).cross(impulse);
-    if (contact.side < 0)
-      report_.body_contact |= touching;
-    else
+    if (contact.side >= 0) {
       report_sole(contact, impulse / whole);
+    } else if (touching && !report_.body_contact) {
+      report_.body_contact = true;
+      report_.touching_body = contact.body;
+    }
   }
 }
 

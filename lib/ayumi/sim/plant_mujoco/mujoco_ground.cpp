@@ -93,7 +93,10 @@ void MujocoPlant::Impl::report_contact(int i, const mjContact& contact, int geom
   if (index < 0) return;
   const ContactPoint& point = points[static_cast<size_t>(index)];
   if (point.side < 0) {
-    report.body_contact |= numbers[0] > 0;
+    if (numbers[0] > 0 && !report.body_contact) {
+      report.body_contact = true;
+      report.touching_body = point.body;
+    }
     return;
   }
   SoleForce& cell = report.soles[point.side][static_cast<size_t>(point.vertex)];

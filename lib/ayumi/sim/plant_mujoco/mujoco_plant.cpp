@@ -153,6 +153,7 @@ void MujocoPlant::Impl::begin_report() {
   report.contact_iterations = 0;
   report.max_penetration = 0;
   report.body_contact = false;
+  report.touching_body = -1;
   for (std::vector<SoleForce>& sole : report.soles)
     for (SoleForce& cell : sole) cell = SoleForce{};
 }
