@@ -82,6 +82,39 @@ TEST(ViipHoap1, CogGoesToADisplacementOnBothFeet) {
   }
 }
 
+// A force F from above sinks the standing robot by F / K_Pz, (24), on stiff servos and on soft
+// ones, with sensors up to 10 ms late.
+TEST(ViipHoap1, YieldsToAVerticalForceAsKpzSays) {
+  const double force = 3, weight = hoap1().mass() * 9.80665;
+  const Pattern pattern = goals({{4, CogGoal{}}});
+  for (const char* profile : {"hoap1", "hoap1-soft"})
+    for (const double kz : {1.5, 3.0, 6.0})
+      for (const double latency : {0.0, 0.01}) {
+        SCOPED_TRACE(testing::Message() << profile << ", kz " << kz << ", late by " << latency);
+        Conditions c{.profile = profile, .gains = {{"kz", kz}}};
+        c.pushes = {
+            {.at = 0.5,
+             .duration = 10,
+             .what = Push{.kind = PushKind::force, .magnitude = force, .direction = {0, 0, -1}}},
+            {.at = 0, .duration = 10, .what = Latency{latency}}};
+        const SimulationLog log = run_viip(pattern, c);
+        const double z = log.samples[400].cog.z(), omega2 = 9.80665 / z;
+        const double expected = force / (weight / 9.80665 * kz * kz * omega2);
+        const double sunk = z - log.samples[3900].cog.z();
+        EXPECT_EQ(log.result.outcome, Outcome::stands);
+        EXPECT_NEAR(sunk, expected, 0.1 * expected);
+      }
+}
+
+// The ZMP follows the one that the law asks for: 6.5 and 7.9 mm were measured.
+TEST(ViipHoap1, TheZmpFollows) {
+  StepGoal in_place;
+  in_place.steps = 12;
+  EXPECT_LT(run_viip(goals({{0.5, CogGoal{}}, {5.5, in_place}})).result.zmp_tracking_rms, 0.008);
+  const Pattern walking = goals({{0.5, CogGoal{}}, {6.5, walk(14, 0.1)}});
+  EXPECT_LT(run_viip(walking).result.zmp_tracking_rms, 0.010);
+}
+
 TEST(ViipHoap1, StepsInPlaceAndStandsWhereItStood) {
   const SimulationLog log = run_viip(goals({{0.3, CogGoal{}}, {5.8, walk(8, 0)}}));
   EXPECT_EQ(log.result.outcome, Outcome::stands);

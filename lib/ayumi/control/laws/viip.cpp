@@ -2,6 +2,7 @@
 //   standing  Z(dcm) = Pi[xd + (1 + q)(dcm - xd)]                     (18)(19)
 //   stepping  Z(dcm) = Pi[(dcm_e - dcm E) / (1 - E)],  E = exp(w T) to the landing, dcm_e = p + b
 //   reffz = m (kz w)^2 (zd - zr) - 2 dz m kz w dzr + m g              (24), (25) with the mass
+//   ddzr  = reffz/m - g (16), in stance kaz (reffz - fhat)/m with zhat for zr
 //   w2    = reffz / (m zr)                                            (17)
 //   ddxr  = w2 (xr - Z(dcm_r)) + ka w2 (zhat - Z(dcm^)) + av w (dx^ - dxr) + ax w^2 (x^ - xr)
 // The first term is (14) of the reference pendulum, the second the short-term absorption of
@@ -84,14 +85,26 @@ Vector3d rotated(const Vector3d& v, double yaw) { return rpy_to_matrix({0, 0, ya
 
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   ViipParams p;
-  const std::map<std::string, double*> fields = {
-      {"q", &p.pole_ratio},           {"goal", &p.goal_lag},     {"ka", &p.zmp_gain},
-      {"av", &p.velocity_leak},       {"ax", &p.position_leak},  {"damp", &p.rocking_damping},
-      {"tau_z", &p.zmp_filter},       {"margin", &p.margin},     {"kz", &p.height_rate},
-      {"dz", &p.height_damping},      {"ankle", &p.ankle_share}, {"single", &p.single_support},
-      {"both", &p.double_support},    {"lift", &p.lift},         {"reach", &p.reach},
-      {"hold", &p.recovery},          {"inside", &p.zmp_inset},  {"hurry", &p.early_step_bound},
-      {"soonest", &p.least_step_time}};
+  const std::map<std::string, double*> fields = {{"q", &p.pole_ratio},
+                                                 {"goal", &p.goal_lag},
+                                                 {"ka", &p.zmp_gain},
+                                                 {"av", &p.velocity_leak},
+                                                 {"ax", &p.position_leak},
+                                                 {"damp", &p.rocking_damping},
+                                                 {"tau_z", &p.zmp_filter},
+                                                 {"margin", &p.margin},
+                                                 {"kz", &p.height_rate},
+                                                 {"kaz", &p.fz_gain},
+                                                 {"dz", &p.height_damping},
+                                                 {"ankle", &p.ankle_share},
+                                                 {"single", &p.single_support},
+                                                 {"both", &p.double_support},
+                                                 {"lift", &p.lift},
+                                                 {"reach", &p.reach},
+                                                 {"hold", &p.recovery},
+                                                 {"inside", &p.zmp_inset},
+                                                 {"hurry", &p.early_step_bound},
+                                                 {"soonest", &p.least_step_time}};
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where,
@@ -159,6 +172,7 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
       height_(held.cog.z() - ground_of(held.feet)),
       command_(start.command),
       body_(model, limits, dt, start.reference, start.target, {.in_order = false}),
+      dynamics_(model, limits, dt),
       data_(model),
       held_(held),
       plan_(held),
@@ -277,9 +291,13 @@ CogReference Viip::cog_reference(const Estimate& e) {
   const Vector3d goal = standing_goal(displacement_[2]);
   const double z = body_.cog().z() - ground;
   CogReference ref;
-  ref.fz =
-      admissible_force(viip_force(params_, m, omega_, goal.z() - ground, z, body_.dcog().z()), m);
-  ref.ddcog.z() = vertical_acceleration(ref.fz, m);
+  const bool closed =
+      params_.feedback && params_.fz_gain > 0 && stage_ == Stage::stand && e.contact;
+  const double height = closed ? e.cog.z() - ground : z;
+  const double rise = closed ? e.dcog.z() : body_.dcog().z();
+  ref.fz = admissible_force(viip_force(params_, m, omega_, goal.z() - ground, height, rise), m);
+  ref.ddcog.z() =
+      closed ? params_.fz_gain * (ref.fz - filter_.fz()) / m : vertical_acceleration(ref.fz, m);
   const double w2 = omega_squared(ref.fz, m, z);
 
   zmp_[1] = regulate(divergent_component(body_.cog(), body_.dcog(), omega_).head<2>(), 1);
@@ -459,9 +477,16 @@ void Viip::update(const Estimate& estimate, ControlOutput& out) {
   const CogReference wanted = cog_reference(estimate);
   const double ankle = params_.feedback ? params_.ankle_share : 0;
   const Eigen::VectorXd offsets =
+      dynamics_.lead() +
       body_.ankle_offsets(estimate, {.share = ankle, .slope_time = kSlopeTime / omega_});
   step_state_machine(estimate);
+  const RobotState before = body_.state();
   body_.advance(wanted, height_, plan_, next_, offsets, out);
+  std::array<Vector2d, 2> places;
+  for (Side side : {Side::left, Side::right})
+    places[index(side)] =
+        footsteps_.zmp_on(side, ground_pose(*model_, side, plan_.feet[index(side)]));
+  dynamics_.update(before, anchor_, out.reference.dtheta, plan_, places);
   finish_plan();
   plan_ = next_;
 }

@@ -5,6 +5,7 @@
 
 #include "ayumi/control/feedback.hpp"
 #include "ayumi/control/footsteps.hpp"
+#include "ayumi/control/reference_dynamics.hpp"
 #include "ayumi/control/swing_foot.hpp"
 #include "ayumi/control/whole_body.hpp"
 #include "ayumi/motion/controller_spec.hpp"
@@ -26,6 +27,7 @@ struct ViipParams {
   double margin = 0.01;           ///< [margin] kept inside the support region
   double height_rate = 1.5;       ///< [kz] sqrt(K_Pz / m) of (24)
   double height_damping = 1;      ///< [dz] K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
+  double fz_gain = 0.5;           ///< [kaz] loop on the measured f_z while standing; 0: none
   double ankle_share = 0.5;       ///< [ankle] share of the stance foot's tilt turned back
   double single_support = 1.7;    ///< [single] length of a single support
   double double_support = 0.4;    ///< [both] length of a double support
@@ -113,6 +115,7 @@ class Viip {
   double dt_, omega_, height_;
   CommandPlan command_;  // of the pattern, for the next law
   ReferenceBody body_;
+  ReferenceDynamics dynamics_;
   RobotData data_;
   CommandSample held_, plan_, next_;
   Eigen::Vector3d offset_;  // held COG from the middle of the feet, axes of the feet [m]
