@@ -177,7 +177,7 @@ TEST(ViipHoap1, AStepThatComesSoonerStopsALargerPush) {
 }
 
 TEST(ViipHoap1, WithNothingMeasuredItFallsWhereNoticedLandingsAreEnough) {
-  const Pattern pattern = goals({{0.5, CogGoal{}}, {6.5, walk(14, 0.15)}});
+  const Pattern pattern = goals({{0.5, CogGoal{}}, {6.5, walk(14, 0.15)}}, 0);  // legs as at home
   Conditions conditions;
   conditions.controller = "viip-landings";
   EXPECT_EQ(run_viip(pattern, conditions).result.outcome, Outcome::stands);

@@ -27,7 +27,7 @@ struct ViipParams {
   double margin = 0.01;           ///< [margin] kept inside the support region
   double height_rate = 1.5;       ///< [kz] sqrt(K_Pz / m) of (24)
   double height_damping = 1;      ///< [dz] K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
-  double fz_gain = 0.5;           ///< [kaz] loop on the measured f_z while standing; 0: none
+  double yielding = 1;            ///< [yield] share of a vertical push that standing yields to
   double ankle_share = 0.5;       ///< [ankle] share of the stance foot's tilt turned back
   double single_support = 1.7;    ///< [single] length of a single support
   double double_support = 0.4;    ///< [both] length of a double support
@@ -133,6 +133,9 @@ class Viip {
   // Systematic error of each foot's landing, axes of the foot [m].
   std::array<Eigen::Vector2d, 2> landing_bias_ = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   ReactionFilter filter_;  // measured ZMP
+  double sag_ = 0;         // of the measured COG under the reference's, low pass of 1/omega [m]
+  double push_ = 0;        // vertical, what the load cells have beyond the reference's f_z [N]
+  double lift_ = 0;        // vertical acceleration of the reference in the last tick [m/s^2]
   SwingReplan<3> swing_;   // x, y, yaw of the foot in the air
   // Ref ZMP inside the support by the measured and by the reference state: now, and at the end of
   // the last single support.
