@@ -14,8 +14,8 @@ Eigen::MatrixXd torque_feedforward(const RobotModel& model, const ActuatorLimits
   MotionDynamics dynamics(model, limits, series, contacts);
   for (Eigen::Index k = 0; k <= samples; ++k) {
     const bool rest = k == samples;
-    const Eigen::VectorXd& torque =
-        rest ? dynamics.at(static_cast<int>(k - 1), 0).torque : dynamics.at(static_cast<int>(k)).torque;
+    const Eigen::VectorXd& torque = rest ? dynamics.at(static_cast<int>(k - 1), 0).torque
+                                         : dynamics.at(static_cast<int>(k)).torque;
     for (int j = 0; j < model.dof_count(); ++j) {
       const double kp = limits.servo[static_cast<size_t>(j)].kp, peak = limits.peak_torque[j];
       if (kp > 0) lead(j, k) = std::clamp(torque[j], -peak, peak) / kp;

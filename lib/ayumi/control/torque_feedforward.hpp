@@ -11,10 +11,10 @@
 
 namespace ayumi {
 
-/// dof x (samples + 1) [rad]: tau / kp, by which a target must lie beyond the posture so that the joint
-/// does not sag, with tau of the planned motion on its planned contacts (the torque that the check
-/// judges), at most what the motor gives at `limits`. The last column is that of the last posture at
-/// rest. Zero for joints without a motor.
+/// dof x (samples + 1) [rad]: tau / kp, by which a target must lie beyond the posture so that the
+/// joint does not sag, with tau of the planned motion on its planned contacts (the torque that the
+/// check judges), at most what the motor gives at `limits`. The last column is that of the last
+/// posture at rest. Zero for joints without a motor.
 Eigen::MatrixXd torque_feedforward(const RobotModel& model, const ActuatorLimits& limits,
                                    const CommandSeries& series);
 
