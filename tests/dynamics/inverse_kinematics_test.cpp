@@ -50,6 +50,72 @@ void expect_round_trip(const RobotModel& model, unsigned seed) {
 
 TEST(InverseKinematics, MeetsRandomTargets) { expect_round_trip(test::biped(), 1); }
 
+// Determinant of the Jacobian of a leg of six joints.
+double leg_determinant(const RobotModel& model, const InverseKinematics& ik, const RobotData& data,
+                       Side side) {
+  const Eigen::MatrixXd all =
+      body_jacobian(model, data, model.sole(side).body, sole_pose(model, data, side).translation());
+  Eigen::Matrix<double, 6, 6> A;
+  for (int i = 0; i < 6; ++i) A.col(i) = all.col(6 + ik.leg(side)[static_cast<size_t>(i)]);
+  return A.determinant();
+}
+
+// From guesses at any distance, legs on either side of the straight knee: the target is met to
+// rounding, and a leg counts as flipped just where the determinant of its Jacobian has changed
+// sign.
+TEST(InverseKinematics, NearGuessesEndAtTheTargetAndOnItsSide) {
+  for (const RobotModel& model : {test::biped(), test::biped({.waist = true})}) {
+    test::Random random(5);
+    const InverseKinematics ik(model, model.posture());
+    RobotData data(model);
+    RobotState home = model.rest_state();
+    home.theta = ik.start();
+    update_positions(model, home, data);
+    const double reference[2] = {leg_determinant(model, ik, data, Side::left),
+                                 leg_determinant(model, ik, data, Side::right)};
+    int flipped = 0, kept = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+      RobotState wanted = home;
+      wanted.base.position = random.vector(2.0);
+      wanted.base.attitude = exp_rotation(random.vector(1.0));
+      wanted.theta += random.vector(model.dof_count(), 0.3);
+      if (trial % 2 > 0) {
+        const int knee = ik.knee(Side::left);
+        wanted.theta[knee] = random.uniform(-0.3, 0.3);
+      }
+      update_positions(model, wanted, data);
+      PostureTarget target;
+      for (const Side side : kSides)
+        target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
+      target.cog = data.cog;
+      target.trunk = data.rotation[model.trunk_body()];
+
+      RobotState state = wanted;
+      const double away = std::pow(10.0, random.uniform(-13, -3));
+      state.base.position += random.vector(away);
+      for (const Side side : kSides)
+        for (const int dof : ik.leg(side)) state.theta[dof] += random.uniform(-away, away);
+      const PostureSolution solution = ik.solve(target, state, data);
+      if (!solution.reached) continue;  // nearly straight
+      update_positions(model, state, data);
+      bool changed = false;
+      for (const Side side : kSides) {
+        const int s = static_cast<int>(side);
+        EXPECT_LT((sole_pose(model, data, side).translation() - target.feet[s].translation())
+                      .cwiseAbs()
+                      .maxCoeff(),
+                  2e-13);
+        changed = changed || leg_determinant(model, ik, data, side) * reference[s] <= 0;
+      }
+      EXPECT_LT((data.cog - target.cog).cwiseAbs().maxCoeff(), 2e-13);
+      EXPECT_EQ(solution.knee_flipped, changed) << trial;
+      ++(changed ? flipped : kept);
+    }
+    EXPECT_GT(flipped, 20);
+    EXPECT_GT(kept, 200);
+  }
+}
+
 TEST(InverseKinematics, TrunkAboveAWaistJoint) {
   expect_round_trip(test::biped({.waist = true}), 2);
 }

@@ -83,6 +83,12 @@ TEST_P(FastTrees, GiveTheSameBitsAloneAndInAnyBatch) {
       best.inverse(states[static_cast<size_t>(k)], input.col(k), alone);
       EXPECT_EQ(alone, a.col(k));
     }
+    std::vector<VectorXd> accelerations;
+    std::vector<TreeDynamics::Motion> motions;
+    for (int k = 0; k < 11; ++k) accelerations.push_back(input.col(k));
+    for (size_t k = 0; k < 11; ++k) motions.push_back({&states[k], &accelerations[k]});
+    best.inverse(motions, b);
+    EXPECT_EQ(a, b);
     plain.forward(states, input, a, &drive);
     best.forward(states, input, b, &drive);
     EXPECT_EQ(a, b);
@@ -123,7 +129,7 @@ TEST(FastTreesBatch, OfNoStateIsEmpty) {
   const RobotModel model(test::random_tree(4, 6, false));
   TreeDynamics fast(model);
   MatrixXd force;
-  fast.inverse({}, MatrixXd(model.velocity_count(), 0), force);
+  fast.inverse(std::vector<RobotState>(), MatrixXd(model.velocity_count(), 0), force);
   EXPECT_EQ(force.cols(), 0);
   EXPECT_EQ(force.rows(), model.velocity_count());
 }

@@ -8,8 +8,8 @@
 #include <atomic>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/in_parallel.hpp"
 #include "ayumi/identify/recording_checks.hpp"
-#include "ayumi/study/in_parallel.hpp"
 #include "tests/identify/synthetic_servo.hpp"
 
 namespace ayumi::test {

@@ -37,6 +37,27 @@ TEST(Track, PassesThroughItsKeysAndHoldsOutside) {
   }
 }
 
+// A straight track through keys at times of many spacings: the right segment is always found.
+TEST(Track, FindsTheSegmentHoweverTheKeysAreSpaced) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<TrackKey> keys = {{-1.0, 0.5, Interpolation::linear}};
+    const double spread = trial % 5;
+    const int count = 2 + static_cast<int>(engine() % 60);
+    for (int i = 0; i < count; ++i)
+      keys.push_back({keys.back().t + std::pow(10.0, -spread * uniform(engine)), uniform(engine),
+                      Interpolation::linear});
+    const Track track(keys);
+    for (size_t i = 0; i + 1 < keys.size(); ++i)
+      for (const double share : {0.0, 0.25, 0.999}) {
+        const double expected = keys[i].value + share * (keys[i + 1].value - keys[i].value);
+        const double t = keys[i].t + share * (keys[i + 1].t - keys[i].t);
+        EXPECT_NEAR(track.at(t).value, expected, 1e-9) << trial << " " << i;
+      }
+  }
+}
+
 TEST(Track, DerivativesAgreeWithDifferences) {
   const double h = 1e-5;
   for (unsigned seed = 0; seed < 20; ++seed) {

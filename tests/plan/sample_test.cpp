@@ -12,7 +12,9 @@
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/differentiate.hpp"
+#include "ayumi/motion/pattern_context.hpp"
 #include "tests/support/biped.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {
@@ -299,6 +301,64 @@ TEST(Sample, SamePatternSameBytes) {
     EXPECT_EQ(a.samples[k].state.theta, b.samples[k].state.theta);
     EXPECT_EQ(a.samples[k].acceleration, b.samples[k].acceleration);
   }
+}
+
+// More samples than several threads take in one go, with the COG solved and with the COG keyed.
+TEST(Sample, SameBytesForAnyNumberOfThreads) {
+  const RobotModel model = test::biped();
+  Pattern walk = walk_pattern(model, short_walk());
+  Pattern keyed = walk;
+  for (Keyframe& key : keyed.keyframes) key.zmp.reset();
+  Keyframe still;
+  still.t = 0.1;
+  still.cog_x = still.cog_y = 0;
+  keyed.keyframes = {still};
+  for (Phase& phase : keyed.phases) {
+    phase.support = Support::both;
+    phase.swing.reset();
+  }
+  for (const Pattern& pattern : {walk, keyed}) {
+    const CommandSeries one = sample(model, pattern, {.threads = 1});
+    for (const int threads : {2, 5}) {
+      const CommandSeries more = sample(model, pattern, {.threads = threads});
+      ASSERT_EQ(one.samples.size(), more.samples.size());
+      EXPECT_EQ(one.origin, more.origin);
+      for (size_t k = 0; k < one.samples.size(); ++k) {
+        const CommandSample &a = one.samples[k], &b = more.samples[k];
+        ASSERT_EQ(a.state.theta, b.state.theta) << k;
+        ASSERT_EQ(a.state.base.position, b.state.base.position) << k;
+        ASSERT_EQ(a.acceleration, b.acceleration) << k;
+        ASSERT_EQ(a.zmp, b.zmp) << k;
+        ASSERT_EQ(a.fz, b.fz) << k;
+      }
+    }
+  }
+}
+
+// Of several places that cannot be reached, the first is named.
+TEST(Sample, SameErrorForAnyNumberOfThreads) {
+  const RobotModel model = test::biped();
+  Pattern pattern = walk_pattern(model, short_walk());
+  const double level = default_cog_height(model, pattern);
+  const auto add = [&](double t, double height) {
+    Keyframe key;
+    key.t = t;
+    key.cog_height = height;
+    const auto after = std::find_if(pattern.keyframes.begin(), pattern.keyframes.end(),
+                                    [&](const Keyframe& other) { return other.t >= t - 1e-9; });
+    if (after != pattern.keyframes.end() && std::abs(after->t - t) < 1e-9)
+      after->cog_height = height;
+    else
+      pattern.keyframes.insert(after, key);
+  };
+  for (const double t : {0.0, 1.0, 2.0}) add(t, level);
+  for (const double t : {0.5, 1.5}) add(t, level + 0.08);
+  const auto message = [&](int threads) {
+    return test::error_message([&] { sample(model, pattern, {.threads = threads}); },
+                               ErrorCode::bad_pattern);
+  };
+  EXPECT_NE(message(1).find("out of reach"), std::string::npos) << message(1);
+  EXPECT_EQ(message(1), message(4));
 }
 
 TEST(Sample, EightSecondsInAboutOneSecond) {

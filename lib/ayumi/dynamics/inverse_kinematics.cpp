@@ -17,18 +17,26 @@ namespace ayumi {
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 namespace {
 
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
 
-// Residual at which Newton stops [m, rad]. Chosen: above the rounding of a leg's kinematics.
-constexpr double kNewtonTolerance = 1e-12;
+// Residual at which Newton stops [m, rad]. Chosen: above the rounding of a leg's kinematics, and
+// small enough for accelerations, which are differences at 1 kHz.
+constexpr double kNewtonTolerance = 1e-13;
+
+// Step after which Newton stops without looking at the residual [m, rad]. Derived: a step of s
+// leaves at most (6 s)^2 / 2 times the length of a leg in metres, below kNewtonTolerance for legs
+// up to 50 m.
+constexpr double kLastNewtonStep = 1e-8;
 
 // Residual that is accepted when rounding keeps it above kNewtonTolerance [m, rad]. Chosen: far
 // below the tolerances of the check.
 constexpr double kAcceptedResidual = 1e-10;
+
+// Most steps of Newton. Chosen: a few suffice near a solution, and damped steps follow.
+constexpr int kMostNewtonSteps = 25;
 
 // Largest step of a joint in one iteration [rad]. Chosen: Newton stays on its side of a straight
 // knee.
@@ -81,6 +89,33 @@ std::vector<int> coupled_joints(const RobotModel& model) {
   return coupled;
 }
 
+// Gauss' elimination with row pivots of [A, B], A square, in place: B becomes A^-1 B. Returns the
+// determinant of A; B has no meaning where it is 0.
+template <class Rows>
+double eliminate(Rows& rows) {
+  constexpr int n = Rows::RowsAtCompileTime, all = Rows::ColsAtCompileTime;
+  double determinant = 1;
+  for (int k = 0; k < n; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < n; ++i)
+      if (std::abs(rows(i, k)) > std::abs(rows(pivot, k))) pivot = i;
+    if (pivot != k) {
+      rows.row(k).swap(rows.row(pivot));
+      determinant = -determinant;
+    }
+    determinant *= rows(k, k);
+    if (determinant == 0) return 0;
+    const double inverse = 1 / rows(k, k);
+    for (int i = k + 1; i < n; ++i) rows.row(i) -= rows(i, k) * inverse * rows.row(k);
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    auto solved = rows.row(k).template tail<all - n>();
+    for (int i = k + 1; i < n; ++i) solved -= rows(k, i) * rows.row(i).template tail<all - n>();
+    solved *= 1 / rows(k, k);
+  }
+  return determinant;
+}
+
 }  // namespace
 
 InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& reference)
@@ -100,10 +135,42 @@ InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& re
     coupled_ = coupled_joints(model);
     for (const int dof : coupled_) solved_[dof] = true;
   }
+  if (square_)
+    for (const Side side : kSides) find_leg_bodies(side);
   RobotData data(model);
   find_knees(data);
   bend_straight_legs(data);
   bend_ = bend(data);
+}
+
+void InverseKinematics::find_leg_bodies(Side side) {
+  const std::vector<Body>& bodies = model_->bodies();
+  const std::vector<int>& leg = legs_[static_cast<int>(side)];
+  std::vector<int> column(bodies.size(), -1);
+  std::vector<bool> moved(bodies.size(), false), carries(bodies.size(), false);
+  for (int i = model_->sole(side).body; i > 0; i = bodies[i].parent) carries[i] = true;
+  for (size_t i = 1; i < bodies.size(); ++i) {
+    const auto found = std::find(leg.begin(), leg.end(), bodies[i].dof);
+    if (found != leg.end()) column[i] = static_cast<int>(found - leg.begin());
+    moved[i] = column[i] >= 0 || moved[bodies[i].parent];
+  }
+  for (size_t i = bodies.size() - 1; i > 0; --i)
+    if (moved[i])
+      leg_bodies_[static_cast<int>(side)].push_back(
+          {static_cast<int>(i), column[i], static_cast<bool>(carries[i])});
+  // A column of A is at most c = ratio sqrt(1 + r^2) long, r the distance from its joint to the
+  // sole, and changes by at most c per radian of each joint. So the determinant changes by at most
+  // 6 * 6 c^6 per radian of all joints, by Hadamard's inequality; the last 3 % are for squares of
+  // the step.
+  double reach = model_->sole(side).frame.translation().norm(), ratio = 1;
+  for (int i = model_->sole(side).body; i > 0; i = bodies[i].parent) {
+    if (!moved[i]) continue;
+    reach += bodies[i].placement.translation().norm();
+    ratio = std::max(ratio, std::abs(bodies[i].ratio));
+    if (bodies[i].prismatic) ratio = INFINITY;
+  }
+  largest_bend_rate_ =
+      std::max(largest_bend_rate_, 37 * std::pow(ratio * ratio * (1 + reach * reach), 3));
 }
 
 // The knee is the middle one of the first three joints of a leg whose axes lie across the trunk.
@@ -186,8 +253,9 @@ InverseKinematics::Residual InverseKinematics::residual(const PostureTarget& tar
         log_rotation(Eigen::Quaterniond(target.feet[s].linear() * sole.linear().transpose()));
   }
   e.cog = target.cog - data.cog;
-  e.trunk = log_rotation(
-      Eigen::Quaterniond(target.trunk * data.rotation[model_->trunk_body()].transpose()));
+  if (lacking_)
+    e.trunk = log_rotation(
+        Eigen::Quaterniond(target.trunk * data.rotation[model_->trunk_body()].transpose()));
   return e;
 }
 
@@ -213,49 +281,107 @@ MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side,
   return J;
 }
 
+// The same of a leg of six joints into the first columns of `rows`.
+void InverseKinematics::square_jacobian(const RobotData& data, Side side, SixRows& rows) const {
+  const Sole& sole = model_->sole(side);
+  const Vector3d p = data.position[sole.body] + data.rotation[sole.body] * sole.frame.translation();
+  auto J = rows.leftCols<6>();
+  J.setZero();
+  for (const LegBody& moved : leg_bodies_[static_cast<int>(side)]) {
+    if (!moved.carries || moved.column < 0) continue;
+    const Body& body = model_->bodies()[moved.body];
+    const Vector3d a = body.ratio * data.axis[moved.body];
+    if (body.prismatic) {
+      J.col(moved.column).head<3>() += a;
+    } else {
+      J.col(moved.column).head<3>() += a.cross(p - data.position[moved.body]);
+      J.col(moved.column).tail<3>() += a;
+    }
+  }
+}
+
+// Of the COG by the six joints of a leg with the base at rest: (6)(7), for what the leg moves.
+Eigen::Matrix<double, 3, 6> InverseKinematics::leg_cog_jacobian(RobotData& data, Side side) const {
+  const std::vector<LegBody>& leg = leg_bodies_[static_cast<int>(side)];
+  for (const LegBody& moved : leg)
+    data.composite[moved.body].moment =
+        model_->bodies()[moved.body].inertia.mass * data.com[moved.body];
+  const double per_mass = 1 / model_->mass();
+  Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
+  for (const LegBody& moved : leg) {
+    const Body& body = model_->bodies()[moved.body];
+    const double mass = data.subtree_mass[moved.body];
+    const Vector3d& moment = data.composite[moved.body].moment;
+    data.composite[body.parent].moment += moment;
+    if (moved.column < 0) continue;
+    const Vector3d a = body.ratio * per_mass * data.axis[moved.body];
+    if (body.prismatic)
+      J.col(moved.column) += mass * a;
+    else
+      J.col(moved.column) += a.cross(moment - mass * data.position[moved.body]);
+  }
+  return J;
+}
+
 std::array<double, 2> InverseKinematics::bend(const RobotData& data) const {
   if (!square_) return {knee_bend(data, Side::left), knee_bend(data, Side::right)};
-  return {Matrix6d(leg_jacobian(data, Side::left, legs_[0])).determinant(),
-          Matrix6d(leg_jacobian(data, Side::right, legs_[1])).determinant()};
+  std::array<double, 2> determinant;
+  for (const Side side : kSides) {
+    SixRows rows = SixRows::Zero();
+    square_jacobian(data, side, rows);
+    determinant[static_cast<int>(side)] = eliminate(rows);
+  }
+  return determinant;
 }
 
 void InverseKinematics::set_attitude(const PostureTarget& target, RobotState& state,
                                      RobotData& data) const {
-  update_positions(*model_, state, data);
   const int trunk = model_->trunk_body();
+  if (trunk == 0) {
+    state.base.attitude = Eigen::Quaterniond(target.trunk).normalized();
+    return;
+  }
+  update_positions(*model_, state, data);
   const Eigen::Matrix3d trunk_in_root = data.rotation[0].transpose() * data.rotation[trunk];
   state.base.attitude = Eigen::Quaterniond(target.trunk * trunk_in_root.transpose()).normalized();
 }
 
-bool InverseKinematics::newton(const PostureTarget& target, RobotState& state,
-                               RobotData& data) const {
-  double before = INFINITY;
-  for (int iteration = 0; iteration < 25; ++iteration) {
+// Fills the error of the solution and the bend of its legs. Returns whether it is reached.
+bool InverseKinematics::newton(const PostureTarget& target, RobotState& state, RobotData& data,
+                               double& error, std::array<double, 2>& legs_bend) const {
+  double before = INFINITY, longest = INFINITY;
+  for (int iteration = 0;; ++iteration) {
+    if (longest <= kLastNewtonStep) {
+      error = 0;
+      break;
+    }
     const Residual e = residual(target, state, data);
-    const double largest = e.largest();
-    if (largest <= kNewtonTolerance) return true;
-    if (iteration > 3 && largest > 0.5 * before) return largest <= kAcceptedResidual;
-    before = iteration > 1 ? largest : INFINITY;
-    const MatrixXd C = cog_jacobian_floating(*model_, data);
-    Eigen::Matrix<double, 6, 4> solved[2];  // A^-1 [E, e]
+    error = e.largest();
+    if (error <= kNewtonTolerance) break;
+    if (iteration > 3 && error > 0.5 * before) {
+      if (error <= kAcceptedResidual) break;
+      return false;
+    }
+    if (iteration == kMostNewtonSteps) return false;
+    before = iteration > 1 ? error : INFINITY;
+    SixRows solved[2];  // A^-1 [E, e]
     Eigen::Matrix3d S = Eigen::Matrix3d::Identity();
     Vector3d right = e.cog;
     for (int s = 0; s < 2; ++s) {
-      Eigen::Matrix<double, 6, 4> B = Eigen::Matrix<double, 6, 4>::Zero();
-      B.topLeftCorner<3, 3>().setIdentity();
-      B.col(3) = e.foot[s];
-      solved[s] = Matrix6d(leg_jacobian(data, kSides[s], legs_[s])).partialPivLu().solve(B);
-      for (int i = 0; i < 6; ++i) {
-        const Vector3d c = C.col(6 + legs_[s][i]);
-        S -= c * solved[s].row(i).head<3>();
-        right -= c * solved[s](i, 3);
-      }
+      square_jacobian(data, kSides[s], solved[s]);
+      solved[s].middleCols<3>(6) << Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero();
+      solved[s].col(9) = e.foot[s];
+      legs_bend[s] = eliminate(solved[s]);
+      if (legs_bend[s] == 0) return false;
+      const Eigen::Matrix<double, 3, 6> C = leg_cog_jacobian(data, kSides[s]);
+      S.noalias() -= C.lazyProduct(solved[s].middleCols<3>(6));
+      right.noalias() -= C.lazyProduct(solved[s].col(9));
     }
-    const Vector3d dp = S.partialPivLu().solve(right);
+    const Vector3d dp = S.inverse() * right;
     Eigen::Matrix<double, 6, 1> dq[2];
-    double longest = 0;
+    longest = 0;
     for (int s = 0; s < 2; ++s) {
-      dq[s] = solved[s].col(3) - solved[s].leftCols<3>() * dp;
+      dq[s] = solved[s].col(9) - solved[s].middleCols<3>(6).lazyProduct(dp);
       longest = std::max(longest, dq[s].cwiseAbs().maxCoeff());
     }
     if (!std::isfinite(longest) || !dp.allFinite()) return false;
@@ -264,7 +390,14 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state,
     for (int s = 0; s < 2; ++s)
       for (int i = 0; i < 6; ++i) state.theta[legs_[s][i]] += scale * dq[s][i];
   }
-  return false;
+  // The determinants of the posture before the last step count where that step cannot have changed
+  // their signs.
+  const double change = largest_bend_rate_ * longest;
+  if (!(std::min(std::abs(legs_bend[0]), std::abs(legs_bend[1])) > change)) {
+    update_positions(*model_, state, data);
+    legs_bend = bend(data);
+  }
+  return true;
 }
 
 // Levenberg-Marquardt on all residuals, the COG weighted, inside the position limits: a joint at
@@ -363,33 +496,35 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
   // A leaning trunk is kept as the initial guess.
   if (!lacking_ || residual(target, state, data).trunk.norm() > kLargestJointStep)
     set_attitude(target, state, data);
-  const VectorXd warm = state.theta;
-  if (square_) solution.reached = newton(target, state, data);
+  std::array<double, 2> now;
+  if (square_) solution.reached = newton(target, state, data, solution.error, now);
   if (!solution.reached) {
-    for (int dof = 0; dof < model_->dof_count(); ++dof)
-      state.theta[dof] = solved_[dof] && square_ ? start_[dof] : warm[dof];
-    if (square_) state.base.position = target.cog - (data.cog - data.base_position);
+    if (square_) {
+      for (int dof = 0; dof < model_->dof_count(); ++dof)
+        if (solved_[dof]) state.theta[dof] = start_[dof];
+      state.base.position = target.cog - (data.cog - data.base_position);
+    }
     solution.reached =
         damped(target, state, data) <= (lacking_ ? kLackingTolerance : kAcceptedResidual);
+    const Residual e = residual(target, state, data);
+    solution.error = e.largest();
+    solution.lean = e.trunk.norm();
+    const double miss[2] = {e.foot[0].head<3>().norm(), e.foot[1].head<3>().norm()};
+    solution.foot = miss[0] >= miss[1] ? Side::left : Side::right;
+    solution.missing = std::max(miss[0], miss[1]);
+    for (const int dof : legs_[static_cast<int>(solution.foot)]) {
+      const Dof& joint = model_->dofs()[dof];
+      if (state.theta[dof] <= joint.lower || state.theta[dof] >= joint.upper)
+        solution.at_limit = dof;
+    }
+    now = bend(data);
   }
-  const Residual e = residual(target, state, data);
-  solution.error = e.largest();
-  solution.lean = e.trunk.norm();
-  const double miss[2] = {e.foot[0].head<3>().norm(), e.foot[1].head<3>().norm()};
-  solution.foot = miss[0] >= miss[1] ? Side::left : Side::right;
-  solution.missing = std::max(miss[0], miss[1]);
-  for (const int dof : legs_[static_cast<int>(solution.foot)]) {
-    const Dof& joint = model_->dofs()[dof];
-    if (state.theta[dof] <= joint.lower || state.theta[dof] >= joint.upper) solution.at_limit = dof;
-  }
-  if (solution.reached) {
-    const auto now = bend(data);
+  if (solution.reached)
     for (int s = 0; s < 2; ++s)
       if (now[s] * bend_[s] < 0 || (square_ && now[s] * bend_[s] == 0)) {
         solution.knee_flipped = true;
         solution.foot = kSides[s];
       }
-  }
   return solution;
 }
 

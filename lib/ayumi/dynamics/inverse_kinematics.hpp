@@ -18,8 +18,9 @@ struct PostureTarget {
 
 struct PostureSolution {
   bool reached = false;
-  double error = 0;           ///< largest residual component of the soles and the COG [m, rad]
-  double lean = 0;            ///< of the trunk from its target, where the legs lack joints [rad]
+  double error = 0;           ///< largest residual component of the soles and the COG [m, rad]; 0
+                              ///< where rounding is all that is left
+  double lean = 0;            ///< of the trunk from its target; 0 unless legs lack joints [rad]
   Side foot = Side::left;     ///< that is out of reach when not reached
   double missing = 0;         ///< of that foot, COG held [m]
   int at_limit = -1;          ///< joint of that leg that is at its position limit; -1: none
@@ -55,23 +56,36 @@ class InverseKinematics {
   const Eigen::VectorXd& start() const { return start_; }
 
   /// Newton on base position and leg joints, warm from `state`; other joints are read from it, the
-  /// base attitude follows from `target.trunk`. Six-joint legs meet the target to 1e-12. Others are
+  /// base attitude follows from `target.trunk`. Six-joint legs meet the target to 1e-13. Others are
   /// solved as damped least squares inside the position limits: legs with more joints meet the
   /// target, legs with fewer joints come within kLackingTolerance. `state` is only meaningful when
-  /// the solution says reached.
+  /// the solution says reached; `data` is a workspace.
   PostureSolution solve(const PostureTarget& target, RobotState& state, RobotData& data) const;
 
  private:
   struct Residual {
     Eigen::Matrix<double, 6, 1> foot[2];
-    Eigen::Vector3d cog, trunk;
+    Eigen::Vector3d cog;
+    Eigen::Vector3d trunk = Eigen::Vector3d::Zero();  ///< only where legs lack joints
     double largest() const;
   };
+  /// The Jacobian of a leg of six joints and four right sides.
+  using SixRows = Eigen::Matrix<double, 6, 10, Eigen::RowMajor>;
+  /// A body that the joints of a leg move.
+  struct LegBody {
+    int body = -1;
+    int column = -1;       ///< of its joint among the leg's; -1: not one of them
+    bool carries = false;  ///< the sole
+  };
   Residual residual(const PostureTarget& target, const RobotState& state, RobotData& data) const;
-  bool newton(const PostureTarget& target, RobotState& state, RobotData& data) const;
+  bool newton(const PostureTarget& target, RobotState& state, RobotData& data, double& error,
+              std::array<double, 2>& legs_bend) const;
   double damped(const PostureTarget& target, RobotState& state, RobotData& data) const;
   Eigen::MatrixXd leg_jacobian(const RobotData& data, Side side, const std::vector<int>& leg) const;
+  void square_jacobian(const RobotData& data, Side side, SixRows& rows) const;
+  Eigen::Matrix<double, 3, 6> leg_cog_jacobian(RobotData& data, Side side) const;
   std::array<double, 2> bend(const RobotData& data) const;
+  void find_leg_bodies(Side side);
   void find_knees(RobotData& data);
   void bend_straight_legs(RobotData& data);
   double knee_bend(const RobotData& data, Side side) const;
@@ -79,6 +93,7 @@ class InverseKinematics {
 
   const RobotModel* model_;
   std::array<std::vector<int>, 2> legs_;
+  std::array<std::vector<LegBody>, 2> leg_bodies_;  ///< leaves first
   std::vector<int> coupled_;
   std::vector<bool> solved_;
   bool square_ = false;   ///< both legs have six joints
@@ -88,6 +103,7 @@ class InverseKinematics {
   std::array<int, 2> knee_hips_ = {-1, -1};  ///< and above them
   std::array<double, 2> forward_ = {0, 0};
   Eigen::VectorXd start_;
+  double largest_bend_rate_ = 0;         ///< change of those determinants per radian
   std::array<double, 2> bend_ = {0, 0};  ///< sign of the leg Jacobian's determinant, of the knee
 };
 

@@ -106,28 +106,11 @@ void TreeDynamics::mass_matrix(const RobotState& state, MatrixXd& M) {
   ayumi::mass_matrix(*model_, data_, M);
 }
 
-void TreeDynamics::inverse(std::span<const RobotState> states, const MatrixXd& acceleration,
-                           MatrixXd& force) {
-  batch(states, acceleration, force, nullptr, false);
-}
-
-void TreeDynamics::forward(std::span<const RobotState> states, const MatrixXd& force,
-                           MatrixXd& acceleration, const JointDrive* drive) {
-  if (!tied()) return batch(states, force, acceleration, drive, true);
-  acceleration.resize(model_->velocity_count(), static_cast<Eigen::Index>(states.size()));
-  VectorXd column;
-  for (size_t k = 0; k < states.size(); ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    without_friction_ = force.col(at);
-    solve_tied(states[k], without_friction_, column, drive);
-    acceleration.col(at) = column;
-  }
-}
-
-void TreeDynamics::batch(std::span<const RobotState> states, const MatrixXd& input,
+// State and input of number k: state_of(k) and 6+dof numbers from input_of(k).
+template <class StateOf, class InputOf>
+void TreeDynamics::batch(int count, const StateOf& state_of, const InputOf& input_of,
                          MatrixXd& output, const JointDrive* drive, bool forward) {
   const int n = model_->dof_count(), width = kernels_->width;
-  const int count = static_cast<int>(states.size());
   output.resize(6 + n, count);
   double* attitude = packed_.data();
   double* angular = attitude + 4 * width;
@@ -141,10 +124,10 @@ void TreeDynamics::batch(std::span<const RobotState> states, const MatrixXd& inp
   for (int first = 0; first < count; first += width) {
     for (int lane = 0; lane < width; ++lane) {
       const int k = std::min(first + lane, count - 1);  // the last group is filled up with copies
-      const RobotState& s = states[static_cast<size_t>(k)];
+      const RobotState& s = state_of(k);
       for (int i = 0; i < 4; ++i) attitude[i * width + lane] = s.base.attitude.coeffs()[i];
       for (int i = 0; i < 3; ++i) angular[i * width + lane] = s.base_angular_velocity[i];
-      const double* from = input.data() + static_cast<Eigen::Index>(k) * (6 + n);
+      const double* from = input_of(k);
       for (int i = 0; i < 6 + n; ++i) in[i * width + lane] = from[i];
       for (int j = 0; j < n; ++j) {
         theta[j * width + lane] = s.theta[j];
@@ -157,6 +140,36 @@ void TreeDynamics::batch(std::span<const RobotState> states, const MatrixXd& inp
       double* to = output.data() + static_cast<Eigen::Index>(first + lane) * (6 + n);
       for (int i = 0; i < 6 + n; ++i) to[i] = out[i * width + lane];
     }
+  }
+}
+
+void TreeDynamics::inverse(std::span<const RobotState> states, const MatrixXd& acceleration,
+                           MatrixXd& force) {
+  batch(
+      static_cast<int>(states.size()), [&](int k) -> const RobotState& { return states[k]; },
+      [&](int k) { return acceleration.col(k).data(); }, force, nullptr, false);
+}
+
+void TreeDynamics::inverse(std::span<const Motion> motions, MatrixXd& force) {
+  batch(
+      static_cast<int>(motions.size()),
+      [&](int k) -> const RobotState& { return *motions[k].state; },
+      [&](int k) { return motions[k].acceleration->data(); }, force, nullptr, false);
+}
+
+void TreeDynamics::forward(std::span<const RobotState> states, const MatrixXd& force,
+                           MatrixXd& acceleration, const JointDrive* drive) {
+  if (!tied())
+    return batch(
+        static_cast<int>(states.size()), [&](int k) -> const RobotState& { return states[k]; },
+        [&](int k) { return force.col(k).data(); }, acceleration, drive, true);
+  acceleration.resize(model_->velocity_count(), static_cast<Eigen::Index>(states.size()));
+  VectorXd column;
+  for (size_t k = 0; k < states.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    without_friction_ = force.col(at);
+    solve_tied(states[k], without_friction_, column, drive);
+    acceleration.col(at) = column;
   }
 }
 

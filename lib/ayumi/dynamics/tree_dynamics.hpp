@@ -69,6 +69,14 @@ class TreeDynamics {
   void forward(std::span<const RobotState> states, const Eigen::MatrixXd& force,
                Eigen::MatrixXd& acceleration, const JointDrive* drive = nullptr);
 
+  /// A state and an acceleration (6+dof) that lie elsewhere.
+  struct Motion {
+    const RobotState* state;
+    const Eigen::VectorXd* acceleration;
+  };
+  /// inverse() for many of them.
+  void inverse(std::span<const Motion> motions, Eigen::MatrixXd& force);
+
  private:
   struct alignas(64) Line {
     double number[8];
@@ -87,8 +95,9 @@ class TreeDynamics {
   void add_columns(size_t i, const Eigen::Vector3d& w0, InverseDynamicsDerivatives& d) const;
   void finish_base(const RobotState& state, const Eigen::VectorXd& acceleration,
                    InverseDynamicsDerivatives& d) const;
-  void batch(std::span<const RobotState> states, const Eigen::MatrixXd& input,
-             Eigen::MatrixXd& output, const JointDrive* drive, bool forward);
+  template <class StateOf, class InputOf>
+  void batch(int count, const StateOf& state_of, const InputOf& input_of, Eigen::MatrixXd& output,
+             const JointDrive* drive, bool forward);
   void solve_tied(const RobotState& state, const Eigen::VectorXd& force,
                   Eigen::VectorXd& acceleration, const JointDrive* drive);
   void factor(const JointDrive* drive);

@@ -6,10 +6,10 @@
 #include <map>
 #include <optional>
 
+#include "ayumi/base/in_parallel.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/identify/recording_checks.hpp"
 #include "ayumi/identify/servo_fit.hpp"
-#include "ayumi/study/in_parallel.hpp"
 
 namespace ayumi {
 

@@ -113,12 +113,23 @@ Track::Track(std::vector<TrackKey> keys) : keys_(std::move(keys)) {
   }
 }
 
+// Index of the last key at or before t, which lies between the first and the last key. The key of
+// evenly spaced ones is found at once.
+size_t Track::segment_at(double t) const {
+  const double first = keys_.front().t;
+  const double share = (t - first) / (keys_.back().t - first);
+  const auto guess = static_cast<size_t>(share * static_cast<double>(segments_.size()));
+  for (size_t i = guess > 0 ? guess - 1 : 0; i <= guess + 1 && i < segments_.size(); ++i)
+    if (keys_[i].t <= t && t < keys_[i + 1].t) return i;
+  const auto after = std::upper_bound(
+      keys_.begin(), keys_.end(), t, [](double time, const TrackKey& key) { return time < key.t; });
+  return static_cast<size_t>(after - keys_.begin()) - 1;
+}
+
 TrackPoint Track::at(double t) const {
   if (t <= keys_.front().t) return {keys_.front().value, 0, 0};
   if (t >= keys_.back().t) return {keys_.back().value, 0, 0};
-  const auto after = std::upper_bound(
-      keys_.begin(), keys_.end(), t, [](double time, const TrackKey& key) { return time < key.t; });
-  const auto i = static_cast<size_t>(after - keys_.begin()) - 1;
+  const size_t i = segment_at(t);
   const double length = keys_[i + 1].t - keys_[i].t;
   const double u = (t - keys_[i].t) / length;
   const auto& c = segments_[i];

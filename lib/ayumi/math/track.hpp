@@ -39,6 +39,8 @@ class Track {
   const std::vector<TrackKey>& keys() const { return keys_; }
 
  private:
+  size_t segment_at(double t) const;
+
   std::vector<TrackKey> keys_;
   std::vector<std::array<double, 6>> segments_;  ///< coefficients in u = (t - t0)/(t1 - t0)
 };

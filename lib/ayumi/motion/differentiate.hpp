@@ -1,8 +1,10 @@
 #pragma once
 // Rates of a sampled motion, and the ground reaction of the full model for it.
 
+#include <span>
 #include <vector>
 
+#include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/motion/command_series.hpp"
 
@@ -13,9 +15,16 @@ namespace ayumi {
 /// otherwise it continues as a cubic.
 void fill_rates(std::vector<CommandSample>& samples, double dt, bool rest_ends);
 
+/// The same for the samples from `first` to before `end`. Threads may fill different samples.
+void fill_rates(std::vector<CommandSample>& samples, int first, int end, double dt, bool rest_ends);
+
 /// ZMP at the height of `sample.zmp` and ground force that the full model needs. Below 5 % of the
 /// weight, as in flight, the ZMP is the point under the base.
 GroundReaction full_model_reaction(const RobotModel& model, const CommandSample& sample,
                                    RobotData& data);
+
+/// The same of many samples, to rounding, and much faster. `dynamics` is that of `model`.
+void full_model_reactions(const RobotModel& model, std::span<const CommandSample> samples,
+                          TreeDynamics& dynamics, std::vector<GroundReaction>& reactions);
 
 }  // namespace ayumi

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
+#include <span>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -27,13 +29,20 @@ VectorXd keyed_joints(const SampleJob& job, double t) {
   return theta;
 }
 
-Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t) {
+void put_plan(const SampleJob& job, double t, CommandSample& sample) {
+  sample.feet = job.feet.poses(t);
+  sample.support = job.feet.support(t);
+  for (int dof = 0; dof < job.model.dof_count(); ++dof)
+    if (!job.ik.solves(dof)) sample.state.theta[dof] = job.tracks.joints[dof].at(t).value;
+}
+
+Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t,
+                               const std::array<Eigen::Isometry3d, 2>& feet) {
   if (job.tracks.torso) {
     const auto& torso = *job.tracks.torso;
     return rpy_to_matrix({torso[0].at(t).value, torso[1].at(t).value, torso[2].at(t).value});
   }
-  const Vector3d heading =
-      job.feet.pose(Side::left, t).linear().col(0) + job.feet.pose(Side::right, t).linear().col(0);
+  const Vector3d heading = feet[0].linear().col(0) + feet[1].linear().col(0);
   return rpy_to_matrix({0, 0, std::atan2(heading.y(), heading.x())});
 }
 
@@ -72,15 +81,45 @@ PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matri
   PostureTarget target;
   target.trunk = trunk;
   target.cog = sample.cog;
-  for (const Side side : {Side::left, Side::right})
-    target.feet[static_cast<int>(side)] = job.feet.pose(side, t);
-  sample.feet = target.feet;
-  sample.support = job.feet.support(t);
-  for (int dof = 0; dof < job.model.dof_count(); ++dof)
-    if (!job.ik.solves(dof)) sample.state.theta[dof] = job.tracks.joints[dof].at(t).value;
+  target.feet = sample.feet;
   const PostureSolution solution = job.ik.solve(target, sample.state, data);
   if (!solution.reached || solution.knee_flipped) complain_reach(job, t, sample, solution);
   return solution;
+}
+
+namespace {
+
+/// Largest change of an angle [rad] or place [m] from one step to the next that is extrapolated;
+/// keys that hold let the trunk jump. Chosen: 20 rad/s at 1 kHz, above the speed of servos. Figures
+/// change by rounding only.
+constexpr double kLargestChange = 0.02;
+
+}  // namespace
+
+VectorXd posture_of(const CommandSample& sample) {
+  VectorXd x(3 + sample.state.theta.size());
+  x << sample.state.base.position - sample.cog, sample.state.theta;
+  return x;
+}
+
+void continue_posture(const Extrapolation& postures, CommandSample& sample) {
+  VectorXd guess;
+  postures.next(guess);
+  sample.state.base.position = sample.cog + guess.head<3>();
+  sample.state.theta = guess.tail(guess.size() - 3);
+}
+
+void Extrapolation::add(const VectorXd& x) { last_[count_++ % 4] = x; }
+
+void Extrapolation::next(VectorXd& guess) const {
+  guess = before(1);
+  if (count_ == 2)
+    guess += before(1) - before(2);
+  else if (count_ == 3)
+    guess += 2 * before(1) - 3 * before(2) + before(3);
+  else if (count_ > 3)
+    guess += 3 * before(1) - 6 * before(2) + 4 * before(3) - before(4);
+  if (!((guess - before(1)).cwiseAbs().maxCoeff() <= kLargestChange)) guess = before(1);
 }
 
 namespace {
@@ -118,58 +157,102 @@ void require_body_tracks(const SampleJob& job) {
 // Lean [rad] and miss [m] of a motion that are worth a sentence. Chosen: what a person sees.
 constexpr double kNotedLean = 1e-3, kNotedMiss = 1e-5;
 
-// Largest figures of a motion by legs that lack joints.
-struct Compromise {
-  double miss = 0;  // of a sole [m]
-  double lean = 0;  // of the trunk [rad]
+// Largest figures of a motion.
+struct Worst {
+  double miss = 0;  // of a sole, by legs that lack joints [m]
+  double lean = 0;  // of the trunk, by legs that lack joints [rad]
+  double zmp = 0;   // error of the full model in the solved axes [m]
+
+  void include(const Worst& other) {
+    miss = std::max(miss, other.miss);
+    lean = std::max(lean, other.lean);
+    zmp = std::max(zmp, other.zmp);
+  }
 };
 
-Compromise solve_samples(const SampleJob& job, const CogPlan& plan, CommandSeries& series) {
-  RobotData data(job.model);
-  Compromise most;
-  for (int k = 0; k < job.count; ++k) {
-    if (k % 256 == 0) report(job.progress, {"sample", static_cast<double>(k) / job.count, ""});
-    const double t = k * job.dt;
-    CommandSample& sample = series.samples[k];
-    sample.state = k > 0 ? series.samples[k - 1].state : job.model.rest_state();
-    if (k == 0) sample.state.theta = job.ik.start();
-    sample.cog = {plan.cog[0].at(t).value, plan.cog[1].at(t).value, plan.cog[2].at(t).value};
-    if (k > 0) sample.state.base.position += sample.cog - series.samples[k - 1].cog;
-    const PostureSolution solution = solve_posture(job, t, plan.trunk_at(job, t), sample, data);
-    most.miss = std::max(most.miss, solution.missing);
-    most.lean = std::max(most.lean, solution.lean);
-  }
-  fill_rates(series.samples, job.dt, job.tracks.rest_ends);
-  return most;
+Vector3d cog_at(const CogPlan& plan, double t) {
+  return {plan.cog[0].at(t).value, plan.cog[1].at(t).value, plan.cog[2].at(t).value};
 }
 
-// Fills commanded ZMP and f_z; returns the largest ZMP error of the full model in the solved axes.
-double fill_ground(const SampleJob& job, const CogPlan& plan, CommandSeries& series) {
+// The posture at the start of a block: that of the grid, or at rest.
+RobotState start_of_block(const SampleJob& job, const CogPlan& plan, int first) {
+  if (!plan.postures.empty()) {
+    const double share = static_cast<double>(first) / (job.count - 1);
+    return plan.postures[std::lround(share * static_cast<double>(plan.postures.size() - 1))];
+  }
+  RobotState state = job.model.rest_state();
+  state.theta = job.ik.start();
+  return state;
+}
+
+// Solves the postures of the samples from `first` to before `end`.
+Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
+                  CommandSeries& series) {
   RobotData data(job.model);
-  double worst = 0;
-  for (int k = 0; k < job.count; ++k) {
+  Extrapolation postures;
+  Worst worst;
+  for (int k = first; k < end; ++k) {
+    const double t = k * job.dt;
+    CommandSample& sample = series.samples[k];
+    sample.state = k > first ? series.samples[k - 1].state : start_of_block(job, plan, first);
+    sample.cog = cog_at(plan, t);
+    if (k > first) continue_posture(postures, sample);
+    put_plan(job, t, sample);
+    const PostureSolution solution =
+        solve_posture(job, t, plan.turned(t, trunk_attitude(job, t, sample.feet)), sample, data);
+    worst.include({.miss = solution.missing, .lean = solution.lean});
+    postures.add(posture_of(sample));
+  }
+  return worst;
+}
+
+// Fills rates, commanded ZMP and f_z of the samples from `first` to before `end`.
+Worst fill_block(const SampleJob& job, const CogPlan& plan, int first, int end,
+                 CommandSeries& series) {
+  fill_rates(series.samples, first, end, job.dt, job.tracks.rest_ends);
+  for (int k = first; k < end; ++k) {
     const double t = k * job.dt;
     CommandSample& sample = series.samples[k];
     sample.zmp = plan.zmp_at(t);
     sample.fz = job.tracks.fz ? job.tracks.fz->at(t).value
                               : job.model.mass() * (sample.ddcog.z() + kGravity);
     if (sample.support == Support::none && !job.tracks.fz) sample.fz = 0;
+  }
+  TreeDynamics dynamics(job.model);
+  std::vector<GroundReaction> reactions;
+  full_model_reactions(job.model, std::span(series.samples).subspan(first, end - first), dynamics,
+                       reactions);
+  Worst worst;
+  for (int k = first; k < end; ++k) {
+    CommandSample& sample = series.samples[k];
     if (sample.support == Support::none) continue;
-    const GroundReaction reaction = full_model_reaction(job.model, sample, data);
-    const Vector3d full = reaction.zmp;
-    const bool weak = reaction.force.z() < kZmpShare * job.model.mass() * kGravity;
+    const GroundReaction& full = reactions[k - first];
+    const bool weak = full.force.z() < kZmpShare * job.model.mass() * kGravity;
     for (int axis = 0; axis < 2; ++axis) {
       if (plan.solved[axis] && weak) continue;
       if (plan.solved[axis])
-        worst = std::max(worst, std::abs(full[axis] - sample.zmp[axis]));
+        worst.zmp = std::max(worst.zmp, std::abs(full.zmp[axis] - sample.zmp[axis]));
       else if (!job.tracks.zmp)
-        sample.zmp[axis] = full[axis];
+        sample.zmp[axis] = full.zmp[axis];
     }
   }
   return worst;
 }
 
-void describe(const SampleJob& job, const CogPlan& plan, double worst, const Compromise& most,
+// Work(first, end) returns the worst of its samples.
+template <class Work>
+Worst worst_of_blocks(const SampleJob& job, int block, const Work& work) {
+  std::mutex mutex;
+  Worst worst;
+  in_blocks(job, "sample", job.count, block, [&](int first, int end) {
+    const Worst here = work(first, end);
+    const std::lock_guard lock(mutex);
+    worst.include(here);
+  });
+  return worst;
+}
+
+void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
               CommandSeries& series) {
   auto& origin = series.origin;
   const bool any = plan.solved[0] || plan.solved[1];
@@ -180,7 +263,7 @@ void describe(const SampleJob& job, const CogPlan& plan, double worst, const Com
     const std::string solved =
         "solved" + axes + " from " + source +
         (job.pattern.full_model ? " for the full model" : " by the point-mass law (14)(15)") +
-        " (worst ZMP error " + millimetres(worst) + ")";
+        " (worst ZMP error " + millimetres(worst.zmp) + ")";
     origin["cog"] = both ? solved : "keys; " + solved;
   }
   if (!job.tracks.zmp)
@@ -202,15 +285,15 @@ void describe(const SampleJob& job, const CogPlan& plan, double worst, const Com
   }
   origin["feet"] = "phases and swings";
   origin["base"] = "solved from feet, torso and COG";
-  if (job.ik.lacks_joints() && (most.lean > kNotedLean || most.miss > kNotedMiss)) {
+  if (job.ik.lacks_joints() && (worst.lean > kNotedLean || worst.miss > kNotedMiss)) {
     const size_t joints = std::min(job.ik.leg(Side::left).size(), job.ik.leg(Side::right).size());
     origin["legs"] =
         "a leg has " + std::to_string(joints) +
         (job.ik.coupled().empty() ? " joints, not six,"
                                   : " joints of its own and one that moves both legs, not six,") +
         " and cannot place a level sole anywhere: the trunk leans by up to " +
-        text::fixed(most.lean * 180 / std::numbers::pi, 1) +
-        " deg, and soles miss their places by up to " + millimetres(most.miss) + " (allowed " +
+        text::fixed(worst.lean * 180 / std::numbers::pi, 1) +
+        " deg, and soles miss their places by up to " + millimetres(worst.miss) + " (allowed " +
         millimetres(kLackingTolerance) + ")";
   }
   origin["joints"] = "legs by inverse kinematics, others from keys and default posture";
@@ -230,9 +313,14 @@ CommandSeries sample_body_driven(const SampleJob& job) {
   series.samples.resize(job.count);
   series.origin = job.tracks.origin;
   const CogPlan plan = plan_cog(job);
-  const Compromise most = solve_samples(job, plan, series);
-  const double worst = fill_ground(job, plan, series);
-  describe(job, plan, worst, most, series);
+  report(job.progress, {"sample", 0, ""});
+  // Without postures of a grid, each sample is solved from the one before it.
+  Worst worst = worst_of_blocks(job, plan.postures.empty() ? 0 : kBlock, [&](int first, int end) {
+    return solve_block(job, plan, first, end, series);
+  });
+  worst.include(worst_of_blocks(
+      job, kBlock, [&](int first, int end) { return fill_block(job, plan, first, end, series); }));
+  describe(job, plan, worst, series);
   return series;
 }
 

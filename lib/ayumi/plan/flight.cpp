@@ -53,16 +53,20 @@ class FlightTurn {
 
   /// Rate of the turn with zero angular momentum at t, for a trunk that is turned by `turn`.
   Vector3d rate(double t, const Vector3d& turn) {
-    const Matrix3d trunk = exp_rotation(turn).toRotationMatrix() * trunk_attitude(job_, t);
+    put_plan(job_, t, sample_);
+    const Matrix3d trunk =
+        exp_rotation(turn).toRotationMatrix() * trunk_attitude(job_, t, sample_.feet);
     const auto cog = cog_(t);
     const Vector3d place(cog[0].value, cog[1].value, cog[2].value);
     sample_.state.base.position += place - sample_.cog;
     sample_.cog = place;
     solve_posture(job_, t, trunk, sample_, data_);
+    update_positions(job_.model, sample_.state, data_);
     const Vector3d velocity(cog[0].rate, cog[1].rate, cog[2].rate);
     const Vector3d omega = trunk_rate(t, velocity);
-    const Vector3d planned = rotation_rate(trunk_attitude(job_, t - kDifference),
-                                           trunk_attitude(job_, t + kDifference), 2 * kDifference);
+    const auto attitude = [&](double at) { return trunk_attitude(job_, at, job_.feet.poses(at)); };
+    const Vector3d planned =
+        rotation_rate(attitude(t - kDifference), attitude(t + kDifference), 2 * kDifference);
     const Vector3d relative = omega - exp_rotation(turn) * planned;
     return relative - 0.5 * turn.cross(relative) + turn.cross(turn.cross(relative)) / 12;
   }

@@ -126,8 +126,11 @@ void FootPlan::read_phases(const Pattern& pattern) {
       if (!finite(swing.to) || !std::isfinite(swing.lift) || swing.lift < 0)
         complain(pattern, place + "/swing", "a number is not finite or the lift is below 0");
       const int foot = index(swing.foot);
-      moves_[foot].push_back({begin, phase.until, now[foot], pose_of(swing.to), swing.lift});
-      now[foot] = pose_of(swing.to);
+      const Isometry3d to = pose_of(swing.to);
+      const Vector3d turn =
+          log_rotation(Eigen::Quaterniond(now[foot].linear().transpose() * to.linear()));
+      moves_[foot].push_back({begin, phase.until, now[foot], to, swing.lift, turn});
+      now[foot] = to;
     }
     begin = phase.until;
   }
@@ -181,12 +184,10 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
 }
 
 const FootPlan::Move* FootPlan::move_at(Side side, double t) const {
-  const Move* last = nullptr;
-  for (const Move& move : moves_[index(side)]) {
-    if (move.begin > t) break;
-    last = &move;
-  }
-  return last;
+  const std::vector<Move>& moves = moves_[index(side)];
+  const auto next = std::partition_point(moves.begin(), moves.end(),
+                                         [&](const Move& move) { return move.begin <= t; });
+  return next == moves.begin() ? nullptr : &*std::prev(next);
 }
 
 Isometry3d FootPlan::pose(Side side, double t) const {
@@ -208,10 +209,8 @@ Isometry3d FootPlan::pose_without_flight(Side side, double t) const {
   if (!move) return start_[index(side)];
   if (t >= move->end) return move->to;
   const double s = along_ground((t - move->begin) / (move->end - move->begin));
-  const Vector3d turn =
-      log_rotation(Eigen::Quaterniond(move->from.linear().transpose() * move->to.linear()));
   Isometry3d pose = Isometry3d::Identity();
-  pose.linear() = move->from.linear() * exp_rotation(s * turn).toRotationMatrix();
+  pose.linear() = move->from.linear() * exp_rotation(s * move->turn).toRotationMatrix();
   pose.translation() = (1 - s) * move->from.translation() + s * move->to.translation();
   pose.translation().z() += swing_lift(side, t);
   return pose;
@@ -259,8 +258,9 @@ Vector3d FootPlan::support_center(double t) const {
 }
 
 int FootPlan::phase(double t) const {
-  const auto found = std::find_if(phases_.begin(), phases_.end(),
-                                  [&](const Phase& phase) { return t < phase.until - kInstant; });
+  const auto found = std::partition_point(phases_.begin(), phases_.end(), [&](const Phase& phase) {
+    return t >= phase.until - kInstant;
+  });
   return static_cast<int>(
       std::min<std::ptrdiff_t>(found - phases_.begin(), static_cast<int>(phases_.size()) - 1));
 }

@@ -39,6 +39,10 @@ class FootPlan {
   /// neither swings nor has keys in a flight follows the COG's parabola, faded in and out over 40
   /// ms, and rises as high as the COG.
   Eigen::Isometry3d pose(Side side, double t) const;
+  /// Of both sides.
+  std::array<Eigen::Isometry3d, 2> poses(double t) const {
+    return {pose(Side::left, t), pose(Side::right, t)};
+  }
 
   /// Mean height of both soles without lifts, which is the ground under the robot [m].
   double ground(double t) const;
@@ -60,6 +64,7 @@ class FootPlan {
     double begin = 0, end = 0;
     Eigen::Isometry3d from, to;
     double lift = 0;
+    Eigen::Vector3d turn;  ///< rotation vector from `from` to `to`, in the axes of `from` [rad]
   };
   struct KeyedFoot {
     std::array<Track, 3> position, rpy;

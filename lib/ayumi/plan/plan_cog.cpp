@@ -4,6 +4,8 @@
 // motion.
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <span>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -33,6 +35,8 @@ constexpr double kZmpGoal = 1e-4;
 /// Largest number of passes. Chosen: each pass reduces the error to a fraction, and passes end
 /// earlier when two in a row do not. No measured case changes from half to twice (constants.md).
 constexpr int kMostIterations = 12;
+
+constexpr const char* kStage = "solve the COG";
 
 // The plan on a uniform grid over the whole pattern.
 struct Grid {
@@ -85,13 +89,18 @@ struct CogSolver {
   Grid grid;
   VectorXd w2;
   std::array<VectorXd, 3> cog;
+  std::vector<CommandSample> samples = {};  // of the last pass
+  std::vector<Eigen::Matrix3d> trunk = {};  // as the pattern asks for it
+  std::array<VectorXd, 2> error = {};       // cmd ZMP - full-model ZMP in the solved axes
 
   void read_tracks();
   void put_tracks();
   void turn_trunk();
   void add_solution(int axis, const VectorXd& z);
-  void solve_postures(bool first, std::vector<CommandSample>& samples) const;
-  double measure(std::vector<CommandSample>& samples, std::array<VectorXd, 2>& error) const;
+  void solve_first();
+  void solve_again(int first, int end);
+  double measure(int first, int end);
+  double measure();
   void correct();
 };
 
@@ -123,34 +132,63 @@ void CogSolver::turn_trunk() {
   plan.turn = turn_around_flights(job, plan);
 }
 
-void CogSolver::solve_postures(bool first, std::vector<CommandSample>& samples) const {
+// The postures of the first pass, each from those before it.
+void CogSolver::solve_first() {
+  samples.resize(grid.n + 1);
+  trunk.resize(grid.n + 1);
   RobotData data(job.model);
+  Extrapolation postures;
   for (int k = 0; k <= grid.n; ++k) {
+    const double t = grid.t(k);
     CommandSample& sample = samples[k];
-    if (first) {
-      sample.state = k > 0 ? samples[k - 1].state : job.model.rest_state();
-      if (k == 0) sample.state.theta = job.ik.start();
-    }
-    const Vector3d wanted(cog[0][k], cog[1][k], cog[2][k]);
-    if (!first) sample.state.base.position += wanted - sample.cog;
-    sample.cog = wanted;
-    solve_posture(job, grid.t(k), plan.trunk_at(job, grid.t(k)), sample, data);
+    sample.state = k > 0 ? samples[k - 1].state : job.model.rest_state();
+    sample.cog = Vector3d(cog[0][k], cog[1][k], cog[2][k]);
+    if (k > 0)
+      continue_posture(postures, sample);
+    else
+      sample.state.theta = job.ik.start();
+    put_plan(job, t, sample);
+    trunk[k] = trunk_attitude(job, t, sample.feet);
+    solve_posture(job, t, plan.turned(t, trunk[k]), sample, data);
+    postures.add(posture_of(sample));
   }
-  fill_rates(samples, grid.h, true);
 }
 
-// cmd ZMP - full-model ZMP in the solved axes. Returns the largest error; where the ground force is
-// below the weight, errors count as their moment divided by the weight.
-double CogSolver::measure(std::vector<CommandSample>& samples,
-                          std::array<VectorXd, 2>& error) const {
+// The postures of the samples from `first` to before `end` in a later pass, from those of the last
+// one and how the samples before them changed.
+void CogSolver::solve_again(int first, int end) {
   RobotData data(job.model);
+  Extrapolation changes;
+  VectorXd guess;
+  for (int k = first; k < end; ++k) {
+    CommandSample& sample = samples[k];
+    const VectorXd before = posture_of(sample);
+    sample.cog = Vector3d(cog[0][k], cog[1][k], cog[2][k]);
+    sample.state.base.position = sample.cog + before.head<3>();
+    if (k > first) {
+      changes.next(guess);
+      sample.state.base.position += guess.head<3>();
+      sample.state.theta += guess.tail(guess.size() - 3);
+    }
+    solve_posture(job, grid.t(k), plan.turned(grid.t(k), trunk[k]), sample, data);
+    changes.add(posture_of(sample) - before);
+  }
+}
+
+// Fills the error of the samples from `first` to before `end`. Returns the largest; where the
+// ground force is below the weight, errors count as their moment divided by the weight.
+double CogSolver::measure(int first, int end) {
+  fill_rates(samples, first, end, grid.h, true);
+  for (int k = first; k < end; ++k) samples[k].zmp = plan.zmp_at(grid.t(k));
+  TreeDynamics dynamics(job.model);
+  std::vector<GroundReaction> reactions;
+  full_model_reactions(job.model, std::span(samples).subspan(first, end - first), dynamics,
+                       reactions);
   const double weight = job.model.mass() * kGravity;
   double worst = 0;
-  error = {VectorXd::Zero(grid.n + 1), VectorXd::Zero(grid.n + 1)};
-  for (int k = 0; k <= grid.n; ++k) {
-    samples[k].zmp = plan.zmp_at(grid.t(k));
+  for (int k = first; k < end; ++k) {
     if (w2[k] == 0) continue;
-    const GroundReaction full = full_model_reaction(job.model, samples[k], data);
+    const GroundReaction& full = reactions[k - first];
     const double share = std::min(1.0, full.force.z() / weight);
     if (share < kZmpShare) continue;
     for (int axis = 0; axis < 2; ++axis) {
@@ -162,18 +200,33 @@ double CogSolver::measure(std::vector<CommandSample>& samples,
   return worst;
 }
 
+// Of all samples.
+double CogSolver::measure() {
+  std::mutex mutex;
+  double worst = 0;
+  error = {VectorXd::Zero(grid.n + 1), VectorXd::Zero(grid.n + 1)};
+  in_blocks(job, kStage, grid.n + 1, kBlock, [&](int first, int end) {
+    const double here = measure(first, end);
+    const std::lock_guard lock(mutex);
+    worst = std::max(worst, here);
+  });
+  return worst;
+}
+
 // Keeps the best pass: where keys jump the error cannot vanish, and passes may stop improving.
 void CogSolver::correct() {
-  std::vector<CommandSample> samples(grid.n + 1);
-  std::array<VectorXd, 2> error;
   double best = INFINITY;
   auto best_cog = cog;
   auto best_bump = plan.bump;
   int worse = 0;
   for (int pass = 0; pass <= kMostIterations && worse < 2; ++pass) {
-    solve_postures(pass == 0, samples);
-    const double worst = measure(samples, error);
-    report(job.progress, {"solve the COG", static_cast<double>(pass) / kMostIterations,
+    if (pass == 0)
+      solve_first();
+    else
+      in_blocks(job, kStage, grid.n + 1, kBlock,
+                [&](int first, int end) { solve_again(first, end); });
+    const double worst = measure();
+    report(job.progress, {kStage, static_cast<double>(pass) / kMostIterations,
                           "ZMP error " + millimetres(worst)});
     worse = worst < best ? 0 : worse + 1;
     if (worse == 0) {
@@ -188,6 +241,7 @@ void CogSolver::correct() {
   }
   cog = best_cog;
   plan.bump = best_bump;
+  for (CommandSample& sample : samples) plan.postures.push_back(std::move(sample.state));
 }
 
 }  // namespace
@@ -199,9 +253,8 @@ Vector3d CogPlan::zmp_at(double t) const {
   return z;
 }
 
-Eigen::Matrix3d CogPlan::trunk_at(const SampleJob& job, double t) const {
+Eigen::Matrix3d CogPlan::turned(double t, const Eigen::Matrix3d& asked) const {
   const Vector3d r(turn[0].at(t).value, turn[1].at(t).value, turn[2].at(t).value);
-  const Eigen::Matrix3d asked = trunk_attitude(job, t);
   return r.isZero(0) ? asked : Eigen::Matrix3d(exp_rotation(r) * asked);
 }
 

@@ -42,6 +42,7 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
                       tracks,
                       options.dt,
                       sample_count(pattern, feet.duration(), options.dt),
+                      options.threads,
                       progress};
   CommandSeries series = tracks.joint_driven ? sample_joint_driven(job) : sample_body_driven(job);
   for (const auto& [t, weight] : tracks.weight)

@@ -13,6 +13,7 @@ namespace ayumi {
 
 struct SampleOptions {
   double dt = 0.001;  ///< [s]
+  int threads = 0;    ///< 0: all cores; results do not depend on it
 };
 
 /// Throws Error(bad_pattern) with file, place and remedy: an unknown joint, times that do not

@@ -2,6 +2,10 @@
 // Data and functions that the parts of sample() share: the pattern as tracks, and postures from
 // them.
 
+#include <algorithm>
+#include <atomic>
+
+#include "ayumi/base/in_parallel.hpp"
 #include "ayumi/base/progress.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/motion/command_series.hpp"
@@ -17,21 +21,70 @@ struct SampleJob {
   const PatternTracks& tracks;
   double dt = 0.001;  ///< [s]
   int count = 0;      ///< of samples
+  int threads = 0;    ///< 0: all cores
   const Progress& progress;
+};
+
+/// Samples that one thread solves in a row, each from those before it. Chosen: much more than the
+/// first few, which cost more, and few enough to occupy all cores. Figures change by rounding only.
+inline constexpr int kBlock = 256;
+
+/// Calls work(first, end) for blocks of `block` of the numbers 0..count-1, on the threads of the
+/// job. Reports the stage now and then where there are very many. `block` 0: all at once.
+template <class Work>
+void in_blocks(const SampleJob& job, const char* stage, int count, int block, const Work& work) {
+  // Blocks between two reports. Chosen: they take a fraction of a second.
+  constexpr int kBlocksAtOnce = 128;
+  if (block == 0) block = count;
+  for (int begin = 0; begin < count; begin += kBlocksAtOnce * block) {
+    if (begin > 0) report(job.progress, {stage, static_cast<double>(begin) / count, ""});
+    const int end = std::min(count - begin, kBlocksAtOnce * block) + begin;
+    const int blocks = (end - begin + block - 1) / block;
+    std::atomic<bool> stop = false;
+    in_parallel(static_cast<size_t>(blocks), job.threads, stop, [&](size_t i) {
+      const int first = begin + static_cast<int>(i) * block;
+      work(first, std::min(first + block, end));
+    });
+  }
+}
+
+/// The next of a sequence of vectors at equal steps of time, extrapolated from the last four: an
+/// initial guess.
+class Extrapolation {
+ public:
+  void add(const Eigen::VectorXd& x);
+  /// `guess` becomes the next one; the last one where the sequence jumps. Needs one.
+  void next(Eigen::VectorXd& guess) const;
+
+ private:
+  const Eigen::VectorXd& before(int steps) const { return last_[(count_ - steps) % 4]; }
+
+  std::array<Eigen::VectorXd, 4> last_;
+  int count_ = 0;
 };
 
 /// theta of every joint track at t [rad].
 Eigen::VectorXd keyed_joints(const SampleJob& job, double t);
 
+/// Fills the planned feet, the support and the joints with tracks of their own.
+void put_plan(const SampleJob& job, double t, CommandSample& sample);
+
 /// Commanded trunk attitude: torso keys, else level with the mean heading of the planned feet.
-Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t);
+Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t,
+                               const std::array<Eigen::Isometry3d, 2>& feet);
 
 /// Turn of the trunk from this attitude around flights (flight.hpp): a rotation vector over time,
 /// world axes, left-multiplied [rad].
 using TrunkTurn = std::array<Track, 3>;
 
-/// Solves base and legs at time t for sample.cog with the initial guess sample.state; fills feet
-/// and support. Throws Error(bad_pattern) that names phase, time, foot and missing millimetres.
+/// The base relative to the COG, and the joints: what Extrapolation continues.
+Eigen::VectorXd posture_of(const CommandSample& sample);
+
+/// Initial guess of sample.state from the postures before it and sample.cog.
+void continue_posture(const Extrapolation& postures, CommandSample& sample);
+
+/// Solves base and legs at time t for sample.cog and the plan in `sample`, with the initial guess
+/// sample.state. Throws Error(bad_pattern) that names phase, time, foot and missing millimetres.
 PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
                               CommandSample& sample, RobotData& data);
 
@@ -53,10 +106,13 @@ struct CogPlan {
   std::array<double, 2> omega = {1, 1};                             ///< at begin and end [1/s]
   TrunkTurn turn;
   double duration = 0;  ///< [s]
+  /// Postures on a grid from beginning to end, close to the motion's: initial guesses; or none.
+  std::vector<RobotState> postures;
 
   /// Commanded ZMP: the keys with the bumps that a start from rest needs.
   Eigen::Vector3d zmp_at(double t) const;
-  Eigen::Matrix3d trunk_at(const SampleJob& job, double t) const;
+  /// The trunk attitude that the pattern asks for, turned around flights.
+  Eigen::Matrix3d turned(double t, const Eigen::Matrix3d& asked) const;
 };
 
 /// COG keys where given, other axes from the ZMP by (14)(15), corrected for the full model.

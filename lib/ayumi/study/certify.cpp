@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/study/in_parallel.hpp"
+#include "ayumi/base/in_parallel.hpp"
 
 namespace ayumi {
 

@@ -1,8 +1,8 @@
 #pragma once
 // Functions that the studies of many runs share.
 
+#include "ayumi/base/in_parallel.hpp"
 #include "ayumi/sim/simulator.hpp"
-#include "ayumi/study/in_parallel.hpp"
 
 namespace ayumi {
 

@@ -10,11 +10,14 @@
 
 namespace ayumi {
 
-/// Runs job(0..count-1) on threads. The first exception stops all jobs and is thrown again.
+/// Runs job(0..count-1) on threads. An exception keeps jobs from being started. Of the exceptions,
+/// that of the first job is thrown again, so it is the same for any number of threads: the jobs
+/// before it were all started.
 template <typename Job>
 void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
   std::atomic<size_t> next = 0;
   std::exception_ptr error;
+  size_t failed = count;
   std::mutex mutex;
   const auto work = [&] {
     for (size_t i = next++; i < count && !stop; i = next++) {
@@ -22,7 +25,10 @@ void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& 
         job(i);
       } catch (...) {
         const std::lock_guard lock(mutex);
-        if (!error) error = std::current_exception();
+        if (i < failed) {
+          failed = i;
+          error = std::current_exception();
+        }
         stop = true;
       }
     }

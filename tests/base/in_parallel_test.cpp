@@ -1,0 +1,42 @@
+#include "ayumi/base/in_parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "ayumi/base/error.hpp"
+#include "tests/support/error_message.hpp"
+
+namespace ayumi {
+namespace {
+
+TEST(InParallel, RunsEveryJobOnce) {
+  for (const int threads : {0, 1, 3, 50}) {
+    std::vector<std::atomic<int>> runs(40);
+    std::atomic<bool> stop = false;
+    in_parallel(runs.size(), threads, stop, [&](size_t i) { ++runs[i]; });
+    for (const std::atomic<int>& run : runs) EXPECT_EQ(run, 1);
+  }
+}
+
+// The first job fails last.
+TEST(InParallel, ThrowsTheErrorOfTheFirstJobThatFails) {
+  for (const int threads : {1, 4}) {
+    std::atomic<bool> stop = false;
+    std::atomic<int> runs = 0;
+    const auto job = [&](size_t i) {
+      ++runs;
+      if (i == 1) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      if (i > 0) fail(ErrorCode::usage, "job " + std::to_string(i));
+    };
+    const std::string message =
+        test::error_message([&] { in_parallel(1000, threads, stop, job); }, ErrorCode::usage);
+    EXPECT_NE(message.find("job 1"), std::string::npos) << message;
+    EXPECT_EQ(message.find("job 1") + 5, message.size()) << message;
+    EXPECT_TRUE(stop);
+    EXPECT_LT(runs, 1000);
+  }
+}
+
+}  // namespace
+}  // namespace ayumi
