@@ -357,7 +357,9 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state, R
     }
     const Residual e = residual(target, state, data);
     error = e.largest();
-    if (error <= kNewtonTolerance) break;
+    // Even a guess within the tolerance takes one step: errors of a guess that is extrapolated from
+    // guesses would grow from sample to sample.
+    if (iteration > 0 && error <= kNewtonTolerance) break;
     if (iteration > 3 && error > 0.5 * before) {
       if (error <= kAcceptedResidual) break;
       return false;

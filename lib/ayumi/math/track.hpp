@@ -3,6 +3,7 @@
 // less; before the first and after the last key the track is constant.
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace ayumi {
