@@ -6,7 +6,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
-#include "plan_log.hpp"
+#include "ayumi/task/plan_log.hpp"
 
 namespace ayumi::app {
 

@@ -1,5 +1,5 @@
 #pragma once
-// A pattern as it is planned, in the shape of a run's log: preview and plots show it like one.
+// The log of a run, or of a pattern as it is planned: preview and plots show both.
 
 #include <string>
 
@@ -7,11 +7,6 @@
 #include "pattern_input.hpp"
 
 namespace ayumi::app {
-
-/// State, COG, ZMP, f_z, foot forces and motor torques that the full model needs for `motion`;
-/// beside it what `command` commands (the same series, or the one before a change).
-SimulationLog plan_log(const RobotModel& model, const ActuatorLimits& actuators,
-                       const CommandSeries& motion, const CommandSeries& command);
 
 /// Whether a name is that of a pattern rather than of a RUN: a file that ends in .json or .jsonc.
 bool names_pattern(const std::string& file);

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/check/stability_series.hpp"
 #include "ayumi/demand/contact_plan.hpp"
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/demand/motion_demand.hpp"
@@ -320,6 +321,93 @@ TEST_P(SecondRoute, TorqueFiguresByLoops) {
   }
   EXPECT_NEAR(report.summary[FindingKind::joint_torque], peak, 1e-9);
   EXPECT_NEAR(report.summary[FindingKind::continuous_torque], lasting, 1e-9);
+}
+
+// Each stretch of the series holds the worst of its samples.
+TEST_P(SecondRoute, SeriesByPlainSums) {
+  constexpr size_t kStretch = 10;
+  const StabilitySeries shown =
+      stability_series(model, series, {"", kFriction, {}}, kStretch * series.dt);
+  const size_t count = series.samples.size();
+  ASSERT_EQ(shown.speed.size(), (count + kStretch - 1) / kStretch);
+  EXPECT_DOUBLE_EQ(shown.dt, kStretch * series.dt);
+  struct Stretch {
+    double margin = 1e9, dcm = 1e9, fz = 1e9, friction = 0;
+    size_t samples = 0;  // with a ZMP inside the support
+  };
+  std::vector<Stretch> wanted(shown.speed.size());
+  const auto cog = [&](int k) {
+    return plain_cog(model, plain_poses(model, series.samples[static_cast<size_t>(k)].state));
+  };
+  each_known([&](int k, const PlainGround& ground) {
+    const Vector3d f = ground.force;
+    std::vector<Vector3d> corners = support(k);
+    if (corners.empty() || f.z() < 0.1 * weight()) return;
+    const double height = corners.front().z();
+    const Vector2d zmp(-(ground.moment.y() - height * f.x()) / f.z(),
+                       (ground.moment.x() + height * f.y()) / f.z());
+    const double margin = plain_margin(corners, zmp);
+    if (margin < 0) return;
+    Stretch& stretch = wanted[static_cast<size_t>(k) / kStretch];
+    ++stretch.samples;
+    stretch.margin = std::min(stretch.margin, margin);
+    stretch.fz = std::min(stretch.fz, f.z());
+    stretch.friction = std::max(stretch.friction, f.head<2>().norm() / (kFriction * f.z()));
+    int next = k;
+    while (next < static_cast<int>(count) && series.samples[static_cast<size_t>(next)].support ==
+                                                 series.samples[static_cast<size_t>(k)].support)
+      ++next;
+    for (const Vector3d& corner : next < static_cast<int>(count) ? support(next) : corners)
+      corners.push_back(corner);
+    const Vector3d rate =
+        (cog(k - 2) - 8 * cog(k - 1) + 8 * cog(k + 1) - cog(k + 2)) / (12 * series.dt);
+    const Vector3d dcm = cog(k) + rate / std::sqrt(kGravity / (cog(k).z() - height));
+    stretch.dcm = std::min(stretch.dcm, plain_margin(corners, dcm.head<2>()));
+  });
+  int compared = 0, insides = 0;
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i].samples < kStretch) continue;
+    ++compared;
+    EXPECT_NEAR(shown.zmp_margin[i], wanted[i].margin, 2e-6) << i;
+    EXPECT_NEAR(shown.normal_force[i], wanted[i].fz, 1e-5 * weight()) << i;
+    EXPECT_NEAR(shown.friction[i], wanted[i].friction, 1e-4) << i;
+    if (wanted[i].dcm < 0) {
+      EXPECT_LT(shown.dcm_margin[i], 1e-6) << i;
+      continue;
+    }
+    ++insides;
+    EXPECT_NEAR(shown.dcm_margin[i], wanted[i].dcm, 1e-5) << i;
+  }
+  EXPECT_GT(compared, 20);
+  EXPECT_GT(insides, 10);
+}
+
+TEST_P(SecondRoute, SeriesNamesTheWorstJoint) {
+  const StabilitySeries shown =
+      stability_series(model, series, {"", kFriction, {}}, 10 * series.dt);
+  MotionDynamics motion(model, model.limits(), series, plan);
+  const ActuatorLimits& limits = model.limits();
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const size_t i = k / 10;
+    const bool edge = at_flight_edge(series, static_cast<int>(k));
+    const VectorXd torque =
+        edge ? VectorXd::Zero(model.dof_count()) : motion.at(static_cast<int>(k)).torque;
+    for (int j = 0; j < model.dof_count(); ++j) {
+      EXPECT_LE(std::abs(series.samples[k].state.dtheta[j]) / limits.speed[j],
+                shown.speed[i] + 1e-12);
+      EXPECT_TRUE(edge || std::abs(torque[j]) / limits.peak_torque[j] <= shown.torque[i] + 1e-9);
+    }
+  }
+  EXPECT_NEAR(*std::max_element(shown.speed.begin(), shown.speed.end()),
+              report.summary[FindingKind::joint_speed], 1e-9);
+  for (size_t i = 0; i < shown.speed.size(); ++i) {
+    ASSERT_GE(shown.speed_dof[i], 0);
+    double largest = 0;
+    for (size_t k = 10 * i; k < std::min(10 * i + 10, series.samples.size()); ++k)
+      largest = std::max(largest, std::abs(series.samples[k].state.dtheta[shown.speed_dof[i]]) /
+                                      limits.speed[shown.speed_dof[i]]);
+    EXPECT_NEAR(largest, shown.speed[i], 1e-12);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Motions, SecondRoute, robot_motions(), name_of_case);

@@ -1,5 +1,5 @@
 // node author_browser.mjs CHROMEDRIVER PATTERN [SHOTS] -- SERVER ARGUMENTS...: starts the server of the
-// live page (it prints the address) on PATTERN, loads the page in headless Chromium and works with it
+// live page (it prints the address) on PATTERN, which is JSON without comments, loads the page in headless Chromium and works with it
 // as a person would. Prints one line per broken expectation, then "ok" or "failed".
 
 import { spawn } from "node:child_process";
@@ -253,12 +253,14 @@ async function poses(tab) {
   const written = data().keyframes.find((frame) => Math.abs(frame.t - 2.4) < 1e-6);
   expect(Math.abs(written?.joints?.[name] - 40) < 0.1, "a key of the joint: " + JSON.stringify(written));
   await tab.after(() => tab.click("#undo"));
-  // The COG is dragged in the picture.
-  await tab.run("window.ayumiAuthor.page.viewer.look('front'); window.ayumiAuthor.page.show(0.4);");
-  const pixel = await tab.run("return window.ayumiAuthor.pixelOf('cog')");
-  await tab.after(() => tab.drag(pixel, [24, 0]));
-  const cog = data().keyframes.find((frame) => frame.cog && Math.abs(frame.t - 0.4) < 1e-6);
-  expect(cog && Math.abs(cog.cog.y) > 0.005, "the COG is dragged: " + JSON.stringify(cog));
+  // The COG is dragged in the picture: the ZMP, which leads it, gets a key.
+  await tab.run("window.ayumiAuthor.page.viewer.look('front'); window.ayumiAuthor.page.show(0.6);");
+  const [pixel, from] = await tab.run("const p = window.ayumiAuthor.page; return [window.ayumiAuthor.pixelOf('cog'), p.row()[p.columns['cog.y']]]");
+  await tab.after(() => tab.drag(pixel, [6, 0]));
+  const key = data().keyframes.find((frame) => Array.isArray(frame.zmp) && Math.abs(frame.t - 0.6) < 1e-6);
+  expect(key, "a key of the ZMP: " + JSON.stringify(data().keyframes.slice(0, 3)));
+  const to = await tab.run("const p = window.ayumiAuthor.page; return p.row()[p.columns['cog.y']]");
+  expect(Math.abs(to - from) > 0.001, `the COG is dragged from ${from} to ${to}`);
   await tab.after(() => tab.click("#undo"));
 }
 
@@ -292,10 +294,9 @@ async function pushesTheRobot(tab) {
 
 async function works(tab) {
   await tab.click("#job-check");
+  expect(await until(() => tab.run("return window.ayumiAuthor.page.state.result?.kind === 'check'")), "a check answers");
+  await tab.click("#job-push");
   expect(await until(() => tab.run("return !document.getElementById('job').hidden")), "work shows its progress");
-  expect(await until(() => tab.run("return document.getElementById('job').hidden")), "work ends");
-  await tab.click("#job-simulate");
-  await until(() => tab.run("return !document.getElementById('job').hidden"));
   await tab.click("#cancel");
   expect(await until(() => tab.run("return document.getElementById('job').hidden")), "work is cancelled");
   expect(/cancelled/.test(await tab.run("return document.getElementById('said').textContent")), "and the page says so");
@@ -303,18 +304,22 @@ async function works(tab) {
 
 /// A repair is shown as a ghost and can be taken; a run is shown in the pattern's place.
 async function showsResults(tab) {
-  const name = data().name;
+  const good = text(), wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 3.7);
+  wrong.keyframes[i].joints = { l_elbow: -170 };
+  await tab.after(() => save(JSON.stringify(wrong, null, 1)));
   await tab.click("#job-repair");
-  expect(await until(() => tab.run("const p = window.ayumiAuthor.page; return p.state.result?.kind === 'repair' && p.ghostName() === 'repair' && p.viewer.actors[1].root.visible")),
+  expect(await until(() => tab.run("const p = window.ayumiAuthor.page; return p.state.result?.kind === 'repair' && p.ghostName() === 'repair' && p.viewer.actors[1].root.visible"), 60),
     "the repaired motion is the ghost");
   await tab.shoot("repair.png");
   await tab.after(() => tab.run("[...document.querySelectorAll('#result button')].find((b) => /Take/.test(b.textContent)).click();"));
-  expect(data().name === "repaired", "it is taken: " + data().name);
+  expect(data().correction, "it is taken");
+  expect(await tab.run("return document.getElementById('verdict').textContent") === "consistent", "and consistent");
   await tab.after(() => tab.click("#undo"));
-  expect(data().name === name, "and given back");
+  expect(!data().correction, "and given back");
+  await tab.after(() => save(good));
   const whole = await tab.run("return window.ayumiAuthor.page.viewer.last");
   await tab.click("#job-simulate");
-  expect(await until(() => tab.run("return document.getElementById('which').value === 'closed_loop' && window.ayumiAuthor.page.viewer.last < arguments[0] - 1", whole)),
+  expect(await until(() => tab.run("return document.getElementById('which').value === 'closed_loop' && window.ayumiAuthor.page.viewer.last > arguments[0] + 0.5", whole), 60),
     "the run is shown: " + await tab.run("return document.getElementById('which').value"));
   await tab.after(() => tab.run("window.ayumiAuthor.page.edit([{ kind: 'set', pointer: '/keyframes/0/zmp', value: 'left' }]);"));
   const back = await tab.run("return [document.getElementById('which').value, window.ayumiAuthor.page.viewer.last]");

@@ -32,9 +32,14 @@ Task load_task(Pattern pattern, const TaskOptions& options, const Progress& prog
       fail(error.code(), in_file(pattern, "/robot: ") + error.what());
     }
   }();
+  return load_task(std::move(pattern), {std::move(robot), name}, options.profile, progress);
+}
+
+Task load_task(Pattern pattern, NamedRobot robot, const std::string& profile,
+               const Progress& progress) {
   TableCaution caution = caution_of(pattern);
-  Task task = make_task(std::move(pattern), std::move(robot), options.profile, progress);
-  task.robot_name = name;
+  Task task = make_task(std::move(pattern), std::move(robot.model), profile, progress);
+  task.robot_name = robot.name;
   task.caution = std::move(caution);
   task.series.kept = kept_targets(task);
   return task;

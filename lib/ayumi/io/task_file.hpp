@@ -25,4 +25,14 @@ Task load_task(const std::filesystem::path& pattern, const TaskOptions& options 
 /// The same with a pattern that has been read.
 Task load_task(Pattern pattern, const TaskOptions& options = {}, const Progress& progress = {});
 
+/// A robot with the name by which it was loaded.
+struct NamedRobot {
+  RobotModel model;
+  std::string name;
+};
+
+/// The same with a robot that has been loaded, whatever robot the pattern names.
+Task load_task(Pattern pattern, NamedRobot robot, const std::string& profile,
+               const Progress& progress = {});
+
 }  // namespace ayumi

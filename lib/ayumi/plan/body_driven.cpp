@@ -4,7 +4,7 @@
 #include <numbers>
 #include <span>
 
-#include "ayumi/base/error.hpp"
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -50,28 +50,32 @@ namespace {
 
 [[noreturn]] void complain_reach(const SampleJob& job, double t, const CommandSample& sample,
                                  const PostureSolution& solution) {
+  const auto in_phase = [&](const std::string& message) {
+    return PlacedError(ErrorCode::bad_pattern, message,
+                       {job.pattern.file, "/phases/" + std::to_string(job.feet.phase(t))});
+  };
   const double ground = job.feet.ground(t);
   const std::string where = in_file(job.pattern, "phases/" + std::to_string(job.feet.phase(t))) +
                             ": t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
   if (job.ik.lacks_joints() && !solution.knee_flipped)
-    fail(ErrorCode::bad_pattern,
-         where + " foot is out of reach by " + millimetres(solution.missing) + ", of which " +
-             millimetres(kLackingTolerance) +
-             " are allowed because a leg has fewer than six joints; such legs cannot carry the COG "
-             "farther aside over level soles: let the COG sway less, by shorter steps in time or a "
-             "ZMP nearer to the other foot (new walk --zmp-inwards), or lower the COG height");
+    throw in_phase(
+        where + " foot is out of reach by " + millimetres(solution.missing) + ", of which " +
+        millimetres(kLackingTolerance) +
+        " are allowed because a leg has fewer than six joints; such legs cannot carry the COG "
+        "farther aside over level soles: let the COG sway less, by shorter steps in time or a "
+        "ZMP nearer to the other foot (new walk --zmp-inwards), or lower the COG height");
   const std::string remedy = "; lower the COG height (here " +
                              text::fixed(sample.cog.z() - ground, 4) + " m above the soles)" +
                              (job.tracks.torso ? ", tilt the torso less," : "") +
                              " or shorten the stride";
   if (solution.knee_flipped)
-    fail(ErrorCode::bad_pattern, where + " knee would have to bend the wrong way" + remedy);
+    throw in_phase(where + " knee would have to bend the wrong way" + remedy);
   const std::string limit =
       solution.at_limit < 0
           ? ""
           : ", with " + job.model.dofs()[solution.at_limit].name + " at its position limit";
-  fail(ErrorCode::bad_pattern,
-       where + " foot is out of reach by " + millimetres(solution.missing) + limit + remedy);
+  throw in_phase(where + " foot is out of reach by " + millimetres(solution.missing) + limit +
+                 remedy);
 }
 
 }  // namespace

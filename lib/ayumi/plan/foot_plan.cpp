@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/base/error.hpp"
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -24,7 +24,8 @@ constexpr double kInstant = 1e-9;
 
 [[noreturn]] void complain(const Pattern& pattern, const std::string& place,
                            const std::string& message) {
-  fail(ErrorCode::bad_pattern, in_file(pattern, place) + ": " + message);
+  throw PlacedError(ErrorCode::bad_pattern, in_file(pattern, place) + ": " + message,
+                    {pattern.file, "/" + place});
 }
 
 Isometry3d on_ground(const Vector3d& position, double yaw) {
@@ -147,18 +148,22 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
     }
   };
   const Isometry3d& start = start_[index(side)];
-  for (const Keyframe& key : pattern.keyframes) {
+  for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
+    const Keyframe& key = pattern.keyframes[i];
     const auto& foot = key.feet[index(side)];
     if (!foot) continue;
-    if (!finite(*foot)) complain(pattern, key.place, "a foot pose is not a finite number");
+    const auto stop = [&](const std::string& message) {
+      throw PlacedError(ErrorCode::bad_pattern, key.place + ": " + message,
+                        {pattern.file, "/keyframes/" + std::to_string(i) + "/feet"});
+    };
+    if (!finite(*foot)) stop("a foot pose is not a finite number");
     if (!moves_[index(side)].empty())
-      complain(pattern, key.place,
-               std::string("the ") + name_of(side) +
-                   " foot has keys and also swings in the phases; keep one of them");
+      stop(std::string("the ") + name_of(side) +
+           " foot has keys and also swings in the phases; keep one of them");
     if (keys[0].empty() && key.t > 0)
       add(0, start.translation(), matrix_to_rpy(start.linear()), Interpolation::hold);
     if (!keys[0].empty() && key.t <= keys[0].back().t)
-      complain(pattern, key.place, "key times of this foot do not increase");
+      stop("key times of this foot do not increase");
     add(key.t, foot->position, foot->rpy, key.interpolation.value_or(pattern.interpolation));
   }
   if (keys[0].empty()) return;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "ayumi/base/error.hpp"
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/quintic.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -269,7 +269,9 @@ PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const
   const double height = default_cog_height(model, pattern) + feet.ground(0);
   KeyReader reader{model, pattern, feet, solved, height, {}, {}, {}, {}, {}, false, false, {}};
   reader.joints.resize(model.dof_count());
-  for (const Keyframe& key : pattern.keyframes) reader.read(key);
+  for (size_t i = 0; i < pattern.keyframes.size(); ++i)
+    at_place({pattern.file, "/keyframes/" + std::to_string(i)},
+             [&] { reader.read(pattern.keyframes[i]); });
   for (int i = 0; i < 3; ++i)
     reader.cog[i] = with_flights(feet, reader.cog[i], i == 2 ? -kGravity : 0.0);
 

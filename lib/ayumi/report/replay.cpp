@@ -65,35 +65,46 @@ std::string pose_words(const Eigen::Isometry3d& pose) {
          "}";
 }
 
-std::string series_bytes(const SimulationLog& log, const std::vector<double>& times) {
-  const bool moving = floor_moves(log);
+/// Rows of 32-bit floats.
+struct FloatRows {
   std::string bytes;
-  const auto add = [&](double value) {
+
+  void add(double value) {
     const auto single = static_cast<float>(value);
     bytes.append(reinterpret_cast<const char*>(&single), sizeof single);
-  };
-  const auto add_vector = [&](const Vector3d& v) {
+  }
+  void add(const Vector3d& v) {
     for (const double value : v) add(value);
-  };
-  for (const double t : times) {
-    const SimulationSample s = sample_at(log, t);
-    add(t);
-    add_vector(s.cog);
-    add_vector(s.zmp);
-    add_vector(s.reference_zmp);
-    add(s.fz);
-    for (size_t side = 0; side < 2; ++side) {
-      add_vector(s.foot_force[side]);
-      add_vector(s.foot_cop[side]);
-      add(s.planned_contact[side] ? 1 : 0);
-    }
-    if (!moving) continue;
-    const Eigen::Isometry3d floor = floor_at(log, t);
-    const Eigen::Quaterniond q(floor.linear());
-    add_vector(floor.translation());
+  }
+  void add(const Eigen::Quaterniond& q) {
     for (const double value : q.coeffs()) add(value);
   }
-  return bytes;
+  /// The columns kColumns.
+  void add(double t, const SimulationSample& s) {
+    add(t);
+    add(s.cog);
+    add(s.zmp);
+    add(s.reference_zmp);
+    add(s.fz);
+    for (size_t side = 0; side < 2; ++side) {
+      add(s.foot_force[side]);
+      add(s.foot_cop[side]);
+      add(s.planned_contact[side] ? 1.0 : 0.0);
+    }
+  }
+};
+
+std::string series_bytes(const SimulationLog& log, const std::vector<double>& times) {
+  const bool moving = floor_moves(log);
+  FloatRows rows;
+  for (const double t : times) {
+    rows.add(t, sample_at(log, t));
+    if (!moving) continue;
+    const Eigen::Isometry3d floor = floor_at(log, t);
+    rows.add(Vector3d(floor.translation()));
+    rows.add(Eigen::Quaterniond(floor.linear()));
+  }
+  return std::move(rows.bytes);
 }
 
 std::string soles_words(const RobotModel& model) {
@@ -157,6 +168,37 @@ double height_of(const RobotModel& model, const SimulationLog& log) {
   return box.isEmpty() ? 1.0 : std::max(1e-3, box.sizes().maxCoeff());
 }
 
+/// What the script has to know of the robot and of the world, without braces.
+std::string common_words(const RobotModel& model, const SimulationLog& log, double rate,
+                         double start, const std::string& label) {
+  return "\"rate\":" + text::exact(rate) + ",\"height\":" + text::exact(height_of(model, log)) +
+         ",\"weight\":" + text::exact(9.80665 * model.mass()) +
+         ",\"floor\":" + pose_words(floor_at(log, 0)) +
+         ",\"ground_height\":" + text::exact(log.world.height) +
+         ",\"bumps\":" + bumps_words(model, log) + ",\"start\":" + text::exact(start) +
+         ",\"view\":\"iso\",\"label\":" + quoted(label) + ",\"soles\":" + soles_words(model) +
+         ",\"pushes\":" + pushes_words(log);
+}
+
+std::string quoted_list(const std::vector<std::string>& names) {
+  std::vector<std::string> items;
+  for (const std::string& name : names) items.push_back(quoted(name));
+  return list(items);
+}
+
+/// How each body hangs on its parent, in the order of their numbers.
+std::string bodies_words(const RobotModel& model) {
+  std::vector<std::string> words;
+  for (const Body& body : model.bodies()) {
+    const std::string pose = pose_words(body.placement);
+    words.push_back("{\"joint\":" + std::to_string(body.dof) +
+                    ",\"ratio\":" + text::exact(body.ratio) +
+                    ",\"offset\":" + text::exact(body.offset) + ",\"axis\":" + list(body.axis) +
+                    ",\"prismatic\":" + (body.prismatic ? "true" : "false") + "," + pose.substr(1));
+  }
+  return list(words);
+}
+
 bool has_command(const SimulationLog& log) {
   return log.samples.front().command_theta.size() == log.samples.front().state.theta.size();
 }
@@ -177,22 +219,52 @@ ReplayData make_replay(const RobotModel& model, const ReportInput& input, const 
   data.start = telling_instant(log);
   data.model = glb_bytes(model, motions, {.max_triangles = plan.triangles});
   data.series = series_bytes(log, motions.front().times);
-  std::vector<std::string> columns;
-  for (const std::string& name : kColumns) columns.push_back(quoted(name));
-  if (floor_moves(log))
-    for (const std::string& name : kFloorColumns) columns.push_back(quoted(name));
+  std::vector<std::string> columns = kColumns;
+  if (floor_moves(log)) columns.insert(columns.end(), kFloorColumns.begin(), kFloorColumns.end());
   data.scenery = scenery_bytes(log.world);
-  data.config = "{\"columns\":" + list(columns) + ",\"rate\":" + text::exact(plan.rate) +
-                ",\"height\":" + text::exact(height_of(model, log)) +
-                ",\"weight\":" + text::exact(9.80665 * model.mass()) +
-                ",\"floor\":" + pose_words(floor_at(log, 0)) +
-                ",\"ground_height\":" + text::exact(log.world.height) +
-                ",\"bumps\":" + bumps_words(model, log) + ",\"start\":" + text::exact(data.start) +
-                ",\"view\":\"iso\",\"label\":" +
-                quoted("3-D replay of " + input.title +
-                       "; space plays, arrow keys step, Home and End go to the ends") +
-                ",\"soles\":" + soles_words(model) + ",\"pushes\":" + pushes_words(log) + "}";
+  data.config = "{\"columns\":" + quoted_list(columns) + "," +
+                common_words(model, log, plan.rate, data.start,
+                             "3-D replay of " + input.title +
+                                 "; space plays, arrow keys step, Home and End go to the ends") +
+                "}";
   return data;
 }
+
+std::string live_model(const RobotModel& model, const SimulationLog& log, size_t triangles) {
+  const SimulationSample& first = log.samples.front();
+  const Motion pose = {"pose", {0}, {first.state.base}, first.state.theta};
+  return glb_bytes(model, {pose}, {.max_triangles = triangles});
+}
+
+std::string live_config(const RobotModel& model, const SimulationLog& log, double rate) {
+  std::vector<std::string> columns = kColumns;
+  for (const char* const name : {"x", "y", "z", "qx", "qy", "qz", "qw"})
+    columns.push_back(std::string("base.") + name);
+  for (const char* const quantity : {"q.", "dq.", "tau."})
+    for (const std::string& joint : model.dof_names()) columns.push_back(quantity + joint);
+  return "{\"columns\":" + quoted_list(columns) + "," +
+         common_words(model, log, rate, 0, "The robot in 3-D") +
+         ",\"joints\":" + quoted_list(model.dof_names()) + ",\"bodies\":" + bodies_words(model) +
+         "}";
+}
+
+std::string live_series(const SimulationLog& log, double rate) {
+  const double end = duration(log);
+  std::vector<double> times;
+  for (int k = 0; k / rate < end - 1e-9; ++k) times.push_back(k / rate);
+  times.push_back(end);
+  FloatRows rows;
+  for (const double t : times) {
+    const SimulationSample s = sample_at(log, t);
+    rows.add(t, s);
+    rows.add(s.state.base.position);
+    rows.add(s.state.base.attitude);
+    for (const Eigen::VectorXd* joints : {&s.state.theta, &s.state.dtheta, &s.torque})
+      for (const double value : *joints) rows.add(value);
+  }
+  return std::move(rows.bytes);
+}
+
+std::string live_scenery(const World& world) { return scenery_bytes(world); }
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
 #pragma once
-// What a report's replay is made of: the robot with its motions, the run's quantities as a table,
-// and what the script has to know of them.
+// What a report's replay and the live page for authoring are made of: the robot with its motions,
+// the quantities of a motion as a table, and what the script has to know of them.
 
 #include <string>
 
@@ -23,5 +23,20 @@ struct ReplayData {
 };
 
 ReplayData make_replay(const RobotModel& model, const ReportInput& input, const ReplayPlan& plan);
+
+/// The live page places the bodies itself, by rows of a table: bytes of a .glb of the robot in the
+/// first posture of the log, with at most that many triangles.
+std::string live_model(const RobotModel& model, const SimulationLog& log, size_t triangles);
+
+/// JSON: names of the table's columns, how the bodies hang together, soles, pushes and world of the
+/// log. The columns are those of the report's replay, then the pose of the base, and angle, rate
+/// and torque of every joint; "base." and "q.", "dq.", "tau." begin their names.
+std::string live_config(const RobotModel& model, const SimulationLog& log, double rate);
+
+/// The table: a row of 32-bit floats, little-endian, each 1/rate seconds and at the end.
+std::string live_series(const SimulationLog& log, double rate);
+
+/// As ReplayData::scenery.
+std::string live_scenery(const World& world);
 
 }  // namespace ayumi

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 
 namespace ayumi {
@@ -32,13 +33,17 @@ std::string kind_of(const Json& value) {
   }
 }
 
-std::string line_and_column(const std::string& bytes, size_t offset) {
-  size_t line = 1, column = 1;
+// Throws "file:line:column: message" for a place in the text.
+[[noreturn]] void fail_in_text(ErrorCode code, const std::string& file, const std::string& bytes,
+                               size_t offset, const std::string& message) {
+  int line = 1, column = 1;
   for (size_t i = 0; i < std::min(offset, bytes.size()); ++i) {
     column = bytes[i] == '\n' ? 1 : column + 1;
     line += bytes[i] == '\n';
   }
-  return std::to_string(line) + ":" + std::to_string(column);
+  throw PlacedError(
+      code, file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message,
+      {file, "", line});
 }
 
 // Where the text opens the first array or object that lies too deep. Brackets in comments count as
@@ -85,9 +90,9 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
   std::string duplicate;
   const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
     if (depth > kDeepestNesting)
-      fail(code, file + ":" + line_and_column(bytes, too_deep_at(bytes)) + ": more than " +
-                     std::to_string(kDeepestNesting) +
-                     " arrays and objects inside each other; Ayumi's files need few");
+      fail_in_text(code, file, bytes, too_deep_at(bytes),
+                   "more than " + std::to_string(kDeepestNesting) +
+                       " arrays and objects inside each other; Ayumi's files need few");
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
     if (event == Json::parse_event_t::object_end && !keys.empty()) keys.pop_back();
     if (event == Json::parse_event_t::key && !keys.empty() && duplicate.empty() &&
@@ -100,7 +105,7 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
     document = Json::parse(bytes, watch, true, true);
   } catch (const Json::parse_error& error) {
     const size_t offset = error.byte > 0 ? error.byte - 1 : 0;
-    fail(code, file + ":" + line_and_column(bytes, offset) + ": " + reason_of(error.what()));
+    fail_in_text(code, file, bytes, offset, reason_of(error.what()));
   } catch (const Json::exception& error) {
     fail(code, file + ": the JSON cannot be used: " + reason_of(error.what()));
   }
@@ -120,7 +125,9 @@ JsonPlace JsonNode::place() const {
 
 void JsonNode::complain(const std::string& message) const {
   const JsonPlace at = place();
-  fail(code_, at.file + ": " + (at.pointer.empty() ? "/" : at.pointer) + ": " + message);
+  throw PlacedError(code_,
+                    at.file + ": " + (at.pointer.empty() ? "/" : at.pointer) + ": " + message,
+                    {at.file, at.pointer});
 }
 
 JsonNode JsonNode::child(const std::string& token, const Json& value) const {

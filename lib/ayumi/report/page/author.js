@@ -39,7 +39,7 @@ class Page {
     this.previewed = null;
     this.axis = new TimeAxis();
     this.writing = Promise.resolve();
-    this.server = new Server({ state: () => this.load(), job: (news) => this.news(news),
+    this.server = new Server({ state: (version) => this.hears(version), job: (news) => this.news(news),
       lost: () => { byId("lost").hidden = false; },
       found: () => { byId("lost").hidden = true; this.load(); } });
     this.timeline = new Timeline(this);
@@ -63,6 +63,11 @@ class Page {
   }
 
   // ---- what the server knows
+
+  /// What the page has done itself it knows already.
+  hears(version) {
+    if (this.loading || !(this.state?.version >= version)) this.load();
+  }
 
   /// The latest state; while one is on its way only one more is asked for.
   load() {

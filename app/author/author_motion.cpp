@@ -1,0 +1,404 @@
+#include "author/author_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/check/stability_series.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/reach.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/limits/amount_text.hpp"
+#include "ayumi/math/polygon.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/model/outline.hpp"
+#include "ayumi/report/replay.hpp"
+#include "ayumi/sim/run_caution.hpp"
+#include "ayumi/task/plan_log.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Share of its limit from which a quantity leaves the colour of good. Chosen: a motion below it has
+// room for what a controller adds.
+constexpr double kNearLimit = 0.7;
+// The same of a margin, of its largest possible value (the ZMP in the middle of one sole), and of
+// the force on the ground, of the weight. Chosen as above.
+constexpr double kNearEdge = 0.3, kNearLiftOff = 0.15;
+
+OrderedJson list(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+std::string words_of(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+OrderedJson finding_json(const RobotModel& model, const Finding& f) {
+  OrderedJson json = {
+      {"kind", name_of(f.kind)},
+      {"severity", name_of(f.severity)},
+      {"where", f.where},
+      {"begin", f.begin},
+      {"end", f.end},
+      {"at", f.at},
+      {"message", words_of(name_of(f.kind)) + ", " + f.where + ": " + amount_text(f)},
+      {"hint", f.hint},
+      {"bodies", OrderedJson::array()},
+      {"side", nullptr},
+      {"joint", nullptr},
+      {"pointer", nullptr}};
+  if (const auto* joint = std::get_if<JointPlace>(&f.place))
+    json["joint"] = model.dofs()[static_cast<size_t>(joint->dof)].name;
+  if (const auto* foot = std::get_if<FootPlace>(&f.place)) json["side"] = name_of(foot->side);
+  if (const auto* support = std::get_if<SupportPlace>(&f.place))
+    if (support->support == Support::left || support->support == Support::right)
+      json["side"] = name_of(support->support);
+  if (const auto* pair = std::get_if<BodyPairPlace>(&f.place)) json["bodies"] = {pair->a, pair->b};
+  return json;
+}
+
+std::string pointer_to(const std::string& list, size_t i) {
+  return "/" + list + "/" + std::to_string(i);
+}
+
+OrderedJson phases_json(const AuthorMotion& motion) {
+  OrderedJson phases = OrderedJson::array();
+  double from = 0;
+  for (size_t i = 0; i < motion.task.pattern.phases.size(); ++i) {
+    const Phase& phase = motion.task.pattern.phases[i];
+    const auto& written = motion.document["phases"][i];
+    const std::string pointer = pointer_to("phases", i);
+    phases.push_back(
+        {{"from", from},
+         {"until", phase.until},
+         {"support", phase.viip ? OrderedJson(nullptr) : OrderedJson(name_of(phase.support))},
+         {"pointer", pointer},
+         {"until_pointer", pointer + "/until"},
+         {"until_value", written["until"]},
+         {"swing",
+          written.contains("swing") ? OrderedJson(written["swing"]) : OrderedJson(nullptr)}});
+    from = phase.until;
+  }
+  return phases;
+}
+
+// Keys by track, in the order in which the tracks first appear among those of the body, then of the
+// joints.
+class Tracks {
+ public:
+  void add(const std::string& name, const std::string& kind, const OrderedJson& key) {
+    const auto found = std::find_if(tracks_.begin(), tracks_.end(),
+                                    [&](const OrderedJson& t) { return t["name"] == name; });
+    if (found != tracks_.end()) {
+      (*found)["keys"].push_back(key);
+      return;
+    }
+    OrderedJson track = {{"name", name}, {"kind", kind}};
+    if (kind == "joint") track["joint"] = name.substr(6);
+    track["keys"] = OrderedJson::array({key});
+    tracks_.push_back(track);
+  }
+  OrderedJson sorted() {
+    const auto rank = [](const OrderedJson& track) {
+      static const std::vector<std::string> kinds = {"posture", "zmp",  "cog",  "fz",
+                                                     "trunk",   "foot", "joint"};
+      return std::find(kinds.begin(), kinds.end(), track["kind"].get<std::string>());
+    };
+    std::stable_sort(tracks_.begin(), tracks_.end(),
+                     [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+    return tracks_;
+  }
+
+ private:
+  OrderedJson tracks_ = OrderedJson::array();
+};
+
+OrderedJson tracks_json(const AuthorMotion& motion) {
+  Tracks tracks;
+  for (size_t i = 0; i < motion.task.pattern.keyframes.size(); ++i) {
+    const auto& written = motion.document["keyframes"][i];
+    const std::string pointer = pointer_to("keyframes", i);
+    const auto add = [&](const std::string& name, const std::string& kind,
+                         const std::string& inside, const OrderedJson& value) {
+      tracks.add(name, kind,
+                 {{"time", motion.task.pattern.keyframes[i].t},
+                  {"time_value", written["t"]},
+                  {"time_pointer", pointer + "/t"},
+                  {"pointer", pointer + inside},
+                  {"value", value}});
+    };
+    for (const auto& [key, value] : written.items()) {
+      if (key == "zmp" || key == "cog" || key == "fz") add(key, key, "/" + key, value);
+      if (key == "torso") add(key, "trunk", "/torso", value);
+      if (key == "posture" && value.is_string()) add(key, key, "/posture", value);
+      if (key == "joints" || (key == "posture" && value.is_object()))
+        for (const auto& [joint, angle] : value.items())
+          add("joint " + joint, "joint", "/" + key + pointer_token(joint), angle);
+      if (key == "feet")
+        for (const auto& [side, foot] : value.items())
+          add(side + " foot", "foot", "/feet" + pointer_token(side), foot);
+    }
+  }
+  return tracks.sorted();
+}
+
+OrderedJson keyframes_json(const AuthorMotion& motion) {
+  OrderedJson frames = OrderedJson::array();
+  for (size_t i = 0; i < motion.task.pattern.keyframes.size(); ++i) {
+    const auto& written = motion.document["keyframes"][i];
+    frames.push_back({{"time", motion.task.pattern.keyframes[i].t},
+                      {"time_value", written["t"]},
+                      {"pointer", pointer_to("keyframes", i)},
+                      {"more", written.contains("weights") || written.contains("interpolation")}});
+  }
+  return frames;
+}
+
+OrderedJson disturbances_json(const AuthorMotion& motion) {
+  OrderedJson all = OrderedJson::array();
+  for (size_t i = 0; i < motion.task.pattern.scenario.size(); ++i) {
+    const Disturbance& d = motion.task.pattern.scenario[i];
+    const auto& written = motion.document["scenario"][i];
+    const std::string pointer = pointer_to("scenario", i);
+    OrderedJson one = {
+        {"type", name_of(d)},
+        {"from", d.at},
+        {"until", d.at + d.duration},
+        {"duration", d.duration},
+        {"pointer", pointer},
+        {"at_pointer", pointer + "/at"},
+        {"at_value", written.contains("at") ? OrderedJson(written["at"]) : OrderedJson(nullptr)},
+        {"text", ayumi::words_of({d})},
+        {"value", written}};
+    if (const auto* push = std::get_if<Push>(&d.what)) {
+      one["size"] = push->magnitude;
+      one["unit"] = push->kind == PushKind::impulse ? "N s"
+                    : push->kind == PushKind::force ? "N"
+                                                    : "N m";
+      one["link"] = push->on;
+      if (push->frame == PushFrame::world) one["direction"] = list(push->direction);
+    }
+    all.push_back(one);
+  }
+  return all;
+}
+
+OrderedJson joints_json(const RobotModel& model) {
+  OrderedJson joints = OrderedJson::array();
+  for (const Dof& dof : model.dofs()) {
+    // A slider needs ends: a joint without limits turns once, or slides by a metre.
+    const double free = dof.prismatic ? 1.0 : M_PI;
+    joints.push_back({{"name", dof.name},
+                      {"low", std::isfinite(dof.lower) ? dof.lower : -free},
+                      {"high", std::isfinite(dof.upper) ? dof.upper : free},
+                      {"prismatic", dof.prismatic}});
+  }
+  return joints;
+}
+
+OrderedJson handles_json(const RobotModel& model) {
+  OrderedJson handles = OrderedJson::array();
+  for (const AuthorHandle& handle : handles_of(model)) {
+    OrderedJson one = {{"name", handle.name}, {"label", handle.label}};
+    if (handle.body >= 0) {
+      one["body"] = handle.body;
+      one["point"] = list(handle.point);
+    }
+    handles.push_back(one);
+  }
+  return handles;
+}
+
+struct Lane {
+  const char *name, *unit, *sense;
+  double limit, warn;
+  int digits;
+};
+
+OrderedJson lane_json(const Lane& lane, const std::vector<double>& values, double scale,
+                      const RobotModel& model, const std::vector<int>& dofs = {}) {
+  OrderedJson scaled = OrderedJson::array(), worst = nullptr;
+  for (const double value : values)  // four digits: it is for a picture
+    scaled.push_back(std::isnan(value) ? OrderedJson(nullptr)
+                                       : OrderedJson(std::round(1e4 * scale * value) / 1e4));
+  if (!dofs.empty()) worst = OrderedJson::array();
+  for (const int dof : dofs)
+    worst.push_back(dof < 0 ? OrderedJson(nullptr)
+                            : OrderedJson(model.dofs()[static_cast<size_t>(dof)].name));
+  return {{"name", lane.name},   {"unit", lane.unit}, {"sense", lane.sense},
+          {"limit", lane.limit}, {"warn", lane.warn}, {"digits", lane.digits},
+          {"worst", worst},      {"values", scaled}};
+}
+
+OrderedJson strip_json(const AuthorMotion& motion, const StabilitySeries& s) {
+  const RobotModel& model = motion.task.robot;
+  const Tolerances allowed = tolerances(check_options(motion.task), model, motion.task.series);
+  const Sole& sole = model.sole(Side::left);
+  const double middle = 1e3 * ConvexPolygon(sole.polygon).margin(sole.center);
+  const double weight = model.mass() * kGravity;
+  const auto share = [&](const char* name, FindingKind kind) {
+    const double most = 100 * allowed[kind];
+    return Lane{name, "%", "high", most, kNearLimit * most, 0};
+  };
+  return {
+      lane_json({"ZMP margin", "mm", "low", 0, kNearEdge * middle, 1}, s.zmp_margin, 1e3, model),
+      lane_json({"DCM margin", "mm", "low", 0, kNearEdge * middle, 1}, s.dcm_margin, 1e3, model),
+      lane_json({"Reserve of f_z", "N", "low", 0, kNearLiftOff * weight, 1}, s.normal_force, 1,
+                model),
+      lane_json(share("Friction used", FindingKind::friction), s.friction, 100, model),
+      lane_json(share("Joint speed", FindingKind::joint_speed), s.speed, 100, model, s.speed_dof),
+      lane_json(share("Joint torque", FindingKind::joint_torque), s.torque, 100, model,
+                s.torque_dof)};
+}
+
+std::vector<std::string> postures_of(const AuthorMotion& motion) {
+  std::vector<std::string> names;
+  for (const auto& [name, joints] : motion.task.robot.description().postures) names.push_back(name);
+  for (const auto& [name, joints] : motion.task.pattern.postures)
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  return names;
+}
+
+void describe(AuthorMotion& motion, const StabilitySeries& stability) {
+  const Task& task = motion.task;
+  OrderedJson findings = OrderedJson::array();
+  for (const Finding& f : motion.judgement.report.findings)
+    findings.push_back(finding_json(task.robot, f));
+  OrderedJson own = OrderedJson::array();
+  if (motion.document.contains("postures"))
+    for (const auto& [name, joints] : motion.document["postures"].items()) own.push_back(name);
+  motion.parts = {{"robot", task.robot.name()},
+                  {"profile", task.profile},
+                  {"duration", task.series.duration()},
+                  {"dt", task.series.dt},
+                  {"angle_unit", task.pattern.degrees ? "deg" : "rad"},
+                  {"consistent", motion.judgement.good()},
+                  {"reason", motion.judgement.reason()},
+                  {"findings", findings},
+                  {"phases", phases_json(motion)},
+                  {"keyframes", keyframes_json(motion)},
+                  {"tracks", tracks_json(motion)},
+                  {"disturbances", disturbances_json(motion)},
+                  {"joints", joints_json(task.robot)},
+                  {"handles", handles_json(task.robot)},
+                  {"postures", postures_of(motion)},
+                  {"own_postures", own},
+                  {"strip", strip_json(motion, stability)},
+                  {"strip_dt", stability.dt},
+                  {"replay", OrderedJson::parse(live_config(task.robot, motion.plan, kPageRate))}};
+}
+
+}  // namespace
+
+std::string pointer_token(const std::string& key) {
+  return (nlohmann::json::json_pointer() / key).to_string();
+}
+
+std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const NamedRobot& robot,
+                                                  const AuthorSetting& setting,
+                                                  const Progress& progress) {
+  auto motion = std::make_shared<AuthorMotion>(AuthorMotion{
+      load_task(pattern_of_text(text, setting.file, setting.set), robot, setting.profile, progress),
+      {},
+      {},
+      {},
+      {},
+      {}});
+  const Task& task = motion->task;
+  motion->document = OrderedJson::parse(text, nullptr, true, true);
+  // The verdict on one core, what the page shows on the other.
+  auto judged = std::async(std::launch::async, [&] { return judge(task); });
+  const StabilitySeries stability = stability_series(task.robot, task.series, check_options(task));
+  const int stride = std::max(1, static_cast<int>(std::lround(1 / kPageRate / task.series.dt)));
+  motion->plan =
+      plan_log(task.robot, task.robot.limits(task.profile), task.series, task.series, stride);
+  motion->plan.world = task.pattern.world;
+  motion->series = live_series(motion->plan, kPageRate);
+  motion->judgement = judged.get();
+  describe(*motion, stability);
+  return motion;
+}
+
+namespace {
+
+// The box around all shapes of a body, in its frame.
+Eigen::AlignedBox3d box_of(const RobotModel& model, int body) {
+  Eigen::AlignedBox3d box;
+  for (const Link& link : model.links()) {
+    if (link.body != body) continue;
+    for (const PlacedShape& placed : link.visuals.empty() ? link.collisions : link.visuals)
+      for (const Vector3d& point : outline(placed.shape))
+        box.extend(Vector3d(link.pose * placed.pose * point));
+  }
+  return box;
+}
+
+// The end of a limb: the middle of the far end of its last body's box, seen from the joint.
+Vector3d far_end(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return Vector3d::Zero();
+  Vector3d end = box.center();
+  int along = 0;
+  double most = -1;
+  for (int i = 0; i < 3; ++i) {
+    const double reach = std::max(std::abs(box.min()[i]), std::abs(box.max()[i]));
+    if (reach > most) {
+      most = reach;
+      along = i;
+    }
+  }
+  end[along] =
+      std::abs(box.min()[along]) > std::abs(box.max()[along]) ? box.min()[along] : box.max()[along];
+  return end;
+}
+
+}  // namespace
+
+std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
+  using Kind = AuthorHandle::Kind;
+  std::vector<AuthorHandle> handles;
+  std::vector<int> feet;
+  if (robot.has_soles())
+    for (const Side side : {Side::left, Side::right}) {
+      const Sole& sole = robot.sole(side);
+      handles.push_back({Kind::foot, std::string(name_of(side)) + "_foot",
+                         std::string(name_of(side)) + " foot", sole.body, sole.frame.translation(),
+                         side});
+      feet.push_back(sole.body);
+    }
+  RobotData data(robot);
+  update_positions(robot, robot.rest_state(), data);
+  std::vector<AuthorHandle> limbs;
+  std::array<int, 2> on_side = {0, 0};  // arms, by Side
+  for (int b = 1; b < static_cast<int>(robot.bodies().size()); ++b) {
+    const bool carries = std::any_of(robot.bodies().begin(), robot.bodies().end(),
+                                     [&](const Body& body) { return body.parent == b; });
+    // Three joints bring a point to a place; a neck has fewer.
+    if (carries || std::count(feet.begin(), feet.end(), b) || limb_dofs(robot, b).size() < 3)
+      continue;
+    const std::string& name = robot.bodies()[static_cast<size_t>(b)].name;
+    limbs.push_back({Kind::limb, name, words_of(name), b, far_end(box_of(robot, b)), Side::left});
+    const double y = data.position[static_cast<size_t>(b)].y();
+    limbs.back().side = y > 0 ? Side::left : Side::right;
+    ++on_side[static_cast<size_t>(limbs.back().side)];
+  }
+  if (limbs.size() == 2 && on_side[0] == 1)
+    for (AuthorHandle& limb : limbs) {
+      limb.name = std::string(name_of(limb.side)) + "_hand";
+      limb.label = std::string(name_of(limb.side)) + " hand";
+    }
+  handles.insert(handles.end(), limbs.begin(), limbs.end());
+  const int trunk = robot.trunk_body();
+  const Eigen::AlignedBox3d box = box_of(robot, trunk);
+  Vector3d top = box.isEmpty() ? Vector3d(0, 0, 0.1) : Vector3d(box.center());
+  if (!box.isEmpty()) top.z() = box.max().z();
+  handles.push_back({Kind::trunk, "trunk", "trunk", trunk, top, Side::left});
+  handles.push_back({Kind::cog, "cog", "COG", -1, Vector3d::Zero(), Side::left});
+  return handles;
+}
+
+}  // namespace ayumi::app

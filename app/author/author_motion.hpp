@@ -1,0 +1,56 @@
+#pragma once
+// A readable version of the pattern that is being authored: its samples, its verdict, and what the
+// live page shows of it.
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "ayumi/io/task_file.hpp"
+#include "ayumi/sim/simulation_log.hpp"
+
+namespace ayumi::app {
+
+using OrderedJson = nlohmann::ordered_json;
+
+/// Rows per second of the tables that the page receives [Hz].
+inline constexpr double kPageRate = 50;
+
+struct AuthorMotion {
+  Task task;
+  Judgement judgement;
+  OrderedJson document;  ///< of the text, as written
+  SimulationLog plan;    ///< each tick of the page's tables
+  std::string series;    ///< the page's table of the plan
+  OrderedJson parts;     ///< members of the page's state that follow from the motion
+};
+
+/// What does not come from the pattern's text.
+struct AuthorSetting {
+  std::filesystem::path file;  ///< of the pattern
+  std::map<std::string, double> set;
+  std::string profile;  ///< "": the pattern's
+};
+
+/// Throws as pattern_of_text() and make_task().
+std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const NamedRobot& robot,
+                                                  const AuthorSetting& setting,
+                                                  const Progress& progress = {});
+
+/// A slash and a key as they stand in a JSON pointer.
+std::string pointer_token(const std::string& key);
+
+/// What can be dragged in the picture: the soles, the ends of the arms, the trunk and the COG.
+struct AuthorHandle {
+  enum class Kind { foot, limb, trunk, cog };
+  Kind kind = Kind::cog;
+  std::string name, label;
+  int body = -1;                                    ///< -1: the COG
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< frame of the body [m]
+  Side side = Side::left;                           ///< of a foot
+};
+std::vector<AuthorHandle> handles_of(const RobotModel& robot);
+
+}  // namespace ayumi::app

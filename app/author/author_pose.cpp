@@ -1,0 +1,632 @@
+#include "author/author_pose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/demand/ground_demand.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/reach.hpp"
+#include "ayumi/io/pattern/expression.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/report/replay.hpp"
+#include "ayumi/task/plan_log.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Times that are written to the millisecond are the same below half of it [s].
+constexpr double kSameTime = 5e-4;
+// A drag by less moves nothing [m]. Chosen: the lengths that are written have tenths of a
+// millimetre.
+constexpr double kStill = 5e-5;
+// A point that ends farther from where it was dragged is worth a word [m]. Chosen: what an eye
+// sees.
+constexpr double kWorthSaying = 2e-3;
+// Period of the samples while something is dragged [s]. Chosen: the posture at one time is the same
+// within what an eye sees, and sampling takes a fifth of the time.
+constexpr double kDragTick = 0.005;
+// Distance of a dragged ZMP from the edge of the support [m]. Chosen: twice the margin below which
+// the check warns, because the motion's own ZMP differs a little from its keys.
+constexpr double kInsideSole = 4e-3;
+// Rounds in which a dragged trunk comes to its place. Chosen: each takes half of the way or more.
+constexpr int kTrunkRounds = 5;
+
+// As text of that many decimals is read; zero has no sign.
+double rounded(double value, int decimals) { return std::stod(text::fixed(value, decimals)) + 0.0; }
+double metres(double value) { return rounded(value, 4); }
+
+// Edits of keyframes by time. What comes to one time goes into one keyframe.
+class KeyEdits {
+ public:
+  explicit KeyEdits(const AuthorMotion& motion) : motion_(motion) {}
+
+  void set(double time, const std::vector<std::string>& path, const OrderedJson& value) {
+    for (auto& [t, members] : times_)
+      if (std::abs(t - time) < kSameTime) time = t;
+    OrderedJson* place = &times_[time];
+    for (const std::string& name : path) place = &(*place)[name];
+    *place = value;
+  }
+
+  std::vector<PatternEdit> edits() const {
+    std::vector<PatternEdit> edits;
+    const auto& frames = motion_.task.pattern.keyframes;
+    for (const auto& [time, members] : times_) {
+      const double t = time;
+      const auto there = std::find_if(frames.begin(), frames.end(), [&](const Keyframe& frame) {
+        return std::abs(frame.t - t) < kSameTime;
+      });
+      if (there != frames.end()) {
+        const std::string frame = "/keyframes/" + std::to_string(there - frames.begin());
+        set_members(members, frame, edits);
+        continue;
+      }
+      const auto next = std::find_if(frames.begin(), frames.end(),
+                                     [&](const Keyframe& frame) { return frame.t > t; });
+      OrderedJson frame = {{"t", rounded(time, 3)}};
+      for (const auto& [name, value] : members.items()) frame[name] = value;
+      edits.push_back(
+          {PatternEdit::Kind::insert,
+           "/keyframes/" +
+               (next == frames.end() ? std::string("-") : std::to_string(next - frames.begin())),
+           frame.dump()});
+    }
+    return edits;
+  }
+
+ private:
+  // Into a value that is there, member by member; what is missing is added as a whole.
+  void set_members(const OrderedJson& members, const std::string& place,
+                   std::vector<PatternEdit>& edits) const {
+    for (const auto& [name, value] : members.items()) {
+      const std::string pointer = place + pointer_token(name);
+      const OrderedJson::json_pointer at(pointer);
+      const bool there = motion_.document.contains(at);
+      if (value.is_object() && there && motion_.document.at(at).is_object())
+        set_members(value, pointer, edits);
+      else
+        edits.push_back({PatternEdit::Kind::set, pointer, value.dump()});
+    }
+  }
+
+  const AuthorMotion& motion_;
+  std::map<double, OrderedJson> times_;
+};
+
+const CommandSample& sample_near(const CommandSeries& series, double time) {
+  const auto last = static_cast<double>(series.samples.size() - 1);
+  return series.samples[static_cast<size_t>(std::clamp(std::round(time / series.dt), 0.0, last))];
+}
+
+double in_unit(const AuthorMotion& motion, const Dof& dof, double value) {
+  if (dof.prismatic) return metres(value);
+  return motion.task.pattern.degrees ? rounded(value * 180 / M_PI, 2) : rounded(value, 4);
+}
+
+double angle_in_unit(const AuthorMotion& motion, double angle) {
+  return motion.task.pattern.degrees ? rounded(angle * 180 / M_PI, 2) : rounded(angle, 4);
+}
+
+// A joint's key stands in "joints", or where the keyframe has its posture as angles, there.
+void set_joint(const AuthorMotion& motion, double time, int dof, double value, KeyEdits& keys) {
+  const auto& frames = motion.task.pattern.keyframes;
+  const Dof& joint = motion.task.robot.dofs()[static_cast<size_t>(dof)];
+  std::string list = "joints";
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const auto& written = motion.document["keyframes"][i];
+    if (std::abs(frames[i].t - time) < kSameTime && written.contains("posture") &&
+        written["posture"].is_object() && written["posture"].contains(joint.name))
+      list = "posture";
+  }
+  keys.set(time, {list, joint.name}, in_unit(motion, joint, value));
+}
+
+// A track that has no keys of its own yet keeps its present value at the keyframes around, so that
+// the change stays between them.
+template <typename HasKey, typename Present>
+void hold_around(const AuthorMotion& motion, double time, const HasKey& has_key,
+                 const Present& set_present) {
+  const auto& frames = motion.task.pattern.keyframes;
+  const Keyframe *before = nullptr, *after = nullptr;
+  bool keyed_before = false, keyed_after = false;
+  for (const Keyframe& frame : frames) {
+    if (frame.t < time - kSameTime) {
+      before = &frame;
+      keyed_before = keyed_before || has_key(frame);
+    } else if (frame.t > time + kSameTime) {
+      if (!after) after = &frame;
+      keyed_after = keyed_after || has_key(frame);
+    }
+  }
+  if (!keyed_before && before && before->t > 0) set_present(before->t);
+  if (!keyed_after && after) set_present(after->t);
+}
+
+void drag_height(const AuthorMotion& motion, double time, double change, KeyEdits& keys) {
+  const auto height = [&](double t) { return sample_near(motion.task.series, t).cog.z(); };
+  hold_around(
+      motion, time, [](const Keyframe& frame) { return frame.cog_height.has_value(); },
+      [&](double t) {
+        keys.set(t, {"cog", "height"}, metres(height(t)));
+      });
+  keys.set(time, {"cog", "height"}, metres(height(time) + change));
+}
+
+OrderedJson attitude_value(const AuthorMotion& motion, const Matrix3d& attitude) {
+  const Vector3d rpy = matrix_to_rpy(attitude);
+  OrderedJson value = OrderedJson::object();
+  const char* const names[] = {"roll", "pitch", "yaw"};
+  for (int i = 0; i < 3; ++i) {
+    const double angle = angle_in_unit(motion, rpy[i]);
+    if (angle != 0 || i == 1) value[names[i]] = angle;
+  }
+  return value;
+}
+
+Isometry3d body_pose(const AuthorMotion& motion, const CommandSample& sample, int body) {
+  RobotData data(motion.task.robot);
+  update_positions(motion.task.robot, sample.state, data);
+  return data.pose(body);
+}
+
+// Across the line from the body's origin to the point the trunk leans; along it the COG rises.
+void drag_trunk(const AuthorMotion& motion, double time, const AuthorHandle& handle,
+                const Vector3d& change, KeyEdits& keys) {
+  const auto attitude = [&](double t) {
+    return Matrix3d(body_pose(motion, sample_near(motion.task.series, t), handle.body).linear());
+  };
+  const Matrix3d now = attitude(time);
+  const Vector3d arm = now * handle.point;
+  if (arm.norm() < 1e-3) return;
+  const double along = change.dot(arm.normalized());
+  const Vector3d turn = arm.cross(change) / arm.squaredNorm();
+  if (turn.norm() * arm.norm() > kStill) {
+    hold_around(
+        motion, time, [](const Keyframe& frame) { return frame.torso.has_value(); },
+        [&](double t) { keys.set(t, {"torso"}, attitude_value(motion, attitude(t))); });
+    keys.set(time, {"torso"}, attitude_value(motion, exp_rotation(turn).toRotationMatrix() * now));
+  }
+  if (std::abs(along) > kStill) drag_height(motion, time, along, keys);
+}
+
+// The values of a foothold as it is written: [x, y], [x, y, z], [x, y, z, yaw] or an object.
+void move_foothold(const AuthorMotion& motion, const std::string& pointer, const Vector3d& change,
+                   std::vector<PatternEdit>& edits) {
+  const OrderedJson::json_pointer at(pointer);
+  const OrderedJson& written = motion.document.at(at);
+  const std::string place = written.is_object() ? pointer + "/position" : pointer;
+  const OrderedJson& position = motion.document.at(OrderedJson::json_pointer(place));
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(change[i]) < kStill) continue;
+    if (static_cast<size_t>(i) >= position.size()) continue;  // a foothold without a height
+    const OrderedJson& value = position[static_cast<size_t>(i)];
+    // The edit needs the new value; of an expression it is the old one's.
+    const double now =
+        value.is_number()
+            ? value.get<double>()
+            : evaluate_expression(value.get<std::string>(), motion.task.pattern.parameters, place);
+    edits.push_back({PatternEdit::Kind::set, place + "/" + std::to_string(i),
+                     OrderedJson(metres(now + change[i])).dump()});
+  }
+}
+
+OrderedJson foothold_value(const AuthorMotion& motion, const Isometry3d& pose) {
+  const Vector3d rpy = matrix_to_rpy(pose.linear()), p = pose.translation();
+  OrderedJson value = {metres(p.x()), metres(p.y()), metres(p.z())};
+  if (std::abs(rpy.z()) > 1e-4) value.push_back(angle_in_unit(motion, rpy.z()));
+  return value;
+}
+
+double begin_of(const Pattern& pattern, size_t phase) {
+  return phase == 0 ? 0 : pattern.phases[phase - 1].until;
+}
+
+size_t phase_at(const Pattern& pattern, double time) {
+  for (size_t i = 0; i + 1 < pattern.phases.size(); ++i)
+    if (time < pattern.phases[i].until - kSameTime) return i;
+  return pattern.phases.size() - 1;
+}
+
+// Where the foot stood before its first swing: in "start", both feet, so that only one moves.
+void drag_start(const AuthorMotion& motion, Side side, const Vector3d& change,
+                std::vector<PatternEdit>& edits) {
+  const std::string pointer = std::string("/start/") + name_of(side);
+  if (motion.document.contains(OrderedJson::json_pointer(pointer))) {
+    move_foothold(motion, pointer, change, edits);
+    return;
+  }
+  const auto& feet = motion.task.series.samples.front().feet;
+  Isometry3d moved = feet[static_cast<size_t>(side)];
+  moved.translation() += change;
+  edits.push_back({PatternEdit::Kind::set, pointer, foothold_value(motion, moved).dump()});
+  const std::string beside = std::string("/start/") + name_of(other(side));
+  if (!motion.document.contains(OrderedJson::json_pointer(beside)))
+    edits.push_back({PatternEdit::Kind::set, beside,
+                     foothold_value(motion, feet[static_cast<size_t>(other(side))]).dump()});
+}
+
+// The swing that brings a foot to where it is at a time: the last one that has begun; -1: none.
+int swing_before(const Pattern& pattern, Side side, double time) {
+  int found = -1;
+  for (size_t i = 0; i < pattern.phases.size(); ++i)
+    if (begin_of(pattern, i) <= time + kSameTime && pattern.phases[i].swing &&
+        pattern.phases[i].swing->foot == side)
+      found = static_cast<int>(i);
+  return found;
+}
+
+// In the air a drag goes to where the foot lands, and up and down to the lift of its swing.
+void drag_swing(const AuthorMotion& motion, size_t phase, double time, const Vector3d& change,
+                std::vector<PatternEdit>& edits) {
+  const Pattern& pattern = motion.task.pattern;
+  const double begin = begin_of(pattern, phase), end = pattern.phases[phase].until;
+  const std::string swing = "/phases/" + std::to_string(phase) + "/swing";
+  if (time > end - kSameTime) {  // it has landed
+    move_foothold(motion, swing + "/to", {change.x(), change.y(), 0}, edits);
+    return;
+  }
+  const auto s = static_cast<size_t>(pattern.phases[phase].swing->foot);
+  const Vector3d from = sample_near(motion.task.series, begin).feet[s].translation();
+  const Vector3d to = pattern.phases[phase].swing->to.position;
+  const Vector3d now = sample_near(motion.task.series, time).feet[s].translation();
+  // How far the foot is on its way; one that has hardly left is taken to its landing place.
+  const double way = (to - from).head<2>().norm();
+  const double u = (time - begin) / (end - begin);
+  const double done = way > kStill ? (now - from).head<2>().norm() / way : u;
+  const double share = std::clamp(done, 0.25, 1.0);
+  move_foothold(motion, swing + "/to", {change.x() / share, change.y() / share, 0}, edits);
+  if (std::abs(change.z()) < kStill) return;
+  const double lift = pattern.phases[phase].swing->lift;
+  const double risen = now.z() - from.z() - done * (to.z() - from.z());
+  const double more = risen > 1e-3 ? lift * change.z() / risen : change.z();
+  edits.push_back({PatternEdit::Kind::set, swing + "/lift",
+                   OrderedJson(metres(std::max(0.0, lift + more))).dump()});
+}
+
+// A foot without swings that is free: a key at this time, and where its freedom begins and ends the
+// place that it has there.
+void drag_free_foot(const AuthorMotion& motion, Side side, double time, const Vector3d& change,
+                    KeyEdits& keys) {
+  const Pattern& pattern = motion.task.pattern;
+  const auto s = static_cast<size_t>(side);
+  size_t first = phase_at(pattern, time), last = first;
+  while (first > 0 && !supports(pattern.phases[first - 1].support, side)) --first;
+  while (last + 1 < pattern.phases.size() && !supports(pattern.phases[last + 1].support, side))
+    ++last;
+  const auto pose = [&](double t) { return sample_near(motion.task.series, t).feet[s]; };
+  const std::string foot = name_of(side);
+  const auto has_key = [&](double t) {
+    return std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(), [&](const Keyframe& k) {
+      return std::abs(k.t - t) < kSameTime && k.feet[s].has_value();
+    });
+  };
+  for (const double edge : {begin_of(pattern, first), pattern.phases[last].until})
+    if (std::abs(edge - time) > kSameTime && !has_key(edge))
+      keys.set(edge, {"feet", foot}, foothold_value(motion, pose(edge)));
+  Isometry3d moved = pose(time);
+  moved.translation() += change;
+  keys.set(time, {"feet", foot}, foothold_value(motion, moved));
+}
+
+void drag_foot(const AuthorMotion& motion, double time, Side side, const Vector3d& change,
+               KeyEdits& keys, std::vector<PatternEdit>& edits) {
+  const Pattern& pattern = motion.task.pattern;
+  const Vector3d level(change.x(), change.y(), 0);
+  const int swing = swing_before(pattern, side, time);
+  const bool swings = std::any_of(pattern.phases.begin(), pattern.phases.end(),
+                                  [&](const Phase& p) { return p.swing && p.swing->foot == side; });
+  if (swing >= 0)
+    drag_swing(motion, static_cast<size_t>(swing), time, change, edits);
+  else if (swings || supports(pattern.phases[phase_at(pattern, time)].support, side))
+    drag_start(motion, side, level, edits);
+  else
+    drag_free_foot(motion, side, time, change, keys);
+}
+
+// ---- sampling again
+
+struct Tried {
+  CommandSeries series;
+  double time = 0;
+};
+
+Tried sampled_with(const AuthorMotion& motion, const std::string& text,
+                   const AuthorSetting& setting, const std::vector<PatternEdit>& edits,
+                   double time) {
+  const Pattern pattern = pattern_of_text(edited_text(text, edits), setting.file, setting.set);
+  const double dt =
+      std::max(motion.task.series.dt, std::min(kDragTick, motion.task.series.duration() / 50));
+  return {sample(motion.task.robot, pattern, {.dt = dt}), time};
+}
+
+Vector3d place_of(const AuthorMotion& motion, const AuthorHandle& handle,
+                  const CommandSample& sample) {
+  RobotData data(motion.task.robot);
+  update_positions(motion.task.robot, sample.state, data);
+  return handle.body < 0 ? data.cog : Vector3d(data.pose(handle.body) * handle.point);
+}
+
+// The page's row at that time, of the few samples around it.
+std::string row_of(const AuthorMotion& motion, const Tried& tried) {
+  const CommandSeries& all = tried.series;
+  const long at = std::lround(tried.time / all.dt),
+             last = static_cast<long>(all.samples.size()) - 1;
+  const long first = std::clamp(at - 2, 0L, std::max(0L, last - 5));
+  CommandSeries part;
+  part.dt = all.dt;
+  for (long k = first; k <= std::min(last, first + 5); ++k)
+    part.samples.push_back(all.samples[static_cast<size_t>(k)]);
+  SimulationLog log =
+      plan_log(motion.task.robot, motion.task.robot.limits(motion.task.profile), part, part);
+  const long here = std::clamp(at - first, 0L, static_cast<long>(log.samples.size()) - 1);
+  log.samples = {log.samples[static_cast<size_t>(here)]};
+  std::string row = live_series(log, kPageRate);
+  const auto time = static_cast<float>(tried.time);
+  std::memcpy(row.data(), &time, sizeof time);  // the first column
+  return row;
+}
+
+// ---- what is dragged
+
+const AuthorHandle handle_named(const AuthorMotion& motion, const std::string& name) {
+  for (const AuthorHandle& handle : handles_of(motion.task.robot))
+    if (handle.name == name) return handle;
+  fail(ErrorCode::usage, "the robot has no handle '" + name + "'");
+}
+
+bool has_cog_key(const Keyframe& key, int axis) {
+  return axis == 0 ? key.cog_x.has_value() : key.cog_y.has_value();
+}
+
+// The ZMP leads the COG along an axis unless the COG has keys there.
+bool zmp_leads(const Pattern& pattern, int axis) {
+  return std::none_of(pattern.keyframes.begin(), pattern.keyframes.end(),
+                      [&](const Keyframe& key) { return has_cog_key(key, axis); });
+}
+
+bool has_zmp_keys(const Pattern& pattern) {
+  return std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(),
+                     [](const Keyframe& key) { return key.zmp.has_value(); });
+}
+
+bool stands_still(const Pattern& pattern) {
+  return std::all_of(pattern.phases.begin(), pattern.phases.end(), [](const Phase& phase) {
+    return phase.support == Support::both && !phase.swing && !phase.viip;
+  });
+}
+
+class Drag {
+ public:
+  Drag(const AuthorMotion& motion, const std::string& text, const AuthorSetting& setting,
+       const PoseWish& wish)
+      : motion_(motion),
+        text_(text),
+        setting_(setting),
+        wish_(wish),
+        handle_(handle_named(motion, wish.drag)),
+        now_(sample_near(motion.task.series, wish.time)),
+        change_(wish.to - place_of(motion, handle_, now_)) {}
+
+  PoseAnswer answer() {
+    PoseAnswer out;
+    switch (handle_.kind) {
+      case AuthorHandle::Kind::limb:
+        out.edits = limb();
+        break;
+      case AuthorHandle::Kind::cog:
+        out.edits = cog();
+        break;
+      case AuthorHandle::Kind::trunk:
+        out.edits = trunk();
+        break;
+      case AuthorHandle::Kind::foot: {
+        KeyEdits keys(motion_);
+        drag_foot(motion_, wish_.time, handle_.side, change_, keys, out.edits);
+        const std::vector<PatternEdit> keyed = keys.edits();
+        out.edits.insert(out.edits.end(), keyed.begin(), keyed.end());
+        break;
+      }
+    }
+    const Tried tried = sampled(out.edits);
+    out.row = row_of(motion_, tried);
+    const double off = missed(tried).norm();
+    if (message_.empty() && off > kWorthSaying)
+      message_ = "The " + handle_.label + " comes within " + text::fixed(1000 * off, 0) +
+                 " mm of this place" + reason();
+    out.message = message_;
+    return out;
+  }
+
+ private:
+  Tried sampled(const std::vector<PatternEdit>& edits) const {
+    return sampled_with(motion_, text_, setting_, edits, wish_.time);
+  }
+
+  Vector3d missed(const Tried& tried) const {
+    Vector3d off = wish_.to - place_of(motion_, handle_, sample_near(tried.series, wish_.time));
+    // A sole on the ground stays at its height, which is no miss.
+    if (handle_.kind == AuthorHandle::Kind::foot) off.z() = 0;
+    return off;
+  }
+
+  std::string reason() const {
+    if (handle_.kind == AuthorHandle::Kind::limb)
+      return ": its joints are at their limits, or the place is too far away.";
+    if (handle_.kind == AuthorHandle::Kind::foot) return ": other keys move it too.";
+    return ": this is as far as the soles and the balance let it go at this time, or other keys "
+           "move "
+           "it too.";
+  }
+
+  // The arm alone moves; the balance then moves the base a little, so the arm follows it.
+  std::vector<PatternEdit> limb() {
+    const RobotModel& robot = motion_.task.robot;
+    const std::vector<int> dofs = limb_dofs(robot, handle_.body);
+    RobotState state = now_.state;
+    std::vector<PatternEdit> edits;
+    for (int round = 0; round < 3; ++round) {
+      const ReachSolution solution =
+          reach(robot, state, handle_.body, handle_.point, wish_.to, dofs);
+      KeyEdits keys(motion_);
+      for (const int dof : dofs)
+        if (std::abs(solution.theta[dof] - now_.state.theta[dof]) > 1e-4)
+          set_joint(motion_, wish_.time, dof, solution.theta[dof], keys);
+      edits = keys.edits();
+      const Tried tried = sampled(edits);
+      state = sample_near(tried.series, wish_.time).state;
+      if (missed(tried).norm() < 5e-4 || solution.missing > 1e-3) break;
+    }
+    return edits;
+  }
+
+  // The base moves back under a trunk that leans, so that the COG stays: the trunk leans farther.
+  std::vector<PatternEdit> trunk() {
+    std::vector<PatternEdit> best;
+    double least = std::numeric_limits<double>::infinity();
+    Vector3d change = change_;
+    for (int round = 0; round < kTrunkRounds; ++round) {
+      KeyEdits keys(motion_);
+      drag_trunk(motion_, wish_.time, handle_, change, keys);
+      try {
+        const Vector3d off = missed(sampled(keys.edits()));
+        if (off.norm() >= least) break;
+        least = off.norm();
+        change += off;
+      } catch (const Error&) {
+        if (best.empty()) throw;
+        break;  // farther is out of reach
+      }
+      best = keys.edits();
+      if (least < kWorthSaying) break;
+    }
+    return best;
+  }
+
+  std::vector<PatternEdit> cog() {
+    const Pattern& pattern = motion_.task.pattern;
+    KeyEdits keys(motion_);
+    if (std::abs(change_.z()) > kStill) drag_height(motion_, wish_.time, change_.z(), keys);
+    bool led = false;
+    for (int axis = 0; axis < 2; ++axis)
+      if (std::abs(change_[axis]) > kStill && zmp_leads(pattern, axis)) led = true;
+    const Vector3d level(change_.x(), change_.y(), 0);
+    if (level.norm() < kStill) return keys.edits();
+    if (!led || (!has_zmp_keys(pattern) && stands_still(pattern))) {
+      const char* const names[] = {"x", "y"};
+      for (int axis = 0; axis < 2; ++axis) {
+        if (std::abs(change_[axis]) < kStill) continue;
+        hold_around(
+            motion_, wish_.time, [&](const Keyframe& key) { return has_cog_key(key, axis); },
+            [&](double t) {
+              keys.set(t, {"cog", names[axis]},
+                       metres(sample_near(motion_.task.series, t).cog[axis]));
+            });
+        keys.set(wish_.time, {"cog", names[axis]}, metres(now_.cog[axis] + change_[axis]));
+      }
+      return keys.edits();
+    }
+    if (!has_zmp_keys(pattern)) {
+      message_ =
+          "The COG follows the ZMP, which goes from foot to foot by itself. Give ZMP keys to move "
+          "the COG aside; its height is written.";
+      return keys.edits();
+    }
+    return led_cog(keys, level);
+  }
+
+  // The ZMP moves as far as it takes for the COG to come to its place.
+  std::vector<PatternEdit> led_cog(const KeyEdits& height, const Vector3d& level) {
+    // Chosen: farther the ZMP would leave every support.
+    constexpr double kMost = 6;
+    double factor = 1;
+    for (int round = 0; round < 2; ++round) {
+      const Tried tried = sampled(with_zmp(height, factor * level).edits());
+      const Vector3d moved = sample_near(tried.series, wish_.time).cog - now_.cog;
+      const double share = moved.head<2>().dot(level.head<2>()) / level.squaredNorm();
+      if (share < 0.02 * factor) break;  // a key here hardly moves it
+      factor = std::min(kMost, factor / share);
+    }
+    return with_zmp(height, factor * level).edits();
+  }
+
+  // Inside the soles, where alone the ZMP can be.
+  KeyEdits with_zmp(const KeyEdits& keys, const Vector3d& change) const {
+    const SupportPlane plane = support_plane(motion_.task.robot, now_.support, now_.feet);
+    Vector3d place = now_.zmp + change;
+    if (!plane.empty()) {
+      const Vector3d inside = plane.frame.inverse() * place;
+      const Eigen::Vector2d kept = plane.polygon.shrunk(kInsideSole).project(inside.head<2>());
+      place = plane.frame * Vector3d(kept.x(), kept.y(), 0);
+    }
+    KeyEdits with = keys;
+    with.set(wish_.time, {"zmp"}, {metres(place.x()), metres(place.y())});
+    return with;
+  }
+
+  const AuthorMotion& motion_;
+  const std::string& text_;
+  const AuthorSetting& setting_;
+  const PoseWish& wish_;
+  AuthorHandle handle_;
+  const CommandSample& now_;
+  Vector3d change_;
+  std::string message_;
+};
+
+std::vector<PatternEdit> joint_edits(const AuthorMotion& motion, const PoseWish& wish) {
+  KeyEdits keys(motion);
+  for (const auto& [name, value] : wish.joints) {
+    const int dof = motion.task.robot.find_dof(name);
+    if (dof < 0) fail(ErrorCode::usage, "the robot has no joint '" + name + "'");
+    set_joint(motion, wish.time, dof, value, keys);
+  }
+  return keys.edits();
+}
+
+}  // namespace
+
+PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const AuthorSetting& setting,
+                 const PoseWish& wish) {
+  try {
+    if (!wish.drag.empty()) return Drag(motion, text, setting, wish).answer();
+    PoseAnswer out;
+    out.edits = joint_edits(motion, wish);
+    out.row = row_of(motion, sampled_with(motion, text, setting, out.edits, wish.time));
+    return out;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_pattern) throw;
+    return {{}, {}, error.what()};  // out of reach, by how much
+  }
+}
+
+std::vector<PatternEdit> captured(const AuthorMotion& motion, double time, const std::string& name,
+                                  bool mirror) {
+  if (name.empty()) fail(ErrorCode::usage, "the posture needs a name");
+  const RobotModel& robot = motion.task.robot;
+  const Eigen::VectorXd& theta = sample_near(motion.task.series, time).state.theta;
+  Eigen::VectorXd shown = theta;
+  if (mirror) {
+    const MirrorMap map = mirror_map(robot);
+    for (Eigen::Index i = 0; i < theta.size(); ++i)
+      shown[map.dof[static_cast<size_t>(i)]] = map.sign[static_cast<size_t>(i)] * theta[i];
+  }
+  OrderedJson angles = OrderedJson::object();
+  for (int dof = 0; dof < robot.dof_count(); ++dof)
+    angles[robot.dofs()[static_cast<size_t>(dof)].name] =
+        in_unit(motion, robot.dofs()[static_cast<size_t>(dof)], shown[dof]);
+  return {{PatternEdit::Kind::set, "/postures" + pointer_token(name), angles.dump()}};
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,481 @@
+#include "author/author_session.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+
+#include "author/author_pose.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/placed_error.hpp"
+#include "ayumi/io/json/json_text.hpp"
+#include "ayumi/io/pattern/pattern_edit.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/report/replay.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+// Between looks at the files. Chosen: below what a person notices, and a thousandth of a core.
+constexpr auto kLook = 20ms;
+// Clocks of file systems go on in steps of up to 10 ms (jiffies of 100 Hz).
+constexpr auto kClockStep = 30ms;
+// Between two news of one job. Chosen: a bar that moves ten times a second looks smooth.
+constexpr auto kNews = 100ms;
+// Events that are kept for pages that are slow. A page that misses some asks for the state anew.
+constexpr size_t kKeptEvents = 256;
+// Largest number of triangles of the robot in the page, as in reports.
+constexpr size_t kTriangles = 60'000;
+
+AuthorAnswer refused(const std::string& message) { return {422, {{"message", message}}}; }
+
+// Calls `work`; what it throws is an answer in words.
+template <typename Work>
+AuthorAnswer answered(const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    return refused(error.what());
+  } catch (const nlohmann::json::exception&) {
+    return {400, {{"message", "the request is not as the page makes it"}}};
+  }
+}
+
+FileStamp stamp_of(const fs::path& file) {
+  struct stat about {};
+  if (::stat(file.c_str(), &about) != 0) return {};
+  return {about.st_mtim.tv_sec, about.st_mtim.tv_nsec, static_cast<long>(about.st_size),
+          static_cast<unsigned long>(about.st_ino)};
+}
+
+}  // namespace
+
+struct AuthorSession::View {
+  std::uint64_t version = 0;
+  std::string text, hash;
+  std::optional<OrderedJson> error;            // why the text has no motion
+  std::shared_ptr<const AuthorMotion> motion;  // of the text, or the last one before
+  std::shared_ptr<const AuthorMotion> ghost;   // the last consistent one, if it is another
+  std::optional<AuthorResult> result;          // of the last job on this text
+  int undo_steps = 0, redo_steps = 0;
+};
+
+AuthorSession::AuthorSession(const Context& context, AuthorSetting setting)
+    : context_(context), setting_(std::move(setting)) {
+  refresh();
+  follower_ = std::thread([this] { follow(); });
+}
+
+AuthorSession::~AuthorSession() {
+  {
+    const std::lock_guard lock(state_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  stop_job();
+  follower_.join();
+}
+
+AuthorSession::Shown AuthorSession::view() {
+  const std::lock_guard lock(state_);
+  return shown_;
+}
+
+void AuthorSession::publish(std::shared_ptr<View> view) {
+  std::uint64_t version = 0;
+  {
+    const std::lock_guard lock(state_);
+    version = view->version = shown_ ? shown_->version + 1 : 1;
+    shown_ = std::move(view);
+  }
+  tell("state", {{"version", version}});
+}
+
+void AuthorSession::tell(const std::string& name, const OrderedJson& data) {
+  {
+    const std::lock_guard lock(state_);
+    events_.push_back({name, data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+    if (events_.size() > kKeptEvents) {
+      events_.pop_front();
+      ++first_event_;
+    }
+  }
+  changed_.notify_all();
+}
+
+std::uint64_t AuthorSession::next_event() {
+  const std::lock_guard lock(state_);
+  return first_event_ + events_.size();
+}
+
+std::optional<AuthorEvent> AuthorSession::wait_for_event(std::uint64_t number) {
+  std::unique_lock lock(state_);
+  changed_.wait_for(lock, 200ms,
+                    [&] { return stopping_ || number < first_event_ + events_.size(); });
+  if (number >= first_event_ + events_.size()) return {};
+  return events_[number < first_event_ ? 0 : static_cast<size_t>(number - first_event_)];
+}
+
+// ---- following the files
+
+AuthorSession::Stamps AuthorSession::stamps() const {
+  std::vector<fs::path> files = {setting_.file};
+  try {
+    files = pattern_files(setting_.file);
+  } catch (const Error&) {  // what was named before stays watched
+    for (const auto& [file, stamp] : seen_) files.push_back(file);
+  }
+  for (const fs::path& file : robot_files()) files.push_back(file);
+  Stamps stamps;
+  for (const fs::path& file : files) stamps[file] = stamp_of(file);
+  return stamps;
+}
+
+void AuthorSession::follow() {
+  while (true) {
+    {
+      std::unique_lock lock(state_);
+      if (changed_.wait_for(lock, kLook, [&] { return stopping_; })) return;
+    }
+    const std::lock_guard lock(reading_);
+    const bool same = std::all_of(seen_.begin(), seen_.end(), [](const auto& seen) {
+      return stamp_of(seen.first) == seen.second;
+    });
+    try {
+      // Two saves of one size in one step of the clock of the file system have the same stamp.
+      const bool look_again = read_at_ && std::chrono::steady_clock::now() - *read_at_ > kClockStep;
+      if (look_again) read_at_.reset();
+      if (!same || (look_again && read_file(setting_.file) != view()->text)) refresh();
+    } catch (const Error&) {  // the file is away for a moment; the next look finds it
+    }
+  }
+}
+
+void AuthorSession::load_robot_of(const std::string& text, bool anew) {
+  const Pattern pattern = pattern_of_text(text, setting_.file, setting_.set);
+  const std::string name = robot_of(pattern);
+  if (robot_ && name == robot_->name && !anew) return;
+  RobotModel model = load_robot(name, robot_search(context_), {.meshes = true});
+  robot_ = NamedRobot{std::move(model), name};
+  for (const fs::path& file : robot_files()) seen_[file] = stamp_of(file);
+  const std::lock_guard lock(state_);
+  model_.clear();
+}
+
+std::vector<fs::path> AuthorSession::robot_files() const {
+  std::vector<fs::path> files;
+  if (robot_)
+    for (const std::string& file :
+         {robot_->model.description().urdf_file, robot_->model.description().sidecar_file})
+      if (!file.empty()) files.emplace_back(file);
+  return files;
+}
+
+bool AuthorSession::robot_changed() const {
+  const std::vector<fs::path> files = robot_files();
+  return std::any_of(files.begin(), files.end(), [&](const fs::path& file) {
+    const auto seen = seen_.find(file);
+    return seen != seen_.end() && stamp_of(file) != seen->second;
+  });
+}
+
+// Called with `reading_` held, but for the first time. The times come before the bytes, so that a
+// save in between is seen at the next look.
+void AuthorSession::refresh() {
+  const bool new_robot = robot_ && robot_changed();
+  seen_ = stamps();
+  read_at_ = std::chrono::steady_clock::now();
+  const std::string text = read_file(setting_.file);
+  const Shown before = view();
+  auto next = std::make_shared<View>();
+  next->text = text;
+  next->hash = sha256(text);
+  history_.add(text);
+  next->undo_steps = history_.undo_steps();
+  next->redo_steps = history_.redo_steps();
+  if (before) {
+    next->motion = before->motion;
+    next->ghost = before->ghost;
+  }
+  try {
+    load_robot_of(text, new_robot);
+    auto motion = author_motion(text, *robot_, setting_);
+    if (next->motion && next->motion->judgement.good()) next->ghost = next->motion;
+    next->motion = std::move(motion);
+  } catch (const PlacedError& error) {
+    const SourcePlace& at = error.place();
+    const bool here = at.file == setting_.file.string();
+    next->error = {{"message", error.what()}, {"pointer", at.pointer}};
+    if (here && at.line > 0) (*next->error)["line"] = at.line;
+    if (here && at.line == 0)
+      (*next->error)["line"] = line_at(text, nearest_value(text, at.pointer).begin);
+  } catch (const Error& error) {
+    next->error = {{"message", error.what()}};
+  }
+  publish(std::move(next));
+}
+
+// ---- what the page receives
+
+std::string AuthorSession::state() {
+  const Shown shown = view();
+  OrderedJson json = {{"version", shown->version},
+                      {"file", setting_.file.filename().string()},
+                      {"text", shown->text},
+                      {"hash", shown->hash},
+                      {"error", shown->error ? *shown->error : OrderedJson(nullptr)},
+                      {"stale", shown->error.has_value()},
+                      {"undo", shown->undo_steps},
+                      {"redo", shown->redo_steps}};
+  OrderedJson features = {"edit", "undo"};
+  if (shown->motion) {
+    json.update(shown->motion->parts);
+    // Of a motion that is older than the text, nothing can be changed but the text.
+    if (!shown->error) {
+      for (const char* const each : {"pose.joints", "pose.drag", "posture"})
+        features.push_back(each);
+      for (const std::string& kind : author_job_kinds()) features.push_back("job." + kind);
+    }
+    OrderedJson motions = {"plan"};
+    if (shown->ghost) motions.push_back("ghost");
+    if (shown->result)
+      for (const auto& [which, series] : shown->result->series) motions.push_back(which);
+    json["motions"] = motions;
+    json["result"] = shown->result ? shown->result->shown : OrderedJson(nullptr);
+  }
+  json["features"] = features;
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::optional<std::string> AuthorSession::series(const std::string& which) {
+  const Shown shown = view();
+  if (which == "plan" && shown->motion) return shown->motion->series;
+  if (which == "ghost" && shown->ghost) return shown->ghost->series;
+  if (!shown->result) return {};
+  const auto found = shown->result->series.find(which);
+  return found == shown->result->series.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::string AuthorSession::model() {
+  const Shown shown = view();
+  if (!shown->motion) return {};
+  const std::lock_guard lock(state_);
+  if (model_.empty())
+    model_ = live_model(shown->motion->task.robot, shown->motion->plan, kTriangles);
+  return model_;
+}
+
+std::string AuthorSession::scenery() {
+  const Shown shown = view();
+  return shown->motion ? live_scenery(shown->motion->task.pattern.world) : std::string();
+}
+
+// ---- edits
+
+AuthorAnswer AuthorSession::conflict(const View& shown, const std::string& mine) {
+  return {409, {{"theirs", shown.text}, {"theirs_hash", shown.hash}, {"mine", mine}}};
+}
+
+// With `reading_` held: `seen` is the text that the page has seen.
+AuthorAnswer AuthorSession::write(const std::string& seen, const std::string& text) {
+  if (!replace_text(setting_.file, seen, text)) {
+    refresh();
+    return conflict(*view(), text);
+  }
+  refresh();
+  return {200, {{"version", view()->version}}};
+}
+
+AuthorAnswer AuthorSession::edit(const OrderedJson& request) {
+  return answered([&]() -> AuthorAnswer {
+    const std::lock_guard lock(reading_);
+    const std::string seen_hash = request.at("hash");
+    std::vector<PatternEdit> edits;
+    if (!request.contains("text"))
+      for (const auto& one : request.at("edits")) {
+        const std::string kind = one.at("kind");
+        if (kind != "set" && kind != "insert" && kind != "remove")
+          return refused("there is no edit '" + kind + "'");
+        edits.push_back({kind == "set"      ? PatternEdit::Kind::set
+                         : kind == "insert" ? PatternEdit::Kind::insert
+                                            : PatternEdit::Kind::remove,
+                         one.at("pointer"), one.contains("value") ? one["value"].dump() : ""});
+      }
+    // The text that the page has seen is the present one or an earlier one.
+    std::string base = view()->text;
+    if (read_file(setting_.file) != base) refresh();
+    const Shown shown = view();
+    if (seen_hash != shown->hash) {
+      for (int i = 0; i <= history_.undo_steps(); ++i)
+        if (sha256(history_.near(-i)) == seen_hash) base = history_.near(-i);
+      return conflict(*shown, request.contains("text") ? request["text"].get<std::string>()
+                                                       : edited_text(base, edits));
+    }
+    return write(shown->text, request.contains("text") ? request["text"].get<std::string>()
+                                                       : edited_text(shown->text, edits));
+  });
+}
+
+AuthorAnswer AuthorSession::step(const OrderedJson& request, int by) {
+  return answered([&]() -> AuthorAnswer {
+    const std::lock_guard lock(reading_);
+    if (read_file(setting_.file) != view()->text) refresh();
+    const Shown shown = view();
+    const bool possible = by < 0 ? history_.undo_steps() > 0 : history_.redo_steps() > 0;
+    if (request.at("hash") != shown->hash || !possible)
+      return refused(possible ? "the file has changed in the meantime; look at it, then try again"
+                     : by < 0 ? "there is nothing to undo"
+                              : "there is nothing to redo");
+    const std::string text = history_.near(by);
+    if (!replace_text(setting_.file, shown->text, text)) {
+      refresh();
+      return refused("the file has changed in the meantime; look at it, then try again");
+    }
+    history_.step(by);
+    refresh();
+    return {200, {{"version", view()->version}}};
+  });
+}
+
+AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
+  return answered([&]() -> AuthorAnswer {
+    const Shown shown = view();
+    if (!shown->motion || shown->error) return refused("the pattern cannot be read at the moment");
+    PoseWish wish;
+    wish.time = request.at("time");
+    if (request.contains("joints"))
+      wish.joints = request["joints"].get<std::map<std::string, double>>();
+    if (request.contains("drag")) {
+      wish.drag = request["drag"];
+      const auto to = request.at("to").get<std::array<double, 3>>();
+      wish.to = {to[0], to[1], to[2]};
+    }
+    const PoseAnswer answer = posed(*shown->motion, shown->text, setting_, wish);
+    OrderedJson edits = OrderedJson::array(), row = nullptr;
+    for (const PatternEdit& edit : answer.edits)
+      edits.push_back({{"kind", edit.kind == PatternEdit::Kind::set ? "set" : "insert"},
+                       {"pointer", edit.pointer},
+                       {"value", OrderedJson::parse(edit.value)}});
+    if (!answer.row.empty()) {
+      row = OrderedJson::array();
+      for (size_t i = 0; i + sizeof(float) <= answer.row.size(); i += sizeof(float)) {
+        float value = 0;
+        std::memcpy(&value, answer.row.data() + i, sizeof value);
+        row.push_back(value);
+      }
+    }
+    return {
+        200,
+        {{"row", row},
+         {"edits", edits},
+         {"message", answer.message.empty() ? OrderedJson(nullptr) : OrderedJson(answer.message)}}};
+  });
+}
+
+AuthorAnswer AuthorSession::posture(const OrderedJson& request) {
+  return answered([&]() -> AuthorAnswer {
+    const Shown shown = view();
+    if (!shown->motion || shown->error) return refused("the pattern cannot be read at the moment");
+    OrderedJson edits = OrderedJson::array();
+    for (const PatternEdit& edit : captured(*shown->motion, request.at("time"), request.at("name"),
+                                            request.value("mirror", false)))
+      edits.push_back(
+          {{"kind", "set"}, {"pointer", edit.pointer}, {"value", OrderedJson::parse(edit.value)}});
+    return {200, {{"edits", edits}}};
+  });
+}
+
+// ---- jobs
+
+AuthorAnswer AuthorSession::start_job(const OrderedJson& request) {
+  return answered([&]() -> AuthorAnswer {
+    const std::lock_guard lock(jobs_);
+    const std::string kind = request.at("kind");
+    const auto& kinds = author_job_kinds();
+    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+      return refused("there is no job '" + kind + "'");
+    const Shown shown = view();
+    if (!shown->motion || shown->error) return refused("the pattern cannot be read at the moment");
+    if (job_runs_) return refused("another job is running; wait for it or cancel it");
+    if (worker_.joinable()) worker_.join();
+    job_runs_ = true;
+    job_stops_ = false;
+    const std::uint64_t id = ++job_;
+    worker_ =
+        std::thread([this, id, kind, options = request.value("options", OrderedJson::object()),
+                     shown] { work(id, kind, options, shown); });
+    return {200, {{"id", std::to_string(id)}}};
+  });
+}
+
+void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options, Shown shown) {
+  OrderedJson news = {{"id", std::to_string(id)},
+                      {"kind", kind},
+                      {"progress", nullptr},
+                      {"text", ""},
+                      {"done", false},
+                      {"error", nullptr}};
+  tell("job", news);
+  auto last = std::chrono::steady_clock::now();
+  std::mutex telling;
+  const Progress progress = [&](const ProgressEvent& event) {
+    const std::lock_guard lock(telling);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last >= kNews) {
+      last = now;
+      news["progress"] = event.fraction < 0 ? OrderedJson(nullptr) : OrderedJson(event.fraction);
+      news["text"] = event.detail.empty() ? event.stage : event.stage + ", " + event.detail;
+      tell("job", news);
+    }
+    return !job_stops_;
+  };
+  std::optional<AuthorResult> result;
+  try {
+    result = author_job(kind, options, context_, *shown->motion, shown->text, setting_, progress);
+  } catch (const Interrupted&) {
+    news["error"] = "cancelled";
+  } catch (const std::exception& error) {
+    news["error"] = error.what();
+  }
+  if (result) {
+    // A result of a text that is no longer there would be shown beside another motion.
+    const std::lock_guard lock(reading_);
+    const Shown now = view();
+    if (now->hash == shown->hash && !now->error) {
+      auto next = std::make_shared<View>(*now);
+      next->result = std::move(result);
+      publish(std::move(next));
+    } else {
+      news["error"] = "the pattern has changed meanwhile; this answer was of the old one";
+    }
+  }
+  news["progress"] = 1;
+  news["text"] = "";
+  news["done"] = true;
+  job_runs_ = false;
+  tell("job", news);
+}
+
+AuthorAnswer AuthorSession::cancel_job(const std::string& id) {
+  const std::lock_guard lock(jobs_);
+  if (!job_runs_ || id != std::to_string(job_)) return {404, {{"message", "no such job runs"}}};
+  job_stops_ = true;
+  return {};
+}
+
+void AuthorSession::stop_job() {
+  const std::lock_guard lock(jobs_);
+  job_stops_ = true;
+  if (worker_.joinable()) worker_.join();
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,116 @@
+#pragma once
+// The pattern while it is authored: it follows the file, keeps the last motion that could be read
+// and the last consistent one, writes edits into the author's text, and runs jobs. All functions
+// may be called by several threads at once. Answers are JSON as docs/author.md describes them.
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "author/author_file.hpp"
+#include "author/author_jobs.hpp"
+#include "author/author_motion.hpp"
+
+namespace ayumi::app {
+
+struct AuthorAnswer {
+  int status = 200;
+  OrderedJson body = OrderedJson::object();
+};
+
+struct AuthorEvent {
+  std::string name;  ///< "state", "job"
+  std::string data;  ///< JSON
+};
+
+/// What changes when a file is written: times [s, ns], size and number.
+struct FileStamp {
+  long seconds = 0, nanoseconds = 0, size = -1;
+  unsigned long number = 0;
+  bool operator==(const FileStamp&) const = default;
+};
+
+class AuthorSession {
+ public:
+  /// Throws as read_file(); a pattern that cannot be read is shown with its error, but its robot
+  /// must be loaded once. `context` must outlive the session.
+  AuthorSession(const Context& context, AuthorSetting setting);
+  /// Stops the job and the thread that follows the file.
+  ~AuthorSession();
+  AuthorSession(const AuthorSession&) = delete;
+  AuthorSession& operator=(const AuthorSession&) = delete;
+
+  /// What the page shows, as JSON.
+  std::string state();
+  /// A table of "plan", "ghost", "repair", "open_loop" or "closed_loop".
+  std::optional<std::string> series(const std::string& which);
+  std::string model();
+  std::string scenery();
+
+  AuthorAnswer edit(const OrderedJson& request);
+  AuthorAnswer undo(const OrderedJson& request) { return step(request, -1); }
+  AuthorAnswer redo(const OrderedJson& request) { return step(request, 1); }
+  AuthorAnswer pose(const OrderedJson& request);
+  AuthorAnswer posture(const OrderedJson& request);
+  AuthorAnswer start_job(const OrderedJson& request);
+  AuthorAnswer cancel_job(const std::string& id);
+
+  /// Number of the next event.
+  std::uint64_t next_event();
+  /// The event of this number, when it comes within a fifth of a second.
+  std::optional<AuthorEvent> wait_for_event(std::uint64_t number);
+
+ private:
+  struct View;
+  using Shown = std::shared_ptr<const View>;
+  using Stamps = std::map<std::filesystem::path, FileStamp>;
+
+  Shown view();
+  void follow();
+  void refresh();
+  void load_robot_of(const std::string& text, bool anew);
+  bool robot_changed() const;
+  std::vector<std::filesystem::path> robot_files() const;
+  Stamps stamps() const;
+  void publish(std::shared_ptr<View> view);
+  void tell(const std::string& name, const OrderedJson& data);
+  AuthorAnswer step(const OrderedJson& request, int by);
+  AuthorAnswer write(const std::string& seen, const std::string& text);
+  AuthorAnswer conflict(const View& shown, const std::string& mine);
+  void work(std::uint64_t id, std::string kind, OrderedJson options, Shown shown);
+  void stop_job();
+
+  const Context& context_;
+  AuthorSetting setting_;
+
+  std::mutex reading_;  ///< held while the file is read or written
+  std::optional<NamedRobot> robot_;
+  Stamps seen_;
+  std::optional<std::chrono::steady_clock::time_point> read_at_;  ///< until a second look
+  TextHistory history_;
+
+  std::mutex state_;  ///< of all below
+  std::condition_variable changed_;
+  Shown shown_;
+  std::string model_;
+  std::deque<AuthorEvent> events_;
+  std::uint64_t first_event_ = 0;
+  bool stopping_ = false;
+
+  std::mutex jobs_;  ///< of the job
+  std::thread worker_;
+  std::uint64_t job_ = 0;
+  std::atomic<bool> job_runs_ = false, job_stops_ = false;
+
+  std::thread follower_;
+};
+
+}  // namespace ayumi::app

@@ -1,0 +1,86 @@
+// A live page beside the author's editor.
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "author/author_server.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/report/page.hpp"
+#include "option_checks.hpp"
+#include "pattern_input.hpp"
+#include "signals.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+struct AuthorCommand {
+  std::string pattern, profile;
+  std::vector<std::string> set;
+  int port = 0;
+  bool open = false;
+};
+
+// Nothing that the browser prints or returns matters here.
+void open_in_browser(const std::string& address) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::fork() == 0) ::execlp("xdg-open", "xdg-open", address.c_str(), nullptr);
+    ::_exit(0);
+  }
+  if (child > 0) ::waitpid(child, nullptr, 0);
+}
+
+void author(Context& context, const AuthorCommand& options) {
+  if (kAuthorPage.empty())
+    fail(ErrorCode::usage,
+         "author: this program was built without npm and has no page. To get it: sudo apt-get "
+         "install nodejs npm, then configure and build again (cmake -S . -B build/release && cmake "
+         "--build build/release)");
+  if (options.pattern == "-")
+    fail(ErrorCode::usage, "author: standard input cannot be edited; name a file");
+  // What a link leads to is edited, and the link stays.
+  std::error_code missing;
+  std::filesystem::path file = std::filesystem::canonical(options.pattern, missing);
+  if (missing) file = options.pattern;
+  AuthorSession session(context, {file, read_pairs(options.set, "--set"), options.profile});
+  serve_author(
+      session, {options.port},
+      [&](const std::string& address) {
+        context.print(options.pattern + " is shown at\n  " + address +
+                      "\n  Every change of the file is followed, and the page can change it. "
+                      "Ctrl-C ends the server.\n");
+        context.print_json(nlohmann::ordered_json{{"address", address}}.dump());
+        std::fflush(stdout);
+        if (options.open) open_in_browser(address);
+      },
+      [] { return stop_requested(); });
+}
+
+}  // namespace
+
+void add_author(CLI::App& app, Context& context) {
+  CLI::App* command =
+      app.add_subcommand("author", "show a pattern on a live page that follows and edits the file");
+  command->footer(
+      "Examples:\n  ayumi author walk.json\n  ayumi author walk.json --open\n"
+      "  ayumi author walk.json --profile hoap1-strong --port 8080\n"
+      "The page is served on this machine alone. Whoever knows the address may change the file, "
+      "so keep it to yourself.");
+  auto options = std::make_shared<AuthorCommand>();
+  command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
+  command->add_option("--set", options->set, "Set a parameter that the pattern declares.")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--profile", options->profile,
+                   "Actuator profile of the robot (default: the pattern's).")
+      ->type_name("NAME");
+  command->add_option("--port", options->port, "Port of the server (default: any that is free).")
+      ->check(whole_number_within(1, 65535).description(""))
+      ->type_name("N");
+  command->add_flag("--open", options->open, "Open the page in the browser.");
+  command->callback([options, &context] { author(context, *options); });
+}
+
+}  // namespace ayumi::app

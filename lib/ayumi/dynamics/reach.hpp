@@ -1,0 +1,26 @@
+#pragma once
+// A point of a link brought to a place by some joints alone, as a hand by the joints of its arm;
+// the base and all other joints stay.
+
+#include <vector>
+
+#include "ayumi/dynamics/robot_data.hpp"
+
+namespace ayumi {
+
+struct ReachSolution {
+  Eigen::VectorXd theta;  ///< all joints; those that may move are within their limits [rad, m]
+  double missing = 0;     ///< of the point from its place [m]
+};
+
+/// Joints that move this body and no other end of the robot: from the body towards the root, up to
+/// the first joint that also moves another foot, hand or head.
+std::vector<int> limb_dofs(const RobotModel& model, int body);
+
+/// Damped least squares from the posture of `state`: of all postures near it, one that brings
+/// `point` (frame of `body`) to `place` (world), or as near as the limits of `dofs` allow.
+ReachSolution reach(const RobotModel& model, const RobotState& state, int body,
+                    const Eigen::Vector3d& point, const Eigen::Vector3d& place,
+                    const std::vector<int>& dofs);
+
+}  // namespace ayumi

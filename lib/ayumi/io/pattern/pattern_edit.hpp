@@ -1,0 +1,32 @@
+#pragma once
+// Changes of single values in the text of a pattern file, as an author makes them by hand: every
+// other byte stays. A number that the author wrote as an expression stays an expression: what is
+// added to it is written behind it, as in "${lift_off} + 0.02".
+
+#include <string>
+#include <vector>
+
+namespace ayumi {
+
+struct PatternEdit {
+  enum class Kind {
+    set,     ///< replace the value, or add it where it is missing, with the objects around it
+    insert,  ///< a new item of an array, at the index that ends the pointer; "-": behind the last
+    remove   ///< a member or an item
+  };
+  Kind kind = Kind::set;
+  std::string pointer;  ///< JSON pointer
+  std::string value;    ///< JSON text; empty for remove
+};
+
+/// The text after the edits. The pointers of all edits refer to the text before the first one;
+/// items that are inserted at the same index stand in the order of the edits. Throws Error(usage)
+/// for a place that is not there, and Error(bad_pattern) for a value that is not JSON and where the
+/// text is not JSON.
+std::string edited_text(const std::string& text, const std::vector<PatternEdit>& edits);
+
+/// The expression whose value is higher by `change`, a multiple of 1e-6: a number that is added to
+/// or subtracted from the whole at its end is changed, else one is appended.
+std::string shifted_expression(const std::string& expression, double change);
+
+}  // namespace ayumi

@@ -1,0 +1,458 @@
+// The server of `ayumi author`, asked as its page asks it.
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "ayumi/base/file.hpp"
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using namespace std::chrono_literals;
+using OrderedJson = nlohmann::ordered_json;
+
+// How long the server may take for anything here [s]. Chosen: a hundred times what it needs.
+constexpr int kServerPatience = 60;
+
+class Server {
+ public:
+  explicit Server(const fs::path& pattern, const std::vector<std::string>& more = {}) {
+    std::array<int, 2> out{};
+    if (::pipe(out.data()) != 0) return;
+    process_ = ::fork();
+    if (process_ == 0) {
+      ::alarm(5 * kServerPatience);  // should the test be killed
+      ::dup2(out[1], STDOUT_FILENO);
+      ::close(out[0]);
+      ::close(out[1]);
+      std::vector<std::string> words = {program_under_test(), "author", pattern.string(), "--json"};
+      words.insert(words.end(), more.begin(), more.end());
+      std::vector<char*> argv;
+      for (std::string& word : words) argv.push_back(word.data());
+      argv.push_back(nullptr);
+      ::execv(argv[0], argv.data());
+      ::_exit(127);
+    }
+    ::close(out[1]);
+    std::string said;
+    char letter = 0;
+    while (::read(out[0], &letter, 1) == 1 && letter != '\n') said += letter;
+    ::close(out[0]);
+    const std::string address = OrderedJson::parse(said, nullptr, false).value("address", "");
+    const size_t colon = address.rfind(':'), slash = address.find('/', colon);
+    if (slash == std::string::npos) return;
+    port_ = std::stoi(address.substr(colon + 1));
+    root_ = address.substr(slash);
+  }
+  ~Server() {
+    if (process_ > 0 && !ended_) {
+      ::kill(process_, SIGKILL);
+      ::waitpid(process_, nullptr, 0);
+    }
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  int port() const { return port_; }
+  const std::string& root() const { return root_; }
+
+  httplib::Client client() const {
+    httplib::Client client("127.0.0.1", port_);
+    client.set_read_timeout(kServerPatience);
+    return client;
+  }
+  std::string get(const std::string& path) const {
+    const auto answer = client().Get(root_ + path);
+    return answer && answer->status == 200 ? answer->body : "";
+  }
+  OrderedJson state() const { return OrderedJson::parse(get("state")); }
+  std::pair<int, OrderedJson> post(const std::string& path, const OrderedJson& body) const {
+    const auto answer = client().Post(root_ + path, body.dump(), "application/json");
+    if (!answer) return {0, {}};
+    return {answer->status, OrderedJson::parse(answer->body, nullptr, false)};
+  }
+  std::pair<int, OrderedJson> edit(const OrderedJson& edits) const {
+    return post("edit", {{"hash", state()["hash"]}, {"edits", edits}});
+  }
+  /// The state once `holds` says yes of it.
+  template <typename Holds>
+  OrderedJson state_when(const Holds& holds) const {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(kServerPatience);
+    OrderedJson now = state();
+    while (!holds(now) && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(10ms);
+      now = state();
+    }
+    return now;
+  }
+  /// Seconds from Ctrl-C to the end, and the exit code.
+  std::pair<double, int> interrupt() {
+    const auto begin = std::chrono::steady_clock::now();
+    ::kill(process_, SIGINT);
+    int status = 0;
+    ::waitpid(process_, &status, 0);
+    ended_ = true;
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    return {took.count(), WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status)};
+  }
+
+ private:
+  pid_t process_ = -1;
+  bool ended_ = false;
+  int port_ = 0;
+  std::string root_;
+};
+
+struct AuthorServer : testing::Test {
+  void SetUp() override {
+    const Output said = run_program({"author", "nothing.json"}, folder.path());
+    if (said.err.find("built without npm") != std::string::npos)
+      GTEST_SKIP() << "built without npm: there is no page to serve";
+    walk = contents(kWalk);
+    file = folder / "walk.json";
+    save(walk);
+  }
+  void save(const std::string& text) const {
+    write(folder / "walk.json.new", text);
+    fs::rename(folder / "walk.json.new", file);
+  }
+  std::string replaced(const std::string& what, const std::string& by) const {
+    std::string text = walk;
+    const size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return text.replace(at, what.size(), by);
+  }
+
+  Folder folder;
+  fs::path file;
+  std::string walk;
+};
+
+TEST_F(AuthorServer, AnswersOnlyItsOwnPage) {
+  const Server server(file);
+  httplib::Client client = server.client();
+  const auto status = [&](const std::string& path, const httplib::Headers& headers = {}) {
+    const auto answer = client.Get(path, headers);
+    return answer ? answer->status : 0;
+  };
+  const std::string state = server.root() + "state",
+                    own = "http://127.0.0.1:" + std::to_string(server.port());
+  EXPECT_EQ(status(state), 200);
+  EXPECT_EQ(status(state, {{"Origin", own}}), 200);
+  EXPECT_EQ(status("/"), 403);
+  EXPECT_EQ(status("/state"), 403);
+  EXPECT_EQ(status("/0123456789abcdef0123456789abcdef/state"), 403);
+  EXPECT_EQ(status(state, {{"Origin", "http://example.org"}}), 403);
+  EXPECT_EQ(status(state, {{"Origin", "null"}}), 403);
+  EXPECT_EQ(status(state, {{"Host", "example.org"}}), 403);
+  EXPECT_EQ(status(state, {{"Host", "example.org:" + std::to_string(server.port())}}), 403);
+  for (const char* const path : {"nothing", "../walk.json", "walk.json", "%2e%2e/%2e%2e/etc/passwd",
+                                 "series?which=/etc/passwd", "series"})
+    EXPECT_NE(status(server.root() + path), 200) << path;
+  const auto page = client.Get(server.root());
+  ASSERT_TRUE(page);
+  EXPECT_NE(page->body.find("<html"), std::string::npos);
+  EXPECT_EQ(page->get_header_value("Cache-Control"), "no-store");
+  // The other addresses of this machine do not answer.
+  for (const char* const body : {"", "[]", "{", "{\"hash\":3}", "{\"hash\":\"\",\"edits\":7}"})
+    EXPECT_GE(client.Post(server.root() + "edit", body, "application/json")->status, 400) << body;
+  EXPECT_EQ(contents(file), walk);
+  EXPECT_NE(client.Put(server.root() + "state", "", "text/plain")->status, 200);
+}
+
+TEST_F(AuthorServer, FollowsTheFileAndNamesTheLineOfAnError) {
+  const Server server(file);
+  EXPECT_TRUE(server.state()["consistent"].get<bool>());
+  save(replaced(R"({ "t": 3.771, "zmp": "left" })", R"({ "t": 3.771, "zmp": [0.12, 0.085] })"));
+  OrderedJson state =
+      server.state_when([](const OrderedJson& now) { return now["consistent"] == false; });
+  ASSERT_FALSE(state["findings"].empty());
+  EXPECT_NE(server.get("series?which=ghost"), "") << "the last consistent motion";
+  EXPECT_EQ(server.get("series?which=ghost").size(), server.get("series?which=plan").size());
+  const int line = 10;  // of "phases" in the file
+  struct Case {
+    std::string what, by, message;
+    int line;
+  };
+  const std::vector<Case> cases = {
+      {"\"phases\"", "phases", "", line},
+      {R"("until": 1.571)", R"("until": "late")", "late", line + 2},
+      {R"({ "t": 1.571, "zmp": "left" })", R"({ "t": 1.571, "zmp": "middle" })", "middle", 35},
+      {R"({ "t": 1.571, "zmp": "left" })", R"({ "t": 1.571, "joints": { "elbow": 3 } })", "elbow",
+       35},
+      {R"("to": [0.03, -0.039])", R"("to": [0.4, -0.039])", "out of reach", line + 2}};
+  const std::string old = server.get("series?which=plan");
+  for (const Case& each : cases) {
+    save(replaced(each.what, each.by));
+    state = server.state_when(
+        [&](const OrderedJson& now) { return now["text"] == replaced(each.what, each.by); });
+    ASSERT_FALSE(state["error"].is_null()) << each.by;
+    EXPECT_TRUE(state["stale"].get<bool>());
+    EXPECT_NE(state["error"]["message"].get<std::string>().find(each.message), std::string::npos);
+    EXPECT_EQ(state["error"].value("line", 0), each.line) << state["error"].dump();
+    EXPECT_EQ(server.get("series?which=plan"), old) << "the old motion is still there";
+  }
+  save(walk);
+  state = server.state_when([](const OrderedJson& now) { return now["error"].is_null(); });
+  EXPECT_TRUE(state["consistent"].get<bool>());
+}
+
+TEST_F(AuthorServer, ShowsTheLastOfManyQuickSaves) {
+  const Server server(file);
+  std::string last;
+  for (int i = 0; i < 100; ++i) {
+    last = replaced("hoap1_walk", "save_" + std::to_string(i));
+    if (i % 2)
+      save(last);
+    else
+      write(file, last);  // in place, as some editors save
+    std::this_thread::sleep_for(3ms);
+  }
+  EXPECT_EQ(server.state_when([&](const OrderedJson& now) { return now["text"] == last; })["text"],
+            last);
+}
+
+TEST_F(AuthorServer, WritesEditsIntoTheTextAndTakesThemBack) {
+  const Server server(file);
+  const OrderedJson edits = {{{"kind", "set"}, {"pointer", "/keyframes/1/t"}, {"value", 0.75}}};
+  ASSERT_EQ(server.edit(edits).first, 200);
+  EXPECT_EQ(contents(file), replaced("\"t\": 0.71", "\"t\": 0.75"));
+  EXPECT_EQ(server.state()["keyframes"][1]["time"], 0.75);
+  for (int i = 0; i < 40; ++i)
+    ASSERT_EQ(
+        server.edit({{{"kind", "set"}, {"pointer", "/keyframes/1/t"}, {"value", 0.5 + 0.005 * i}}})
+            .first,
+        200);
+  EXPECT_EQ(server.state()["undo"], 41);
+  for (int i = 0; i < 41; ++i)
+    ASSERT_EQ(server.post("undo", {{"hash", server.state()["hash"]}}).first, 200);
+  EXPECT_EQ(contents(file), walk);
+  EXPECT_EQ(server.post("undo", {{"hash", server.state()["hash"]}}).first, 422);
+  ASSERT_EQ(server.post("redo", {{"hash", server.state()["hash"]}}).first, 200);
+  EXPECT_EQ(contents(file), replaced("\"t\": 0.71", "\"t\": 0.75"));
+  EXPECT_EQ(server.edit({{{"kind", "remove"}, {"pointer", "/keyframes/99"}}}).first, 422);
+  EXPECT_EQ(contents(file), replaced("\"t\": 0.71", "\"t\": 0.75"));
+}
+
+TEST_F(AuthorServer, NeverOverwritesAChangeOnDisk) {
+  const Server server(file);
+  const OrderedJson seen = server.state()["hash"];
+  const std::string theirs = replaced("hoap1_walk", "theirs");
+  save(theirs);
+  const OrderedJson edits = {{{"kind", "set"}, {"pointer", "/keyframes/0/zmp"}, {"value", "left"}}};
+  const auto [status, answer] = server.post("edit", {{"hash", seen}, {"edits", edits}});
+  EXPECT_EQ(status, 409);
+  EXPECT_EQ(contents(file), theirs);
+  EXPECT_EQ(answer["theirs"], theirs);
+  EXPECT_EQ(answer["mine"], replaced(R"("t": 0, "zmp": "center")", R"("t": 0, "zmp": "left")"));
+  EXPECT_EQ(server.post("edit", {{"hash", answer["theirs_hash"]}, {"text", answer["mine"]}}).first,
+            200);
+  EXPECT_EQ(contents(file), answer["mine"].get<std::string>());
+}
+
+TEST_F(AuthorServer, KeepsLinksAndPermissions) {
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read);
+  fs::create_symlink(file, folder / "link.json");
+  const Server server(folder / "link.json");
+  ASSERT_EQ(server.edit({{{"kind", "set"}, {"pointer", "/name"}, {"value", "other"}}}).first, 200);
+  EXPECT_TRUE(fs::is_symlink(folder / "link.json"));
+  EXPECT_EQ(contents(file), replaced("hoap1_walk", "other"));
+  EXPECT_EQ(fs::status(file).permissions(),
+            fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_read);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2)
+      << "nothing else is left behind";
+}
+
+// Where the page would draw the point of a handle, by the row of the table.
+std::array<double, 3> cog_of(const OrderedJson& state, const OrderedJson& row) {
+  std::array<double, 3> cog{};
+  const auto& columns = state["replay"]["columns"];
+  for (size_t i = 0; i < columns.size(); ++i)
+    for (size_t axis = 0; axis < 3; ++axis)
+      if (columns[i] == std::string("cog.") + "xyz"[axis]) cog[axis] = row[i];
+  return cog;
+}
+
+OrderedJson row_at(const Server& server, const OrderedJson& state, double time) {
+  const std::string bytes = server.get("series?which=plan");
+  const size_t width = state["replay"]["columns"].size();
+  std::vector<float> table(bytes.size() / sizeof(float));
+  std::memcpy(table.data(), bytes.data(), bytes.size());
+  const auto at = static_cast<size_t>(std::lround(time * state["replay"]["rate"].get<double>()));
+  OrderedJson row = OrderedJson::array();
+  for (size_t i = 0; i < width; ++i) row.push_back(table[at * width + i]);
+  return row;
+}
+
+// What the page shows while something is dragged is what the pattern is once it is written.
+TEST_F(AuthorServer, WhatIsDraggedIsWhatThePatternThenIs) {
+  const Server server(file);
+  const OrderedJson state = server.state();
+  const auto cog = cog_of(state, row_at(server, state, 2.4));
+  const std::vector<OrderedJson> wishes = {
+      {{"time", 2.4}, {"joints", {{"l_shoulder_pitch", 0.7}}}},
+      {{"time", 2.4}, {"drag", "left_hand"}, {"to", {0.2, 0.15, 0.25}}},
+      {{"time", 2.4}, {"drag", "left_foot"}, {"to", {0.05, 0.045, 0.0}}},
+      {{"time", 2.4}, {"drag", "right_foot"}, {"to", {0.052, -0.0395, 0.016}}},
+      {{"time", 0.4}, {"drag", "right_foot"}, {"to", {0.005, -0.042, 0.0}}},
+      {{"time", 2.4}, {"drag", "trunk"}, {"to", {0.06, 0.03, 0.46}}},
+      {{"time", 2.4}, {"drag", "cog"}, {"to", {cog[0] + 0.002, cog[1] + 0.001, cog[2] - 0.003}}}};
+  for (const OrderedJson& wish : wishes) {
+    const auto [status, answer] = server.post("pose", wish);
+    ASSERT_EQ(status, 200) << wish << answer;
+    ASSERT_TRUE(answer["row"].is_array()) << wish << answer["message"];
+    ASSERT_FALSE(answer["edits"].empty()) << wish;
+    EXPECT_EQ(contents(file), walk) << "nothing is written while it is tried";
+    ASSERT_EQ(server.edit(answer["edits"]).first, 200);
+    const OrderedJson now = server.state();
+    ASSERT_TRUE(now["error"].is_null()) << now["error"];
+    const OrderedJson row = row_at(server, now, wish["time"]);
+    const auto& columns = now["replay"]["columns"];
+    for (size_t i = 0; i < columns.size(); ++i) {
+      const std::string name = columns[i];
+      if (!name.starts_with("q.") && !name.starts_with("cog.") && !name.starts_with("base."))
+        continue;
+      // 0.1 degrees and 0.2 mm: the preview is sampled more coarsely.
+      EXPECT_NEAR(row[i].get<double>(), answer["row"][i].get<double>(),
+                  name[0] == 'q' ? 2e-3 : 2e-4)
+          << wish << name;
+    }
+    ASSERT_EQ(server.post("undo", {{"hash", now["hash"]}}).first, 200);
+    EXPECT_EQ(contents(file), walk);
+  }
+}
+
+TEST_F(AuthorServer, SaysWhatCannotBeReached) {
+  const Server server(file);
+  const auto far = server.post("pose", {{"time", 2.4}, {"drag", "left_hand"}, {"to", {3, 0, 0}}});
+  ASSERT_EQ(far.first, 200);
+  EXPECT_NE(far.second["message"].get<std::string>().find("mm of this place"), std::string::npos);
+  const auto foot =
+      server.post("pose", {{"time", 2.4}, {"drag", "left_foot"}, {"to", {0.5, 0, 0}}});
+  EXPECT_TRUE(foot.second["edits"].empty());
+  EXPECT_NE(foot.second["message"].get<std::string>().find("out of reach by"), std::string::npos);
+  EXPECT_EQ(server.post("pose", {{"time", 2.4}, {"drag", "tail"}, {"to", {0, 0, 0}}}).first, 422);
+}
+
+TEST_F(AuthorServer, CapturesPosturesAndTheirMirrorImages) {
+  const Server server(file);
+  const auto [status, plain] = server.post("posture", {{"time", 2.4}, {"name", "a b"}});
+  ASSERT_EQ(status, 200);
+  const auto mirrored =
+      server.post("posture", {{"time", 2.4}, {"name", "other"}, {"mirror", true}}).second;
+  const OrderedJson& angles = plain["edits"][0]["value"];
+  const OrderedJson& image = mirrored["edits"][0]["value"];
+  EXPECT_EQ(angles["l_knee"], image["r_knee"]);
+  EXPECT_EQ(angles["r_hip_pitch"], image["l_hip_pitch"]);
+  ASSERT_EQ(server.edit(plain["edits"]).first, 200);
+  const OrderedJson state = server.state();
+  EXPECT_EQ(state["own_postures"], OrderedJson({"a b"}));
+  EXPECT_TRUE(state["consistent"].get<bool>());
+}
+
+OrderedJson result_of(const Server& server, const std::string& kind,
+                      const OrderedJson& options = OrderedJson::object()) {
+  const auto [status, answer] = server.post("job", {{"kind", kind}, {"options", options}});
+  EXPECT_EQ(status, 200) << answer;
+  return server.state_when([&](const OrderedJson& now) {
+    return now["result"].is_object() && now["result"]["kind"] == kind;
+  });
+}
+
+TEST_F(AuthorServer, JobsAnswerOnTheSameTimeline) {
+  const Server server(file);
+  EXPECT_TRUE(result_of(server, "check")["result"]["good"].get<bool>());
+  const OrderedJson run = result_of(server, "simulate", {{"law", "both"}});
+  EXPECT_TRUE(run["result"]["good"].get<bool>()) << run["result"];
+  EXPECT_EQ(run["result"]["lines"].size(), 2u);
+  EXPECT_EQ(run["motions"], OrderedJson({"plan", "closed_loop", "open_loop"}));
+  EXPECT_FALSE(run["result"]["marks"].empty()) << "the push";
+  const OrderedJson table = result_of(server, "export");
+  ASSERT_EQ(table["result"]["files"], OrderedJson({"walk_hoap.csv"})) << table["result"];
+  EXPECT_TRUE(fs::exists(folder / "walk_hoap.csv"));
+  EXPECT_EQ(result_of(server, "check")["result"]["kind"], "check");
+  EXPECT_EQ(result_of(server, "export")["result"]["files"], OrderedJson({"walk_hoap_2.csv"}));
+  // A faulty pattern is repaired, and the text of the repair is taken.
+  save(replaced(R"({ "t": 3.771, "zmp": "left" })",
+                R"({ "t": 3.771, "zmp": "left", "joints": { "l_elbow": -170 } })"));
+  server.state_when([](const OrderedJson& now) { return now["consistent"] == false; });
+  EXPECT_FALSE(result_of(server, "export")["result"]["good"].get<bool>());
+  EXPECT_FALSE(fs::exists(folder / "walk_hoap_3.csv"));
+  const OrderedJson repaired = result_of(server, "repair");
+  ASSERT_TRUE(repaired["result"]["good"].get<bool>()) << repaired["result"];
+  EXPECT_NE(server.get("series?which=repair"), "");
+  ASSERT_EQ(
+      server.post("edit", {{"hash", repaired["hash"]}, {"text", repaired["result"]["text"]}}).first,
+      200);
+  EXPECT_TRUE(server.state()["consistent"].get<bool>());
+  EXPECT_NE(contents(file).find("// HOAP-1 walks eight steps"), std::string::npos);
+}
+
+TEST_F(AuthorServer, AJobIsCancelledAndCtrlCEndsTheServerWithinASecond) {
+  Server server(file);
+  const auto [status, answer] = server.post("job", {{"kind", "push"}});
+  ASSERT_EQ(status, 200);
+  EXPECT_EQ(server.post("job", {{"kind", "check"}}).first, 422) << "one job at a time";
+  const std::string id = answer["id"];
+  EXPECT_EQ(server.client().Delete(server.root() + "job/99")->status, 404);
+  EXPECT_EQ(server.client().Delete(server.root() + "job/" + id)->status, 200);
+  int again = 422;
+  for (int i = 0; i < 500 && again == 422; ++i) {
+    again = server.post("job", {{"kind", "push"}}).first;
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_EQ(again, 200) << "the job has ended";
+  // A page that listens, and a client that says nothing.
+  std::thread listener([&] {
+    httplib::Client client = server.client();
+    client.Get(server.root() + "events", [](const char*, size_t) { return true; });
+  });
+  httplib::Client idle = server.client();
+  std::this_thread::sleep_for(200ms);
+  const auto [seconds, exit_code] = server.interrupt();
+  listener.join();
+  EXPECT_LT(seconds, 1.0);
+  EXPECT_EQ(exit_code, 0);
+}
+
+TEST_F(AuthorServer, ServesTheOtherRobotToo) {
+  const std::string other = contents(AYUMI_SOURCE_DIR "/patterns/humanoid30_walk.json");
+  write(folder / "h.json", other);
+  const Server server(folder / "h.json");
+  const OrderedJson state = server.state();
+  ASSERT_TRUE(state["error"].is_null()) << state["error"];
+  EXPECT_EQ(state["robot"], "humanoid30");
+  EXPECT_EQ(state["replay"]["bodies"].size(), state["replay"]["joints"].size() + 1);
+  for (const OrderedJson& handle : state["handles"]) {
+    const OrderedJson wish = {{"time", 1.0}, {"drag", handle["name"]}, {"to", {0.1, 0.05, 0.6}}};
+    const auto [status, answer] = server.post("pose", wish);
+    EXPECT_EQ(status, 200) << handle << answer;
+    EXPECT_TRUE(answer["row"].is_array() || answer["message"].is_string());
+  }
+}
+
+TEST_F(AuthorServer, RefusesWhatItCannotShow) {
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& reason,
+                           int exit_code) {
+    std::vector<std::string> all = {"author"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Output said = run_program(all, folder.path());
+    EXPECT_EQ(said.exit_code, exit_code) << said.err;
+    EXPECT_NE(said.err.find(reason), std::string::npos) << said.err;
+  };
+  refused({"nothing.json"}, "no such file", 3);
+  refused({"-"}, "standard input", 2);
+  refused({folder.path().string()}, "folder", 3);
+  const Server server(file);
+  refused({"walk.json", "--port", std::to_string(server.port())}, "is taken", 3);
+}
+
+}  // namespace
+}  // namespace ayumi::test
