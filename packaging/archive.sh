@@ -21,10 +21,12 @@ if command -v ffmpeg >/dev/null; then programs+=("$(command -v ffmpeg)"); fi
 cp "${programs[@]}" "$root/lib/ayumi/"
 strip "$root/lib/ayumi/ayumi"
 
-# Every library below the programs but those of libc, which belong to the kernel and the loader.
+# Every library below the programs but those of libc, which belong to the kernel and the loader. The
+# first picture loads OSMesa.
+osmesa=$(/sbin/ldconfig -p | awk '$1 ~ /^libOSMesa\.so\./ { print $NF; exit }')
 libc='/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|nsl|anl|mvec|BrokenLocale)\.so\.[0-9]+)$'
-ldd "${programs[@]}" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
-  { grep -Ev "$libc" || true; } | while read -r library; do
+{ ldd "${programs[@]}" $osmesa | awk '$2 == "=>" && $3 ~ /^\// { print $3 }'; printf '%s' "$osmesa"; } |
+  sort -u | { grep -Ev "$libc" || true; } | while read -r library; do
   cp -L "$library" "$root/lib/"
   # Debian's licences of what is copied; a package may have none beside its links.
   package=$(dpkg-query --search "$(readlink -f "$library")" 2>/dev/null | cut -d: -f1 || true)

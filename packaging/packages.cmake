@@ -49,13 +49,17 @@ ayumi_package(ayumi-doc doc "pages of Ayumi, motion patterns of humanoid robots"
 foreach(component AYUMI PYTHON3-AYUMI)
   set(CPACK_DEBIAN_${component}_PACKAGE_SHLIBDEPS ON)
 endforeach()
+# OSMesa is loaded by the first picture, so the packages' tool does not find it.
 set(CPACK_DEBIAN_AYUMI_PACKAGE_DEPENDS fonts-dejavu-core)
+if(OSMESA_FOUND)
+  string(APPEND CPACK_DEBIAN_AYUMI_PACKAGE_DEPENDS ", libosmesa6")
+endif()
 set(CPACK_DEBIAN_AYUMI_PACKAGE_RECOMMENDS ffmpeg)
 set(CPACK_DEBIAN_AYUMI_PACKAGE_SUGGESTS "ayumi-doc, python3-ayumi")
 set(CPACK_DEBIAN_LIBAYUMI-DEV_PACKAGE_DEPENDS
     "libeigen3-dev, coinor-libipopt-dev, libceres-dev, liburdfdom-dev, libtinyxml-dev, \
 libassimp-dev, nlohmann-json3-dev, libssl-dev, zlib1g-dev, libzstd-dev, libzip-dev, libyaml-cpp-dev, \
-libosmesa6-dev, libegl-dev, libjpeg62-turbo-dev, libcairo2-dev")
+libosmesa6, libegl-dev, libjpeg62-turbo-dev, libcairo2-dev")
 set(CPACK_DEBIAN_LIBAYUMI-DEV_PACKAGE_RECOMMENDS libmujoco-dev)
 if(Python_FOUND)
   math(EXPR next "${Python_VERSION_MINOR} + 1")

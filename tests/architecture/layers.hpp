@@ -108,7 +108,7 @@ inline const std::vector<ThirdParty>& third_parties() {
       {"Boost.Math", std::regex("boost/math/.*"), {"math"}},
       {"Ipopt", std::regex("Ip[A-Z].*|coin(-or)?/.*"), {"repair"}},
       {"Ceres", std::regex("ceres/.*"), {"identify"}},
-      {"dynamic loader", std::regex("dlfcn\\.h"), {"repair"}},
+      {"dynamic loader", std::regex("dlfcn\\.h"), {"render", "repair"}},
       {"urdfdom", std::regex("(urdf|console_bridge|tinyxml).*"), {"io"}},
       {"assimp", std::regex("assimp/.*"), {"io"}},
       {"OpenSSL", std::regex("openssl/.*"), {"io"}},

@@ -57,6 +57,15 @@ TEST(Describe, AnUnknownKindIsRefused) {
   EXPECT_NE(output.err.find("known: man, bash, zsh, fish"), std::string::npos) << output.err;
 }
 
+// OSMesa brings a compiler, which takes longer to load than all other libraries together.
+TEST(Start, TheProgramLoadsNoOsmesa) {
+  ::setenv("LD_TRACE_LOADED_OBJECTS", "1", 1);  // the loader prints the libraries and stops
+  const Output output = run_program({}, testing::TempDir());
+  ::unsetenv("LD_TRACE_LOADED_OBJECTS");
+  EXPECT_NE(output.out.find("libstdc++"), std::string::npos) << output.out;
+  EXPECT_EQ(output.out.find("libOSMesa"), std::string::npos) << output.out;
+}
+
 TEST(BundledFiles, APatternIsFoundByItsNameWhereverTheProgramIsStarted) {
   const Folder folder;
   EXPECT_EQ(run_program({"check", "patterns/hoap1_walk.json"}, folder.path()).exit_code, 0);

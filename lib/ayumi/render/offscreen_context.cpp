@@ -9,7 +9,7 @@ namespace ayumi {
 namespace {
 
 constexpr bool kHasOsmesa =
-#ifdef AYUMI_HAS_OSMESA
+#ifdef AYUMI_OSMESA
     true;
 #else
     false;
