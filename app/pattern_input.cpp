@@ -70,7 +70,8 @@ Task load_pattern(const Context& context, const std::filesystem::path& file,
   const TaskOptions chosen = {.profile = options.profile,
                               .robot = options.robot,
                               .robots = robot_search(context),
-                              .meshes = meshes};
+                              .meshes = meshes,
+                              .threads = context.threads};
   return load_task(read_given_pattern(file, read_pairs(options.set, "--set")), chosen,
                    context.progress());
 }

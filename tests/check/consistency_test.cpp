@@ -6,6 +6,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/demand/contact_plan.hpp"
+#include "ayumi/io/run/results_json.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/limited_biped.hpp"
@@ -52,6 +53,21 @@ TEST(Consistency, GoodMotionsHaveNoFindingAboveInfo) {
     EXPECT_GT(r.summary[FindingKind::support_margin], 0.02);
     EXPECT_LT(r.summary[FindingKind::foot_slip], 1e-9);
     EXPECT_EQ(r.profile, "plain");
+  }
+}
+
+// With findings of the samples, of the clearance and of the exported table.
+TEST(Consistency, SameReportForAnyNumberOfThreads) {
+  CommandSeries series = good_walk();
+  bend(series, "l_hip_roll", 1.5, 0.8, 0.5);
+  CheckOptions options;
+  options.threads = 1;
+  const std::string one = check_json(check_consistency(limited_biped(), series, options));
+  for (const char* kind : {"self_collision", "table_step", "joint_position"})
+    EXPECT_NE(one.find(kind), std::string::npos) << kind << "\n" << one;
+  for (const int threads : {2, 3, 8}) {
+    options.threads = threads;
+    EXPECT_EQ(check_json(check_consistency(limited_biped(), series, options)), one) << threads;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/in_parallel.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/attribution.hpp"
 #include "ayumi/limits/judged_motion.hpp"
@@ -13,8 +14,8 @@ namespace ayumi {
 
 namespace {
 
-// Inverse dynamics of every sample in order of time, then what takes the whole motion to see.
-void judge(JudgedMotion& motion) {
+// Inverse dynamics of every sample in order of time.
+void judge_samples(JudgedMotion& motion) {
   for (int k = 0; k < motion.count(); ++k) {
     const SampleDynamics& demand = motion.dynamics.at(k);
     motion.cog[k] = motion.dynamics.data().cog;
@@ -23,6 +24,21 @@ void judge(JudgedMotion& motion) {
     for (const Limit* limit : limits())
       if (limit->judge_sample) limit->judge_sample(motion, sample);
   }
+}
+
+// The samples, beside them what depends on the commands alone, then what takes the whole motion to
+// see.
+void judge(JudgedMotion& motion, int threads) {
+  std::vector<const Limit*> ahead;
+  for (const Limit* limit : limits())
+    if (limit->look_ahead) ahead.push_back(limit);
+  std::atomic<bool> stop = false;
+  in_parallel(1 + ahead.size(), threads, stop, [&](size_t i) {
+    if (i == 0)
+      judge_samples(motion);
+    else
+      ahead[i - 1]->look_ahead(motion);
+  });
   for (const Limit* limit : limits())
     if (limit->judge_motion) limit->judge_motion(motion);
 }
@@ -108,7 +124,7 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
     fail(ErrorCode::bad_pattern, "the command series is empty: nothing to check");
   if (!(series.dt > 0)) fail(ErrorCode::usage, "the command series has no sample time");
   JudgedMotion motion(model, series, options);
-  judge(motion);
+  judge(motion, options.threads);
   return report_of(motion);
 }
 

@@ -32,13 +32,14 @@ Task load_task(Pattern pattern, const TaskOptions& options, const Progress& prog
       fail(error.code(), in_file(pattern, "/robot: ") + error.what());
     }
   }();
-  return load_task(std::move(pattern), {std::move(robot), name}, options.profile, progress);
+  return load_task(std::move(pattern), {std::move(robot), name}, options.profile, progress,
+                   options.threads);
 }
 
 Task load_task(Pattern pattern, NamedRobot robot, const std::string& profile,
-               const Progress& progress) {
+               const Progress& progress, int threads) {
   TableCaution caution = caution_of(pattern);
-  Task task = make_task(std::move(pattern), std::move(robot.model), profile, progress);
+  Task task = make_task(std::move(pattern), std::move(robot.model), profile, progress, threads);
   task.robot_name = robot.name;
   task.caution = std::move(caution);
   task.series.kept = kept_targets(task);

@@ -16,6 +16,7 @@ struct TaskOptions {
   std::string robot = {};                  ///< in place of the robot that the pattern names
   RobotSearch robots = {};                 ///< folders in which robots are looked for by name
   bool meshes = false;                     ///< load what only pictures need
+  int threads = 0;                         ///< of sampling and of the check; 0: all cores
 };
 
 /// Throws as read_pattern(), load_robot() and make_task().
@@ -33,6 +34,6 @@ struct NamedRobot {
 
 /// The same with a robot that has been loaded, whatever robot the pattern names.
 Task load_task(Pattern pattern, NamedRobot robot, const std::string& profile,
-               const Progress& progress = {});
+               const Progress& progress = {}, int threads = 0);
 
 }  // namespace ayumi

@@ -31,11 +31,17 @@ void note_clearance(JudgedMotion& motion, int pair, int k, double clearance) {
                -clearance, 0, clearance < 0 ? Severity::error : Severity::warning);
 }
 
-void judge_clearances(JudgedMotion& motion) {
+void scan_clearances(JudgedMotion& motion) {
   const double near = motion.tolerance(FindingKind::self_collision) + kRefineBelow;
-  scan_clearance(
-      motion.model, motion.series, motion.collisions, near,
-      [&motion](int pair, int k, double clearance) { note_clearance(motion, pair, k, clearance); });
+  scan_clearance(motion.model, motion.series, motion.collisions, near,
+                 [&motion](int pair, int k, double clearance) {
+                   motion.clearances.push_back({pair, k, clearance});
+                 });
+}
+
+void judge_clearances(JudgedMotion& motion) {
+  for (const JudgedMotion::Clearance& c : motion.clearances)
+    note_clearance(motion, c.pair, c.sample, c.value);
 }
 
 const RowKind kClearanceRows = {
@@ -119,6 +125,7 @@ const Limit& clearance_limit() {
                     .place = body_pair_place,
                     .advice = clearance_advice,
                     .infeasibility = clearance_infeasibility}},
+      .look_ahead = scan_clearances,
       .judge_motion = judge_clearances,
       .place_rows = place_clearance_rows};
   return limit;

@@ -33,7 +33,7 @@ FindingKind kind_of(const SafetyViolation& violation) {
   return FindingKind::table_rest;
 }
 
-void judge_table(JudgedMotion& motion) {
+void make_table(JudgedMotion& motion) {
   if (!motion.series.viip.empty()) return;
   const auto least = [&](FindingKind kind, double of_export) {
     return std::min(motion.tolerance(kind), of_export);
@@ -44,15 +44,20 @@ void judge_table(JudgedMotion& motion) {
   options.beyond_range = least(FindingKind::table_position, kExport.beyond_range);
   options.rest_speed = least(FindingKind::table_rest, kExport.rest_speed);
   const std::optional<ReferenceTrajectory>& kept = motion.series.kept;
-  const SafeTable safe =
+  SafeTable safe =
       kept ? make_safe(motion.model, *kept, as_it_is(options))
            : make_safe(motion.model,
                        leading_targets(motion.model, motion.series, velocity_lead(motion.limits)),
                        options);
-  motion.raise(FindingKind::table_step, safe.report.max_step_ratio);
+  motion.safety = std::move(safe.report);
+}
+
+void judge_table(JudgedMotion& motion) {
+  if (!motion.safety) return;
+  motion.raise(FindingKind::table_step, motion.safety->max_step_ratio);
   const bool own = motion.limits.name == motion.model.limits().name;
-  for (const SafetyViolation& v : safe.report.rows) {
-    const long row = std::lround((v.t - safe.report.ramp) / motion.series.dt);
+  for (const SafetyViolation& v : motion.safety->rows) {
+    const long row = std::lround((v.t - motion.safety->ramp) / motion.series.dt);
     const int k = static_cast<int>(std::clamp<long>(row, 0, motion.count() - 1));
     motion.table.add({kind_of(v), motion.model.find_dof(v.joint), k,
                       own ? Severity::error : Severity::warning, v.value, v.limit,
@@ -218,6 +223,7 @@ const Limit& exported_table_limit() {
                     .place = joint_place,
                     .advice = rest_advice,
                     .infeasibility = rest_infeasibility}},
+      .look_ahead = make_table,
       .judge_motion = judge_table,
       .place_rows = place_table_rows};
   return limit;

@@ -2,11 +2,13 @@
 // A motion under judgement: what it demands, what its limits are, and what they find.
 
 #include <cmath>
+#include <optional>
 
 #include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/limits/flight_moment.hpp"
 #include "ayumi/limits/limit.hpp"
+#include "ayumi/limits/table_safety.hpp"
 #include "ayumi/limits/violation.hpp"
 
 namespace ayumi {
@@ -71,6 +73,14 @@ struct JudgedMotion {
   std::vector<double> cog_deviation;            ///< of the posture from the command, by sample [m]
   std::array<std::vector<SoleError>, 2> soles;  ///< by Side and sample; of a swing the depth only
   std::vector<char> rough;  ///< a joint accelerates beyond the tolerance, by sample
+
+  // Filled by look_ahead of the limit that uses it.
+  std::optional<SafetyReport> safety;  ///< of the table that a robot would receive
+  struct Clearance {
+    int pair, sample;
+    double value;  ///< [m]
+  };
+  std::vector<Clearance> clearances;
 };
 
 /// One sample of it.

@@ -111,6 +111,9 @@ struct Limit {
   std::vector<FindingSpec> findings;
   /// Notes what one sample violates; called for all samples in order of time.
   void (*judge_sample)(JudgedMotion&, const JudgedSample&) = nullptr;
+  /// Computes what takes long and depends on the commands alone into a member of JudgedMotion that
+  /// only this limit uses. Runs on another thread beside judge_sample.
+  void (*look_ahead)(JudgedMotion&) = nullptr;
   /// Notes what takes the whole motion to see; called after all samples.
   void (*judge_motion)(JudgedMotion&) = nullptr;
   /// Places the rows of a repair at the points of a site (row_site.hpp) where the motion is near
@@ -148,6 +151,7 @@ struct CheckOptions {
   std::string profile;  ///< actuator profile; "" = default of the robot
   double friction = 0.8;
   std::map<std::string, double> tolerances;  ///< by the name of the kind
+  int threads = 0;                           ///< 0: all cores; results do not depend on it
 };
 
 /// The defaults with those that were set. Throws Error(usage) for an unknown name or a tolerance

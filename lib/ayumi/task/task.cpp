@@ -65,24 +65,26 @@ void refuse_unknown_gains(const Pattern& pattern, const RobotModel& robot) {
 }  // namespace
 
 CommandSeries sample_at_servo_period(const RobotModel& robot, const Pattern& pattern,
-                                     const Progress& progress) {
-  return sample(robot, pattern, {.dt = robot.description().servo_period}, progress);
+                                     const Progress& progress, int threads) {
+  return sample(robot, pattern, {.dt = robot.description().servo_period, .threads = threads},
+                progress);
 }
 
 Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
-               const Progress& progress) {
+               const Progress& progress, int threads) {
   refuse_unknown_places(pattern, robot);
   refuse_unknown_gains(pattern, robot);
   const std::string name = robot.limits(profile.empty() ? pattern.profile : profile).name;
   const double tick = robot.description().servo_period;
-  CommandSeries series = sample_at_servo_period(robot, pattern, progress);
+  CommandSeries series = sample_at_servo_period(robot, pattern, progress, threads);
   std::string robot_name = robot.name();
   return {.pattern = std::move(pattern),
           .robot = std::move(robot),
           .robot_name = std::move(robot_name),
           .profile = name,
           .tick = tick,
-          .series = std::move(series)};
+          .series = std::move(series),
+          .threads = threads};
 }
 
 CheckOptions check_options(const Task& task) {
@@ -90,6 +92,7 @@ CheckOptions check_options(const Task& task) {
   options.profile = task.profile;
   options.friction = task.pattern.world.friction;
   options.tolerances = task.pattern.tolerances;
+  options.threads = task.threads;
   return options;
 }
 

@@ -25,20 +25,21 @@ struct Task {
   double tick = 0.001;        ///< servo period of the robot [s]
   CommandSeries series;       ///< the pattern, sampled at `tick`
   TableCaution caution = {};  ///< of the run that the pattern's own table is from
+  int threads = 0;            ///< of sampling and of the check; 0: all cores
 };
 
 /// The pattern at the servo period of the robot. Throws as sample().
 CommandSeries sample_at_servo_period(const RobotModel& robot, const Pattern& pattern,
-                                     const Progress& progress = {});
+                                     const Progress& progress = {}, int threads = 0);
 
 /// Samples the pattern at the servo period of the robot. `profile` empty: that of the pattern, else
 /// the robot's default. Throws Error(bad_pattern), naming file and place, for a disturbance on a
 /// link or joint that the robot does not have, for an unknown gain or tolerance, and as sample();
 /// Error(bad_model) for an unknown profile.
 Task make_task(Pattern pattern, RobotModel robot, const std::string& profile = "",
-               const Progress& progress = {});
+               const Progress& progress = {}, int threads = 0);
 
-/// Friction and tolerances of the pattern, the profile of the task.
+/// Friction and tolerances of the pattern, the profile and the threads of the task.
 CheckOptions check_options(const Task& task);
 
 /// Controller, world and disturbances of the pattern, the profile of the task.
