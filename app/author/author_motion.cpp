@@ -356,6 +356,9 @@ Vector3d far_end(const Eigen::AlignedBox3d& box) {
   return end;
 }
 
+// A limb whose end is this near the middle plane at rest is no arm [m]. Chosen: necks are in it.
+constexpr double kMiddle = 0.02;
+
 }  // namespace
 
 std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
@@ -374,20 +377,18 @@ std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
   update_positions(robot, robot.rest_state(), data);
   std::vector<AuthorHandle> limbs;
   std::array<int, 2> on_side = {0, 0};  // arms, by Side
-  for (int b = 1; b < static_cast<int>(robot.bodies().size()); ++b) {
-    const bool carries = std::any_of(robot.bodies().begin(), robot.bodies().end(),
-                                     [&](const Body& body) { return body.parent == b; });
+  for (const int b : limb_ends(robot)) {
     // Three joints bring a point to a place; a neck has fewer.
-    if (carries || std::count(feet.begin(), feet.end(), b) || limb_dofs(robot, b).size() < 3)
-      continue;
+    if (std::count(feet.begin(), feet.end(), b) || limb_dofs(robot, b).size() < 3) continue;
     const std::string& name = robot.bodies()[static_cast<size_t>(b)].name;
     limbs.push_back({Kind::limb, name, words_of(name), b, far_end(box_of(robot, b)), Side::left});
     const double y = data.position[static_cast<size_t>(b)].y();
     limbs.back().side = y > 0 ? Side::left : Side::right;
-    ++on_side[static_cast<size_t>(limbs.back().side)];
+    if (std::abs(y) > kMiddle) ++on_side[static_cast<size_t>(limbs.back().side)];
   }
-  if (limbs.size() == 2 && on_side[0] == 1)
+  if (on_side[0] == 1 && on_side[1] == 1)
     for (AuthorHandle& limb : limbs) {
+      if (std::abs(data.position[static_cast<size_t>(limb.body)].y()) <= kMiddle) continue;
       limb.name = std::string(name_of(limb.side)) + "_hand";
       limb.label = std::string(name_of(limb.side)) + " hand";
     }

@@ -102,3 +102,22 @@ TEST(Reach, LimbsEndWhereTheyMeet) {
   EXPECT_EQ(names(model, limb_dofs(model, body_of(model, "r_hip_pitch"))),
             (std::set<std::string>{"r_hip_yaw", "r_hip_roll", "r_hip_pitch"}));
 }
+
+// Fingers are parts of a hand: the arm moves them, and what carries them is the limb's end.
+TEST(Reach, HandsWithFingersAreEnds) {
+  RobotDescription d = limited_biped_description();
+  for (const std::string side : {"l_", "r_"})
+    for (int i = 0; i < 4; ++i) {
+      const std::string finger = side + "finger" + std::to_string(i);
+      d.links.push_back(solid_box(finger, 0.01, {0.01, 0.01, 0.03}, {0, 0, -0.015}, false));
+      d.joints.push_back(limited_hinge(finger, side + "forearm", finger, {0.01 * i, 0, -0.04},
+                                       Vector3d::UnitY(), -1, 1));
+    }
+  const RobotModel model(d);
+  std::set<std::string> ends;
+  for (const int body : limb_ends(model))
+    ends.insert(model.bodies()[static_cast<size_t>(body)].name);
+  EXPECT_EQ(ends, (std::set<std::string>{"l_foot", "r_foot", "l_forearm", "r_forearm"}));
+  EXPECT_EQ(names(model, limb_dofs(model, body_of(model, "l_elbow"))),
+            (std::set<std::string>{"l_shoulder_pitch", "l_elbow"}));
+}

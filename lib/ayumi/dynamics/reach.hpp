@@ -13,7 +13,11 @@ struct ReachSolution {
   double missing = 0;     ///< of the point from its place [m]
 };
 
-/// Joints that move this body and no other end of the robot: from the body towards the root, up to
+/// Bodies at which the limbs end: those that carry nothing, and those whose parts, such as fingers,
+/// reach less than half as far as the limb that carries them.
+std::vector<int> limb_ends(const RobotModel& model);
+
+/// Joints that move this body and no other end of a limb: from the body towards the root, up to
 /// the first joint that also moves another foot, hand or head.
 std::vector<int> limb_dofs(const RobotModel& model, int body);
 
