@@ -14,6 +14,7 @@
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/model/outline.hpp"
+#include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/report/replay.hpp"
 #include "ayumi/sim/run_caution.hpp"
 #include "ayumi/task/plan_log.hpp"
@@ -66,20 +67,45 @@ std::string pointer_to(const std::string& list, size_t i) {
   return "/" + list + "/" + std::to_string(i);
 }
 
+// Whether what stands there is read several times, in the rounds of a block.
+bool is_repeated(const std::string& pointer) { return outermost(pointer) != pointer; }
+
+const OrderedJson& written_at(const AuthorMotion& motion, const std::string& pointer) {
+  return motion.document.at(OrderedJson::json_pointer(pointer));
+}
+
+// Where the time of a keyframe is written, and from when on the value there counts.
+OrderedJson time_json(const AuthorMotion& motion, size_t i) {
+  const auto& frames = motion.task.pattern.keyframes;
+  const std::string pointer = pointer_of_keyframe(motion.task.pattern, i);
+  const OrderedJson& written = written_at(motion, pointer);
+  const bool relative = written.contains("after");
+  const std::string key = relative ? "after" : "t";
+  return {{"time", frames[i].t},
+          {"time_value", written.at(key)},
+          {"time_pointer", pointer + "/" + key},
+          {"time_base", relative && i > 0 ? frames[i - 1].t : 0},
+          {"repeated", is_repeated(pointer)}};
+}
+
 OrderedJson phases_json(const AuthorMotion& motion) {
   OrderedJson phases = OrderedJson::array();
   double from = 0;
   for (size_t i = 0; i < motion.task.pattern.phases.size(); ++i) {
     const Phase& phase = motion.task.pattern.phases[i];
-    const auto& written = motion.document["phases"][i];
-    const std::string pointer = pointer_to("phases", i);
+    const std::string pointer = pointer_of_phase(motion.task.pattern, i);
+    const OrderedJson& written = written_at(motion, pointer);
+    const bool relative = written.contains("duration");
+    const std::string key = relative ? "duration" : "until";
     phases.push_back(
         {{"from", from},
          {"until", phase.until},
          {"support", phase.viip ? OrderedJson(nullptr) : OrderedJson(name_of(phase.support))},
          {"pointer", pointer},
-         {"until_pointer", pointer + "/until"},
-         {"until_value", written["until"]},
+         {"until_pointer", pointer + "/" + key},
+         {"until_value", written.at(key)},
+         {"until_base", relative ? from : 0},
+         {"repeated", is_repeated(pointer)},
          {"swing",
           written.contains("swing") ? OrderedJson(written["swing"]) : OrderedJson(nullptr)}});
     from = phase.until;
@@ -121,16 +147,15 @@ class Tracks {
 OrderedJson tracks_json(const AuthorMotion& motion) {
   Tracks tracks;
   for (size_t i = 0; i < motion.task.pattern.keyframes.size(); ++i) {
-    const auto& written = motion.document["keyframes"][i];
-    const std::string pointer = pointer_to("keyframes", i);
+    const std::string pointer = pointer_of_keyframe(motion.task.pattern, i);
+    const OrderedJson& written = written_at(motion, pointer);
+    const OrderedJson time = time_json(motion, i);
     const auto add = [&](const std::string& name, const std::string& kind,
                          const std::string& inside, const OrderedJson& value) {
-      tracks.add(name, kind,
-                 {{"time", motion.task.pattern.keyframes[i].t},
-                  {"time_value", written["t"]},
-                  {"time_pointer", pointer + "/t"},
-                  {"pointer", pointer + inside},
-                  {"value", value}});
+      OrderedJson key_json = time;
+      key_json["pointer"] = pointer + inside;
+      key_json["value"] = value;
+      tracks.add(name, kind, key_json);
     };
     for (const auto& [key, value] : written.items()) {
       if (key == "zmp" || key == "cog" || key == "fz") add(key, key, "/" + key, value);
@@ -150,11 +175,11 @@ OrderedJson tracks_json(const AuthorMotion& motion) {
 OrderedJson keyframes_json(const AuthorMotion& motion) {
   OrderedJson frames = OrderedJson::array();
   for (size_t i = 0; i < motion.task.pattern.keyframes.size(); ++i) {
-    const auto& written = motion.document["keyframes"][i];
-    frames.push_back({{"time", motion.task.pattern.keyframes[i].t},
-                      {"time_value", written["t"]},
-                      {"pointer", pointer_to("keyframes", i)},
-                      {"more", written.contains("weights") || written.contains("interpolation")}});
+    const std::string pointer = pointer_of_keyframe(motion.task.pattern, i);
+    const OrderedJson& written = written_at(motion, pointer);
+    frames.push_back(time_json(motion, i));
+    frames.back()["pointer"] = pointer;
+    frames.back()["more"] = written.contains("weights") || written.contains("interpolation");
   }
   return frames;
 }
@@ -294,6 +319,10 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
 }
 
 }  // namespace
+
+std::string outermost(const std::string& pointer) {
+  return pointer.substr(0, pointer.find('/', pointer.find('/', 1) + 1));
+}
 
 std::string pointer_token(const std::string& key) {
   return (nlohmann::json::json_pointer() / key).to_string();

@@ -42,6 +42,9 @@ std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const
 /// A slash and a key as they stand in a JSON pointer.
 std::string pointer_token(const std::string& key);
 
+/// The item of the pattern's list that holds a phase or keyframe: itself, or a block that repeats.
+std::string outermost(const std::string& pointer);
+
 /// What can be dragged in the picture: the soles, the ends of the arms, the trunk and the COG.
 struct AuthorHandle {
   enum class Kind { foot, limb, trunk, cog };

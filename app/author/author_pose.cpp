@@ -11,9 +11,10 @@
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/reach.hpp"
-#include "ayumi/io/pattern/expression.hpp"
+#include "ayumi/io/pattern/pattern_edit.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/report/replay.hpp"
 #include "ayumi/task/plan_log.hpp"
@@ -69,7 +70,8 @@ class KeyEdits {
         return std::abs(frame.t - t) < kSameTime;
       });
       if (there != frames.end()) {
-        const std::string frame = "/keyframes/" + std::to_string(there - frames.begin());
+        const auto i = static_cast<size_t>(there - frames.begin());
+        const std::string frame = pointer_of_keyframe(motion_.task.pattern, i);
         set_members(members, frame, edits);
         continue;
       }
@@ -77,16 +79,37 @@ class KeyEdits {
                                      [&](const Keyframe& frame) { return frame.t > t; });
       OrderedJson frame = {{"t", rounded(time, 3)}};
       for (const auto& [name, value] : members.items()) frame[name] = value;
-      edits.push_back(
-          {PatternEdit::Kind::insert,
-           "/keyframes/" +
-               (next == frames.end() ? std::string("-") : std::to_string(next - frames.begin())),
-           frame.dump()});
+      const auto i = static_cast<size_t>(next - frames.begin());
+      edits.push_back({PatternEdit::Kind::insert, room_before(i, t), frame.dump()});
+      // The next one counts its time from the new one.
+      if (i == frames.size()) continue;
+      const std::string after = pointer_of_keyframe(motion_.task.pattern, i) + "/after";
+      if (motion_.document.contains(OrderedJson::json_pointer(after)))
+        edits.push_back(
+            {PatternEdit::Kind::set, after, OrderedJson(rounded(frames[i].t - t, 3)).dump()});
     }
     return edits;
   }
 
  private:
+  // Pointer of a new keyframe before the i-th one.
+  std::string room_before(size_t i, double t) const {
+    const Pattern& pattern = motion_.task.pattern;
+    if (i == pattern.keyframes.size()) return "/keyframes/-";
+    const std::string next = pointer_of_keyframe(pattern, i);
+    const bool inside =
+        outermost(next) != next &&
+        ((i > 0 && outermost(pointer_of_keyframe(pattern, i - 1)) == outermost(next)) ||
+         motion_.document.contains(OrderedJson::json_pointer(next + "/after")));
+    if (inside)
+      fail(ErrorCode::usage,
+           "at " + text::exact(t) +
+               " s the keyframes are those of a block that "
+               "repeats, so a new one has no place in the text; choose the time of "
+               "one of its keys, or write the block out");
+    return outermost(next);
+  }
+
   // Into a value that is there, member by member; what is missing is added as a whole.
   void set_members(const OrderedJson& members, const std::string& place,
                    std::vector<PatternEdit>& edits) const {
@@ -201,25 +224,41 @@ void drag_trunk(const AuthorMotion& motion, double time, const AuthorHandle& han
   if (std::abs(along) > kStill) drag_height(motion, time, along, keys);
 }
 
+// A number or expression of the text that becomes higher by `change`; 0 where it is missing.
+void shift_value(const AuthorMotion& motion, const std::string& pointer, double change,
+                 std::vector<PatternEdit>& edits) {
+  if (std::abs(change) < kStill) return;
+  const OrderedJson::json_pointer at(pointer);
+  const double now =
+      motion.document.contains(at) ? value_in_text(motion.document.dump(), pointer) : 0;
+  edits.push_back({PatternEdit::Kind::set, pointer, OrderedJson(metres(now + change)).dump()});
+}
+
 // The values of a foothold as it is written: [x, y], [x, y, z], [x, y, z, yaw] or an object.
 void move_foothold(const AuthorMotion& motion, const std::string& pointer, const Vector3d& change,
                    std::vector<PatternEdit>& edits) {
-  const OrderedJson::json_pointer at(pointer);
-  const OrderedJson& written = motion.document.at(at);
+  const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(pointer));
   const std::string place = written.is_object() ? pointer + "/position" : pointer;
   const OrderedJson& position = motion.document.at(OrderedJson::json_pointer(place));
-  for (int i = 0; i < 3; ++i) {
-    if (std::abs(change[i]) < kStill) continue;
-    if (static_cast<size_t>(i) >= position.size()) continue;  // a foothold without a height
-    const OrderedJson& value = position[static_cast<size_t>(i)];
-    // The edit needs the new value; of an expression it is the old one's.
-    const double now =
-        value.is_number()
-            ? value.get<double>()
-            : evaluate_expression(value.get<std::string>(), motion.task.pattern.parameters, place);
-    edits.push_back({PatternEdit::Kind::set, place + "/" + std::to_string(i),
-                     OrderedJson(metres(now + change[i])).dump()});
-  }
+  for (int i = 0; i < 3; ++i)
+    if (static_cast<size_t>(i) < position.size())  // else a foothold without a height
+      shift_value(motion, place + "/" + std::to_string(i), change[i], edits);
+}
+
+// Where a swing lands: a foothold, or a step as the other foot sees it.
+void move_landing(const AuthorMotion& motion, size_t phase, const Vector3d& change,
+                  std::vector<PatternEdit>& edits) {
+  const std::string swing = pointer_of_phase(motion.task.pattern, phase) + "/swing";
+  const std::string step = swing + "/step";
+  if (!motion.document.contains(OrderedJson::json_pointer(step)))
+    return move_foothold(motion, swing + "/to", change, edits);
+  const Swing& plan = *motion.task.pattern.phases[phase].swing;
+  const double end = motion.task.pattern.phases[phase].until;
+  const auto stands = static_cast<size_t>(other(plan.foot));
+  const Vector3d seen =
+      sample_near(motion.task.series, end).feet[stands].linear().transpose() * change;
+  shift_value(motion, step + "/forward", seen.x(), edits);
+  shift_value(motion, step + "/side", seen.y(), edits);
 }
 
 OrderedJson foothold_value(const AuthorMotion& motion, const Isometry3d& pose) {
@@ -272,21 +311,21 @@ void drag_swing(const AuthorMotion& motion, size_t phase, double time, const Vec
                 std::vector<PatternEdit>& edits) {
   const Pattern& pattern = motion.task.pattern;
   const double begin = begin_of(pattern, phase), end = pattern.phases[phase].until;
-  const std::string swing = "/phases/" + std::to_string(phase) + "/swing";
+  const std::string swing = pointer_of_phase(pattern, phase) + "/swing";
   if (time > end - kSameTime) {  // it has landed
-    move_foothold(motion, swing + "/to", {change.x(), change.y(), 0}, edits);
+    move_landing(motion, phase, {change.x(), change.y(), 0}, edits);
     return;
   }
   const auto s = static_cast<size_t>(pattern.phases[phase].swing->foot);
   const Vector3d from = sample_near(motion.task.series, begin).feet[s].translation();
-  const Vector3d to = pattern.phases[phase].swing->to.position;
+  const Vector3d to = sample_near(motion.task.series, end).feet[s].translation();
   const Vector3d now = sample_near(motion.task.series, time).feet[s].translation();
   // How far the foot is on its way; one that has hardly left is taken to its landing place.
   const double way = (to - from).head<2>().norm();
   const double u = (time - begin) / (end - begin);
   const double done = way > kStill ? (now - from).head<2>().norm() / way : u;
   const double share = std::clamp(done, 0.25, 1.0);
-  move_foothold(motion, swing + "/to", {change.x() / share, change.y() / share, 0}, edits);
+  move_landing(motion, phase, {change.x() / share, change.y() / share, 0}, edits);
   if (std::abs(change.z()) < kStill) return;
   const double lift = pattern.phases[phase].swing->lift;
   const double risen = now.z() - from.z() - done * (to.z() - from.z());

@@ -292,6 +292,73 @@ OrderedJson row_at(const Server& server, const OrderedJson& state, double time) 
 }
 
 // What the page shows while something is dragged is what the pattern is once it is written.
+// Durations, relative steps and blocks that repeat: edits meet the words that the author wrote.
+TEST_F(AuthorServer, EditsAPatternInFewWords) {
+  const std::string text = R"({
+  "format": "ayumi.pattern/1", "robot": "hoap1", "units": { "angle": "deg" },
+  "phases": [
+    { "duration": 1, "support": "both" },
+    { "repeat": 2, "phases": [
+      { "duration": 0.44, "support": "left", "swing": { "foot": "right", "step": { "forward": 0.03 } } },
+      { "duration": 0.11, "support": "both" },
+      { "duration": 0.44, "support": "right", "swing": { "foot": "left", "step": {} } },
+      { "duration": 0.11, "support": "both" }
+    ] },
+    { "duration": 1, "support": "both" }
+  ],
+  "keyframes": [
+    { "t": 0, "zmp": "center" },
+    { "after": 0.6, "zmp": "center" },
+    { "repeat": 2, "count": "i", "keyframes": [
+      { "t": "1 + 1.1*${i}", "zmp": "left" }, { "after": 0.44, "zmp": "left" },
+      { "after": 0.11, "zmp": "right" }, { "after": 0.44, "zmp": "right" }
+    ] },
+    { "after": 0.3, "zmp": "center" }
+  ]
+})";
+  save(text);
+  const Server server(file);
+  const OrderedJson state = server.state();
+  ASSERT_TRUE(state["error"].is_null()) << state["error"];
+  ASSERT_EQ(state["phases"].size(), 10u);
+  EXPECT_EQ(state["phases"][5]["pointer"], "/phases/1/phases/0");
+  EXPECT_EQ(state["phases"][5]["repeated"], true);
+  EXPECT_EQ(state["phases"][9]["until_pointer"], "/phases/2/duration");
+  EXPECT_NEAR(state["phases"][9]["until_base"].get<double>(), 3.2, 1e-9);
+  const auto dragged = [&](const OrderedJson& wish) {
+    const auto [status, answer] = server.post("pose", wish);
+    EXPECT_EQ(status, 200) << wish << answer;
+    EXPECT_EQ(server.edit(answer["edits"]).first, 200);
+    const OrderedJson now = server.state();
+    EXPECT_TRUE(now["error"].is_null()) << now["error"];
+    const std::string after = contents(file);
+    EXPECT_EQ(server.post("undo", {{"hash", now["hash"]}}).first, 200);
+    EXPECT_EQ(contents(file), text);
+    return after;
+  };
+  const auto with = [&](const std::string& what, const std::string& by) {
+    std::string changed = text;
+    const size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return changed.replace(at, what.size(), by);
+  };
+  // The foot that has landed goes 5 mm ahead: the step is 5 mm longer, and nothing else changes.
+  const auto& feet = state["handles"];
+  ASSERT_EQ(feet[1]["name"], "right_foot");
+  const std::string longer =
+      dragged({{"time", 1.5}, {"drag", "right_foot"}, {"to", {0.035, -0.039, 0.0}}});
+  EXPECT_EQ(longer, with("\"forward\": 0.03 ", "\"forward\": 0.035 "));
+  // A key between two that count their times: the one behind it stays where it is.
+  const std::string keyed = dragged({{"time", 0.2}, {"joints", {{"l_elbow", -0.5}}}});
+  EXPECT_NE(keyed.find("\"t\": 0.2"), std::string::npos) << keyed;
+  EXPECT_NE(keyed.find("{ \"after\": 0.4, \"zmp\": \"center\" }"), std::string::npos) << keyed;
+  // Within a block there is no room for a key of one round.
+  const auto [status, answer] =
+      server.post("pose", {{"time", 1.3}, {"joints", {{"l_elbow", -0.5}}}});
+  EXPECT_EQ(status, 422) << answer;
+  EXPECT_NE(answer.dump().find("a block that repeats"), std::string::npos) << answer;
+}
+
 TEST_F(AuthorServer, WhatIsDraggedIsWhatThePatternThenIs) {
   const Server server(file);
   const OrderedJson state = server.state();

@@ -39,7 +39,7 @@ TEST(Expression, SaysWhatIsWrong) {
   EXPECT_NE(value_error("${a} 2").find("unexpected '2'"), std::string::npos);
   EXPECT_NE(value_error("(${a}").find("')' is missing"), std::string::npos);
   EXPECT_NE(value_error("${a}/0").find("division by zero"), std::string::npos);
-  EXPECT_NE(value_error("${a}*inf").find("expected a number"), std::string::npos);
+  EXPECT_NE(value_error("${a}*inf").find("unknown name 'inf'"), std::string::npos);
   EXPECT_NE(value_error("${a}*1e300*1e300").find("not a finite number"), std::string::npos);
   EXPECT_NE(value_error("$a").find("write a parameter as ${name}"), std::string::npos);
   EXPECT_NE(value_error(std::string(100000, '(')).find("nested too deeply"), std::string::npos);

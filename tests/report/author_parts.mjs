@@ -59,7 +59,7 @@ test("a time snaps to the nearest candidate within the tolerance", () => {
 });
 
 const state = {
-  keyframes: [0, 0.7, 1.1, 1.6].map((time, i) => ({ time, time_value: time, pointer: `/keyframes/${i}` })),
+  keyframes: [0, 0.7, 1.1, 1.6].map((time, i) => ({ time, time_value: time, time_pointer: `/keyframes/${i}/t`, pointer: `/keyframes/${i}` })),
   phases: [{ from: 0, until: 1.1, until_value: 1.1, until_pointer: "/phases/0/until" },
     { from: 1.1, until: 1.6, until_value: "${t} + 1", until_pointer: "/phases/1/until" },
     { from: 1.6, until: 2, until_value: 2, until_pointer: "/phases/2/until" }],

@@ -33,6 +33,7 @@ class JsonSchema {
     if (keyword == "type") return is(rule, value);
     if (keyword == "const") return value == rule;
     if (keyword == "enum") return std::find(rule.begin(), rule.end(), value) != rule.end();
+    if (keyword == "allOf") return matches(rule, value) == static_cast<int>(rule.size());
     if (keyword == "oneOf") return matches(rule, value) == 1;
     if (keyword == "anyOf") return matches(rule, value) > 0;
     if (keyword == "not") return !fits(rule, value);

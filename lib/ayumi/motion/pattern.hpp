@@ -35,11 +35,19 @@ struct Foothold {
   Eigen::Vector3d rpy = Eigen::Vector3d::Zero();       ///< roll, pitch, yaw, R = Rz Ry Rx [rad]
 };
 
+/// A step as seen from the sole frame of the other foot. With zeros the foot lands beside the other
+/// one, as far from it and as turned as at the start.
+struct RelativeStep {
+  double forward = 0, side = 0, up = 0;  ///< ahead, to the left, upwards [m]
+  double turn = 0;                       ///< to the left [rad]
+};
+
 /// The foot that moves during a phase, and where it lands.
 struct Swing {
   Side foot = Side::left;
-  Foothold to;
+  Foothold to;         ///< unused with a step
   double lift = 0.02;  ///< height of the sole at mid-swing above the line between footholds [m]
+  std::optional<RelativeStep> step = {};
 };
 
 /// The feet that carry the robot until `until`; phases follow each other from t = 0.
@@ -48,6 +56,7 @@ struct Phase {
   Support support = Support::both;
   std::optional<Swing> swing;
   std::optional<ViipGoal> viip = {};  ///< VIIP controls the robot: a goal in place of keys
+  std::string pointer = {};           ///< JSON pointer of its source in the file; empty: of none
 };
 
 /// A ZMP key: a place under the supporting feet, or a point on the ground.
@@ -70,6 +79,7 @@ struct Keyframe {
   std::array<std::optional<Foothold>, 2> feet;     ///< by Side, world
   std::map<std::string, double> weights;           ///< diagonal of W by joint name
   std::string place;                               ///< its place in the file, for messages
+  std::string pointer = {};                        ///< JSON pointer of its source; empty: of none
 };
 
 /// The file of targets from which a table was imported, kept beside the table.

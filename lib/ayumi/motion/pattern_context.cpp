@@ -13,6 +13,20 @@ std::string in_file(const Pattern& pattern, const std::string& place) {
   return named ? place : pattern.file + ": " + place;
 }
 
+std::string pointer_of_phase(const Pattern& pattern, size_t i) {
+  const std::string& pointer = pattern.phases[i].pointer;
+  return pointer.empty() ? "/phases/" + std::to_string(i) : pointer;
+}
+
+std::string pointer_of_keyframe(const Pattern& pattern, size_t i) {
+  const std::string& pointer = pattern.keyframes[i].pointer;
+  return pointer.empty() ? "/keyframes/" + std::to_string(i) : pointer;
+}
+
+std::string place_of_phase(const Pattern& pattern, size_t i) {
+  return in_file(pattern, pointer_of_phase(pattern, i).substr(1));
+}
+
 int find_joint(const RobotModel& model, const std::string& joint, const std::string& place) {
   const int dof = model.find_dof(joint);
   if (dof >= 0) return dof;

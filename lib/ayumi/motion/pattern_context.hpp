@@ -24,6 +24,14 @@ double default_cog_height(const RobotModel& model, const Pattern& pattern);
 /// Index of a joint that a pattern names. Throws Error(bad_pattern) for an unknown or mimic joint.
 int find_joint(const RobotModel& model, const std::string& joint, const std::string& place);
 
+/// JSON pointer of a phase or keyframe in the pattern's file. Those of a block that repeats share
+/// one; those of patterns that are no file count from the first.
+std::string pointer_of_phase(const Pattern& pattern, size_t i);
+std::string pointer_of_keyframe(const Pattern& pattern, size_t i);
+
+/// "file: phases/3", for messages.
+std::string place_of_phase(const Pattern& pattern, size_t i);
+
 /// "file: place", or `place` alone when it contains the file, as those of keyframes do.
 std::string in_file(const Pattern& pattern, const std::string& place);
 

@@ -52,10 +52,10 @@ namespace {
                                  const PostureSolution& solution) {
   const auto in_phase = [&](const std::string& message) {
     return PlacedError(ErrorCode::bad_pattern, message,
-                       {job.pattern.file, "/phases/" + std::to_string(job.feet.phase(t))});
+                       {job.pattern.file, pointer_of_phase(job.pattern, job.feet.phase(t))});
   };
   const double ground = job.feet.ground(t);
-  const std::string where = in_file(job.pattern, "phases/" + std::to_string(job.feet.phase(t))) +
+  const std::string where = place_of_phase(job.pattern, job.feet.phase(t)) +
                             ": t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
   if (job.ik.lacks_joints() && !solution.knee_flipped)
     throw in_phase(
@@ -140,7 +140,7 @@ void require_body_tracks(const SampleJob& job) {
     const Phase& phase = job.feet.phases()[i];
     if (phase.support != Support::none) continue;
     const double begin = job.feet.begin(static_cast<int>(i));
-    const std::string place = in_file(job.pattern, "phases/" + std::to_string(i));
+    const std::string place = place_of_phase(job.pattern, i);
     if (begin <= 0 || i + 1 == job.feet.phases().size())
       fail(ErrorCode::bad_pattern,
            place + ": a flight (support none) needs a phase on the ground before and after it");

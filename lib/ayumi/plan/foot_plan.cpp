@@ -110,24 +110,26 @@ void FootPlan::read_phases(const Pattern& pattern) {
   std::array<Isometry3d, 2> now = start_;
   double begin = 0;
   for (size_t i = 0; i < phases_.size(); ++i) {
-    const Phase& phase = phases_[i];
-    const std::string place = "phases/" + std::to_string(i);
+    Phase& phase = phases_[i];
+    const std::string place = pointer_of_phase(pattern, i).substr(1);
     if (!(phase.until > begin) || !std::isfinite(phase.until))
       complain(pattern, place,
                "it begins at " + text::exact(begin) + " s and ends at " + text::exact(phase.until) +
                    " s; give a later \"until\"");
     if (phase.swing) {
-      const Swing& swing = *phase.swing;
+      Swing& swing = *phase.swing;
       if (supports(phase.support, swing.foot))
         complain(pattern, place,
                  std::string("the ") + name_of(swing.foot) +
                      " foot swings while it carries the "
                      "robot (support " +
                      name_of(phase.support) + "); set support to the other foot");
-      if (!finite(swing.to) || !std::isfinite(swing.lift) || swing.lift < 0)
-        complain(pattern, place + "/swing", "a number is not finite or the lift is below 0");
       const int foot = index(swing.foot);
-      const Isometry3d to = pose_of(swing.to);
+      const Isometry3d to = swing.step ? landing_of(swing, *swing.step, now) : pose_of(swing.to);
+      if (!to.matrix().allFinite() || !std::isfinite(swing.lift) || swing.lift < 0)
+        complain(pattern, place + "/swing", "a number is not finite or the lift is below 0");
+      if (swing.step) swing.to = {to.translation(), matrix_to_rpy(to.linear())};
+      swing.step.reset();
       const Vector3d turn =
           log_rotation(Eigen::Quaterniond(now[foot].linear().transpose() * to.linear()));
       moves_[foot].push_back({begin, phase.until, now[foot], to, swing.lift, turn});
@@ -135,6 +137,16 @@ void FootPlan::read_phases(const Pattern& pattern) {
     }
     begin = phase.until;
   }
+}
+
+Isometry3d FootPlan::landing_of(const Swing& swing, const RelativeStep& step,
+                                const std::array<Isometry3d, 2>& now) const {
+  const int foot = index(swing.foot), stands = index(other(swing.foot));
+  const Isometry3d beside = start_[stands].inverse() * start_[foot];
+  Isometry3d landing = Isometry3d::Identity();
+  landing.translation() = Vector3d(step.forward, beside.translation().y() + step.side, step.up);
+  landing.linear() = rpy_to_matrix({0, 0, step.turn + matrix_to_rpy(beside.linear()).z()});
+  return now[stands] * landing;
 }
 
 void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
@@ -154,7 +166,7 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
     if (!foot) continue;
     const auto stop = [&](const std::string& message) {
       throw PlacedError(ErrorCode::bad_pattern, key.place + ": " + message,
-                        {pattern.file, "/keyframes/" + std::to_string(i) + "/feet"});
+                        {pattern.file, pointer_of_keyframe(pattern, i) + "/feet"});
     };
     if (!finite(*foot)) stop("a foot pose is not a finite number");
     if (!moves_[index(side)].empty())
@@ -181,7 +193,7 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
     const double first = begin(static_cast<int>(i)), length = phases_[i].until - first;
     for (int step = 1; step <= 8; ++step)
       if (!pose(side, first + length * step / 8).isApprox(pose(side, first), 1e-9))
-        complain(pattern, "phases/" + std::to_string(i),
+        complain(pattern, pointer_of_phase(pattern, i).substr(1),
                  std::string("the keys of the ") + name_of(side) +
                      " foot move it while it carries the robot; move it in a phase where it is "
                      "free");

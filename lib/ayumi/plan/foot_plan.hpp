@@ -56,6 +56,7 @@ class FootPlan {
   int phase(double t) const;
   Support support(double t) const;
   double begin(int phase) const { return phase > 0 ? phases_[phase - 1].until : 0.0; }
+  /// Those of the pattern, with footholds in place of steps.
   const std::vector<Phase>& phases() const { return phases_; }
   double duration() const { return phases_.back().until; }
 
@@ -71,6 +72,9 @@ class FootPlan {
     std::vector<double> times;  // of its keys [s]
   };
   void read_phases(const Pattern& pattern);
+  /// World pose of the sole after a step, `now` the soles before it.
+  Eigen::Isometry3d landing_of(const Swing& swing, const RelativeStep& step,
+                               const std::array<Eigen::Isometry3d, 2>& now) const;
   void read_foot_keys(const Pattern& pattern, Side side);
   const Move* move_at(Side side, double t) const;
   double swing_lift(Side side, double t) const;

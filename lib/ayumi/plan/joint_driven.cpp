@@ -32,7 +32,7 @@ void refuse_flight(const SampleJob& job) {
   for (size_t i = 0; i < job.feet.phases().size(); ++i)
     if (job.feet.phases()[i].support == Support::none)
       fail(ErrorCode::bad_pattern,
-           in_file(job.pattern, "phases/" + std::to_string(i)) +
+           place_of_phase(job.pattern, i) +
                ": in a flight phase (support none) no foot holds the base, and joint keys alone do "
                "not determine its place; give a table with base columns");
 }

@@ -270,7 +270,7 @@ PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const
   KeyReader reader{model, pattern, feet, solved, height, {}, {}, {}, {}, {}, false, false, {}};
   reader.joints.resize(model.dof_count());
   for (size_t i = 0; i < pattern.keyframes.size(); ++i)
-    at_place({pattern.file, "/keyframes/" + std::to_string(i)},
+    at_place({pattern.file, pointer_of_keyframe(pattern, i)},
              [&] { reader.read(pattern.keyframes[i]); });
   for (int i = 0; i < 3; ++i)
     reader.cog[i] = with_flights(feet, reader.cog[i], i == 2 ? -kGravity : 0.0);

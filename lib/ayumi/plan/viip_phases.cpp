@@ -32,8 +32,8 @@ std::vector<Cut> cuts_of(const Pattern& pattern) {
   for (size_t i = 0; i < pattern.phases.size(); ++i) {
     const Phase& phase = pattern.phases[i];
     if (!(phase.until > begin))
-      fail(ErrorCode::bad_pattern, in_file(pattern, "phases/" + std::to_string(i)) +
-                                       ": it begins at " + text::exact(begin) + " s and ends at " +
+      fail(ErrorCode::bad_pattern, place_of_phase(pattern, i) + ": it begins at " +
+                                       text::exact(begin) + " s and ends at " +
                                        text::exact(phase.until) + " s; give a later \"until\"");
     if (phase.viip) {
       cuts.push_back({i, begin, phase.until, before});
@@ -93,7 +93,7 @@ void refuse_viip_phases(const Pattern& pattern, const std::string& done) {
   for (size_t i = 0; i < pattern.phases.size(); ++i)
     if (pattern.phases[i].viip)
       fail(ErrorCode::bad_pattern,
-           in_file(pattern, "phases/" + std::to_string(i)) +
+           place_of_phase(pattern, i) +
                ": the controller decides the motion of a phase with a goal, so the pattern cannot "
                "be " +
                done + "; simulate it and use the tables of the run");
@@ -146,7 +146,7 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
     const long at = std::min(last, tick(each.begin - each.before));
     for (; done < at; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
     const CommandSample& from = cut.samples[static_cast<size_t>(at)];
-    const std::string place = in_file(pattern, "phases/" + std::to_string(each.phase)) + ": ";
+    const std::string place = place_of_phase(pattern, each.phase) + ": ";
     // At the last sample of a step the support is still that of the step.
     const CommandSample& rests = cut.samples[static_cast<size_t>(std::max(0l, at - 1))];
     if (from.support != Support::both && rests.support != Support::both)

@@ -4,6 +4,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/motion/repair_preferences.hpp"
+#include "ayumi/plan/foot_plan.hpp"
 #include "ayumi/plan/viip_phases.hpp"
 
 namespace ayumi {
@@ -37,6 +38,10 @@ Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeri
   result.correction.reset();
   result.parameters.clear();
   // The last tick may be slightly after the end.
+  const auto has_step = [](const Phase& phase) { return phase.swing && phase.swing->step; };
+  if (std::any_of(result.phases.begin(), result.phases.end(), has_step))
+    result.phases = FootPlan(model, pattern).phases();
+  for (Phase& phase : result.phases) phase.pointer.clear();
   if (!result.phases.empty())
     result.phases.back().until = std::max(result.phases.back().until, series.duration());
   result.table.emplace();

@@ -181,6 +181,10 @@ class Mirror {
     if (!phase.swing) return;
     phase.swing->foot = other(phase.swing->foot);
     phase.swing->to = of(phase.swing->to);
+    if (phase.swing->step) {
+      phase.swing->step->side *= -1;
+      phase.swing->step->turn *= -1;
+    }
   }
 
   static void mirror(ViipGoal& goal) {

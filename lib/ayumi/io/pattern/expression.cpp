@@ -1,9 +1,12 @@
 // Recursive descent:  sum = product {(+|-) product};  product = factor {(*|/) factor};
-// factor = -factor | ( sum ) | ${name} | number.
+// factor = -factor | ( sum ) | ${name} | number | pi | function ( sum {, sum} ).
 #include "ayumi/io/pattern/expression.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "ayumi/base/error.hpp"
@@ -15,6 +18,35 @@ namespace {
 
 // Nested brackets. Chosen: far more than anybody writes, far less than the stack holds.
 constexpr int kMaxDepth = 64;
+
+struct Function {
+  size_t arguments;
+  double (*value)(double, double);
+};
+
+// Angles are in radians, whatever the unit of the file.
+const std::map<std::string, Function>& functions() {
+  static const std::map<std::string, Function> all = {
+      {"sin", {1, [](double x, double) { return std::sin(x); }}},
+      {"cos", {1, [](double x, double) { return std::cos(x); }}},
+      {"sqrt", {1, [](double x, double) { return std::sqrt(x); }}},
+      {"abs", {1, [](double x, double) { return std::abs(x); }}},
+      {"atan2", {2, [](double y, double x) { return std::atan2(y, x); }}},
+      {"min", {2, [](double a, double b) { return std::min(a, b); }}},
+      {"max", {2, [](double a, double b) { return std::max(a, b); }}},
+  };
+  return all;
+}
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+
+// The letters and digits from `at` on.
+std::string_view word_at(std::string_view text, size_t at) {
+  size_t end = at;
+  while (end < text.size() && (is_letter(text[end]) || (text[end] >= '0' && text[end] <= '9')))
+    ++end;
+  return text.substr(at, end - at);
+}
 
 class Parser {
  public:
@@ -83,6 +115,8 @@ class Parser {
       if (!take(')')) stop("')' is missing");
     } else if (take('$')) {
       value = parameter();
+    } else if (!at_end() && is_letter(text_[at_])) {
+      value = named();
     } else {
       value = number();
     }
@@ -102,6 +136,31 @@ class Parser {
     if (found == parameters_.end()) stop(unknown(name));
     if (used_) used_->insert(name);
     return found->second;
+  }
+
+  double named() {
+    const std::string name(word_at(text_, at_));
+    at_ += name.size();
+    if (name == "pi") return std::numbers::pi;
+    const auto found = functions().find(name);
+    if (found == functions().end()) stop(unknown_function(name));
+    const Function& function = found->second;
+    if (!take('(')) stop("'(' is missing behind " + name);
+    std::array<double, 2> value = {};
+    for (size_t i = 0; i < function.arguments; ++i) {
+      if (i > 0 && !take(',')) stop(name + " takes two numbers, as in \"" + name + "(1, 2)\"");
+      value[i] = sum();
+    }
+    if (take(',')) stop(name + " takes one number");
+    if (!take(')')) stop("')' is missing");
+    return function.value(value[0], value[1]);
+  }
+
+  static std::string unknown_function(const std::string& name) {
+    std::vector<std::string> names = {"pi"};
+    for (const auto& entry : functions()) names.push_back(entry.first);
+    return "unknown name '" + name + "'" + text::suggestion(name, names) +
+           "; write a parameter as ${" + name + "}; known are " + text::join(names, ", ");
   }
 
   std::string unknown(const std::string& name) const {
@@ -134,7 +193,17 @@ class Parser {
 
 }  // namespace
 
-bool is_expression(std::string_view text) { return text.find("${") != std::string_view::npos; }
+bool is_expression(std::string_view text) {
+  if (text.find("${") != std::string_view::npos) return true;
+  for (size_t at = 0; at < text.size(); ++at) {
+    const std::string word(word_at(text, at));
+    if (word == "pi") return true;
+    if (word.empty()) continue;
+    at += word.size();
+    if (at < text.size() && text[at] == '(' && functions().contains(word)) return true;
+  }
+  return false;
+}
 
 double evaluate_expression(std::string_view text, const std::map<std::string, double>& parameters,
                            const std::string& where, std::set<std::string>* used) {

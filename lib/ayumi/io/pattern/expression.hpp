@@ -1,5 +1,5 @@
 #pragma once
-// Small arithmetic over a pattern's parameters: "${stride}*2 + 0.01".
+// Small arithmetic over a pattern's parameters: "${stride}*2 + 0.01*sin(pi/6)".
 
 #include <map>
 #include <set>
@@ -8,12 +8,13 @@
 
 namespace ayumi {
 
-/// Whether a string is meant as an expression: it names at least one parameter, "${name}".
+/// Whether a string is meant as an expression: it names a parameter, "${name}", a function or pi.
 bool is_expression(std::string_view text);
 
-/// Value of + - * / parentheses, unary minus, numbers and ${names}. Names met are added to `used`
-/// when given. Throws Error(bad_pattern) "where: reason" for an unknown name, bad syntax or a
-/// result that is not finite.
+/// Value of + - * / parentheses, unary minus, numbers, ${names}, pi, sin, cos, sqrt, abs, atan2,
+/// min and max, angles in radians. Names met are added to `used` when given. Throws
+/// Error(bad_pattern) "where: reason" for an unknown name, bad syntax or a result that is not
+/// finite.
 double evaluate_expression(std::string_view text, const std::map<std::string, double>& parameters,
                            const std::string& where, std::set<std::string>* used = nullptr);
 

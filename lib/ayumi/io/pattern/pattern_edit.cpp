@@ -27,11 +27,17 @@ std::string number_text(double value) {
   return text::exact(std::stod(text::fixed(value, 6)) + 0.0);
 }
 
-std::map<std::string, double> parameters_of(const Json& document) {
+// The parameters that an expression at this place may name. The count of a block around it is 0, as
+// in its first round.
+std::map<std::string, double> parameters_at(const Json& document, const std::string& pointer) {
   std::map<std::string, double> parameters;
-  if (!document.is_object() || !document.contains("parameters")) return parameters;
-  for (const auto& [name, value] : document["parameters"].items())
-    if (value.is_number()) parameters[name] = value;
+  if (document.is_object() && document.contains("parameters"))
+    for (const auto& [name, value] : document["parameters"].items())
+      if (value.is_number()) parameters[name] = value;
+  for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer())
+    if (document.contains(at) && document[at].is_object() && document[at].contains("count") &&
+        document[at]["count"].is_string())
+      parameters[document[at]["count"]] = 0;
   return parameters;
 }
 
@@ -49,13 +55,15 @@ Place split(const std::string& pointer) {
 std::string unescaped(const std::string& token) { return Json::json_pointer("/" + token).back(); }
 
 // The text of a number that replaces the value `before`.
-std::string replacing(const Json& document, const Json& before, const Json& wanted) {
+std::string replacing(const Json& document, const std::string& pointer, const Json& before,
+                      const Json& wanted) {
   if (!wanted.is_number()) return wanted.dump();
   const double value = wanted.get<double>();
   if (!before.is_string() || !is_expression(before.get<std::string>())) return number_text(value);
   const std::string expression = before;
   try {
-    const double now = evaluate_expression(expression, parameters_of(document), "the pattern");
+    const double now =
+        evaluate_expression(expression, parameters_at(document, pointer), "the pattern");
     return Json(shifted_expression(expression, value - now)).dump();
   } catch (const Error&) {  // an expression without a value: the number mends it
     return number_text(value);
@@ -96,8 +104,9 @@ std::string set(const std::string& text, const Json& document, const PatternEdit
     const Json wanted = Json::parse(edit.value);
     if (before == wanted) return text;
     const bool plain = wanted.is_primitive();
-    return with_value(text, edit.pointer,
-                      plain ? replacing(document, before, wanted) : spaced_in_order(edit.value));
+    return with_value(
+        text, edit.pointer,
+        plain ? replacing(document, edit.pointer, before, wanted) : spaced_in_order(edit.value));
   }
   // The innermost object that is there gets what is missing, as one member.
   Place place = split(edit.pointer);
@@ -203,6 +212,16 @@ std::string shifted_expression(const std::string& expression, double change) {
   const double sum = rounded(number + step);
   if (sum == 0) return head;
   return head + (sum < 0 ? " - " : " + ") + number_text(std::abs(sum));
+}
+
+double value_in_text(const std::string& text, const std::string& pointer) {
+  const Json document = parse_json(text, "the pattern", ErrorCode::bad_pattern);
+  const Json::json_pointer at(pointer);
+  const Json value = document.contains(at) ? document[at] : Json();
+  if (value.is_number()) return value.get<double>();
+  if (!value.is_string()) fail(ErrorCode::usage, "'" + pointer + "' is not the place of a number");
+  return evaluate_expression(value.get<std::string>(), parameters_at(document, pointer),
+                             "the pattern: " + pointer);
 }
 
 std::string edited_text(const std::string& text, const std::vector<PatternEdit>& edits) {

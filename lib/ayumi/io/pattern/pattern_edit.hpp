@@ -25,6 +25,10 @@ struct PatternEdit {
 /// text is not JSON.
 std::string edited_text(const std::string& text, const std::vector<PatternEdit>& edits);
 
+/// Value of the number or expression at a place of the text; the counts of blocks that repeat are
+/// those of their first round. Throws Error(usage) for a place without one.
+double value_in_text(const std::string& text, const std::string& pointer);
+
 /// The expression whose value is higher by `change`, a multiple of 1e-6: a number that is added to
 /// or subtracted from the whole at its end is changed, else one is appended.
 std::string shifted_expression(const std::string& expression, double change);

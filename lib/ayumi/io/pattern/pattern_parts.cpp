@@ -19,6 +19,34 @@ Support read_support(const JsonNode& node) {
   return Support::none;
 }
 
+// Sums of times are rounded, so that they print as they would be written [1/s].
+constexpr double kTimeSteps = 1e9;
+
+// The time that `absolute` gives, or `relative` as counted from `before` [s].
+double read_moment(const JsonNode& node, const char* absolute, const char* relative, double before,
+                   PatternScope& scope) {
+  if (node.has(absolute) == node.has(relative))
+    node.complain("\"" + std::string(absolute) + "\" and \"" + relative + "\" " +
+                  (node.has(absolute) ? "are both there; keep one"
+                                      : "are both missing; give one of these times in seconds"));
+  if (node.has(absolute)) return read_time(node.at(absolute), scope);
+  const double time = before + read_time(node.at(relative), scope);
+  if (time > kLongestPattern)
+    node.at(relative).complain("it ends at " + text::exact(time) + " s; the longest pattern is " +
+                               text::exact(kLongestPattern) + " s");
+  return std::round(kTimeSteps * time) / kTimeSteps;
+}
+
+RelativeStep read_step(const JsonNode& node, PatternScope& scope) {
+  only_pattern_keys(node, "step");
+  RelativeStep step;
+  if (const auto forward = node.find("forward")) step.forward = read_number(*forward, scope);
+  if (const auto side = node.find("side")) step.side = read_number(*side, scope);
+  if (const auto up = node.find("up")) step.up = read_number(*up, scope);
+  if (const auto turn = node.find("turn")) step.turn = read_angle(*turn, scope);
+  return step;
+}
+
 Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
   only_pattern_keys(node, "swing");
   Swing swing;
@@ -27,7 +55,14 @@ Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
     node.at("foot").complain("the " + std::string(name_of(swing.foot)) +
                              " foot carries the robot in this phase (support " + name_of(support) +
                              "), so this foot cannot swing");
-  swing.to = read_foothold(node.at("to"), scope);
+  if (node.has("step") == node.has("to"))
+    node.complain(node.has("to") ? "\"to\" and \"step\" both say where the foot lands; keep one"
+                                 : "\"to\" is missing, the foothold, or \"step\", a step relative "
+                                   "to the other foot");
+  if (const auto step = node.find("step"))
+    swing.step = read_step(*step, scope);
+  else
+    swing.to = read_foothold(node.at("to"), scope);
   if (const auto lift = node.find("lift")) swing.lift = read_number(*lift, scope, 0, 10);
   return swing;
 }
@@ -85,10 +120,11 @@ Eigen::Vector3d read_torso(const JsonNode& node, PatternScope& scope) {
 
 }  // namespace
 
-Phase read_phase(const JsonNode& node, PatternScope& scope) {
+Phase read_phase(const JsonNode& node, double before, PatternScope& scope) {
   only_pattern_keys(node, "phase");
   Phase phase;
-  phase.until = read_time(node.at("until"), scope);
+  phase.pointer = node.pointer();
+  phase.until = read_moment(node, "until", "duration", before, scope);
   if (const auto goal = node.find("viip")) {
     phase.viip = read_viip_goal(*goal, scope);
     for (const char* const key : {"swing", "support"})
@@ -103,11 +139,12 @@ Phase read_phase(const JsonNode& node, PatternScope& scope) {
   return phase;
 }
 
-Keyframe read_keyframe(const JsonNode& node, PatternScope& scope) {
+Keyframe read_keyframe(const JsonNode& node, double before, PatternScope& scope) {
   only_pattern_keys(node, "keyframe");
   Keyframe key;
   key.place = node.file() + ": " + node.pointer();
-  key.t = read_time(node.at("t"), scope);
+  key.pointer = node.pointer();
+  key.t = read_moment(node, "t", "after", before, scope);
   if (const auto interpolation = node.find("interpolation"))
     key.interpolation = read_interpolation(*interpolation);
   read_posture(node, key, scope);

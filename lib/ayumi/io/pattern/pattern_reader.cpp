@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
 #include "ayumi/io/run/sha256.hpp"
@@ -15,6 +16,13 @@ namespace fs = std::filesystem;
 // [bytes] Source: docs/formats.md.
 constexpr size_t kLargestFile = size_t{64} << 20;
 
+// Phases and keyframes of a file, repeated ones included. Chosen: one each 0.1 s of the longest
+// pattern is less than half of it.
+constexpr size_t kMostItems = 100000;
+// Rounds of a block, and blocks in each other. Chosen: far more than anybody writes.
+constexpr double kMostRounds = 10000;
+constexpr int kMostBlocks = 8;
+
 void require_format(const JsonNode& root, const std::string& format) {
   const std::string found = root.at("format").string();
   if (found != format)
@@ -22,13 +30,17 @@ void require_format(const JsonNode& root, const std::string& format) {
                                format + "'");
 }
 
+void require_parameter_name(const std::string& name, const JsonNode& place) {
+  if (name.empty() || name.find_first_of("${}") != std::string::npos)
+    place.complain("the name of a parameter must not be empty and must not contain $, { or }");
+}
+
 // Numbers of "parameters", replaced by those set from outside.
 void read_parameters(const JsonNode& root, const std::map<std::string, double>& set,
                      PatternScope& scope) {
   if (const auto parameters = root.find("parameters"))
     for (const auto& [name, value] : parameters->members()) {
-      if (name.empty() || name.find_first_of("${}") != std::string::npos)
-        value.complain("the name of a parameter must not be empty and must not contain $, { or }");
+      require_parameter_name(name, value);
       PatternScope nothing;
       scope.parameters[name] = read_number(value, nothing);
     }
@@ -111,21 +123,84 @@ void read_start(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
       pattern.start_feet[static_cast<size_t>(side)] = read_foothold(*foot, scope);
 }
 
+// A count is a parameter while its block is read.
+class Counter {
+ public:
+  Counter(const JsonNode& block, PatternScope& scope) : scope_(scope) {
+    const auto count = block.find("count");
+    if (!count) return;
+    name_ = count->string();
+    require_parameter_name(name_, *count);
+    if (scope.parameters.contains(name_))
+      count->complain("'" + name_ +
+                      "' is the name of a parameter or of the count of a block around this one; "
+                      "choose another name");
+  }
+  ~Counter() { scope_.parameters.erase(name_); }
+  Counter(const Counter&) = delete;
+  Counter& operator=(const Counter&) = delete;
+  void set(int round) const {
+    if (!name_.empty()) scope_.parameters[name_] = round;
+  }
+
+ private:
+  PatternScope& scope_;
+  std::string name_;
+};
+
+// Calls work(node) for the items of `list`; the items of a block that repeats as often as it says.
+template <class Work>
+void each_item(const JsonNode& list, const std::string& name, PatternScope& scope, int depth,
+               const Work& work) {
+  for (const JsonNode& node : list.items()) {
+    if (!node.value().is_object() || !node.has("repeat")) {
+      work(node);
+      continue;
+    }
+    if (depth == kMostBlocks)
+      node.complain("at most " + std::to_string(kMostBlocks) + " blocks may repeat in each other");
+    only_pattern_keys(node, "repeated_" + name);
+    const double times = read_number(node.at("repeat"), scope, 1, kMostRounds);
+    if (times != std::floor(times)) node.at("repeat").complain("expected a whole number");
+    const JsonNode block = node.at(name);
+    block.expect_array();
+    if (block.size() == 0) block.complain("the list is empty; there is nothing to repeat");
+    const Counter counter(node, scope);
+    for (int round = 0; round < static_cast<int>(times); ++round) {
+      counter.set(round);
+      try {
+        each_item(block, name, scope, depth + 1, work);
+      } catch (const PlacedError& error) {
+        throw PlacedError(error.code(),
+                          std::string(error.what()) + " (round " + std::to_string(round + 1) +
+                              " of " + text::exact(times) + ")",
+                          error.place());
+      }
+    }
+  }
+}
+
+[[noreturn]] void complain_of_many(const JsonNode& list) {
+  list.complain("with its repeated blocks the list has more than " + std::to_string(kMostItems) +
+                " items; repeat less often");
+}
+
 void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
   const JsonNode phases = root.at("phases");
   phases.expect_array();
   if (phases.size() == 0)
     phases.complain(
         "the list is empty; give at least one phase, which says which feet carry the robot");
-  double previous = 0;
-  for (const JsonNode& node : phases.items()) {
-    pattern.phases.push_back(read_phase(node, scope));
+  each_item(phases, "phases", scope, 0, [&](const JsonNode& node) {
+    const double previous = pattern.phases.empty() ? 0 : pattern.phases.back().until;
+    pattern.phases.push_back(read_phase(node, previous, scope));
     const double until = pattern.phases.back().until;
     if (!(until > previous))
-      node.at("until").complain("this phase begins at " + text::exact(previous) +
-                                " s and ends at " + text::exact(until) + " s; give a later time");
-    previous = until;
-  }
+      node.at(node.has("until") ? "until" : "duration")
+          .complain("this phase begins at " + text::exact(previous) + " s and ends at " +
+                    text::exact(until) + " s; give a later time");
+    if (pattern.phases.size() > kMostItems) complain_of_many(phases);
+  });
 }
 
 void read_keyframes(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
@@ -137,19 +212,19 @@ void read_keyframes(const JsonNode& root, PatternScope& scope, Pattern& pattern)
     root.complain("the key 'keyframes' is missing; give keyframes, or a sampled motion as 'table'");
   keyframes->expect_array();
   if (keyframes->size() == 0) keyframes->complain("the list is empty; give at least one keyframe");
-  double previous = 0;
-  for (const JsonNode& node : keyframes->items()) {
+  each_item(*keyframes, "keyframes", scope, 0, [&](const JsonNode& node) {
     const bool first = pattern.keyframes.empty();
-    pattern.keyframes.push_back(read_keyframe(node, scope));
+    const double previous = first ? 0 : pattern.keyframes.back().t;
+    pattern.keyframes.push_back(read_keyframe(node, previous, scope));
     const double t = pattern.keyframes.back().t;
     if (!(t > previous || (first && t == previous)))
-      node.at("t").complain("this keyframe is at " + text::exact(t) + " s, but " +
-                            (first
-                                 ? "the motion begins at 0 s"
-                                 : "the keyframe before it is at " + text::exact(previous) + " s") +
-                            "; give a later time");
-    previous = t;
-  }
+      node.at(node.has("t") ? "t" : "after")
+          .complain("this keyframe is at " + text::exact(t) + " s, but " +
+                    (first ? "the motion begins at 0 s"
+                           : "the keyframe before it is at " + text::exact(previous) + " s") +
+                    "; give a later time");
+    if (pattern.keyframes.size() > kMostItems) complain_of_many(*keyframes);
+  });
 }
 
 void read_rest(const JsonNode& root, PatternScope& scope, Pattern& pattern) {

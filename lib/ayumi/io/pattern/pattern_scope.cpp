@@ -17,13 +17,17 @@ const std::map<std::string, std::vector<std::string>>& pattern_keys() {
       {"units", {"angle", "length", "time", "mass", "force"}},
       {"defaults", {"interpolation", "posture", "cog_height", "cog_model"}},
       {"start", {"left", "right"}},
-      {"phase", {"until", "support", "swing", "viip"}},
+      {"phase", {"until", "duration", "support", "swing", "viip"}},
+      {"repeated_phases", {"repeat", "count", "phases"}},
       {"viip", {"cog", "step", "steps", "velocity", "turn", "jump"}},
       {"jump", {"height", "stoop", "forward", "times", "release"}},
-      {"swing", {"foot", "to", "lift"}},
+      {"swing", {"foot", "to", "step", "lift"}},
+      {"step", {"forward", "side", "up", "turn"}},
       {"foot_pose", {"position", "rpy"}},
+      {"repeated_keyframes", {"repeat", "count", "keyframes"}},
       {"keyframe",
-       {"t", "interpolation", "posture", "joints", "zmp", "cog", "fz", "torso", "feet", "weights"}},
+       {"t", "after", "interpolation", "posture", "joints", "zmp", "cog", "fz", "torso", "feet",
+        "weights"}},
       {"cog", {"x", "y", "height"}},
       {"torso", {"roll", "pitch", "yaw"}},
       {"feet", {"left", "right"}},
@@ -68,7 +72,7 @@ double plain_number(const JsonNode& node, PatternScope& scope) {
   const std::string text = node.string();
   if (!is_expression(text))
     node.complain(
-        "expected a number (or an expression with a parameter such as \"${stride}*2\"), "
+        "expected a number (or an expression such as \"${stride}*2\" or \"pi/6\"), "
         "found the string \"" +
         text + "\"");
   return evaluate_expression(text, scope.parameters, where(node), &scope.used);

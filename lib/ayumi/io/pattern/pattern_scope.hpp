@@ -49,8 +49,9 @@ Interpolation read_interpolation(const JsonNode& node);
 void read_units(const JsonNode& root, PatternScope& scope);
 
 ViipGoal read_viip_goal(const JsonNode& node, PatternScope& scope);
-Phase read_phase(const JsonNode& node, PatternScope& scope);
-Keyframe read_keyframe(const JsonNode& node, PatternScope& scope);
+/// A phase or keyframe after one that ends at `before` [s].
+Phase read_phase(const JsonNode& node, double before, PatternScope& scope);
+Keyframe read_keyframe(const JsonNode& node, double before, PatternScope& scope);
 World read_world(const JsonNode& node, PatternScope& scope);
 ControllerSpec read_controller(const JsonNode& node, PatternScope& scope);
 Disturbance read_disturbance(const JsonNode& node, PatternScope& scope);

@@ -128,6 +128,15 @@ class Writer {
     return Members().add("jump", jump.object()).object();
   }
 
+  std::string step(const RelativeStep& step) const {
+    Members members;
+    if (step.forward != 0) members.add("forward", number(step.forward));
+    if (step.side != 0) members.add("side", number(step.side));
+    if (step.up != 0) members.add("up", number(step.up));
+    if (step.turn != 0) members.add("turn", angle(step.turn));
+    return members.empty() ? "{}" : members.object();
+  }
+
   std::string phase(const Phase& each) const {
     Members members;
     members.add("until", number(each.until));
@@ -135,12 +144,15 @@ class Writer {
       return members.add("viip", std::visit([&](const auto& g) { return goal(g); }, *each.viip))
           .object();
     members.add("support", quoted(name_of(each.support)));
-    if (each.swing)
-      members.add("swing", Members()
-                               .add("foot", quoted(name_of(each.swing->foot)))
-                               .add("to", foothold(each.swing->to))
-                               .add("lift", number(each.swing->lift))
-                               .object());
+    if (each.swing) {
+      Members swing;
+      swing.add("foot", quoted(name_of(each.swing->foot)));
+      if (each.swing->step)
+        swing.add("step", step(*each.swing->step));
+      else
+        swing.add("to", foothold(each.swing->to));
+      members.add("swing", swing.add("lift", number(each.swing->lift)).object());
+    }
     return members.object();
   }
 

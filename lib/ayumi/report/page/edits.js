@@ -12,8 +12,11 @@ export function written(words) {
   return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
-/// A time that is an expression is the author's to change.
-export const canDrag = (value) => typeof value === "number";
+/// A time that is an expression, or that stands in a block that repeats, is the author's to change.
+export const canDrag = (value, thing = {}) => typeof value === "number" && !thing.repeated;
+
+/// The value that makes the time of a key or the end of a phase `time`: some count from the one before.
+const timeValue = (time, base) => roundedTime(time - (base || 0));
 
 /// Times between which a keyframe may lie: its neighbours'.
 export function roomOfKey(keyframes, pointer) {
@@ -28,21 +31,21 @@ export function roomOfPhase(phases, index) {
 }
 
 export function moveKey(key, time) {
-  return canDrag(key.time_value) && !sameTime(key.time, time)
-    ? [{ kind: "set", pointer: key.time_pointer, value: roundedTime(time) }] : [];
+  return canDrag(key.time_value, key) && !sameTime(key.time, time)
+    ? [{ kind: "set", pointer: key.time_pointer, value: timeValue(time, key.time_base) }] : [];
 }
 
 /// The end of a phase, and with `along` the keyframes that stand at that end and may follow there.
 export function movePhase(state, index, time, along) {
   const phase = state.phases[index];
-  if (!canDrag(phase.until_value) || sameTime(phase.until, time)) return [];
-  const edits = [{ kind: "set", pointer: phase.until_pointer, value: roundedTime(time) }];
+  if (!canDrag(phase.until_value, phase) || sameTime(phase.until, time)) return [];
+  const edits = [{ kind: "set", pointer: phase.until_pointer, value: timeValue(time, phase.until_base) }];
   if (!along) return edits;
   for (const [i, frame] of state.keyframes.entries()) {
-    if (!sameTime(frame.time, phase.until) || !canDrag(frame.time_value)) continue;
+    if (!sameTime(frame.time, phase.until) || !canDrag(frame.time_value, frame)) continue;
     const before = state.keyframes[i - 1], after = state.keyframes[i + 1];
     if ((before && before.time >= time) || (after && after.time <= time)) continue;
-    edits.push({ kind: "set", pointer: frame.pointer + "/t", value: roundedTime(time) });
+    edits.push({ kind: "set", pointer: frame.time_pointer, value: timeValue(time, frame.time_base) });
   }
   return edits;
 }
@@ -51,18 +54,36 @@ export function movePhase(state, index, time, along) {
 export function putKey(keyframes, time, name, value) {
   const there = keyframes.find((frame) => sameTime(frame.time, time));
   if (there) return [{ kind: "set", pointer: `${there.pointer}/${name}`, value }];
-  const next = keyframes.find((frame) => frame.time > time);
-  return [{ kind: "insert", pointer: next ? next.pointer : "/keyframes/-",
-    value: { t: roundedTime(time), [name]: value } }];
+  const i = keyframes.findIndex((frame) => frame.time > time);
+  const next = keyframes[i], before = keyframes[(i < 0 ? keyframes.length : i) - 1];
+  const added = { kind: "insert", pointer: next ? outermost(next.pointer) : "/keyframes/-",
+    value: { t: roundedTime(time), [name]: value } };
+  if (!next) return [added];
+  // A block that repeats has no room for a key of one of its rounds.
+  if (next.repeated && (isRelative(next) || (before && outermost(before.pointer) === outermost(next.pointer))))
+    return [];
+  return [added, ...follow(next, roundedTime(time))];
 }
+
+/// The item of the pattern's list that holds a keyframe: itself, or a block that repeats.
+const outermost = (pointer) => pointer.split("/").slice(0, 3).join("/");
+
+const isRelative = (frame) => frame.time_pointer.endsWith("/after");
+
+/// A keyframe that counts from the one before it stays at its time when that one is at `base` now.
+const follow = (frame, base) => frame && isRelative(frame) && canDrag(frame.time_value, frame)
+  ? [{ kind: "set", pointer: frame.time_pointer, value: timeValue(frame.time, base) }] : [];
 
 /// A key without its keyframe's other tracks; a keyframe with nothing else goes as a whole.
 export function removeKey(state, key) {
   const frame = state.keyframes.find((one) => key.pointer.startsWith(one.pointer + "/"));
   const others = state.tracks.flatMap((track) => track.keys).filter((one) => one !== key &&
     frame && one.pointer.startsWith(frame.pointer + "/"));
-  if (frame && others.length === 0 && !frame.more)
-    return [{ kind: "remove", pointer: frame.pointer }];
+  if (frame && others.length === 0 && !frame.more) {
+    const i = state.keyframes.indexOf(frame);
+    return [{ kind: "remove", pointer: frame.pointer },
+      ...follow(state.keyframes[i + 1], i > 0 ? state.keyframes[i - 1].time : 0)];
+  }
   return [{ kind: "remove", pointer: key.pointer }];
 }
 
@@ -85,8 +106,11 @@ export function valueFromRow(track, row, columns, angleUnit) {
 
 /// A phase is cut in two at a time within it; a phase with a swing stays whole.
 export function splitPhase(phase, time) {
-  if (phase.swing || !phase.support || time <= phase.from + 5e-4 || time >= phase.until - 5e-4) return [];
-  return [{ kind: "insert", pointer: phase.pointer, value: { until: roundedTime(time), support: phase.support } }];
+  if (phase.swing || !phase.support || phase.repeated) return [];
+  if (time <= phase.from + 5e-4 || time >= phase.until - 5e-4) return [];
+  const rest = phase.until_pointer.endsWith("/duration")
+    ? [{ kind: "set", pointer: phase.until_pointer, value: roundedTime(phase.until - time) }] : [];
+  return [{ kind: "insert", pointer: phase.pointer, value: { until: roundedTime(time), support: phase.support } }, ...rest];
 }
 
 /// A phase behind the last one, as long as it takes to look at.

@@ -7,7 +7,7 @@ import { nameOfTrack } from "./timeline.js";
 /// Unit of a value by the names that lead to it.
 export function unitOf(path, angle) {
   const name = path.at(-1), track = path[0];
-  if (["t", "at", "until", "duration"].includes(name)) return "s";
+  if (["t", "after", "at", "until", "duration"].includes(name)) return "s";
   if (["x", "y", "z", "height", "lift", "radius"].includes(name)) return "m";
   if (["roll", "pitch", "yaw", "turn"].includes(name) || track === "joints" || track === "joint" ||
     (track === "posture" && path.length > 1)) return angle;
@@ -105,7 +105,7 @@ export class Inspector {
     const others = state.tracks.flatMap((track) => track.keys.filter((one) =>
       one.time_pointer === key.time_pointer && one.pointer !== key.pointer).map(() => nameOfTrack(track)));
     return [element("h3", {}, `${name} key at ${seconds(key.time)}`),
-      ...this.inputs(key.time_pointer, key.time_value, ["t"]),
+      ...this.inputs(key.time_pointer, key.time_value, [key.time_pointer.split("/").at(-1)]),
       ...this.inputs(key.pointer, key.value, path, choices),
       others.length ? element("p", { class: "soft" }, `The same keyframe has keys of: ${others.join(", ")}. They move together.`) : null,
       key.track.name === "zmp" && named && this.page.can("edit") ? element("button", { type: "button",
@@ -117,7 +117,7 @@ export class Inspector {
   phase(phase, state) {
     const index = state.phases.indexOf(phase);
     return [element("h3", {}, `Phase ${index + 1}, ${seconds(phase.from)} to ${seconds(phase.until)}`),
-      ...this.inputs(phase.until_pointer, phase.until_value, ["until"]),
+      ...this.inputs(phase.until_pointer, phase.until_value, [phase.until_pointer.split("/").at(-1)]),
       ...phase.support ? this.inputs(phase.pointer + "/support", phase.support, ["support"],
         { support: ["both", "left", "right", "none"] }) : [],
       ...phase.swing ? this.inputs(phase.pointer + "/swing", phase.swing, ["swing"], { foot: ["left", "right"] }) : [],

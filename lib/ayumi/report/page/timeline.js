@@ -85,7 +85,7 @@ export class Timeline {
         "aria-pressed": String(this.page.isSelected(thing)),
         onclick: () => this.page.select(thing, phase.from) },
       this.wide(phase.until - phase.from) > 7.5 * words.length ? element("span", {}, words) : null));
-      if (!this.page.can("edit") || !canDrag(phase.until_value) || !this.visible(phase.until, phase.until)) return;
+      if (!this.page.can("edit") || !canDrag(phase.until_value, phase) || !this.visible(phase.until, phase.until)) return;
       const grip = element("button", { type: "button", class: "grip", style: this.place(phase.until),
         "data-id": phase.until_pointer, title: `End of phase ${i + 1}: drag, or Ctrl and arrow keys`,
         "aria-label": `End of phase ${i + 1} at ${seconds(phase.until)}` });
@@ -104,12 +104,12 @@ export class Timeline {
       const mark = element("button", { type: "button", class: "key", style: this.place(key.time),
         "data-id": key.pointer, "data-time": key.time_pointer,
         title: `${name} ${valueWords(key.value)} at ${seconds(key.time)}` +
-          (canDrag(key.time_value) ? "" : ` (written as ${key.time_value})`),
+          (canDrag(key.time_value, key) ? "" : ` (written as ${key.time_value})`),
         "aria-label": `${name} key at ${seconds(key.time)}: ${valueWords(key.value)}`,
         "aria-pressed": String(this.page.isSelected(thing)),
         onclick: () => this.page.select(thing, key.time) });
       this.dropPosture(mark, key);
-      if (this.page.can("edit") && canDrag(key.time_value))
+      if (this.page.can("edit") && canDrag(key.time_value, key))
         this.movable(mark, { time: key.time, room: roomOfKey(this.page.state.keyframes, key.pointer),
           words: "key", edits: (t) => moveKey(key, t),
           together: `[data-time="${key.time_pointer}"]` });
