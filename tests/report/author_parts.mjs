@@ -96,12 +96,34 @@ test("a removed key takes its keyframe only where nothing else is in it", () => 
   assert.deepEqual(edits.removeKey(state, two), [{ kind: "remove", pointer: "/keyframes/2/zmp" }]);
 });
 
+test("times that count from the one before, and blocks that repeat", () => {
+  const relative = { time: 1, time_value: 0.4, time_base: 0.6, time_pointer: "/keyframes/2/after", pointer: "/keyframes/2" };
+  assert.deepEqual(edits.moveKey(relative, 1.1), [{ kind: "set", pointer: "/keyframes/2/after", value: 0.5 }]);
+  assert.deepEqual(edits.moveKey({ ...relative, repeated: true }, 1.1), []);
+  const first = { time: 0.6, time_value: 0.6, time_pointer: "/keyframes/1/t", pointer: "/keyframes/1" };
+  assert.deepEqual(edits.putKey([first, relative], 0.7, "fz", 70), [
+    { kind: "insert", pointer: "/keyframes/2", value: { t: 0.7, fz: 70 } },
+    { kind: "set", pointer: "/keyframes/2/after", value: 0.3 }]);
+  const inBlock = (i, time) => ({ time, time_value: time, repeated: true,
+    time_pointer: `/keyframes/2/keyframes/${i}/t`, pointer: `/keyframes/2/keyframes/${i}` });
+  assert.equal(edits.putKey([first, inBlock(0, 1)], 0.7, "fz", 70)[0].pointer, "/keyframes/2");
+  assert.deepEqual(edits.putKey([first, inBlock(0, 1), inBlock(1, 2)], 1.5, "fz", 70), []);
+  const state = { keyframes: [first, relative], tracks: [{ keys: [{ pointer: "/keyframes/1/fz" }] }] };
+  assert.deepEqual(edits.removeKey(state, state.tracks[0].keys[0]), [
+    { kind: "remove", pointer: "/keyframes/1" },
+    { kind: "set", pointer: "/keyframes/2/after", value: 1 }]);
+});
+
 test("a phase is cut only within it, and never in its swing", () => {
-  const phase = { from: 1, until: 2, support: "left", pointer: "/phases/4" };
+  const phase = { from: 1, until: 2, support: "left", pointer: "/phases/4", until_pointer: "/phases/4/until" };
   assert.deepEqual(edits.splitPhase(phase, 1.2504),
     [{ kind: "insert", pointer: "/phases/4", value: { until: 1.25, support: "left" } }]);
   for (const [one, t] of [[phase, 1], [phase, 2], [{ ...phase, swing: {} }, 1.5], [{ ...phase, support: undefined }, 1.5]])
     assert.deepEqual(edits.splitPhase(one, t), []);
+  // A duration is that of the second part then.
+  assert.deepEqual(edits.splitPhase({ ...phase, until_pointer: "/phases/4/duration" }, 1.25)[1],
+    { kind: "set", pointer: "/phases/4/duration", value: 0.75 });
+  assert.deepEqual(edits.splitPhase({ ...phase, repeated: true }, 1.25), []);
   assert.deepEqual(edits.appendPhase([phase]), [{ kind: "insert", pointer: "/phases/-", value: { until: 2.5, support: "both" } }]);
 });
 

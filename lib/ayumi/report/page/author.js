@@ -349,6 +349,7 @@ class Page {
   }
 
   renderTime() {
+    if (!this.state.replay) return;  // there is no motion yet
     this.timeline.render();
     this.strip.render();
     this.curves.render();
