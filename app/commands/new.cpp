@@ -41,7 +41,13 @@ struct NewOptions {
   // Left out: HOAP-1's, scaled to the robot.
   std::vector<double> cog, velocity;  // goals of VIIP
   int viip_steps = 0;
-  std::optional<double> stride, period, lift, side, depth, hold;
+  std::optional<double> stride, period, lift, side, depth, hold, length, height;
+  std::optional<double> angle_deg;
+  SeatParameters seat;
+  BowParameters bow;
+  WaveParameters wave;
+  KickParameters kick;
+  std::string which = "right";  // hand or foot
   double rise = 0;
 };
 
@@ -231,6 +237,145 @@ void new_squat(const Context& context, NewOptions options) {
             {"Squats " + std::to_string(p.cycles) + " times by " + text::brief(p.depth) +
                  " m: COG height keys.",
              "Where the COG is over the ground is solved: the ZMP stays in the middle."});
+}
+
+void new_seat(const Context& context, NewOptions options, bool down) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const SeatParameters scaled = seat_defaults(model);
+  SeatParameters& p = options.seat;
+  p.depth = options.depth.value_or(scaled.depth);
+  p.period = options.period.value_or(scaled.period);
+  if (options.angle_deg) p.lean = *options.angle_deg * std::numbers::pi / 180;
+  const std::vector<Dial> dials = {
+      height_dial(model, p.cog_height),
+      dial("--depth", "m", p.depth, 1e-3, !options.depth, {0.75, 0.5, 0.25}),
+      dial("--period", "s", p.period, 0.01, !options.period, {1.25, 1.6})};
+  const auto make = [&](const std::vector<double>& values) {
+    p.cog_height = values[0];
+    p.depth = values[1];
+    p.period = values[2];
+    return down ? sit_pattern(model, p) : rise_pattern(model, p);
+  };
+  const Pattern pattern = make(values_that_pass(context, model, dials, make));
+  write_new(context, model, pattern, options,
+            {std::string(down ? "Goes down by " : "Comes up by ") + text::brief(p.depth) +
+                 " m, with the trunk ahead half-way.",
+             "There is no seat in the world of the pattern: the feet alone carry the robot."});
+}
+
+void new_bow(const Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const BowParameters scaled = bow_defaults(model);
+  BowParameters& p = options.bow;
+  p.period = options.period.value_or(scaled.period);
+  p.hold = options.hold.value_or(scaled.hold);
+  const double degree = std::numbers::pi / 180;
+  const double angle = options.angle_deg.value_or(rounded(scaled.angle / degree, 1));
+  const std::vector<Dial> dials = {
+      height_dial(model, p.cog_height),
+      dial("--angle", "deg", angle, 1, !options.angle_deg, {0.8, 0.6, 0.4, 0.2}),
+      dial("--period", "s", p.period, 0.01, !options.period, {1.25, 1.6})};
+  const auto make = [&](const std::vector<double>& values) {
+    p.cog_height = values[0];
+    p.angle = values[1] * degree;
+    p.period = values[2];
+    return bow_pattern(model, p);
+  };
+  const Pattern pattern = make(values_that_pass(context, model, dials, make));
+  write_new(context, model, pattern, options,
+            {"Bows by " + text::brief(p.angle / degree) +
+                 " deg: keys of the trunk and of the COG "
+                 "height.",
+             "Where the COG is over the ground is solved: the ZMP stays in the middle."});
+}
+
+void new_wave(const Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  WaveParameters& p = options.wave;
+  p.side = options.which == "left" ? Side::left : Side::right;
+  p.period = options.period.value_or(wave_defaults(model).period);
+  const std::vector<Dial> dials = {
+      height_dial(model, p.cog_height),
+      dial("--period", "s", p.period, 0.01, !options.period, {1.25, 1.6, 2.2})};
+  const auto make = [&](const std::vector<double>& values) {
+    p.cog_height = values[0];
+    p.period = values[1];
+    return wave_pattern(model, p);
+  };
+  const Pattern pattern = make(values_that_pass(context, model, dials, make));
+  write_new(context, model, pattern, options,
+            {"Waves the " + options.which + " hand " + std::to_string(p.cycles) +
+                 " times: keys of the joints of the arm.",
+             "The COG is solved: the ZMP stays in the middle of the feet."});
+}
+
+void new_kick(const Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const KickParameters scaled = kick_defaults(model);
+  KickParameters& p = options.kick;
+  p.side = options.which == "left" ? Side::left : Side::right;
+  p.length = options.length.value_or(scaled.length);
+  p.height = options.height.value_or(scaled.height);
+  p.period = options.period.value_or(scaled.period);
+  const std::vector<Dial> dials = {
+      height_dial(model, p.cog_height),
+      dial("--length", "m", p.length, 1e-3, !options.length, {0.75, 0.5, 0.25}),
+      dial("--period", "s", p.period, 0.01, !options.period, {1.25, 1.6, 2.2})};
+  const auto make = [&](const std::vector<double>& values) {
+    p.cog_height = values[0];
+    p.length = values[1];
+    p.period = values[2];
+    return kick_pattern(model, p);
+  };
+  const Pattern pattern = make(values_that_pass(context, model, dials, make));
+  write_new(context, model, pattern, options,
+            {"Kicks " + text::brief(p.length) + " m ahead with the " + options.which +
+                 " foot: keys of the foot while it is free.",
+             "The COG is solved from the ZMP keys for the whole robot."});
+}
+
+// Turn per step where only the whole angle is given [deg]. Chosen: the feet of HOAP-1 then stay 5
+// mm apart.
+constexpr double kTurnPerStep = 10;
+
+void new_turn(const Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const WalkParameters scaled = walk_defaults(model);
+  const double angle = options.angle_deg.value_or(90);
+  if (!(std::abs(angle) >= 1 && std::abs(angle) <= 3600))
+    fail(ErrorCode::usage, "turn: angle " + text::brief(angle) +
+                               " deg is out of range; give 1 to 3600 deg to either side");
+  WalkParameters& w = options.walk;
+  w.stride = 0;
+  w.period = options.period.value_or(scaled.period);
+  w.lift = options.lift.value_or(scaled.lift);
+  const double most =
+      std::max(1.0, std::abs(options.turn_deg == 0 ? kTurnPerStep : options.turn_deg));
+  w.steps = static_cast<int>(std::ceil(std::abs(angle) / most - 1e-9));
+  w.turn = angle / w.steps * std::numbers::pi / 180;
+  // The foot on the side to which the robot turns goes first, away from the other one.
+  w.first_swing = angle > 0 ? Side::left : Side::right;
+  write_new(context, model, walk_pattern(model, w), options,
+            {"Turns by " + text::brief(angle) + " deg in place, in " + std::to_string(w.steps) +
+                 " steps and one that brings the feet together.",
+             "The COG is left out: it is solved from the ZMP keys for the whole robot."});
+}
+
+void new_march(const Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const WalkParameters scaled = walk_defaults(model);
+  WalkParameters& w = options.walk;
+  w.stride = 0;
+  // High steps take longer.
+  w.period = options.period.value_or(rounded(1.1 * scaled.period, 0.01));
+  w.lift = options.lift.value_or(rounded(1.6 * scaled.lift, 1e-3));
+  w.first_swing = options.first == "left" ? Side::left : Side::right;
+  options.stride = 0;
+  fit_walk(context, model, options, w);
+  write_new(context, model, walk_pattern(model, w), options,
+            {"Marches in place: " + std::to_string(w.steps) + " steps, lift " +
+                 text::brief(w.lift) + " m, period " + text::brief(w.period) + " s.",
+             "The COG is left out: it is solved from the ZMP keys for the whole robot."});
 }
 
 // Time of standing before a goal of VIIP [s]. Chosen: 3/omega of HOAP-1.
@@ -497,12 +642,101 @@ void add_squat(CLI::App& command, NewOptions& options) {
       ->type_name("N");
 }
 
+void add_which(CLI::App& command, const char* name, const char* what, NewOptions& options) {
+  command.add_option(name, options.which, std::string(what) + ".")
+      ->check(one_of({"left", "right"}))
+      ->capture_default_str();
+}
+
+void add_seat(CLI::App& command, NewOptions& options) {
+  add_common(command, options);
+  add_scaled(command, "--depth", options.depth, "Height between standing and sitting [m]",
+             SeatParameters().depth, "M");
+  command
+      .add_option("--lean", options.angle_deg, "Lean of the trunk half-way [deg] (default: 20).")
+      ->type_name("DEG");
+  add_scaled(command, "--period", options.period, "Time of the motion [s]", SeatParameters().period,
+             "S");
+  add_height(command, options.seat.cog_height);
+}
+
+void add_bow(CLI::App& command, NewOptions& options) {
+  command.footer("Examples:\n  ayumi new bow --angle 20 --hold 1 -o bow.json");
+  add_common(command, options);
+  command.add_option("--angle", options.angle_deg, "Lean of the trunk [deg] (default: 29).")
+      ->type_name("DEG");
+  add_scaled(command, "--period", options.period, "Time down and up [s]", BowParameters().period,
+             "S");
+  add_scaled(command, "--hold", options.hold, "Time at the lowest point [s]", BowParameters().hold,
+             "S");
+  add_height(command, options.bow.cog_height);
+}
+
+void add_wave(CLI::App& command, NewOptions& options) {
+  command.footer("Examples:\n  ayumi new wave --hand left --cycles 5 -o wave.json");
+  add_common(command, options);
+  add_which(command, "--hand", "Hand that waves", options);
+  command.add_option("--cycles", options.wave.cycles, "Number of waves.")
+      ->capture_default_str()
+      ->type_name("N");
+  add_scaled(command, "--period", options.period, "Time of one wave [s]", WaveParameters().period,
+             "S");
+  add_height(command, options.wave.cog_height);
+}
+
+void add_kick(CLI::App& command, NewOptions& options) {
+  command.footer("Examples:\n  ayumi new kick --foot left --length 0.05 -o kick.json");
+  add_common(command, options);
+  add_which(command, "--foot", "Foot that kicks", options);
+  add_scaled(command, "--length", options.length, "How far ahead the foot goes [m]",
+             KickParameters().length, "M");
+  add_scaled(command, "--height", options.height, "Height of the foot when it kicks [m]",
+             KickParameters().height, "M");
+  add_scaled(command, "--period", options.period, "Time of the swing [s]", KickParameters().period,
+             "S");
+  add_height(command, options.kick.cog_height);
+}
+
+void add_turn(CLI::App& command, NewOptions& options) {
+  command.footer("Examples:\n  ayumi new turn --angle -90 -o turn_right.json");
+  add_common(command, options);
+  command.add_option("--angle", options.angle_deg, "Turn to the left [deg] (default: 90).")
+      ->type_name("DEG");
+  command.add_option("--per-step", options.turn_deg, "Largest turn of a step [deg] (default: 10).")
+      ->check(number_within(1.0, 34.0))
+      ->type_name("DEG");
+  add_scaled(command, "--period", options.period, "Time of one step [s]", WalkParameters().period,
+             "S");
+  add_scaled(command, "--lift", options.lift, "Height of the swinging sole [m]",
+             WalkParameters().lift, "M");
+  add_height(command, options.walk.cog_height);
+}
+
+// One line for each kind of motion.
+void list_kinds(const Context& context, const CLI::App& command) {
+  size_t width = 0;
+  const auto kinds = command.get_subcommands([](const CLI::App*) { return true; });
+  for (const CLI::App* kind : kinds) width = std::max(width, kind->get_name().size());
+  for (const CLI::App* kind : kinds)
+    context.print(kind->get_name() + std::string(width + 2 - kind->get_name().size(), ' ') +
+                  kind->get_description() + "\n");
+}
+
 }  // namespace
 
 void add_new(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
-      "new", "write a pattern to edit: walk, step, stand, sway, squat, jump, viip, excite");
-  command->require_subcommand(1);
+      "new",
+      "write a pattern to edit: walk, step, march, turn, stand, sway, squat, sit, rise, bow, wave, "
+      "kick, jump, viip, excite");
+  command->require_subcommand(0, 1);
+  auto list = std::make_shared<bool>(false);
+  command->add_flag("--list", *list, "One line for each kind of motion.");
+  command->callback([command, list, &context] {
+    if (*list) return list_kinds(context, *command);
+    if (command->get_subcommands().empty())
+      fail(ErrorCode::usage, "new: name a kind of motion; `ayumi new --list` lists them");
+  });
   command->footer(
       "Examples:\n  ayumi new walk -o walk.json\n"
       "  ayumi new walk --steps 12 --stride 0.02 --turn 5 -o turn.json\n"
@@ -511,7 +745,8 @@ void add_new(CLI::App& app, Context& context) {
       "  ayumi new squat --depth 0.04 --cycles 3 -o squat.json\n"
       "  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new viip --steps 14 --velocity 0.1 -o viip_walk.json\n"
-      "  ayumi new stand --duration 4 -o stand.json");
+      "  ayumi new stand --duration 4 -o stand.json\n"
+      "  ayumi new --list");
   auto shared = std::make_shared<NewOptions>();
   NewOptions& options = *shared;
 
@@ -521,12 +756,38 @@ void add_new(CLI::App& app, Context& context) {
   CLI::App* step = command->add_subcommand("step", "step in place, or one step forward");
   add_step(*step, options);
   step->callback([shared, &context] { new_step(context, *shared); });
+  CLI::App* march = command->add_subcommand("march", "step in place with high steps");
+  march->footer("Examples:\n  ayumi new march --steps 6 --lift 0.03 -o march.json");
+  add_common(*march, options);
+  add_gait(*march, options);
+  march->callback([shared, &context] { new_march(context, *shared); });
+  CLI::App* turn = command->add_subcommand("turn", "turn in place by an angle");
+  add_turn(*turn, options);
+  turn->callback([shared, &context] { new_turn(context, *shared); });
   CLI::App* sway = command->add_subcommand("sway", "move the COG to and fro over both feet");
   add_sway(*sway, options);
   sway->callback([shared, &context] { new_sway(context, *shared); });
   CLI::App* squat = command->add_subcommand("squat", "move the COG down and up over both feet");
   add_squat(*squat, options);
   squat->callback([shared, &context] { new_squat(context, *shared); });
+
+  CLI::App* sit = command->add_subcommand("sit", "go down as onto a seat");
+  sit->footer("Examples:\n  ayumi new sit --depth 0.06 -o sit.json");
+  add_seat(*sit, options);
+  sit->callback([shared, &context] { new_seat(context, *shared, true); });
+  CLI::App* rise = command->add_subcommand("rise", "come up as from a seat");
+  rise->footer("Examples:\n  ayumi new rise --depth 0.06 -o rise.json");
+  add_seat(*rise, options);
+  rise->callback([shared, &context] { new_seat(context, *shared, false); });
+  CLI::App* bow = command->add_subcommand("bow", "lean the trunk ahead and come back");
+  add_bow(*bow, options);
+  bow->callback([shared, &context] { new_bow(context, *shared); });
+  CLI::App* wave = command->add_subcommand("wave", "wave a hand");
+  add_wave(*wave, options);
+  wave->callback([shared, &context] { new_wave(context, *shared); });
+  CLI::App* kick = command->add_subcommand("kick", "kick ahead with a foot");
+  add_kick(*kick, options);
+  kick->callback([shared, &context] { new_kick(context, *shared); });
 
   CLI::App* viip = command->add_subcommand(
       "viip", "goals in place of keys: COG displacement, steps, a walk at a velocity");

@@ -91,6 +91,22 @@ TEST(Reach, StaysWithinLimits) {
   }
 }
 
+TEST(Reach, KeepsRoom) {
+  const RobotModel& model = limited_biped();
+  const int hand = body_of(model, "l_elbow");
+  const std::vector<int> arm = limb_dofs(model, hand);
+  Random random(5);
+  for (int trial = 0; trial < 30; ++trial) {
+    const ReachSolution found =
+        reach(model, model.rest_state(), hand, kHand, random.vector(0.6), arm, 0.1);
+    for (const int dof : arm) {
+      const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
+      EXPECT_GE(found.theta[dof], joint.lower + 0.1);
+      EXPECT_LE(found.theta[dof], joint.upper - 0.1);
+    }
+  }
+}
+
 TEST(Reach, LimbsEndWhereTheyMeet) {
   const RobotModel& model = limited_biped();
   EXPECT_EQ(names(model, limb_dofs(model, body_of(model, "l_elbow"))),

@@ -71,7 +71,8 @@ std::vector<int> limb_dofs(const RobotModel& model, int body) {
 }
 
 ReachSolution reach(const RobotModel& model, const RobotState& state, int body,
-                    const Vector3d& point, const Vector3d& place, const std::vector<int>& dofs) {
+                    const Vector3d& point, const Vector3d& place, const std::vector<int>& dofs,
+                    double room) {
   RobotState now = state;
   RobotData data(model);
   const auto there = [&] {
@@ -97,7 +98,8 @@ ReachSolution reach(const RobotModel& model, const RobotState& state, int body,
     for (size_t i = 0; i < dofs.size(); ++i) {
       const Dof& dof = model.dofs()[static_cast<size_t>(dofs[i])];
       const double wanted = now.theta[dofs[i]] + step[static_cast<Eigen::Index>(i)];
-      now.theta[dofs[i]] = std::clamp(wanted, dof.lower, dof.upper);
+      const double kept = std::min(room, 0.5 * (dof.upper - dof.lower));
+      now.theta[dofs[i]] = std::clamp(wanted, dof.lower + kept, dof.upper - kept);
       // A joint at its limit is left out, so that the others make up for it.
       if (now.theta[dofs[i]] != wanted && !held[i]) held[i] = blocked = true;
     }

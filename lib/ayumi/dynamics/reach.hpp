@@ -22,9 +22,10 @@ std::vector<int> limb_ends(const RobotModel& model);
 std::vector<int> limb_dofs(const RobotModel& model, int body);
 
 /// Damped least squares from the posture of `state`: of all postures near it, one that brings
-/// `point` (frame of `body`) to `place` (world), or as near as the limits of `dofs` allow.
+/// `point` (frame of `body`) to `place` (world), or as near as the limits of `dofs` allow, from
+/// which they keep `room` [rad, m] where their range is wide enough.
 ReachSolution reach(const RobotModel& model, const RobotState& state, int body,
                     const Eigen::Vector3d& point, const Eigen::Vector3d& place,
-                    const std::vector<int>& dofs);
+                    const std::vector<int>& dofs, double room = 0);
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
 #pragma once
 // Generators of patterns, which a person can edit afterwards: `ayumi new walk`, `step`, `stand`,
-// `sway`, `squat`, `jump`, `excite`.
+// `sway`, `squat`, `sit`, `rise`, `bow`, `wave`, `kick`, `march`, `turn`, `jump`, `excite`.
 
 #include "ayumi/motion/pattern.hpp"
 
@@ -70,6 +70,50 @@ SquatParameters squat_defaults(const RobotModel& model);
 
 /// COG height keys; the horizontal COG is solved. Throws as walk_pattern.
 Pattern squat_pattern(const RobotModel& model, const SquatParameters& parameters);
+
+/// The COG goes down as onto a seat and stays, or comes up from there; the trunk leans ahead and
+/// back meanwhile.
+struct SeatParameters {
+  double depth = 0.05;    ///< below the standing COG [m]
+  double lean = 0.35;     ///< of the trunk half-way [rad]
+  double period = 1.5;    ///< of the motion [s]
+  double cog_height = 0;  ///< standing; 0: starting_height() [m]
+};
+SeatParameters seat_defaults(const RobotModel& model);
+Pattern sit_pattern(const RobotModel& model, const SeatParameters& parameters);
+Pattern rise_pattern(const RobotModel& model, const SeatParameters& parameters);
+
+/// The trunk leans ahead and comes back; the COG goes down as the trunk's does on legs that stay.
+struct BowParameters {
+  double angle = 0.5;     ///< of the trunk [rad]
+  double period = 2.4;    ///< down and up without the hold [s]
+  double hold = 0.5;      ///< time at the lowest point [s]
+  double cog_height = 0;  ///< standing; 0: starting_height() [m]
+};
+BowParameters bow_defaults(const RobotModel& model);
+Pattern bow_pattern(const RobotModel& model, const BowParameters& parameters);
+
+/// A hand is raised beside the head, goes to and fro, and comes back.
+struct WaveParameters {
+  Side side = Side::right;
+  int cycles = 3;
+  double period = 0.6;    ///< of one to and fro [s]
+  double cog_height = 0;  ///< 0: starting_height() [m]
+};
+WaveParameters wave_defaults(const RobotModel& model);
+/// Throws as walk_pattern, and when no arm of three joints reaches beside the head.
+Pattern wave_pattern(const RobotModel& model, const WaveParameters& parameters);
+
+/// A foot goes back, kicks ahead and comes back to its place, on the other foot.
+struct KickParameters {
+  Side side = Side::right;
+  double length = 0.04;   ///< ahead of its place [m]
+  double height = 0.03;   ///< above the ground when it kicks [m]
+  double period = 1.6;    ///< of the swing [s]
+  double cog_height = 0;  ///< 0: starting_height() [m]
+};
+KickParameters kick_defaults(const RobotModel& model);
+Pattern kick_pattern(const RobotModel& model, const KickParameters& parameters);
 
 /// Slow sweeps, chirps and steps of every joint within its limits, by which `identify` tells the
 /// constants of servos apart; the robot stands on both feet. `scale` of all amplitudes. Throws as

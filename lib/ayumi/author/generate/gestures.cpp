@@ -1,16 +1,22 @@
-// Sway and squat: both feet stay, and the COG is keyed. Each part is minimum jerk with rest at both
-// ends; the COG starts and ends over the middle of the feet.
+// Gestures. Each part is minimum jerk with rest at both ends; the motion starts and ends with the
+// COG over the middle of the feet, or is solved from ZMP keys there.
 #include <cmath>
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/reach.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/foot_plan.hpp"
 
 namespace ayumi {
 
 using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 namespace {
 
@@ -104,6 +110,249 @@ Pattern squat_pattern(const RobotModel& model, const SquatParameters& p) {
     at(t += p.period / 2, home);
   }
   writer.phase(t + rest, Support::both);
+  return pattern;
+}
+
+namespace {
+
+double to_millimetre(double x) { return 1e-3 * std::round(1e3 * x); }
+
+double rest_time(const RobotModel& model) {
+  return to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kGestureRestTime);
+}
+
+Keyframe height_and_pitch(double height, double pitch) {
+  Keyframe key;
+  key.cog_height = to_tenth_millimetre(height);
+  key.torso = Vector3d(0, 1e-4 * std::round(1e4 * pitch), 0);
+  return key;
+}
+
+// How far the COG sinks when all that the legs carry turns ahead about the hips by `angle` [m].
+double sinks_by_bowing(const RobotModel& model, double angle) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const int hip = model.dofs()[model.leg(Side::left).front()].body;
+  double moment = 0;  // of what is above the hips, about their height, over the robot's mass
+  for (size_t b = 0; b < model.bodies().size(); ++b) {
+    bool in_leg = false;
+    for (int i = static_cast<int>(b); i >= 0; i = model.bodies()[static_cast<size_t>(i)].parent)
+      for (const Side side : {Side::left, Side::right})
+        for (const int dof : model.leg(side))
+          in_leg |= model.dofs()[static_cast<size_t>(dof)].body == i;
+    if (!in_leg)
+      moment += model.bodies()[b].inertia.mass *
+                (data.com[b].z() - data.position[static_cast<size_t>(hip)].z());
+  }
+  return std::max(0.0, moment / model.mass()) * (1 - std::cos(angle));
+}
+
+void require_seat(const char* name, const RobotModel& model, const SeatParameters& p) {
+  const double leg = leg_length(model);
+  require_range(name, "depth", p.depth, 0.01 * leg, 0.6 * leg, " m");
+  require_range(name, "lean", p.lean * 180 / M_PI, 0, 60, " deg");
+  require_range(name, "period", p.period, 0.2, 60, " s");
+}
+
+// From one height to the other with the trunk ahead between.
+Pattern seat_pattern(const RobotModel& model, const char* name, const SeatParameters& p,
+                     bool down) {
+  require_seat(name, model, p);
+  Pattern pattern = both_feet(model, down ? "sit down" : "rise from a seat", p.cog_height);
+  const double stands = default_cog_height(model, pattern), sits = stands - p.depth;
+  const double from = down ? stands : sits, to = down ? sits : stands, rest = rest_time(model);
+  PatternBuilder writer{pattern};
+  Keyframe first = height_and_pitch(from, 0);
+  first.zmp = ZmpKey{ZmpKey::Place::center, Vector2d::Zero()};
+  writer.add(0, first);
+  writer.add(rest, height_and_pitch(from, 0));
+  // The height has no key half-way, so that it goes in one part.
+  Keyframe middle;
+  middle.torso = height_and_pitch(0, p.lean).torso;
+  writer.add(rest + 0.5 * p.period, middle);
+  writer.add(rest + p.period, height_and_pitch(to, 0));
+  writer.phase(2 * rest + p.period, Support::both);
+  return pattern;
+}
+
+}  // namespace
+
+SeatParameters seat_defaults(const RobotModel& model) {
+  const double size = size_beside_hoap1(model);
+  SeatParameters p;
+  p.depth = to_millimetre(size * p.depth);
+  p.period = to_hundredth_second(std::sqrt(size) * p.period);
+  return p;
+}
+
+Pattern sit_pattern(const RobotModel& model, const SeatParameters& p) {
+  return seat_pattern(model, "sit", p, true);
+}
+
+Pattern rise_pattern(const RobotModel& model, const SeatParameters& p) {
+  return seat_pattern(model, "rise", p, false);
+}
+
+BowParameters bow_defaults(const RobotModel& model) {
+  const double slow = std::sqrt(size_beside_hoap1(model));
+  BowParameters p;
+  p.period = to_hundredth_second(slow * p.period);
+  p.hold = to_hundredth_second(slow * p.hold);
+  return p;
+}
+
+Pattern bow_pattern(const RobotModel& model, const BowParameters& p) {
+  require_range("bow", "angle", p.angle * 180 / M_PI, 1, 90, " deg");
+  require_range("bow", "period", p.period, 0.2, 60, " s");
+  require_range("bow", "hold", p.hold, 0, 60, " s");
+  Pattern pattern = both_feet(model, "bow", p.cog_height);
+  const double stands = default_cog_height(model, pattern), rest = rest_time(model);
+  const double low = stands - sinks_by_bowing(model, p.angle);
+  PatternBuilder writer{pattern};
+  writer.key(0, ZmpKey::Place::center);
+  double t = rest;
+  writer.add(t, height_and_pitch(stands, 0));
+  writer.add(t += p.period / 2, height_and_pitch(low, p.angle));
+  if (p.hold > 0) writer.add(t += p.hold, height_and_pitch(low, p.angle));
+  writer.add(t += p.period / 2, height_and_pitch(stands, 0));
+  writer.phase(t + rest, Support::both);
+  return pattern;
+}
+
+WaveParameters wave_defaults(const RobotModel& model) {
+  WaveParameters p;
+  p.period = to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * p.period);
+  return p;
+}
+
+namespace {
+
+// The hand of a side: the end of a limb of three joints or more that is no foot.
+int hand_of(const RobotModel& model, const RobotData& data, Side side) {
+  int best = -1;
+  for (const int body : limb_ends(model)) {
+    if (body == model.sole(Side::left).body || body == model.sole(Side::right).body) continue;
+    const double y = data.position[static_cast<size_t>(body)].y();
+    const auto dofs = limb_dofs(model, body);
+    if (dofs.size() < 3 || (side == Side::left ? y : -y) < 0.02) continue;
+    if (best < 0 || dofs.size() > limb_dofs(model, best).size()) best = body;
+  }
+  return best;
+}
+
+}  // namespace
+
+Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
+  // Room of the arm's joints beside their soft limits [rad]. Chosen: what the lead of the servos'
+  // targets needs at the ends of a wave.
+  constexpr double kWaveRoom = 0.05;
+  require_range("wave", "cycles", p.cycles, 1, 1000, "");
+  require_range("wave", "period", p.period, 0.2, 60, " s");
+  Pattern pattern = both_feet(model, "wave, " + std::to_string(p.cycles) + " times", p.cog_height);
+  RobotState state = model.rest_state();
+  RobotData data(model);
+  update_positions(model, state, data);
+  const int hand = hand_of(model, data, p.side);
+  if (hand < 0)
+    fail(ErrorCode::usage,
+         "wave: " + model.name() + " has no " + name_of(p.side) + " arm of three joints or more");
+  const std::vector<int> arm = limb_dofs(model, hand);
+  // A body's end lies about as far beyond its centre of mass as its joint lies before it.
+  const Vector3d point = 2 * model.bodies()[static_cast<size_t>(hand)].inertia.com;
+  const Vector3d shoulder =
+      data.position[static_cast<size_t>(model.dofs()[static_cast<size_t>(arm.back())].body)];
+  double length = point.norm();
+  for (int b = hand; b != model.dofs()[static_cast<size_t>(arm.back())].body;
+       b = model.bodies()[static_cast<size_t>(b)].parent)
+    length += model.bodies()[static_cast<size_t>(b)].placement.translation().norm();
+  // Beside the head and to and fro, in lengths of the arm from the shoulder. Chosen: within reach
+  // of arms of three joints, clear of the head.
+  const double out = p.side == Side::left ? 1 : -1;
+  const double room = model.description().soft_limit_margin + kWaveRoom;
+  std::array<Eigen::VectorXd, 2> raised;
+  for (const size_t i : {0, 1}) {
+    const Vector3d place =
+        shoulder + length * Vector3d(0.3, out * (i == 0 ? 0.35 : 0.6), i == 0 ? 0.65 : 0.5);
+    const ReachSolution found = reach(model, state, hand, point, place, arm, room);
+    if (found.missing > 0.25 * length)
+      fail(ErrorCode::usage, std::string("wave: the ") + name_of(p.side) + " hand stays " +
+                                 text::fixed(1e3 * found.missing, 0) +
+                                 " mm away from its place beside the head, because joints of the "
+                                 "arm are at their limits");
+    raised[i] = found.theta;
+    state.theta = found.theta;  // the other end is sought near this one
+  }
+  const double rest = rest_time(model);
+  PatternBuilder writer{pattern};
+  const Eigen::VectorXd home = model.rest_state().theta;
+  const auto at = [&](double t, const Eigen::VectorXd& theta) {
+    Keyframe key;
+    for (const int dof : arm) {
+      const bool still = theta[dof] == home[dof];  // not rounded, so that it ends where it began
+      key.joints[model.dofs()[static_cast<size_t>(dof)].name] =
+          still ? theta[dof] : 1e-3 * std::round(1e3 * theta[dof]);
+    }
+    writer.add(t, key);
+  };
+  writer.key(0, ZmpKey::Place::center);
+  // It is raised and lowered in the time of two swings.
+  double t = rest;
+  at(t, home);
+  at(t += 2 * p.period, raised[0]);
+  for (int i = 0; i < p.cycles; ++i) {
+    at(t += p.period / 2, raised[1]);
+    at(t += p.period / 2, raised[0]);
+  }
+  at(t += 2 * p.period, home);
+  writer.phase(t + rest, Support::both);
+  return pattern;
+}
+
+KickParameters kick_defaults(const RobotModel& model) {
+  const double size = size_beside_hoap1(model);
+  KickParameters p;
+  p.length = to_millimetre(size * p.length);
+  p.height = to_millimetre(size * p.height);
+  p.period = to_hundredth_second(std::sqrt(size) * p.period);
+  return p;
+}
+
+Pattern kick_pattern(const RobotModel& model, const KickParameters& p) {
+  const double leg = leg_length(model);
+  require_range("kick", "length", p.length, -0.5 * leg, 0.5 * leg, " m");
+  require_range("kick", "height", p.height, 0.01 * leg, 0.5 * leg, " m");
+  require_range("kick", "period", p.period, 0.2, 60, " s");
+  Pattern pattern =
+      both_feet(model, std::string("kick with the ") + name_of(p.side) + " foot", p.cog_height);
+  const Eigen::Isometry3d place = start_feet(model, pattern)[static_cast<size_t>(p.side)];
+  const Side stands = other(p.side);
+  const ZmpKey::Place under = stands == Side::left ? ZmpKey::Place::left : ZmpKey::Place::right;
+  const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
+  const double shift = to_hundredth_second(5 / omega), rest = rest_time(model);
+  PatternBuilder writer{pattern};
+  writer.key(0, ZmpKey::Place::center);
+  writer.key(rest, ZmpKey::Place::center);
+  writer.phase(rest + shift, Support::both);
+  const auto at = [&](double share, double ahead, double up) {
+    Keyframe key;
+    Foothold foot;
+    const Vector3d moved = place * Vector3d(ahead, 0, up);
+    // Where the foot stands it is exactly in its place.
+    for (int i = 0; i < 3; ++i)
+      foot.position[i] = up == 0 ? moved[i] : to_tenth_millimetre(moved[i]);
+    foot.rpy.z() = matrix_to_rpy(place.linear()).z();
+    key.feet[static_cast<size_t>(p.side)] = foot;
+    if (share == 0 || share == 1) key.zmp = ZmpKey{under, Vector2d::Zero()};
+    writer.add(rest + shift + share * p.period, key);
+  };
+  at(0, 0, 0);
+  at(0.35, -0.5 * p.length, 0.7 * p.height);
+  at(0.6, p.length, p.height);
+  at(1, 0, 0);
+  writer.phase(p.period, stands == Side::left ? Support::left : Support::right);
+  const double end = writer.t;
+  writer.key(end + shift, ZmpKey::Place::center);
+  writer.phase(shift + rest, Support::both);
   return pattern;
 }
 
