@@ -178,7 +178,7 @@ std::string limit(double value) { return std::isinf(value) ? "-" : text::brief(v
 std::string joint_lines(const RobotModel& model) {
   std::string text =
       "Joints [deg, sliders mm]; servo kp [N m/rad], kd [N m s/rad]\n  " + padded("", 20) +
-      "   lower   upper    home      kp      kd    rotor  weight  " + "device  counts/deg\n";
+      "   lower   upper    home       kp       kd     rotor  weight  " + "device  counts/deg\n";
   for (int i = 0; i < model.dof_count(); ++i) {
     const Dof& dof = model.dofs()[i];
     const auto column = [&](const std::string& value, size_t width) {
@@ -189,9 +189,9 @@ std::string joint_lines(const RobotModel& model) {
     column(angle(dof, dof.upper), 8);
     column(angle(dof, model.posture()[i]), 8);
     const ServoDescription& servo = model.limits().servo[i];
-    column(text::brief(servo.kp), 8);
-    column(text::brief(servo.kd), 8);
-    column(text::brief(servo.rotor_inertia), 9);
+    column(text::brief(servo.kp), 9);
+    column(text::brief(servo.kd), 9);
+    column(text::brief(servo.rotor_inertia), 10);
     column(text::brief(model.joint_weight()[i]), 8);
     column(dof.encoder.device ? std::to_string(dof.encoder.device) : "-", 8);
     column(dof.encoder.device ? text::brief(dof.encoder.counts_per_degree) : "-", 12);

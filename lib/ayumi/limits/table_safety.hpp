@@ -12,15 +12,17 @@
 namespace ayumi {
 
 struct SafetyOptions {
-  std::string profile;         ///< actuator profile of the speed limits; "" = default
-  double ramp = 2.0;           ///< least duration of the approach [s]; 0: no ramp
-  std::string from = "home";   ///< named posture the robot stands in; "first" = the first row
-  double hold = 0.5;           ///< the last row is repeated this long [s]
-  double counts_per_ms = 57;   ///< the motor board's own speed cap
-  double step_share = 1;       ///< of the largest step that may be used
-  double beyond_range = 1e-9;  ///< a target may be beyond the soft limits by this [rad], [m]
-  double rest_speed = 0.1;     ///< start and end count as rest below this [rad/s]
-  double rest_window = 0;      ///< mean over so long; 0: from one row to the next [s]
+  std::string profile;        ///< actuator profile of the speed limits; "" = default
+  double ramp = 2.0;          ///< least duration of the approach [s]; 0: no ramp
+  std::string from = "home";  ///< named posture the robot stands in; "first" = the first row
+  double hold = 0.5;          ///< the last row is repeated this long [s]
+  double counts_per_ms = 57;  ///< the motor board's own speed cap
+  double step_share = 1;      ///< of the largest step that may be used
+  /// A target may be beyond the soft limits by this [rad], [m]. Chosen: a hundredth of a count of
+  /// HOAP's encoders; a target that leads a start from rest at a limit is beyond it by 4e-9 rad.
+  double beyond_range = 1e-6;
+  double rest_speed = 0.1;  ///< start and end count as rest below this [rad/s]
+  double rest_window = 0;   ///< mean over so long; 0: from one row to the next [s]
 };
 
 /// The same for an imported sequence whose rows are kept, which is complete as it is: no ramp and
