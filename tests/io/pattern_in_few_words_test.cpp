@@ -112,17 +112,17 @@ TEST(PatternInFewWords, RepeatedBlocksAreWrittenOut) {
         {"repeat": 2, "count": "i", "keyframes": [
           {"after": "${T}*(1 + ${i})", "joints": {"l_elbow": "10*${i}"}}]}])~");
   ASSERT_EQ(few.phases.size(), 9u);
-const std::vector<double> ends = {1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5};
-for (size_t i = 0; i < ends.size(); ++i) EXPECT_DOUBLE_EQ(few.phases[i].until, ends[i]);
-EXPECT_DOUBLE_EQ(few.phases[4].swing->to.position.x(), 0.01);
-EXPECT_DOUBLE_EQ(few.phases[8].swing->to.position.x(), 0.02);
-EXPECT_EQ(few.phases[7].pointer, "/phases/1/phases/0/phases/0");
-EXPECT_EQ(few.phases[8].pointer, "/phases/1/phases/1");
-ASSERT_EQ(few.keyframes.size(), 3u);
-EXPECT_DOUBLE_EQ(few.keyframes[1].t, 0.5);
-EXPECT_DOUBLE_EQ(few.keyframes[2].t, 1.5);
-EXPECT_DOUBLE_EQ(few.keyframes[2].joints.at("l_elbow"), 10 * M_PI / 180);
-EXPECT_EQ(few.parameters, (std::map<std::string, double>{{"T", 0.5}}));  // no counts
+  const std::vector<double> ends = {1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5};
+  for (size_t i = 0; i < ends.size(); ++i) EXPECT_DOUBLE_EQ(few.phases[i].until, ends[i]);
+  EXPECT_DOUBLE_EQ(few.phases[4].swing->to.position.x(), 0.01);
+  EXPECT_DOUBLE_EQ(few.phases[8].swing->to.position.x(), 0.02);
+  EXPECT_EQ(few.phases[7].pointer, "/phases/1/phases/0/phases/0");
+  EXPECT_EQ(few.phases[8].pointer, "/phases/1/phases/1");
+  ASSERT_EQ(few.keyframes.size(), 3u);
+  EXPECT_DOUBLE_EQ(few.keyframes[1].t, 0.5);
+  EXPECT_DOUBLE_EQ(few.keyframes[2].t, 1.5);
+  EXPECT_DOUBLE_EQ(few.keyframes[2].joints.at("l_elbow"), 10 * M_PI / 180);
+  EXPECT_EQ(few.parameters, (std::map<std::string, double>{{"T", 0.5}}));  // no counts
 }
 
 TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
