@@ -23,7 +23,7 @@ strip "$root/lib/ayumi/ayumi"
 
 # Every library below the programs but those of libc, which belong to the kernel and the loader. The
 # first picture loads OSMesa.
-osmesa=$(/sbin/ldconfig -p | awk '$1 ~ /^libOSMesa\.so\./ { print $NF; exit }')
+osmesa=$(/sbin/ldconfig -p | awk '$1 ~ /^libOSMesa\.so\./ && !found++ { print $NF }')
 libc='/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|nsl|anl|mvec|BrokenLocale)\.so\.[0-9]+)$'
 { ldd "${programs[@]}" $osmesa | awk '$2 == "=>" && $3 ~ /^\// { print $3 }'; printf '%s' "$osmesa"; } |
   sort -u | { grep -Ev "$libc" || true; } | while read -r library; do

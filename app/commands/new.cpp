@@ -729,14 +729,16 @@ void add_new(CLI::App& app, Context& context) {
       "new",
       "write a pattern to edit: walk, step, march, turn, stand, sway, squat, sit, rise, bow, wave, "
       "kick, jump, viip, excite");
-  command->require_subcommand(0, 1);
-  auto list = std::make_shared<bool>(false);
-  command->add_flag("--list", *list, "One line for each kind of motion.");
-  command->callback([command, list, &context] {
-    if (*list) return list_kinds(context, *command);
-    if (command->get_subcommands().empty())
-      fail(ErrorCode::usage, "new: name a kind of motion; `ayumi new --list` lists them");
-  });
+  command->require_subcommand(1);
+  command
+      ->add_flag_callback(
+          "--list",
+          [command, &context] {
+            list_kinds(context, *command);
+            throw CLI::Success();
+          },
+          "One line for each kind of motion.")
+      ->trigger_on_parse();
   command->footer(
       "Examples:\n  ayumi new walk -o walk.json\n"
       "  ayumi new walk --steps 12 --stride 0.02 --turn 5 -o turn.json\n"

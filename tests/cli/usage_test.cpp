@@ -63,6 +63,13 @@ TEST_F(Usage, VersionNamesTheLibraries) {
   EXPECT_NE(version.out.find("Eigen"), std::string::npos) << version.out;
 }
 
+TEST_F(Usage, NewListsItsKinds) {
+  const Output list = ayumi({"new", "--list"});
+  EXPECT_EQ(list.exit_code, 0);
+  for (const char* const kind : {"walk ", "\nbow ", "\nkick ", "\nexcite "})
+    EXPECT_NE(list.out.find(kind), std::string::npos) << list.out;
+}
+
 TEST_F(Usage, ACommandWithoutItsKindListsTheKinds) {
   EXPECT_NE(ayumi({"new"}).err.find("new: choose one of walk, step, "), std::string::npos);
   const std::string unknown = ayumi({"new", "wlak", "-o", "w.json"}).err;
