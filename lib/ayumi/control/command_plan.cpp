@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/track.hpp"
@@ -100,7 +101,7 @@ const CommandSample& CommandPlan::look_ahead(const Estimate& estimate) {
 }
 
 void CommandPlan::advance() {
-  now_ = next_;
+  std::swap(now_, next_);
   ++tick_;
 }
 

@@ -42,7 +42,7 @@ class CommandPlan {
   /// its time, the feet of now() jump to where they are. Holds until the next call.
   const CommandSample& look_ahead(const Estimate& estimate);
 
-  /// What look_ahead() gave becomes now().
+  /// What look_ahead() gave becomes now(); the reference that it returned is no longer valid.
   void advance();
 
  private:

@@ -87,8 +87,10 @@ class Search {
     double time, angle;
   };
   Simulator pushed(double impulse, const Variation& variation) const;
-  bool survives(double impulse, const Variation& variation, bool to_the_end);
+  bool comes_near(Simulator& run);
+  bool survives(Simulator& run);
   bool survives(int level);
+  bool survives_to_the_end(int level);
   PushFigures figures();
   double impulse(int level) const { return level * options_.step * case_.bound; }
 
@@ -100,6 +102,7 @@ class Search {
   const std::atomic<bool>& stop_;
   std::vector<Variation> variations_;
   std::map<int, bool> tried_;
+  std::optional<std::pair<int, Simulator>> nominal_;  // the last that survived, by level
   int runs_ = 0;
 };
 
@@ -112,13 +115,12 @@ Simulator Search::pushed(double impulse, const Variation& variation) const {
   return run;
 }
 
-bool Search::survives(double impulse, const Variation& variation, bool to_the_end) {
-  Simulator run = pushed(impulse, variation);
-  ++runs_;
+// Goes on until the run shows that the robot survives, or to its end.
+bool Search::comes_near(Simulator& run) {
   double near_since = -1;
   while (run.advance(kTicksPerTest) && !run.fell()) {
     if (stop_) throw Interrupted();
-    if (to_the_end || plan_moves_ || run.time() < case_.phase.at + kSettlingTime) continue;
+    if (plan_moves_ || run.time() < case_.phase.at + kSettlingTime) continue;
     if (divergence(run) > near_distance(run))
       near_since = -1;
     else if (near_since < 0)
@@ -126,6 +128,13 @@ bool Search::survives(double impulse, const Variation& variation, bool to_the_en
     else if (run.time() - near_since > kNearTime)
       return true;
   }
+  return false;
+}
+
+// To its end.
+bool Search::survives(Simulator& run) {
+  while (run.advance(kTicksPerTest) && !run.fell())
+    if (stop_) throw Interrupted();
   return !run.fell() && run.result().outcome == Outcome::stands;
 }
 
@@ -133,9 +142,21 @@ bool Search::survives(int level) {
   const auto found = tried_.find(level);
   if (found != tried_.end()) return found->second;
   bool all = true;
-  for (const Variation& variation : variations_)
-    all = all && survives(impulse(level), variation, false);
+  for (size_t i = 0; all && i < variations_.size(); ++i) {
+    Simulator run = pushed(impulse(level), variations_[i]);
+    ++runs_;
+    all = comes_near(run) || survives(run);
+    if (all && i == 0) nominal_ = {level, std::move(run)};
+  }
   return tried_[level] = all;
+}
+
+// The nominal push. Goes on with the run that came near the plan, where that is the last one.
+bool Search::survives_to_the_end(int level) {
+  if (!nominal_ || nominal_->first != level)
+    nominal_ = {level, pushed(impulse(level), variations_[0])};
+  ++runs_;
+  return survives(nominal_->second);
 }
 
 PushFigures Search::figures() {
@@ -184,7 +205,7 @@ PushLimit Search::find(int guess) {
     if (low == 0) break;
     if (verified != low) {
       verified = low;
-      tried_[low] = survives(impulse(low), variations_[0], true);
+      tried_[low] = survives_to_the_end(low);
       if (!tried_[low]) continue;
     }
     bool prefix = true;
