@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/finding_groups.hpp"
 #include "ayumi/limits/amount_text.hpp"
+#include "terminal.hpp"
 
 namespace ayumi::app {
 
@@ -25,30 +28,88 @@ std::string seconds(const Finding& f) {
 
 std::string percent(double ratio) { return text::fixed(100 * ratio, 0) + " %"; }
 
+std::string severity_word(Severity severity) {
+  const std::string word = padded(name_of(severity), 8);
+  return severity == Severity::error     ? painted(Paint::bad, word)
+         : severity == Severity::warning ? painted(Paint::caution, word)
+                                         : word;
+}
+
+std::string entry(const Finding& f, const std::string& where_and_when) {
+  return "  " + severity_word(f.severity) + padded(name_of(f.kind), 19) + where_and_when + ": " +
+         amount_text(f) + "\n" + std::string(10, ' ') + f.hint + "\n";
+}
+
+std::string entry_of(const ConsistencyReport& report, const FindingGroup& group) {
+  const Finding& worst = report.findings[group.worst];
+  std::string out;
+  if (group.members.size() == 1) {
+    out = entry(worst, worst.where + ", " + seconds(worst));
+  } else {
+    const Finding& first = report.findings[group.members.front()];
+    double end = first.end;
+    for (const int i : group.members) end = std::max(end, report.findings[i].end);
+    out = entry(worst, text::join(group.places, " and ") + ", " +
+                           text::counted(group.members.size(), "time") + " within " +
+                           text::fixed(first.begin, 3) + "-" + text::fixed(end, 3) + " s, worst " +
+                           (group.places.size() > 1 ? worst.where + " " : "") + "at " +
+                           text::fixed(worst.at, 3) + " s");
+  }
+  std::vector<std::string> parts;
+  for (const GroupConsequence& c : group.consequences) {
+    const Finding& f = report.findings[c.worst];
+    parts.push_back(std::string(name_of(c.kind)) + " (" +
+                    (c.count > 1 ? text::counted(c.count, "time") + ", worst " : "") + f.where +
+                    " at " + text::fixed(f.at, 3) + " s: " + amount_text(f) + ")");
+  }
+  if (!parts.empty())
+    out += std::string(10, ' ') + "what follows from it: " + text::join(parts, ", ") + "\n";
+  return out;
+}
+
+std::string all_findings(const ConsistencyReport& report) {
+  std::string out;
+  for (const Finding& f : report.findings) out += entry(f, f.where + ", " + seconds(f));
+  return out;
+}
+
+std::string causes(const ConsistencyReport& report, const RobotModel& model) {
+  const std::vector<FindingGroup> groups = finding_groups(report, model);
+  std::string out;
+  for (size_t i = 0; i < groups.size() && i < kMostGroups; ++i) out += entry_of(report, groups[i]);
+  if (groups.size() > kMostGroups)
+    out += "  " + text::counted(groups.size() - kMostGroups, "more group") +
+           " of findings; `ayumi check --all` prints every finding\n";
+  return out;
+}
+
 }  // namespace
 
-std::string check_table(const ConsistencyReport& report) {
-  std::string out;
-  for (const Finding& f : report.findings)
-    out += "  " + padded(name_of(f.severity), 8) + padded(name_of(f.kind), 19) + f.where + ", " +
-           seconds(f) + ": " + amount_text(f) + "\n" + std::string(10, ' ') + f.hint + "\n";
+std::string check_table(const ConsistencyReport& report, const RobotModel& model, Shown shown) {
+  std::string out = shown == Shown::findings ? all_findings(report) : causes(report, model);
   const auto at = [&](FindingKind kind) { return report.summary[kind]; };
+  const auto place = [&](FindingKind kind) {
+    const FigurePlace& p = report.summary_at[kind];
+    if (!std::isfinite(p.at)) return std::string();
+    return " (" + (p.where.empty() ? "" : p.where + " ") + "at " + text::fixed(p.at, 2) + " s)";
+  };
   const double margin = at(FindingKind::support_margin);
-  out += "  ZMP " + mm(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
-         " the support; the posture differs from the keys by " + mm(at(FindingKind::cog_residual)) +
-         " in COG, " + mm(at(FindingKind::zmp_residual)) + " in ZMP and " +
-         text::fixed(at(FindingKind::fz_residual), 2) +
+  out += "  ZMP " + mm(std::abs(margin)) + (margin < 0 ? " outside" : " inside") + " the support" +
+         place(FindingKind::support_margin) + "; the posture differs from the keys by " +
+         mm(at(FindingKind::cog_residual)) + " in COG, " + mm(at(FindingKind::zmp_residual)) +
+         " in ZMP and " + text::fixed(at(FindingKind::fz_residual), 2) +
          " N in force; the ZMP of the point-mass model is " + mm(at(FindingKind::point_mass_gap)) +
          " from the command\n";
   std::vector<std::string> shares;
   for (const FindingSpec* spec : summary_figures())
     if (spec->figure.share_name)
-      shares.push_back(std::string(spec->figure.share_name) + " " + percent(at(spec->kind)));
+      shares.push_back(std::string(spec->figure.share_name) + " " + percent(at(spec->kind)) +
+                       place(spec->kind));
   out += "  share of the limits: " + text::join(shares, ", ") + "\n";
   out += "  feet: slip " + mm(at(FindingKind::foot_slip)) + ", sink " +
          mm(at(FindingKind::foot_penetration)) + ", gap while standing " +
          mm(at(FindingKind::foot_float)) + "; nearest bodies " +
-         mm(at(FindingKind::self_collision)) + " apart\n";
+         mm(at(FindingKind::self_collision)) + " apart" + place(FindingKind::self_collision) + "\n";
   return out;
 }
 

@@ -7,9 +7,18 @@
 
 namespace ayumi::app {
 
-/// "  error    support_margin  left  1.200-1.350 s, worst at 1.280 s: -9.8 mm, limit 0.0 mm" with
-/// its hint, one pair of lines per finding, and a line with the most important figures.
-std::string check_table(const ConsistencyReport& report);
+enum class Shown {
+  causes,   ///< one entry for each group of findings, at most kMostGroups
+  findings  ///< every finding
+};
+
+/// Groups that fit on one screen with the figures below them. Chosen: two lines each, of 40.
+inline constexpr int kMostGroups = 10;
+
+/// "  error    support_margin  left, 1.200-1.350 s, worst at 1.280 s: -9.8 mm, limit 0.0 mm" with
+/// its hint, and lines with the most important figures.
+std::string check_table(const ConsistencyReport& report, const RobotModel& model,
+                        Shown shown = Shown::causes);
 
 /// Names, default tolerances, units and meanings of all kinds.
 std::string tolerance_table();

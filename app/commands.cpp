@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
@@ -171,7 +172,20 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   return option_message(app, error);
 }
 
-int parse_and_run(CLI::App& app, const Context& context, int argc, char** argv) {
+// The error on standard error for people and, with --json, as an object on standard output.
+int failed(const Context& context, const std::string& message, int exit_code) {
+  complain(message);
+  context.print_json(nlohmann::ordered_json{{"error", message}, {"exit_code", exit_code}}.dump(
+      2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  return exit_code;
+}
+
+int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
+  // What follows the option that cannot be read is not parsed, --json included.
+  const auto json = [&] {
+    return std::any_of(argv + 1, argv + argc,
+                       [](const char* word) { return std::strcmp(word, "--json") == 0; });
+  };
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -180,17 +194,14 @@ int parse_and_run(CLI::App& app, const Context& context, int argc, char** argv) 
     for (auto chosen = app.get_subcommands(); !chosen.empty();
          chosen = chosen.front()->get_subcommands())
       command += chosen.front()->get_name() + " ";
-    complain(usage_message(app, error) + "\nSee ayumi " + command + "--help");
-    return 2;
+    context.json = json();
+    return failed(context, usage_message(app, error) + "\nSee ayumi " + command + "--help", 2);
   } catch (const Interrupted&) {
-    complain("stopped");
-    return 130;
+    return failed(context, "stopped", 130);
   } catch (const Error& error) {
-    complain(error.what());
-    return exit_code_of(error.code());
+    return failed(context, error.what(), exit_code_of(error.code()));
   } catch (const std::exception& error) {
-    complain(std::string("internal error: ") + error.what());
-    return 5;
+    return failed(context, std::string("internal error: ") + error.what(), 5);
   }
   return context.exit_code;
 }

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
@@ -14,6 +17,7 @@
 #include "motion_words.hpp"
 #include "pattern_input.hpp"
 #include "signals.hpp"
+#include "terminal.hpp"
 
 namespace ayumi::app {
 
@@ -25,7 +29,7 @@ using Json = nlohmann::ordered_json;
 struct CheckCommand {
   std::vector<std::string> patterns, tolerances;
   PatternOptions input;
-  bool list_tolerances = false, watch = false;
+  bool list_tolerances = false, watch = false, all = false;
 };
 
 void print_tolerances(const Context& context) {
@@ -72,7 +76,13 @@ std::string refusal_words(const Task& input, const Judgement& judgement) {
   return words;
 }
 
-Json check_one(const Context& context, const CheckCommand& options, const std::string& file) {
+struct Checked {
+  std::string words;
+  Json json;
+  int errors = 0;
+};
+
+Checked checked_one(const Context& context, const CheckCommand& options, const std::string& file) {
   const auto begin = std::chrono::steady_clock::now();
   const Task input = load_pattern(context, file, options.input);
   const CheckOptions judged = check_options(input, options.tolerances);
@@ -82,18 +92,25 @@ Json check_one(const Context& context, const CheckCommand& options, const std::s
   const std::string own = own_need(input, judged);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  context.print(file + ": " + (report.consistent ? "consistent" : "INCONSISTENT") + ", " +
-                text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
-                (need.text.empty() ? "" : "  " + need.text + "\n") +
-                (own.empty() ? ""
-                             : "  the robot's own motors: " + own +
-                                   (has_encoders(input.robot)
-                                        ? " (`export --format hoap` judges by this profile)"
-                                        : "") +
-                                   "\n") +
-                refusal_words(input, judgement) + check_table(report) +
-                origin_words(input.series.origin));
-  Json json = {{"pattern", file}};
+  Checked checked;
+  checked.words = file + ": " +
+                  (report.consistent ? painted(Paint::good, "consistent")
+                                     : painted(Paint::bad, "INCONSISTENT")) +
+                  ", " + text::fixed(input.series.duration(), 2) + " s, actuators " +
+                  report.profile + "\n" + (need.text.empty() ? "" : "  " + need.text + "\n") +
+                  (own.empty() ? ""
+                               : "  the robot's own motors: " + own +
+                                     (has_encoders(input.robot)
+                                          ? " (`export --format hoap` judges by this profile)"
+                                          : "") +
+                                     "\n") +
+                  refusal_words(input, judgement) +
+                  check_table(report, input.robot, options.all ? Shown::findings : Shown::causes) +
+                  origin_words(input.series.origin);
+  checked.errors = static_cast<int>(
+      std::count_if(report.findings.begin(), report.findings.end(),
+                    [](const Finding& f) { return f.severity == Severity::error; }));
+  Json& json = checked.json = {{"pattern", file}};
   json.update(Json::parse(check_json(report)));
   json["actuators"] = {{"enough", need.text.empty()},
                        {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
@@ -102,7 +119,21 @@ Json check_one(const Context& context, const CheckCommand& options, const std::s
   json["export_refuses"] = export_refusals(input, judgement);
   json["sampled_from"] = input.series.origin;
   json["wall_s"] = wall;
-  return json;
+  return checked;
+}
+
+std::string time_of_day() {
+  const std::time_t now = std::time(nullptr);
+  char words[16];
+  std::strftime(words, sizeof words, "%H:%M:%S", std::localtime(&now));
+  return words;
+}
+
+// "  3 errors, now 1".
+std::string change_words(std::optional<int> before, int now) {
+  if (!before) return "  " + text::counted(now, "error");
+  if (*before == now) return "  " + text::counted(now, "error") + ", as before";
+  return "  " + text::counted(*before, "error") + ", now " + std::to_string(now);
 }
 
 // When each of the files behind a pattern was last written; a missing one counts too.
@@ -130,13 +161,18 @@ std::vector<fs::path> watched_files(const std::string& file, const Stamps& befor
 
 // A file that is being written may be incomplete: its error is printed, and the next change is
 // awaited.
-void check_once(Context& context, const CheckCommand& options, const std::string& file) {
+// `errors` is the number of the last check, or nothing.
+void check_once(Context& context, const CheckCommand& options, const std::string& file,
+                std::optional<int>& errors) {
+  const std::string head = clear_screen() + time_of_day();
   try {
-    const Json json = check_one(context, options, file);
-    context.print_json(json.dump());
-    context.exit_code = json["verdict"] == "consistent" ? 0 : 1;
+    Checked checked = checked_one(context, options, file);
+    context.print(head + change_words(errors, checked.errors) + "\n" + checked.words);
+    context.print_json(checked.json.dump());
+    context.exit_code = checked.json["verdict"] == "consistent" ? 0 : 1;
+    errors = checked.errors;
   } catch (const Error& error) {
-    context.print(std::string(error.what()) + "\n");
+    context.print(head + "\n" + painted(Paint::bad, error.what()) + "\n");
     context.print_json(Json{{"pattern", file}, {"error", error.what()}}.dump());
     context.exit_code = 3;
   }
@@ -160,12 +196,13 @@ void watch(Context& context, const CheckCommand& options) {
   if (file == "-")
     fail(ErrorCode::usage, "check --watch: standard input does not change; name a file");
   Stamps seen;
+  std::optional<int> errors;
   while (true) {
     seen = stamps_of(watched_files(file, seen));
-    check_once(context, options, file);
+    check_once(context, options, file, errors);
     while (stamps_of(watched_files(file, seen)) == seen) wait_or_stop();
     await_return(file);
-    context.print("\n");
+    if (!shows_colours()) context.print("\n");
   }
 }
 
@@ -183,7 +220,9 @@ void check(Context& context, const CheckCommand& options) {
   Json all = Json::array();
   bool consistent = true;
   for (const std::string& file : options.patterns) {
-    all.push_back(check_one(context, options, file));
+    const Checked checked = checked_one(context, options, file);
+    context.print(checked.words);
+    all.push_back(checked.json);
     consistent = consistent && all.back()["verdict"] == "consistent";
   }
   const Json many = {{"verdict", consistent ? "consistent" : "inconsistent"}, {"checks", all}};
@@ -210,6 +249,7 @@ void add_check(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command->add_flag("--tolerances", options.list_tolerances,
                     "List all kinds of findings with their tolerances.");
+  command->add_flag("--all", options.all, "Print every finding, not one entry for each cause.");
   command->add_flag("--watch", options.watch,
                     "Check again at every change of the files, until Ctrl-C.");
   add_pattern_options(*command, options.input);

@@ -50,6 +50,7 @@ ForceRange force_range(const CommandSeries& series) {
 struct Result {
   CommandSeries series;
   ConsistencyReport report;
+  std::string words;     ///< the report for people
   TableCaution caution;  ///< of the tables that went into it
 };
 
@@ -60,6 +61,7 @@ Result check_edited(const Context& context, const EditCommand& options, const Ta
   result.series = sample(input.robot, edited, {.dt = input.series.dt}, context.progress());
   result.report =
       check_consistency(input.robot, result.series, check_options(input, options.tolerances));
+  result.words = check_table(result.report, input.robot);
   return result;
 }
 
@@ -69,8 +71,7 @@ void write_edited(Context& context, const EditCommand& options, const Pattern& e
   if (edited.table) refuse_overwriting(context, table_beside(options.out));
   write_pattern_and_table(options.out, edited, {}, result.caution);
   context.print(options.out + ": " + (result.report.consistent ? "consistent" : "INCONSISTENT") +
-                ", " + text::fixed(result.series.duration(), 2) + " s\n" + words +
-                check_table(result.report));
+                ", " + text::fixed(result.series.duration(), 2) + " s\n" + words + result.words);
   json["output"] = options.out;
   json["table"] = edited.table ? Json(table_beside(options.out).string()) : Json(nullptr);
   json["duration_s"] = result.series.duration();

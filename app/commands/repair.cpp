@@ -115,7 +115,7 @@ std::string in_words(const RepairCommand& options, const Task& input, const Repa
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
          " iterations, " + text::fixed(wall, 2) + " s\n";
   for (const std::string& reason : result.reasons) out += "  because " + reason + "\n";
-  if (result.status == RepairStatus::repaired) out += check_table(result.check);
+  if (result.status == RepairStatus::repaired) out += check_table(result.check, model);
   return out;
 }
 

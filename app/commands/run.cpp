@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <thread>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/finding_groups.hpp"
 #include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/run/results_json.hpp"
@@ -23,10 +26,12 @@
 #include "ayumi/render/snapshots.hpp"
 #include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/task/servo_table.hpp"
+#include "check_table.hpp"
 #include "pattern_input.hpp"
 #include "repairing.hpp"
 #include "report_input.hpp"
 #include "simulation.hpp"
+#include "terminal.hpp"
 
 namespace ayumi::app {
 
@@ -102,24 +107,62 @@ class MainJob {
   Json summary_ = Json::object();
 };
 
-std::string check_text(const ConsistencyReport& report) {
-  std::string text = report.consistent ? "consistent" : "inconsistent";
+std::string check_text(const ConsistencyReport& report, const RobotModel& model) {
+  std::string text =
+      report.consistent ? painted(Paint::good, "consistent") : painted(Paint::bad, "inconsistent");
   text += ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
           " mm, joint speed " + text::fixed(100 * report.summary[FindingKind::joint_speed], 0) +
           " %, torque " + text::fixed(100 * report.summary[FindingKind::joint_torque], 0) +
           " % of the limits of " + report.profile;
-  for (const Finding& finding : report.findings)
-    if (finding.severity == Severity::error)
-      text += std::string("\n            ") + name_of(finding.kind) + " at " +
-              text::fixed(finding.at, 3) + " s, " + finding.where + ": " + amount_text(finding) +
-              "; " + finding.hint;
+  int causes = 0;
+  for (const FindingGroup& group : finding_groups(report, model)) {
+    const Finding& worst = report.findings[group.worst];
+    if (worst.severity != Severity::error || ++causes > kMostGroups) continue;
+    const size_t times = group.members.size();
+    text += std::string("\n            ") + name_of(worst.kind) + " at " +
+            text::fixed(worst.at, 3) + " s, " + worst.where + ": " + amount_text(worst) + "; " +
+            worst.hint;
+    if (times > 1)
+      text += " (" + text::join(group.places, " and ") + ", " + text::counted(times, "time") + ")";
+  }
+  if (causes > kMostGroups)
+    text += "\n            " + text::counted(causes - kMostGroups, "more cause") +
+            "; `ayumi check --all` prints every finding";
   return text;
+}
+
+// Differences worth a line. Chosen: below a degree, nobody sees a tilt in a clip; a tenth of the
+// torque limit is more than rounding and less than a motor notices.
+constexpr double kMoreTilt = std::numbers::pi / 180;  // [rad]
+constexpr double kMoreTorque = 0.1;                   // share of the limit
+
+// In what the run with control does worse than the one without, under the same disturbances.
+std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
+                                              const SimulationResult& closed) {
+  std::vector<std::string> worse;
+  if (closed.outcome != Outcome::stands && open.outcome == Outcome::stands)
+    worse.push_back(std::string("the robot ") +
+                    (closed.outcome == Outcome::fell ? "falls" : "does not come to rest") +
+                    ", in open loop it stands");
+  if (open.outcome == Outcome::fell) return worse;
+  const auto degrees = [](double angle) {
+    return text::fixed(angle * 180 / std::numbers::pi, 1) + " deg";
+  };
+  const auto percent = [](double share) { return text::fixed(100 * share, 0) + " %"; };
+  if (closed.max_tilt > open.max_tilt + kMoreTilt)
+    worse.push_back("largest trunk tilt " + degrees(closed.max_tilt) + " against " +
+                    degrees(open.max_tilt));
+  if (closed.max_torque_ratio > open.max_torque_ratio + kMoreTorque)
+    worse.push_back("largest torque " + percent(closed.max_torque_ratio) +
+                    " of the limit against " + percent(open.max_torque_ratio));
+  return worse;
 }
 
 void MainJob::check(Task& input) {
   const Judgement judged = judge(input, check_options(input));
   const std::string& need = judged.need().text;
-  say("check", check_text(judged.report) + (need.empty() ? "" : "\n            " + need));
+  say("check",
+      check_text(judged.report, input.robot) + (need.empty() ? "" : "\n            " + need));
   summary_["check"] = Json::parse(check_json(judged.report));
   summary_["repair"] = nullptr;  // stays so unless a repair was asked for and needed
   folder_.sections.emplace_back("sampled_from", Json(input.series.origin).dump());
@@ -161,6 +204,12 @@ void MainJob::simulate(const Task& input) {
   say("simulate", outcome_text(run("open_loop", open)));
   const SimulationLog& closed = run("closed_loop", options_.choice);
   say("", outcome_text(closed));
+  const std::vector<std::string> worse =
+      worse_than_open_loop(folder_.logs["open_loop"].result, closed.result);
+  if (!worse.empty())
+    say("", painted(Paint::caution, "with control worse than in open loop") + ": " +
+                text::join(worse, "; "));
+  summary_["worse_than_open_loop"] = worse;
   folder_.provenance = closed.provenance;
   Json both;
   for (const char* name : {"open_loop", "closed_loop"})

@@ -6,7 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/pattern/pattern_edit.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 
@@ -17,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct TuneCommand {
-  std::string pattern;
+  std::string pattern, out;
   PatternOptions input;
   std::vector<std::string> start;
   std::vector<double> times;
@@ -45,7 +49,24 @@ std::string line(const std::string& label, const TuneFigures& f) {
          text::fixed(f.unpushed, 4) + "\n";
 }
 
+// The text of the pattern with other gains; every other byte stays.
+std::string text_with_gains(const TuneCommand& options, const TuneResult& result) {
+  std::vector<PatternEdit> edits = {
+      {PatternEdit::Kind::set, "/controller/type", Json(name_of(ControllerKind::dtad)).dump()}};
+  for (const auto& [name, value] : result.gains)
+    edits.push_back({PatternEdit::Kind::set, "/controller/gains/" + name, Json(value).dump()});
+  std::string text = edited_text(read_file(options.pattern), edits);
+  pattern_of_text(text, options.out);  // what it names has to be there from the new place
+  return text;
+}
+
 void tune(Context& context, TuneCommand& options) {
+  if (!options.out.empty()) {
+    if (options.pattern == "-")
+      fail(ErrorCode::usage,
+           "tune -o: standard input is read once and has no text to change; name a file");
+    refuse_overwriting(context, options.out);
+  }
   const Task input = load_pattern(context, options.pattern, options.input);
   TuneOptions& t = options.tune;
   t.threads = context.threads;
@@ -73,8 +94,13 @@ void tune(Context& context, TuneCommand& options) {
       " }\n  " + text::counted(result.choices, "choice") + " of gains tried, " +
       std::to_string(result.refused) +
       " not tried because their loop is unstable; test the result with other pushes: ayumi push\n";
+  if (!options.out.empty()) {
+    write_file(options.out, text_with_gains(options, result));
+    out += "  " + options.out + ": the pattern with these gains\n";
+  }
   context.print(out);
   context.print_json(Json{
+      {"output", options.out.empty() ? Json(nullptr) : Json(options.out)},
       {"gains", gains_json(result.gains)},
       {"start", gains_json(result.start)},
       {"before", figures_json(result.before)},
@@ -92,6 +118,7 @@ void add_tune(CLI::App& app, Context& context) {
       app.add_subcommand("tune", "improve the gains of DTAD for a pattern by search");
   command->footer(
       "Examples:\n  ayumi tune patterns/hoap1_walk.json --profile hoap1-strong\n"
+      "  ayumi tune walk.json -o tuned.json\n"
       "  ayumi tune walk.json --tune ka,tau_z --level 1.0 --directions 8 --json\n"
       "The objective is the sum of two means; smaller is better. The first is a mean over the\n"
       "pushes: omega times the integral of |DCM - commanded DCM| / z over 1.2 s, or 10 for a push\n"
@@ -100,6 +127,10 @@ void add_tune(CLI::App& app, Context& context) {
   auto options = std::make_shared<TuneCommand>();
   TuneOptions& t = options->tune;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
+  command
+      ->add_option("-o,--out", options->out,
+                   "Pattern file to write: PATTERN with the gains that were found.")
+      ->type_name("F");
   add_pattern_options(*command, options->input);
   command
       ->add_option("--gain", options->start,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "ayumi/base/error.hpp"
@@ -83,11 +84,30 @@ Finding finding_of(const JudgedMotion& motion, const std::vector<FindingWindow>&
   f.hint = advice.remedy + advice.or_repair;
   if (window.cause >= 0) {
     const Violation& cause = windows[window.cause].worst;
+    f.cause = window.cause;
     f.follows_from = std::string(name_of(cause.kind)) + " " + place_text(motion, cause) + " at " +
                      text::fixed(cause.sample * dt, 3) + " s";
     f.hint = f.remedy = "follows from " + f.follows_from + ": correct that finding first";
   }
   return f;
+}
+
+// Errors first, then by time. Indices of causes follow.
+void sort_findings(std::vector<Finding>& findings) {
+  std::vector<int> order(findings.size()), place(findings.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::tie(findings[a].severity, findings[a].begin) <
+           std::tie(findings[b].severity, findings[b].begin);
+  });
+  std::vector<Finding> sorted;
+  for (const int i : order) {
+    place[i] = static_cast<int>(sorted.size());
+    sorted.push_back(std::move(findings[i]));
+  }
+  for (Finding& f : sorted)
+    if (f.cause >= 0) f.cause = place[f.cause];
+  findings = std::move(sorted);
 }
 
 ConsistencyReport report_of(JudgedMotion& motion) {
@@ -101,12 +121,15 @@ ConsistencyReport report_of(JudgedMotion& motion) {
   for (const FindingSpec* spec : summary_figures())  // nothing was near the limit at any time
     if (spec->figure.least && !std::isfinite(report.summary[spec->kind]))
       report.summary[spec->kind] = 0;
+  for (const FindingSpec* spec : summary_figures()) {
+    const Violation& extreme = motion.extreme(spec->kind);
+    if (extreme.sample >= 0)
+      report.summary_at[spec->kind] = {place_text(motion, extreme),
+                                       extreme.sample * motion.series.dt};
+  }
   for (const FindingWindow& window : windows)
     report.findings.push_back(finding_of(motion, windows, window));
-  std::stable_sort(report.findings.begin(), report.findings.end(),
-                   [](const Finding& a, const Finding& b) {
-                     return std::tie(a.severity, a.begin) < std::tie(b.severity, b.begin);
-                   });
+  sort_findings(report.findings);
   report.consistent = std::none_of(report.findings.begin(), report.findings.end(),
                                    [](const Finding& f) { return f.severity == Severity::error; });
   return report;

@@ -16,6 +16,7 @@ struct ConsistencyReport {
   bool consistent = false;        ///< no finding of severity error
   std::vector<Finding> findings;  ///< errors first, then by time
   CheckSummary summary;
+  FigurePlaces summary_at;  ///< where each figure of the summary has its value
   std::string profile;  ///< actuator profile judged against
 };
 

@@ -62,7 +62,7 @@ void judge_angular_momentum(JudgedMotion& motion) {
     const Vector3d mean =
         mean_flight_moment(motion.series, k, [&](int i) { return motion.flight_moment[i]; });
     const double size = mean.norm();
-    motion.raise(FindingKind::angular_momentum, size);
+    motion.raise(FindingKind::angular_momentum, size, k, 0, largest_axis(mean));
     if (size > limit)
       motion.add(FindingKind::angular_momentum, 0, k, size, limit, size, largest_axis(mean));
   }

@@ -24,7 +24,7 @@ constexpr double kClearanceTolerance = 0.002;
 constexpr double kRefineBelow = 0.010;
 
 void note_clearance(JudgedMotion& motion, int pair, int k, double clearance) {
-  motion.lower(FindingKind::self_collision, clearance);
+  motion.lower(FindingKind::self_collision, clearance, k, pair);
   const double wanted = motion.tolerance(FindingKind::self_collision);
   if (clearance < wanted)
     motion.add(FindingKind::self_collision, pair, k, clearance, clearance < 0 ? 0 : wanted,

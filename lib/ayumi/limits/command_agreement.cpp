@@ -43,7 +43,7 @@ constexpr double kLeastForceShare = 1e-3;  // of the weight, so that no force di
 
 void judge_vertical_force(JudgedMotion& motion, const JudgedSample& s) {
   const double residual = (s.flight ? 0 : s.demand.wrench[2]) - s.command.fz;
-  motion.raise(FindingKind::fz_residual, std::abs(residual));
+  motion.raise(FindingKind::fz_residual, std::abs(residual), s.k);
   const double limit = motion.tolerance(FindingKind::fz_residual) * motion.weight;
   if (std::abs(residual) > limit)
     motion.add(FindingKind::fz_residual, 0, s.k, residual, limit, std::abs(residual));

@@ -54,12 +54,17 @@ void make_table(JudgedMotion& motion) {
 
 void judge_table(JudgedMotion& motion) {
   if (!motion.safety) return;
-  motion.raise(FindingKind::table_step, motion.safety->max_step_ratio);
+  const auto sample_at = [&](double t) {
+    const long row = std::lround((t - motion.safety->ramp) / motion.series.dt);
+    return static_cast<int>(std::clamp<long>(row, 0, motion.count() - 1));
+  };
+  const SafetyReport& safety = *motion.safety;
+  if (safety.max_step_ratio > 0)
+    motion.raise(FindingKind::table_step, safety.max_step_ratio, sample_at(safety.worst_at),
+                 motion.model.find_dof(safety.worst_joint));
   const bool own = motion.limits.name == motion.model.limits().name;
   for (const SafetyViolation& v : motion.safety->rows) {
-    const long row = std::lround((v.t - motion.safety->ramp) / motion.series.dt);
-    const int k = static_cast<int>(std::clamp<long>(row, 0, motion.count() - 1));
-    motion.table.add({kind_of(v), motion.model.find_dof(v.joint), k,
+    motion.table.add({kind_of(v), motion.model.find_dof(v.joint), sample_at(v.t),
                       own ? Severity::error : Severity::warning, v.value, v.limit,
                       std::abs(v.value - v.limit), v.unit == "counts" ? kInCounts : kInJointUnit});
   }

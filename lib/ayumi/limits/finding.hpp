@@ -80,7 +80,8 @@ struct Finding {
   std::string where;                  ///< `place` in words: joint, foot, axis, support, bodies
   std::string hint;                   ///< what to do about it
   std::string follows_from = {};      ///< the error that causes this one; "" when it stands alone
-  std::string remedy = {};            ///< the hint without the advice to use `repair`
+  int cause = -1;           ///< index of that error in the report; -1: none, or read from a file
+  std::string remedy = {};  ///< the hint without the advice to use `repair`
   Place place = {};
 };
 

@@ -24,7 +24,7 @@ constexpr double kWholeCone = 1;
 void judge_friction(JudgedMotion& motion, const JudgedSample& s) {
   if (!s.has_zmp()) return;
   const double ratio = friction_ratio(s.demand.use, motion.friction);
-  motion.raise(FindingKind::friction, ratio);
+  motion.raise(FindingKind::friction, ratio, s.k, 0, static_cast<int>(s.command.support));
   const double most = motion.tolerance(FindingKind::friction);
   if (ratio > most)
     motion.add(FindingKind::friction, 0, s.k, ratio, most, ratio,

@@ -43,7 +43,7 @@ void judge_heat(JudgedMotion& motion) {
     for (int end = window; end <= motion.count(); ++end) {
       const double mean = (motion.square_sum(i, end) - motion.square_sum(i, end - window)) / window;
       const double rms = std::sqrt(std::max(0.0, mean));
-      motion.raise(FindingKind::continuous_torque, rms / limit);
+      motion.raise(FindingKind::continuous_torque, rms / limit, end - 1, i);
       if (rms > most * limit)
         motion.add(FindingKind::continuous_torque, i, end - 1, rms, most * limit, rms / limit, 0,
                    severity);

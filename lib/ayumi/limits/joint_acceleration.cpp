@@ -20,7 +20,7 @@ void judge_joint_accelerations(JudgedMotion& motion, const JudgedSample& s) {
   const double most = motion.tolerance(FindingKind::joint_acceleration);
   for (int i = 0; i < motion.model.dof_count(); ++i) {
     const double acceleration = s.command.acceleration[6 + i];
-    motion.raise(FindingKind::joint_acceleration, std::abs(acceleration));
+    motion.raise(FindingKind::joint_acceleration, std::abs(acceleration), s.k, i);
     if (std::abs(acceleration) <= most) continue;
     motion.rough[s.k] = true;
     motion.add(FindingKind::joint_acceleration, i, s.k, acceleration, most, std::abs(acceleration),

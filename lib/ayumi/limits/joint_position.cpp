@@ -35,7 +35,7 @@ void judge_joint_positions(JudgedMotion& motion, const JudgedSample& s) {
     const double theta = s.command.state.theta[i];
     const Range range = range_of(dof, margin);
     const auto [lower, upper] = range;
-    motion.raise(FindingKind::joint_position, range.share(theta));
+    motion.raise(FindingKind::joint_position, range.share(theta), s.k, i);
     const double beyond = std::max(lower - theta, theta - upper);
     if (beyond > motion.tolerance(FindingKind::joint_position))
       motion.add(FindingKind::joint_position, i, s.k, theta, theta > upper ? upper : lower, beyond);

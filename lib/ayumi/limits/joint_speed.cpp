@@ -16,7 +16,7 @@ void judge_joint_speeds(JudgedMotion& motion, const JudgedSample& s) {
     const double limit = motion.limits.speed[i], speed = s.command.state.dtheta[i];
     if (!std::isfinite(limit)) continue;
     const double ratio = std::abs(speed) / limit;
-    motion.raise(FindingKind::joint_speed, ratio);
+    motion.raise(FindingKind::joint_speed, ratio, s.k, i);
     if (ratio > most) motion.add(FindingKind::joint_speed, i, s.k, speed, most * limit, ratio);
   }
 }

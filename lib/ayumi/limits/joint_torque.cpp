@@ -21,7 +21,7 @@ void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {
     const double limit = motion.limits.peak_torque[i], torque = s.demand.torque[i];
     if (!std::isfinite(limit)) continue;
     const double ratio = std::abs(torque) / limit;
-    motion.raise(FindingKind::joint_torque, ratio);
+    motion.raise(FindingKind::joint_torque, ratio, s.k, i);
     if (ratio > most) motion.add(FindingKind::joint_torque, i, s.k, torque, most * limit, ratio);
   }
 }

@@ -28,6 +28,7 @@ JudgedMotion::JudgedMotion(const RobotModel& model, const CommandSeries& series,
       cog_deviation(count(), 0.0),
       soles{std::vector<SoleError>(count()), std::vector<SoleError>(count())},
       rough(count(), 0) {
+  for (Violation& extreme : extremes_) extreme.sample = -1;
   for (const FindingSpec* spec : summary_figures())
     if (spec->figure.least) summary[spec->kind] = std::numeric_limits<double>::infinity();
 }
@@ -41,7 +42,7 @@ int largest_axis(const Vector3d& v) {
 void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
                       const Vector3d& difference, Severity severity, int item, double allowance) {
   const double size = difference.norm();
-  motion.raise(kind, size);
+  motion.raise(kind, size, sample, item, largest_axis(difference));
   const double limit = allowance * motion.tolerance(kind);
   if (size > limit)
     motion.add(kind, item, sample, size, limit, size, largest_axis(difference), severity);

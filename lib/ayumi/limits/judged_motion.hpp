@@ -44,13 +44,16 @@ struct JudgedMotion {
            int detail = 0, Severity severity = Severity::error) {
     windows.add({kind, item, sample, severity, value, limit, size, detail});
   }
-  /// Notes a value of a figure of the summary: the largest, or the least, stays.
-  void raise(FindingKind kind, double value) {
-    if (value > summary[kind]) summary[kind] = value;
+  /// Notes a value of a figure of the summary: the largest, or the least, stays. `item` and
+  /// `detail` are those of a violation there.
+  void raise(FindingKind kind, double value, int sample, int item = 0, int detail = 0) {
+    if (value > summary[kind]) note(kind, value, sample, item, detail);
   }
-  void lower(FindingKind kind, double value) {
-    if (value < summary[kind]) summary[kind] = value;
+  void lower(FindingKind kind, double value, int sample, int item = 0, int detail = 0) {
+    if (value < summary[kind]) note(kind, value, sample, item, detail);
   }
+  /// Where the figure has its value; its sample is -1 where no value was noted.
+  const Violation& extreme(FindingKind kind) const { return extremes_[kind]; }
 
   const RobotModel& model;
   const CommandSeries& series;
@@ -81,6 +84,13 @@ struct JudgedMotion {
     double value;  ///< [m]
   };
   std::vector<Clearance> clearances;
+
+ private:
+  void note(FindingKind kind, double value, int sample, int item, int detail) {
+    summary[kind] = value;
+    extremes_[kind] = {kind, item, sample, Severity::info, value, 0, 0, detail};
+  }
+  ByFindingKind<Violation> extremes_;
 };
 
 /// One sample of it.

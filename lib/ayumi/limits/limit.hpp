@@ -11,6 +11,7 @@
 // The judge (check/), attribution, the repair, the writers of JSON and pages and the program visit
 // the table limits(); limit_table.hpp has one line for each kind of finding.
 
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -142,6 +143,13 @@ bool is_of_posture(const Finding& finding);
 
 /// The figures of a motion, by kind; in the unit of FindingSpec::figure before its scale.
 using CheckSummary = ByFindingKind<double>;
+
+/// Where the motion has a figure of its summary.
+struct FigurePlace {
+  std::string where;  ///< joint, foot, axis, support or bodies in words; "" when it is not known
+  double at = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN when it is not known
+};
+using FigurePlaces = ByFindingKind<FigurePlace>;
 
 /// In the unit of each kind's FindingSpec.
 using Tolerances = ByFindingKind<double>;

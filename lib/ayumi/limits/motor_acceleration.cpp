@@ -35,7 +35,7 @@ void judge_motor_accelerations(JudgedMotion& motion) {
       if (!std::isfinite(limit[i])) continue;
       const double acceleration = motion.series.samples[k].acceleration[6 + i];
       const double ratio = std::abs(acceleration) / limit[i];
-      motion.raise(FindingKind::motor_acceleration, ratio);
+      motion.raise(FindingKind::motor_acceleration, ratio, k, i);
       if (ratio > most)
         motion.add(FindingKind::motor_acceleration, i, k, acceleration, most * limit[i], ratio);
     }

@@ -69,7 +69,7 @@ void judge_contact_edge(JudgedMotion& motion, Side side, const ContactInterval& 
   const int k = lands ? contact.first : contact.last;
   const double limit = kRunOnShare * motion.tolerance(FindingKind::foot_float);
   const RunOn run = swing_run_on(motion.model, motion.series, side, contact, lands);
-  motion.raise(FindingKind::foot_float, run.height);
+  motion.raise(FindingKind::foot_float, run.height, k, static_cast<int>(side));
   if (run.height <= limit) return;
   motion.windows.add({FindingKind::foot_float, static_cast<int>(side), k, Severity::error,
                       run.height, limit, run.height, lands ? run.samples : -run.samples},
@@ -86,11 +86,11 @@ void judge_supporting_foot(JudgedMotion& motion, Side side, const ContactInterva
   while (last > first && !in_place(motion, foot, last)) --last;
   for (int k = contact.first; k <= contact.last; ++k) {
     const SoleError& e = motion.soles[foot][k];
-    motion.raise(FindingKind::foot_float, e.gap);
+    motion.raise(FindingKind::foot_float, e.gap, k, foot);
     if (k == contact.first && k > 0) judge_contact_edge(motion, side, contact, true);
     if (e.gap > high) motion.add(FindingKind::foot_float, foot, k, e.gap, high, e.gap);
     if (e.lowest > high && (k < first || k > last)) continue;
-    motion.raise(FindingKind::foot_slip, e.slip);
+    motion.raise(FindingKind::foot_slip, e.slip, k, foot);
     if (e.slip > far) motion.add(FindingKind::foot_slip, foot, k, e.slip, far, e.slip);
   }
 }
@@ -99,7 +99,7 @@ void judge_depth(JudgedMotion& motion, int foot) {
   const double deep = motion.tolerance(FindingKind::foot_penetration);
   for (int k = 0; k < motion.count(); ++k) {
     const double depth = motion.soles[foot][k].penetration;
-    motion.raise(FindingKind::foot_penetration, depth);
+    motion.raise(FindingKind::foot_penetration, depth, k, foot);
     if (depth > deep) motion.add(FindingKind::foot_penetration, foot, k, depth, deep, depth);
   }
 }

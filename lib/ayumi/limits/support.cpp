@@ -30,7 +30,8 @@ void judge_support(JudgedMotion& motion, const JudgedSample& s) {
   if (!s.has_zmp()) return;
   const GroundDemand& use = s.demand.use;
   const SupportPlane& plane = motion.dynamics.plane();
-  motion.lower(FindingKind::support_margin, use.margin);
+  motion.lower(FindingKind::support_margin, use.margin, s.k, kMotionZmp,
+               static_cast<int>(s.command.support));
   judge_margin(motion, s, kMotionZmp, use.margin);
   const Eigen::Vector3d command = plane.frame.inverse() * s.command.zmp;
   const double command_margin = plane.polygon.margin(command.head<2>());

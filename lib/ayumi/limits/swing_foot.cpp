@@ -48,7 +48,7 @@ void judge_landings(JudgedMotion& motion) {
     for (const ContactInterval& contact : motion.plan.intervals[foot]) {
       if (!contact.contact || contact.first == 0) continue;
       const double speed = landing_speed(motion, side, contact);
-      motion.raise(FindingKind::landing_speed, speed);
+      motion.raise(FindingKind::landing_speed, speed, contact.first, foot);
       if (speed > limit)
         motion.add(FindingKind::landing_speed, foot, contact.first, speed, limit, speed, 0,
                    Severity::warning);

@@ -33,7 +33,7 @@ void judge_torsion(JudgedMotion& motion, const JudgedSample& s) {
     return;
   const double yaw = torsion_ratio(
       use, motion.friction, torsional_friction_arm(motion.dynamics.plane().polygon, use.zmp));
-  motion.raise(FindingKind::yaw_moment, yaw);
+  motion.raise(FindingKind::yaw_moment, yaw, s.k, 0, static_cast<int>(s.command.support));
   const double most = motion.tolerance(FindingKind::yaw_moment);
   if (yaw > most)
     motion.add(FindingKind::yaw_moment, 0, s.k, yaw, most, yaw,

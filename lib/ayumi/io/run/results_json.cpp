@@ -42,13 +42,24 @@ OrderedJson json_of(const CheckSummary& summary) {
   return json;
 }
 
+OrderedJson json_of(const FigurePlaces& places) {
+  OrderedJson json = OrderedJson::object();
+  for (const FindingSpec* spec : summary_figures()) {
+    const FigurePlace& place = places[spec->kind];
+    if (std::isfinite(place.at))
+      json[spec->figure.key] = {{"where", place.where}, {"at_s", place.at}};
+  }
+  return json;
+}
+
 OrderedJson json_of(const ConsistencyReport& report) {
   OrderedJson findings = OrderedJson::array();
   for (const Finding& finding : report.findings) findings.push_back(json_of(finding));
   return {{"verdict", report.consistent ? "consistent" : "inconsistent"},
           {"profile", report.profile},
           {"findings", findings},
-          {"summary", json_of(report.summary)}};
+          {"summary", json_of(report.summary)},
+          {"summary_at", json_of(report.summary_at)}};
 }
 
 OrderedJson largest(const LargestChange& change, const char* unit) {

@@ -46,6 +46,17 @@ CheckSummary summary_of(const JsonNode& node) {
   return summary;
 }
 
+// A run of an older version has none.
+FigurePlaces places_of(const JsonNode& check) {
+  FigurePlaces places;
+  const auto node = check.find("summary_at");
+  if (!node) return places;
+  for (const FindingSpec* spec : summary_figures())
+    if (const auto place = node->find(spec->figure.key))
+      places[spec->kind] = {place->at("where").string(), place->at("at_s").number()};
+  return places;
+}
+
 ConsistencyReport check_of(const JsonNode& node) {
   ConsistencyReport report;
   report.consistent = node.at("verdict").one_of({"consistent", "inconsistent"}) == "consistent";
@@ -53,6 +64,7 @@ ConsistencyReport check_of(const JsonNode& node) {
   for (const JsonNode& finding : node.at("findings").items())
     report.findings.push_back(finding_of(finding));
   report.summary = summary_of(node.at("summary"));
+  report.summary_at = places_of(node);
   return report;
 }
 

@@ -1,0 +1,42 @@
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "commands.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+// The names of what can stand after a command or a kind of it.
+std::vector<std::string> names_below(const CLI::App& level) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : level.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+// The same text as `ayumi COMMAND --help`.
+void print_help(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* level = &app;
+  std::string before = "ayumi";
+  for (const std::string& word : words) {
+    const std::vector<std::string> names = names_below(*level);
+    if (std::find(names.begin(), names.end(), word) == names.end())
+      fail(ErrorCode::usage,
+           "help: " + before + " has no command '" + word + "'" + text::suggestion(word, names));
+    level = level->get_subcommand(word);
+    before += " " + word;
+  }
+  std::fputs(level->help(level == &app ? "" : before).c_str(), stdout);
+}
+
+}  // namespace
+
+void add_help(CLI::App& app, Context&) {
+  CLI::App* command = app.add_subcommand("help", "print the help of a command");
+  command->footer("Examples:\n  ayumi help check\n  ayumi help new walk");
+  static std::vector<std::string> words;
+  command->add_option("COMMAND", words, "The command, and the kind where it has kinds.");
+  command->callback([&app] { print_help(app, words); });
+}
+
+}  // namespace ayumi::app

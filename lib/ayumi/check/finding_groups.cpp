@@ -1,0 +1,111 @@
+#include "ayumi/check/finding_groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/base/error.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// A place and its mirror image have the same key: what kind of place it is, and two numbers.
+using PlaceKey = std::tuple<size_t, int, int, std::string>;
+
+class PlaceKeys {
+ public:
+  explicit PlaceKeys(const RobotModel& model) : model_(model) {
+    try {
+      map_ = mirror_map(model);
+    } catch (const Error&) {  // the robot has no mirror image
+    }
+  }
+
+  PlaceKey of(const Finding& finding) const {
+    // A finding that was read from a file has only words.
+    if (std::holds_alternative<std::monostate>(finding.place)) return {0, 0, 0, finding.where};
+    const auto [first, second] = std::visit(*this, finding.place);
+    return {finding.place.index(), first, second, ""};
+  }
+
+  std::pair<int, int> operator()(std::monostate) const { return {0, 0}; }
+  std::pair<int, int> operator()(const JointPlace& p) const {
+    return {map_ && p.dof >= 0 ? std::min(p.dof, map_->dof[p.dof]) : p.dof, 0};
+  }
+  std::pair<int, int> operator()(const FootPlace&) const { return {0, 0}; }
+  std::pair<int, int> operator()(const AxisPlace& p) const { return {p.axis, 0}; }
+  std::pair<int, int> operator()(const SupportPlace& p) const {
+    return {
+        p.support == Support::right ? static_cast<int>(Support::left) : static_cast<int>(p.support),
+        0};
+  }
+  std::pair<int, int> operator()(const BodyPairPlace& p) const {
+    const std::pair<int, int> here = std::minmax(p.a, p.b);
+    if (!map_) return here;
+    const std::pair<int, int> there = std::minmax(image(p.a), image(p.b));
+    return std::min(here, there);
+  }
+
+ private:
+  int image(int body) const {
+    const int dof = body > 0 ? model_.bodies()[body].dof : -1;
+    if (dof < 0 || model_.dofs()[dof].body != body) return body;
+    return model_.dofs()[map_->dof[dof]].body;
+  }
+
+  const RobotModel& model_;
+  std::optional<MirrorMap> map_;
+};
+
+// How far a value is beyond its limit; both have the sign of the side on which the limit is, or a
+// limit of both signs is positive.
+double excess(const Finding& f) { return std::abs(std::abs(f.worst) - std::abs(f.limit)); }
+
+int root_of(const ConsistencyReport& report, int i) {
+  while (report.findings[i].cause >= 0) i = report.findings[i].cause;
+  return i;
+}
+
+void note_consequence(FindingGroup& group, const ConsistencyReport& report, int i) {
+  const Finding& f = report.findings[i];
+  for (GroupConsequence& known : group.consequences) {
+    if (known.kind != f.kind) continue;
+    ++known.count;
+    if (excess(f) > excess(report.findings[known.worst])) known.worst = i;
+    return;
+  }
+  group.consequences.push_back({f.kind, 1, i});
+}
+
+}  // namespace
+
+std::vector<FindingGroup> finding_groups(const ConsistencyReport& report, const RobotModel& model) {
+  if (report.findings.empty()) return {};
+  const PlaceKeys keys(model);
+  const int count = static_cast<int>(report.findings.size());
+  std::vector<FindingGroup> groups;
+  std::map<std::tuple<FindingKind, Severity, PlaceKey>, size_t> known;
+  std::vector<size_t> group_of(count);
+  for (int i = 0; i < count; ++i) {
+    const Finding& f = report.findings[i];
+    if (f.cause >= 0) continue;
+    const auto [entry, is_new] = known.try_emplace({f.kind, f.severity, keys.of(f)}, groups.size());
+    if (is_new) groups.push_back({.worst = i});
+    group_of[i] = entry->second;
+    FindingGroup& group = groups[entry->second];
+    group.members.push_back(i);
+    if (excess(f) > excess(report.findings[group.worst])) group.worst = i;
+    if (std::find(group.places.begin(), group.places.end(), f.where) == group.places.end())
+      group.places.push_back(f.where);
+  }
+  for (int i = 0; i < count; ++i)
+    if (report.findings[i].cause >= 0)
+      note_consequence(groups[group_of[root_of(report, i)]], report, i);
+  return groups;
+}
+
+}  // namespace ayumi

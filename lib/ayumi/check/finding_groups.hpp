@@ -1,0 +1,33 @@
+#pragma once
+// Findings as people read them: one group for each cause. A walk with swings that are too fast has
+// the same finding at each step and on both sides, and each of them has consequences; the author
+// has one thing to correct.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/check/consistency.hpp"
+
+namespace ayumi {
+
+/// What follows from the errors of a group.
+struct GroupConsequence {
+  FindingKind kind = FindingKind::cog_residual;
+  int count = 0;  ///< findings
+  int worst = 0;  ///< index into ConsistencyReport::findings
+};
+
+/// Findings of one kind and severity, at one place or at this place and its mirror image.
+struct FindingGroup {
+  std::vector<int> members = {};         ///< indices into ConsistencyReport::findings, by time
+  int worst = 0;                         ///< the one of them that is furthest beyond its limit
+  std::vector<std::string> places = {};  ///< Finding::where of all members, each once
+  std::vector<GroupConsequence> consequences = {};  ///< in the order of their first finding
+};
+
+/// Every finding is a member of one group, or a consequence of a member. Groups are in the order of
+/// their first member: errors first, then by time. For a robot without a mirror image, left and
+/// right stay apart.
+std::vector<FindingGroup> finding_groups(const ConsistencyReport& report, const RobotModel& model);
+
+}  // namespace ayumi
