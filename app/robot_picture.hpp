@@ -14,8 +14,9 @@ struct RobotPicture {
   std::vector<std::string> notes;  ///< what is drawn otherwise than the robot's files say
 };
 
-/// `marks`: with the outlines of the soles, the axes of the joints and an arrow ahead.
-RobotPicture draw_robot(const RobotModel& model, const std::string& view, bool marks);
+/// In its home posture, or at the joint angles `theta` [rad]. `marks`: with the outlines of the soles, the axes of the joints and an arrow ahead.
+RobotPicture draw_robot(const RobotModel& model, const std::string& view, bool marks,
+                        const Eigen::VectorXd* theta = nullptr);
 
 /// Writes it without marks. Throws Error(usage) for a name that does not end in .png.
 std::vector<std::string> write_robot_picture(const Context& context, const RobotModel& model,

@@ -11,6 +11,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "check_table.hpp"
@@ -76,6 +77,13 @@ std::string refusal_words(const Task& input, const Judgement& judgement) {
   return words;
 }
 
+std::string mistake_words(const std::vector<std::string>& mistakes) {
+  std::string words;
+  for (const std::string& mistake : mistakes)
+    words += "  " + painted(Paint::caution, "likely cause:") + " " + mistake + "\n";
+  return words;
+}
+
 struct Checked {
   std::string words;
   Json json;
@@ -90,6 +98,8 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   const ConsistencyReport& report = judgement.report;
   const ActuatorNeed& need = judgement.need();
   const std::string own = own_need(input, judged);
+  const std::vector<std::string> mistakes =
+      report.consistent ? std::vector<std::string>() : likely_mistakes(input.robot, input.pattern);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   Checked checked;
@@ -104,7 +114,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
                                           ? " (`export --format hoap` judges by this profile)"
                                           : "") +
                                      "\n") +
-                  refusal_words(input, judgement) +
+                  refusal_words(input, judgement) + mistake_words(mistakes) +
                   check_table(report, input.robot, options.all ? Shown::findings : Shown::causes) +
                   origin_words(input.series.origin);
   checked.errors = static_cast<int>(
@@ -116,6 +126,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
                        {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
                        {"sufficient_profiles", need.sufficient},
                        {"own", own.empty() ? Json(nullptr) : Json(own)}};
+  json["likely_mistakes"] = mistakes;
   json["export_refuses"] = export_refusals(input, judgement);
   json["sampled_from"] = input.series.origin;
   json["wall_s"] = wall;

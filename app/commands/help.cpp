@@ -26,7 +26,9 @@ void print_help(const CLI::App& app, const std::vector<std::string>& words) {
     level = level->get_subcommand(word);
     before += " " + word;
   }
-  std::fputs(level->help(level == &app ? "" : before).c_str(), stdout);
+  // App::help() of the program would be that of the command which runs, which is this one.
+  std::fputs(level->get_formatter()->make_help(level, before, CLI::AppFormatMode::Normal).c_str(),
+             stdout);
 }
 
 }  // namespace

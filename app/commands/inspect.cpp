@@ -134,6 +134,12 @@ OrderedJson soles_json(const RobotModel& model) {
   return soles;
 }
 
+std::vector<std::string> posture_names(const RobotModel& model) {
+  std::vector<std::string> names;
+  for (const auto& [name, angles] : model.description().postures) names.push_back(name);
+  return names;
+}
+
 OrderedJson inspection_json(const RobotModel& model, const Stance& stance,
                             const std::vector<ModelWarning>& warnings) {
   OrderedJson joints = OrderedJson::array(), notes = OrderedJson::array();
@@ -153,6 +159,7 @@ OrderedJson inspection_json(const RobotModel& model, const Stance& stance,
           {"links", links},
           {"soles", soles_json(model)},
           {"profiles", model.profile_names()},
+          {"postures", posture_names(model)},
           {"gains", files.control.dtad},
           {"warnings", notes},
           {"assumptions", files.assumptions},
@@ -198,6 +205,11 @@ std::string joint_lines(const RobotModel& model) {
     text += "\n";
   }
   return text;
+}
+
+std::string posture_line(const RobotModel& model) {
+  const std::vector<std::string> names = posture_names(model);
+  return names.empty() ? "" : "Postures: " + text::join(names, ", ") + "\n";
 }
 
 std::string profile_lines(const RobotModel& model) {
@@ -276,7 +288,7 @@ std::string inspection_text(const RobotModel& model, const Stance& stance,
          text::fixed(cog.z(), 1) + " mm from " +
          (model.has_soles() ? "the middle between the sole frames" : "the root link") + "\n\n" +
          joint_lines(model) + "\n" + profile_lines(model) + "\n" + sole_lines(model) +
-         sensor_lines(model) + gain_lines(model) + "\n" +
+         sensor_lines(model) + gain_lines(model) + posture_line(model) + "\n" +
          list_lines("Assumptions", model.description().assumptions) + list_lines("Warnings", notes);
 }
 

@@ -49,6 +49,73 @@ TEST_F(CheckRepair, TheWalkIsConsistent) {
   EXPECT_TRUE(folder.files().empty());
 }
 
+// Every swing of this walk is too fast for the knees, and each of them has consequences.
+TEST_F(CheckRepair, OneEntryForEachCauseAndAllFindingsOnRequest) {
+  ASSERT_EQ(ayumi({"edit", "retime", kWalk, "--scale", "0.5", "-o", "fast.json", "-q"}).exit_code,
+            1);
+  const Output few = ayumi({"check", "fast.json", "-q"});
+  EXPECT_EQ(few.exit_code, 1);
+  EXPECT_LE(line_count(few.out), 40) << few.out;
+  EXPECT_NE(few.out.find("r_knee and l_knee, 18 times "), std::string::npos) << few.out;
+  EXPECT_NE(few.out.find("what follows from it: table_step ("), std::string::npos) << few.out;
+  EXPECT_NE(few.out.find("speed 146 % ("), std::string::npos) << few.out;
+  const Json json = Json::parse(ayumi({"check", "fast.json", "-q", "--json"}).out);
+  const Output all = ayumi({"check", "fast.json", "-q", "--all"});
+  const auto entries = [](const std::string& text) {
+    int count = 0;
+    for (const char* word : {"\n  error ", "\n  warning ", "\n  info "})
+      for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+        ++count;
+    return count;
+  };
+  EXPECT_EQ(entries(all.out), static_cast<int>(json["findings"].size()));
+  EXPECT_GT(entries(all.out), 20);
+  EXPECT_LE(entries(few.out), 10);
+  const Json& place = json["summary_at"]["max_joint_speed_ratio"];
+  EXPECT_NE(few.out.find("speed 146 % (" + place["where"].get<std::string>() + " at "),
+            std::string::npos);
+}
+
+TEST_F(CheckRepair, ErrorsAreJsonWithJson) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"check", "none.json", "--json"},
+        {"--json", "check", "none.json"},
+        {"check", "--wrong", "--json"},
+        {"--json", "chek"}}) {
+    const Output output = ayumi(words);
+    const Json json = Json::parse(output.out);
+    EXPECT_EQ(json["exit_code"], output.exit_code);
+    EXPECT_EQ(output.err, "ayumi: " + json["error"].get<std::string>() + "\n");
+  }
+}
+
+TEST_F(CheckRepair, HelpOfACommandIsThatOfItsOption) {
+  EXPECT_EQ(ayumi({"help"}).out, ayumi({"--help"}).out);
+  EXPECT_EQ(ayumi({"help", "check"}).out, ayumi({"check", "--help"}).out);
+  EXPECT_EQ(ayumi({"help", "new", "walk"}).out, ayumi({"new", "walk", "--help"}).out);
+  const Output wrong = ayumi({"help", "new", "wlak"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_EQ(wrong.err, "ayumi: help: ayumi new has no command 'wlak'; did you mean 'walk'?\n");
+}
+
+// A terminal of the program `script`; without it, colours are not tried.
+TEST_F(CheckRepair, ATerminalHasColoursUnlessTheyAreRefused) {
+  if (std::system("command -v script > /dev/null") != 0) GTEST_SKIP() << "no program `script`";
+  const auto shown = [&](const std::string& environment) {
+    const fs::path file = folder / "shown.txt";
+    const std::string command = environment + " script -qec '" + program_under_test() +
+                                " check -q " + kWalk + "' /dev/null > " + file.string() +
+                                " < /dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return contents(file);
+  };
+  const std::string green = "\x1b[32mconsistent\x1b[0m";
+  EXPECT_NE(shown("env -u NO_COLOR TERM=xterm").find(green), std::string::npos);
+  EXPECT_EQ(shown("NO_COLOR=1 TERM=xterm").find('\x1b'), std::string::npos);
+  EXPECT_EQ(shown("env -u NO_COLOR TERM=dumb").find('\x1b'), std::string::npos);
+  EXPECT_EQ(ayumi({"check", kWalk}).out.find('\x1b'), std::string::npos);
+}
+
 TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {
   const std::string people = ayumi({"check", kWalk, "-q"}).out;
   EXPECT_NE(people.find("  sampled from\n    joints      legs by inverse kinematics"),

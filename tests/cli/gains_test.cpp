@@ -96,6 +96,20 @@ TEST(TuneCommand, BettersItsObjectiveTheSameWayForAnyNumberOfThreads) {
   EXPECT_NE(json["gains"], json["start"]);
   command.back() = "2";
   EXPECT_EQ(run_here(command).out, first.out);
+  // The text of the author stays; the gains stand in it.
+  write(folder / "mine.json", "// Mine.\n" + contents(folder / "stand.json"));
+  command[1] = "mine.json";
+  command.insert(command.end(), {"-o", "tuned.json"});
+  const Output written = run_here(command);
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  EXPECT_EQ(Json::parse(written.out)["output"], "tuned.json");
+  const std::string text = contents(folder / "tuned.json");
+  EXPECT_EQ(text.rfind("// Mine.\n", 0), 0u);
+  const Json tuned = Json::parse(text, nullptr, true, true);
+  EXPECT_EQ(tuned["controller"]["gains"], Json::parse(written.out)["gains"]);
+  EXPECT_EQ(tuned["keyframes"],
+            Json::parse(contents(folder / "stand.json"), nullptr, true, true)["keyframes"]);
+  EXPECT_EQ(run_here(command).exit_code, 3);  // the file exists
   const Output wrong = run_here({"tune", "stand.json", "--tune", "kb"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_NE(wrong.err.find("gain 'kb' cannot be tuned"), std::string::npos) << wrong.err;

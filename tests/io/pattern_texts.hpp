@@ -133,7 +133,7 @@ inline const std::vector<Broken>& mistakes() {
       {"phases", R"([{"until": -1, "support": "both"}])",
        "-1 is too small; the smallest allowed value is 0"},
       {"phases", R"([{"until": 5000, "support": "both"}])",
-       "5000 is too large; the largest allowed value is 3600"},
+       "5000 is too large; the longest pattern is 3600 s. Times are in seconds: 5000 ms are 5 s"},
       {"phases", R"([{"until": 1, "support": "left", "swing": {"foot": "left", "to": [0,0]}}])",
        "/phases/0/swing/foot: the left foot carries the robot"},
       {"phases", R"([{"until": 1, "support": "left", "swing": {"foot": "right", "to": [0]}}])",

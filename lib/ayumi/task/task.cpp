@@ -4,6 +4,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/control/controller.hpp"
 #include "ayumi/control/viip_goals.hpp"
 #include "ayumi/limits/limit.hpp"
@@ -76,7 +77,14 @@ Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
   refuse_unknown_gains(pattern, robot);
   const std::string name = robot.limits(profile.empty() ? pattern.profile : profile).name;
   const double tick = robot.description().servo_period;
-  CommandSeries series = sample_at_servo_period(robot, pattern, progress, threads);
+  CommandSeries series = [&] {
+    try {
+      return sample_at_servo_period(robot, pattern, progress, threads);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_pattern) throw;
+      fail(error.code(), with_likely_mistakes(error.what(), robot, pattern));
+    }
+  }();
   std::string robot_name = robot.name();
   return {.pattern = std::move(pattern),
           .robot = std::move(robot),

@@ -24,6 +24,15 @@ Pattern read_pattern(const std::filesystem::path& path,
 Pattern pattern_of_text(const std::string& text, const std::filesystem::path& path,
                         const std::map<std::string, double>& set_parameters = {});
 
+/// A posture library ("ayumi.postures/1"): what patterns include.
+struct PostureLibrary {
+  std::string robot;    ///< as its author wrote it, a note; "" where there is none
+  bool degrees = true;  ///< angle unit of the file
+  std::map<std::string, std::map<std::string, double>> postures;  ///< by name and joint [rad], [m]
+};
+/// Throws as read_pattern().
+PostureLibrary read_posture_library(const std::filesystem::path& path);
+
 /// The robot to load: the bundled name as written, or the path as it holds from here.
 std::string robot_of(const Pattern& pattern);
 

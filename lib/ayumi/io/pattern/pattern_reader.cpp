@@ -68,6 +68,27 @@ void read_postures(const JsonNode& root, PatternScope& scope, Pattern& pattern) 
           "another file that is included has a posture of this name already; rename one");
 }
 
+struct LibraryFile {
+  PostureLibrary library;
+  std::string bytes;
+};
+
+LibraryFile read_library(const fs::path& path, Pattern& pattern) {
+  LibraryFile file;
+  file.bytes = read_file(path, kLargestFile);
+  const Json document = parse_json(file.bytes, path.string(), ErrorCode::bad_pattern);
+  const JsonNode root = root_of(document, path.string(), ErrorCode::bad_pattern);
+  require_format(root, "ayumi.postures/1");
+  only_pattern_keys(root, "postures_file");
+  PatternScope scope;
+  read_units(root, scope);
+  root.at("postures").expect_object();
+  read_postures(root, scope, pattern);
+  if (const auto robot = root.find("robot")) file.library.robot = robot->string();
+  file.library.degrees = scope.radians_per_unit != 1.0;
+  return file;
+}
+
 // The file that a value of the pattern names.
 fs::path named_file(const JsonNode& name, const fs::path& folder) {
   fs::path path = folder / name.string();
@@ -84,17 +105,7 @@ std::string read_includes(const JsonNode& root, const fs::path& folder, Pattern&
       include->value().is_array() ? include->items() : std::vector<JsonNode>{*include};
   std::string all;
   for (const JsonNode& name : names) {
-    const fs::path path = named_file(name, folder);
-    const std::string bytes = read_file(path, kLargestFile);
-    const Json document = parse_json(bytes, path.string(), ErrorCode::bad_pattern);
-    const JsonNode library = root_of(document, path.string(), ErrorCode::bad_pattern);
-    require_format(library, "ayumi.postures/1");
-    only_pattern_keys(library, "postures_file");
-    PatternScope scope;
-    read_units(library, scope);
-    library.at("postures").expect_object();
-    read_postures(library, scope, pattern);
-    all += bytes;
+    all += read_library(named_file(name, folder), pattern).bytes;
   }
   return all;
 }
@@ -303,6 +314,13 @@ Pattern pattern_of_text(const std::string& text, const fs::path& path,
 std::string robot_of(const Pattern& pattern) {
   if (!names_a_path(pattern.robot)) return pattern.robot;
   return (fs::path(pattern.file).parent_path() / pattern.robot).string();
+}
+
+PostureLibrary read_posture_library(const fs::path& path) {
+  Pattern pattern;
+  PostureLibrary library = read_library(path, pattern).library;
+  library.postures = std::move(pattern.postures);
+  return library;
 }
 
 }  // namespace ayumi

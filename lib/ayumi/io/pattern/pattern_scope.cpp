@@ -108,7 +108,12 @@ double read_angle(const JsonNode& node, PatternScope& scope) {
 }
 
 double read_time(const JsonNode& node, PatternScope& scope) {
-  return read_number(node, scope, 0, kLongestPattern);
+  const double value = read_number(node, scope, 0, kLargestNumber);
+  if (value > kLongestPattern)
+    node.complain(text::exact(value) + " is too large; the longest pattern is " +
+                  text::exact(kLongestPattern) + " s. Times are in seconds: " + text::exact(value) +
+                  " ms are " + text::exact(value / 1000) + " s");
+  return value;
 }
 
 std::vector<double> read_numbers(const JsonNode& node, PatternScope& scope, size_t least,

@@ -1,0 +1,315 @@
+#include "ayumi/check/likely_mistakes.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/foot_plan.hpp"
+
+namespace ayumi {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// A swing that lasts longer is not one of a walking robot [s]. Chosen: the slowest bundled motion
+// swings for 2 s, and seconds written as milliseconds are a thousand times too long.
+constexpr double kLongestSwing = 30;
+// The same for a motion in which no foot swings [s].
+constexpr double kLongestStand = 1000;
+// A COG below this share of its height at home is nearer to the ground than folded legs allow.
+// Chosen: the deepest squat of HOAP-1 is at 0.6.
+constexpr double kLowestCog = 0.3;
+// A foot lands beside the other one on its own side of it, or on the other side by less than this
+// [m]. Chosen: half the width of a small sole, so that a tightrope walk is no mistake.
+constexpr double kCrossing = 0.02;
+// A foot key this far above the other sole lifts the COG noticeably [m]. Chosen: a sole that clears
+// the ground.
+constexpr double kLiftedKey = 0.005;
+// A foot lower than this over the ground counts as standing on it [m].
+constexpr double kOnGround = 1e-3;
+// Mistakes of one kind that are named one by one.
+constexpr size_t kNamed = 2;
+
+std::string metres(double value) { return text::brief(value, 3) + " m"; }
+
+class Suspicions {
+ public:
+  Suspicions(const RobotModel& model, const Pattern& pattern) : model_(model), pattern_(pattern) {
+    try {
+      if (model.has_soles()) feet_.emplace(model, pattern);
+    } catch (const Error&) {  // the phases themselves are wrong, which their own message says
+    }
+  }
+
+  std::vector<std::string> all() {
+    angle_units();
+    if (feet_) {
+      times();
+      cog_heights();
+      footholds();
+      crossings();
+      zmp_keys();
+      missing_swings();
+      lifted_keys();
+    }
+    leg_keys();
+    return said_;
+  }
+
+ private:
+  /// The first few of one rule, and how many more there are.
+  void say(std::vector<std::string> found) {
+    const size_t more = found.size() > kNamed ? found.size() - kNamed : 0;
+    found.resize(found.size() - more);
+    if (more) found.back() += " (and " + std::to_string(more) + " more of this kind)";
+    said_.insert(said_.end(), found.begin(), found.end());
+  }
+
+  std::string key_place(size_t i) const { return pointer_of_keyframe(pattern_, i); }
+  std::string phase_place(size_t i) const { return pointer_of_phase(pattern_, i); }
+
+  // Degrees in a pattern whose unit is rad: no joint that has limits turns around that far.
+  void angle_units() {
+    if (pattern_.degrees) return;
+    std::vector<std::string> found;
+    const auto look = [&](const std::string& place, const std::string& joint, double angle) {
+      const int dof = model_.find_dof(joint);
+      if (dof < 0 || model_.dofs()[dof].prismatic || !model_.dofs()[dof].limited) return;
+      if (std::abs(angle) > 2 * std::numbers::pi)
+        found.push_back(place + ": " + joint + " is at " + text::brief(angle) +
+                        " rad, which is more than a turn; where this is meant in degrees, write "
+                        "\"units\": {\"angle\": \"deg\"}");
+    };
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      for (const auto& [joint, angle] : pattern_.keyframes[i].joints)
+        look(key_place(i), joint, angle);
+    for (const auto& [name, joints] : pattern_.postures)
+      for (const auto& [joint, angle] : joints) look("/postures/" + name, joint, angle);
+    say(found);
+  }
+
+  void times() {
+    std::vector<std::string> found;
+    for (size_t i = 0; i < feet_->phases().size(); ++i) {
+      const Phase& phase = feet_->phases()[i];
+      const double lasts = phase.until - feet_->begin(static_cast<int>(i));
+      if (phase.swing && lasts > kLongestSwing)
+        found.push_back(phase_place(i) + ": the swing lasts " + text::brief(lasts) +
+                        " s; times are in seconds, so where they are meant in ms, divide them by "
+                        "1000");
+    }
+    if (found.empty() && feet_->duration() > kLongestStand)
+      found.push_back("the motion lasts " + text::brief(feet_->duration()) +
+                      " s; times are in seconds, so where they are meant in ms, divide them by "
+                      "1000");
+    say(found);
+  }
+
+  // The COG at home, raised by what bent legs can still stretch.
+  double highest_cog(double home) const {
+    RobotData data(model_);
+    update_positions(model_, model_.rest_state(), data);
+    const Vector3d hip =
+        data.pose(model_.dofs()[model_.leg(Side::left).front()].body).translation();
+    const double reach = (sole_pose(model_, data, Side::left).translation() - hip).norm();
+    return home + leg_length(model_) - reach;
+  }
+
+  void cog_heights() {
+    const double home = default_cog_height(model_, {}), most = highest_cog(home);
+    std::vector<std::string> found;
+    const auto look = [&](const std::string& place, double height) {
+      if (height <= most && height >= kLowestCog * home) return;
+      std::string words = place + ": the COG height is " + metres(height) + ", but the COG of " +
+                          model_.name() + " is " + metres(home) +
+                          " above its soles at home, and at most " + metres(most);
+      for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
+        if (height * factor <= most && height * factor >= kLowestCog * home)
+          words += "; heights are in metres, and " + text::brief(height) + " " + unit + " are " +
+                   metres(height * factor);
+      found.push_back(words);
+    };
+    if (pattern_.cog_height != 0) look("/defaults/cog_height", pattern_.cog_height);
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      if (const auto& height = pattern_.keyframes[i].cog_height)
+        look(key_place(i), *height - feet_->ground(pattern_.keyframes[i].t));
+    say(found);
+  }
+
+  /// Where a swing lands, in the frame of the other sole.
+  Vector3d landing(size_t phase) const {
+    const Swing& swing = *feet_->phases()[phase].swing;
+    const Eigen::Isometry3d stance = feet_->pose(other(swing.foot), feet_->phases()[phase].until);
+    return stance.inverse() * swing.to.position;
+  }
+
+  void footholds() {
+    const double leg = leg_length(model_);
+    std::vector<std::string> found;
+    std::array<bool, 2> far = {};  // this foot stands at a foothold that was named
+    for (size_t i = 0; i < feet_->phases().size(); ++i) {
+      if (!feet_->phases()[i].swing) continue;
+      const Swing& swing = *feet_->phases()[i].swing;
+      const double distance = landing(i).norm();
+      bool& named = far[static_cast<size_t>(index(swing.foot))];
+      named = distance > leg && !far[static_cast<size_t>(index(other(swing.foot)))];
+      if (!named) continue;
+      found.push_back(phase_place(i) + ": the " + name_of(swing.foot) + " foot lands " +
+                      metres(distance) + " from the " + name_of(other(swing.foot)) +
+                      " foot, but the legs are " + metres(leg) + " long" +
+                      (distance > 10 * leg ? "; lengths are in metres" : ""));
+    }
+    say(found);
+  }
+
+  /// Whether the boxes around both soles overlap, where one is at this place from the other.
+  bool soles_overlap(const Vector3d& between) const {
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector2d& corner : model_.sole(Side::left).polygon) box.extend(corner);
+    const Eigen::Vector2d size = box.sizes();
+    return std::abs(between.x()) < size.x() && std::abs(between.y()) < size.y() &&
+           std::abs(between.z()) < kLiftedKey;
+  }
+
+  void crossings() {
+    std::vector<std::string> found;
+    for (size_t i = 0; i < feet_->phases().size(); ++i) {
+      if (!feet_->phases()[i].swing) continue;
+      const Swing& swing = *feet_->phases()[i].swing;
+      const double outwards = (swing.foot == Side::left ? 1 : -1) * landing(i).y();
+      if (outwards > -kCrossing) {
+        if (soles_overlap(landing(i)))
+          found.push_back(phase_place(i) + ": the " + name_of(swing.foot) + " foot lands on the " +
+                          name_of(other(swing.foot)) + " foot; left and right may be exchanged");
+        continue;
+      }
+      found.push_back(phase_place(i) + ": the " + name_of(swing.foot) + " foot lands " +
+                      text::fixed(-1000 * outwards, 0) + " mm to the " +
+                      name_of(other(swing.foot)) + " of the " + name_of(other(swing.foot)) +
+                      " foot, so the legs cross; left and right may be exchanged");
+    }
+    say(found);
+  }
+
+  // A single support in which the keys before and after its middle are under the other foot.
+  void zmp_keys() {
+    std::vector<std::string> found;
+    for (size_t i = 0; i < feet_->phases().size(); ++i) {
+      const Support support = feet_->phases()[i].support;
+      if (support != Support::left && support != Support::right) continue;
+      const ZmpKey::Place wrong =
+          support == Support::left ? ZmpKey::Place::right : ZmpKey::Place::left;
+      const double middle = 0.5 * (feet_->begin(static_cast<int>(i)) + feet_->phases()[i].until);
+      std::optional<size_t> before, after;
+      for (size_t k = 0; k < pattern_.keyframes.size(); ++k) {
+        if (!pattern_.keyframes[k].zmp) continue;
+        if (pattern_.keyframes[k].t <= middle) before = k;
+        if (pattern_.keyframes[k].t >= middle && !after) after = k;
+      }
+      const auto is_wrong = [&](std::optional<size_t> k) {
+        return k && pattern_.keyframes[*k].zmp->place == wrong;
+      };
+      if (!is_wrong(before) || !is_wrong(after)) continue;
+      const bool left = support == Support::left;
+      found.push_back(phase_place(i) + ": the robot stands on the " + (left ? "left" : "right") +
+                      " foot, but " + key_place(*before) + " and " + key_place(*after) +
+                      " put the ZMP under the " + (left ? "right" : "left") + " foot");
+    }
+    say(found);
+  }
+
+  void missing_swings() {
+    std::vector<std::string> found;
+    for (size_t i = 0; i < feet_->phases().size(); ++i) {
+      const Phase& phase = feet_->phases()[i];
+      if (phase.swing || phase.viip ||
+          (phase.support != Support::left && phase.support != Support::right))
+        continue;
+      const Side idle = phase.support == Support::left ? Side::right : Side::left;
+      const double begin = feet_->begin(static_cast<int>(i)), middle = 0.5 * (begin + phase.until);
+      const Eigen::Isometry3d now = feet_->pose(idle, middle);
+      const double height =
+          now.translation().z() - feet_->pose(other(idle), middle).translation().z();
+      const double moved =
+          (feet_->pose(idle, phase.until).translation() - feet_->pose(idle, begin).translation())
+              .norm();
+      if (std::abs(height) < kOnGround && moved < kOnGround)
+        found.push_back(phase_place(i) + ": the robot stands on the " + name_of(other(idle)) +
+                        " foot alone, but the " + name_of(idle) +
+                        " foot stays on the ground; its swing may be missing");
+    }
+    say(found);
+  }
+
+  // The COG keeps its height above the mean of both soles, which a lifted foot raises by half.
+  void lifted_keys() {
+    const bool has_height = std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                                        [](const Keyframe& key) { return key.cog_height; });
+    if (has_height) return;
+    std::vector<std::string> found;
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
+      const Keyframe& key = pattern_.keyframes[i];
+      for (const Side side : {Side::left, Side::right}) {
+        const auto& foot = key.feet[static_cast<size_t>(index(side))];
+        if (!foot || supports(feet_->support(key.t), side)) continue;
+        const double lift = foot->position.z() - feet_->pose(other(side), key.t).translation().z();
+        if (lift > kLiftedKey)
+          found.push_back(key_place(i) + ": the " + name_of(side) + " foot is " +
+                          text::fixed(1000 * lift, 0) +
+                          " mm up, and the COG rises by half of it, because without keys its "
+                          "height is above the mean of both soles; keep the COG down with keys "
+                          "of \"cog\": {\"height\": ...}, or lower /defaults/cog_height");
+      }
+    }
+    say(found);
+  }
+
+  void leg_keys() {
+    std::vector<std::string> found;
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      for (const auto& [joint, angle] : pattern_.keyframes[i].joints) {
+        const int dof = model_.find_dof(joint);
+        const auto in = [&](Side side) {
+          const auto& leg = model_.leg(side);
+          return std::find(leg.begin(), leg.end(), dof) != leg.end();
+        };
+        if (dof < 0 || !model_.has_soles() || (!in(Side::left) && !in(Side::right))) continue;
+        found.push_back(key_place(i) + ": " + joint +
+                        " is a joint of a leg; with such a key, every leg joint follows its keys "
+                        "alone, and no leg is solved from the feet and the COG; leave it out, and "
+                        "give the COG, the feet or the torso instead");
+        break;
+      }
+    say(found);
+  }
+
+  const RobotModel& model_;
+  const Pattern& pattern_;
+  std::optional<FootPlan> feet_;
+  std::vector<std::string> said_;
+};
+
+}  // namespace
+
+std::vector<std::string> likely_mistakes(const RobotModel& model, const Pattern& pattern) {
+  if (pattern.table) return {};  // nobody wrote its values by hand
+  return Suspicions(model, pattern).all();
+}
+
+std::string with_likely_mistakes(const std::string& message, const RobotModel& model,
+                                 const Pattern& pattern) {
+  const std::vector<std::string> found = likely_mistakes(model, pattern);
+  return found.empty() ? message : message + "; likely cause: " + text::join(found, "; ");
+}
+
+}  // namespace ayumi

@@ -1,0 +1,149 @@
+// Each test plants one mistake into a sound pattern and reads what it is called.
+
+#include "ayumi/check/likely_mistakes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/base/text.hpp"
+#include "tests/support/hoap1.hpp"
+
+using namespace ayumi;
+using namespace ayumi::test;
+
+namespace {
+
+Pattern sound_walk() {
+  Pattern pattern = walk_pattern(hoap1(), walk_defaults(hoap1()));
+  pattern.file = "walk.json";
+  return pattern;
+}
+
+/// The mistakes of the walk after `plant`.
+std::vector<std::string> mistakes_after(const std::function<void(Pattern&)>& plant) {
+  Pattern pattern = sound_walk();
+  plant(pattern);
+  return likely_mistakes(hoap1(), pattern);
+}
+
+/// One sentence, or two and a count, that begins at `place` and contains `words`.
+void expect_called(const std::vector<std::string>& mistakes, const std::string& place,
+                   const std::string& words) {
+  ASSERT_FALSE(mistakes.empty());
+  EXPECT_EQ(mistakes.front().rfind(place, 0), 0u) << mistakes.front();
+  EXPECT_NE(mistakes.front().find(words), std::string::npos) << mistakes.front();
+}
+
+size_t nth_swing(const Pattern& pattern, int n) {
+  for (size_t i = 0; i < pattern.phases.size(); ++i)
+    if (pattern.phases[i].swing && n-- == 0) return i;
+  ADD_FAILURE() << "too few swings";
+  return 0;
+}
+
+}  // namespace
+
+TEST(LikelyMistakes, SoundPatternsHaveNone) {
+  for (const Pattern& pattern :
+       {sound_walk(), stand_pattern(hoap1(), 1), sway_pattern(hoap1(), sway_defaults(hoap1()))})
+    EXPECT_EQ(text::join(likely_mistakes(hoap1(), pattern), "\n"), "");
+}
+
+TEST(LikelyMistakes, DegreesDeclaredAsRadians) {
+  const auto mistakes = mistakes_after([](Pattern& pattern) {
+    pattern.degrees = false;
+    pattern.keyframes[1].joints["l_elbow"] = -60;
+  });
+  expect_called(mistakes, "/keyframes/1: l_elbow is at -60 rad", "\"angle\": \"deg\"");
+  // The same angle in a file in degrees is 1 rad.
+  EXPECT_TRUE(mistakes_after([](Pattern& pattern) {
+                pattern.keyframes[1].joints["l_elbow"] = -1;
+              }).empty());
+}
+
+TEST(LikelyMistakes, TimesInMilliseconds) {
+  const auto mistakes = mistakes_after([](Pattern& pattern) {
+    for (Phase& phase : pattern.phases) phase.until *= 100;
+    for (Keyframe& key : pattern.keyframes) key.t *= 100;
+  });
+  expect_called(mistakes, "/phases/1: the swing lasts 45.1 s", "divide them by 1000");
+}
+
+TEST(LikelyMistakes, CogHeightInMillimetresAndFarTooHigh) {
+  expect_called(mistakes_after([](Pattern& pattern) { pattern.cog_height = 225; }),
+                "/defaults/cog_height: the COG height is 225 m", "225 mm are 0.225 m");
+  const auto high =
+      mistakes_after([](Pattern& pattern) { pattern.keyframes[0].cog_height = 2.05; });
+  expect_called(high, "/keyframes/0: the COG height is 2.05 m", "0.245 m above its soles at home");
+  EXPECT_EQ(high.front().find("mm are"), std::string::npos) << high.front();
+}
+
+// The next step of the other foot is as far from this foothold, but it is not the mistake.
+TEST(LikelyMistakes, AFootholdThatIsTooFarIsNamedAlone) {
+  const Pattern walk = sound_walk();
+  const size_t phase = nth_swing(walk, 2);
+  const auto mistakes =
+      mistakes_after([&](Pattern& pattern) { pattern.phases[phase].swing->to.position.x() = 0.9; });
+  EXPECT_EQ(mistakes.size(), 1u);
+  expect_called(mistakes, "/phases/" + std::to_string(phase) + ": the right foot lands 0.8",
+                "but the legs are 0.237 m long");
+}
+
+TEST(LikelyMistakes, FeetThatCross) {
+  const Pattern walk = sound_walk();
+  const size_t phase = nth_swing(walk, 1);
+  const auto mistakes =
+      mistakes_after([&](Pattern& pattern) { pattern.phases[phase].swing->to.position.y() *= -1; });
+  expect_called(mistakes, "/phases/" + std::to_string(phase), "on the right foot");
+  const auto crossed =
+      mistakes_after([&](Pattern& pattern) { pattern.phases[phase].swing->to.position.y() *= -3; });
+  expect_called(crossed, "/phases/" + std::to_string(phase) + ": the left foot lands 78 mm to the",
+                "left and right may be exchanged");
+}
+
+TEST(LikelyMistakes, ZmpUnderTheFootInTheAir) {
+  const auto mistakes = mistakes_after([](Pattern& pattern) {
+    for (Keyframe& key : pattern.keyframes)
+      if (key.zmp && key.zmp->place == ZmpKey::Place::left)
+        key.zmp->place = ZmpKey::Place::right;
+      else if (key.zmp && key.zmp->place == ZmpKey::Place::right)
+        key.zmp->place = ZmpKey::Place::left;
+  });
+  expect_called(mistakes, "/phases/1: the robot stands on the left foot",
+                "put the ZMP under the right foot");
+  EXPECT_EQ(mistakes.size(), 2u);
+  EXPECT_NE(mistakes.back().find("7 more of this kind"), std::string::npos) << mistakes.back();
+}
+
+TEST(LikelyMistakes, AMissingSwing) {
+  const Pattern walk = sound_walk();
+  const size_t phase = nth_swing(walk, 2);
+  expect_called(mistakes_after([&](Pattern& pattern) { pattern.phases[phase].swing.reset(); }),
+                "/phases/" + std::to_string(phase), "its swing may be missing");
+}
+
+TEST(LikelyMistakes, AKeyOfALegJoint) {
+  expect_called(mistakes_after([](Pattern& pattern) { pattern.keyframes[1].joints["l_knee"] = 1; }),
+                "/keyframes/1: l_knee is a joint of a leg", "no leg is solved");
+}
+
+TEST(LikelyMistakes, AFootKeyThatLiftsTheCog) {
+  Pattern pattern = stand_pattern(hoap1(), 3);
+  pattern.phases.assign(3, {});
+  for (int i = 0; i < 3; ++i) pattern.phases[static_cast<size_t>(i)].until = 1 + i;
+  pattern.phases[1].support = Support::left;
+  pattern.keyframes.clear();
+  for (const double height : {0.0, 0.03, 0.0}) {
+    Keyframe key;
+    key.t = 1 + 0.5 * static_cast<double>(pattern.keyframes.size());
+    key.feet[1] = Foothold{{0, -0.039, height}};
+    pattern.keyframes.push_back(key);
+  }
+  const auto mistakes = likely_mistakes(hoap1(), pattern);
+  expect_called(mistakes, "/keyframes/1: the right foot is 30 mm up", "the COG rises by half");
+  // With a key of the height, the author has decided.
+  pattern.keyframes[0].cog_height = 0.23;
+  EXPECT_TRUE(likely_mistakes(hoap1(), pattern).empty());
+}
