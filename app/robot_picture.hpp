@@ -14,7 +14,8 @@ struct RobotPicture {
   std::vector<std::string> notes;  ///< what is drawn otherwise than the robot's files say
 };
 
-/// In its home posture, or at the joint angles `theta` [rad]. `marks`: with the outlines of the soles, the axes of the joints and an arrow ahead.
+/// In its home posture, or at the joint angles `theta` [rad]. `marks`: with the outlines of the
+/// soles, the axes of the joints and an arrow ahead.
 RobotPicture draw_robot(const RobotModel& model, const std::string& view, bool marks,
                         const Eigen::VectorXd* theta = nullptr);
 

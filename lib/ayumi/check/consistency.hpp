@@ -17,7 +17,7 @@ struct ConsistencyReport {
   std::vector<Finding> findings;  ///< errors first, then by time
   CheckSummary summary;
   FigurePlaces summary_at;  ///< where each figure of the summary has its value
-  std::string profile;  ///< actuator profile judged against
+  std::string profile;      ///< actuator profile judged against
 };
 
 /// Throws Error(usage) for an unknown tolerance name.
