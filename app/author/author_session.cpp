@@ -219,7 +219,7 @@ void AuthorSession::refresh() {
     if (here && at.line == 0)
       (*next->error)["line"] = line_at(text, nearest_value(text, at.pointer).begin);
   } catch (const Error& error) {
-    next->error = {{"message", error.what()}};
+    next->error = OrderedJson::object({{"message", error.what()}});
   }
   publish(std::move(next));
 }
@@ -446,6 +446,9 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
   } catch (const std::exception& error) {
     news["error"] = error.what();
   }
+  // From here on another job may start: whoever sees the result below may ask for one at once.
+  // start_job() joins this thread first.
+  job_runs_ = false;
   if (result) {
     // A result of a text that is no longer there would be shown beside another motion.
     const std::lock_guard lock(reading_);
@@ -461,7 +464,6 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
   news["progress"] = 1;
   news["text"] = "";
   news["done"] = true;
-  job_runs_ = false;
   tell("job", news);
 }
 

@@ -36,4 +36,11 @@ auto at_place(const SourcePlace& place, const Work& work) {
   }
 }
 
+/// Throws `error` again with another message; its place, if it has one, stays.
+[[noreturn]] inline void throw_with_message(const Error& error, const std::string& message) {
+  if (const auto* const placed = dynamic_cast<const PlacedError*>(&error))
+    throw PlacedError(error.code(), message, placed->place());
+  throw Error(error.code(), message);
+}
+
 }  // namespace ayumi

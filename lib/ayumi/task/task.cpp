@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/control/controller.hpp"
@@ -82,7 +83,7 @@ Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
       return sample_at_servo_period(robot, pattern, progress, threads);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::bad_pattern) throw;
-      fail(error.code(), with_likely_mistakes(error.what(), robot, pattern));
+      throw_with_message(error, with_likely_mistakes(error.what(), robot, pattern));
     }
   }();
   std::string robot_name = robot.name();
