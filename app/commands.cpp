@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <new>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/counted.hpp"
@@ -19,6 +21,7 @@
 #include "help.hpp"
 #include "option_checks.hpp"
 #include "signals.hpp"
+#include "terminal.hpp"
 
 namespace ayumi::app {
 
@@ -67,7 +70,9 @@ int exit_code_of(ErrorCode code) {
   }
 }
 
-void complain(const std::string& message) { std::fprintf(stderr, "ayumi: %s\n", message.c_str()); }
+void complain(const std::string& message) {
+  std::fprintf(stderr, "ayumi: %s\n", text::printable(message).c_str());
+}
 
 void add_global_options(CLI::App& app, Context& context) {
   app.set_help_flag("-h,--help", "Print this page.");
@@ -200,6 +205,14 @@ int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
     return failed(context, "stopped", 130);
   } catch (const Error& error) {
     return failed(context, error.what(), exit_code_of(error.code()));
+  } catch (const std::bad_alloc&) {
+    return failed(context,
+                  "there is not enough memory for this; take a shorter motion, fewer samples or "
+                  "a machine with more memory",
+                  exit_code_of(ErrorCode::bad_file));
+  } catch (const fs::filesystem_error& error) {
+    return failed(context, error.path1().string() + ": " + error.code().message(),
+                  exit_code_of(ErrorCode::bad_file));
   } catch (const std::exception& error) {
     return failed(context, std::string("internal error: ") + error.what(), 5);
   }
@@ -209,7 +222,9 @@ int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
 }  // namespace
 
 void Context::print(const std::string& text) const {
-  if (!json) std::fwrite(text.data(), 1, text.size(), stdout);
+  if (json) return;
+  const std::string shown = safe_for_terminal(text);
+  std::fwrite(shown.data(), 1, shown.size(), stdout);
 }
 
 void Context::print_json(const std::string& object) const {

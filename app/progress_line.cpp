@@ -38,8 +38,9 @@ struct ProgressLine {
     if (terminal)
       draw(event, now);
     else if (fresh || event.detail.starts_with("iteration "))
-      std::fprintf(stderr, "%s%s%s\n", event.stage.c_str(), event.detail.empty() ? "" : ": ",
-                   event.detail.c_str());
+      std::fprintf(
+          stderr, "%s\n",
+          text::printable(event.stage + (event.detail.empty() ? "" : ": ") + event.detail).c_str());
     if (event.fraction >= 1) finish();
   }
 
@@ -51,12 +52,12 @@ struct ProgressLine {
     const double spent = std::chrono::duration<double>(now - begin).count();
     std::string bar(20, ' ');
     std::fill_n(bar.begin(), percent / 5, '#');
-    std::string line = "\r" + stage;
+    std::string line = stage;
     if (event.fraction >= 0) line += " [" + bar + "] " + std::to_string(percent) + " %";
     if (event.fraction > 0.02 && event.fraction < 1 && spent > 0.5)
       line += ", " + text::fixed(spent * (1 / event.fraction - 1), 0) + " s left";
     if (!event.detail.empty()) line += "  " + event.detail;
-    std::fprintf(stderr, "%s\033[K", line.c_str());
+    std::fprintf(stderr, "\r%s\033[K", text::printable(line).c_str());
     std::fflush(stderr);
   }
 

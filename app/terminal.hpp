@@ -1,5 +1,5 @@
 #pragma once
-// Colours on a terminal.
+// Text on a terminal: its colours, and what keeps names in files from steering it.
 
 #include <string>
 
@@ -14,7 +14,11 @@ bool shows_colours();
 /// The words in a colour where standard output shows colours, else as they are.
 std::string painted(Paint paint, const std::string& words);
 
+/// The text as it may be printed: the colours of painted() stay where standard output shows them,
+/// and every other control character is written out (text::printable).
+std::string safe_for_terminal(const std::string& text);
+
 /// Clears the screen and its history where standard output is a terminal.
-std::string clear_screen();
+void clear_screen();
 
 }  // namespace ayumi::app

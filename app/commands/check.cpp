@@ -175,14 +175,16 @@ std::vector<fs::path> watched_files(const std::string& file, const Stamps& befor
 // `errors` is the number of the last check, or nothing.
 void check_once(Context& context, const CheckCommand& options, const std::string& file,
                 std::optional<int>& errors) {
-  const std::string head = clear_screen() + time_of_day();
+  const std::string head = time_of_day();
   try {
     Checked checked = checked_one(context, options, file);
+    if (!context.json) clear_screen();
     context.print(head + change_words(errors, checked.errors) + "\n" + checked.words);
     context.print_json(checked.json.dump());
     context.exit_code = checked.json["verdict"] == "consistent" ? 0 : 1;
     errors = checked.errors;
   } catch (const Error& error) {
+    if (!context.json) clear_screen();
     context.print(head + "\n" + painted(Paint::bad, error.what()) + "\n");
     context.print_json(Json{{"pattern", file}, {"error", error.what()}}.dump());
     context.exit_code = 3;

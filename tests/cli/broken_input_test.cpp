@@ -131,8 +131,15 @@ std::vector<Broken> broken_robots() {
               "hoap1 sidecar: dtad has no gain 'tau_y'"),
       sidecar("wrong_type", "\"servo_period\": 0.001", "\"servo_period\": \"fast\"",
               "/servo_period"),
+      sidecar("readings_older_than_the_motion", "\"latency\": 0.003", "\"latency\": 1e9",
+              "robot.json: /sensors/latency"),
       sidecar("key_twice", "\"servo_period\": 0.001", "\"servo_period\": 1, \"servo_period\": 1",
               "servo_period"),
+      {"name_that_steers_the_terminal",
+       [](const Folder&) {
+         return std::vector<std::string>{"inspect", "\x1b[2J\u202egone.urdf"};
+       },
+       "\\x1b[2J\\u202egone.urdf"},
       {"mesh_missing",
        [](const Folder& folder) -> std::vector<std::string> {
          write(folder / "robot.urdf",
@@ -340,6 +347,26 @@ TEST(SoundInput, IsTaken) {
     line.push_back("p.json");
     const Output output = run_program(line, folder.path());
     EXPECT_TRUE(output.exit_code == 0 || output.exit_code == 1) << command << ": " << output.err;
+    fs::remove_all(folder / "out");
+  }
+}
+
+// Names come from strangers' files and are printed, so none may steer the terminal of the reader.
+TEST(SoundInput, NamesAreShownWithoutControlCharacters) {
+  const Folder folder;
+  write(folder / "p.json",
+        replaced(kPattern, "\"robot\"", "\"name\": \"\\u001b[2J\\u202ekcehc\", \"robot\""));
+  for (const auto& [command, words] : pattern_commands()) {
+    std::vector<std::string> line = words;
+    line.erase(std::remove(line.begin(), line.end(), "--quiet"), line.end());
+    if (command == "run") line.push_back("--no-pictures");
+    line.push_back("p.json");
+    const Output output = run_program(line, folder.path());
+    EXPECT_TRUE(output.exit_code == 0 || output.exit_code == 1) << command << ": " << output.err;
+    for (const std::string& text : {output.out, output.err}) {
+      EXPECT_EQ(text.find('\x1b'), std::string::npos) << command << ": " << text;
+      EXPECT_EQ(text.find("\u202e"), std::string::npos) << command << ": " << text;
+    }
     fs::remove_all(folder / "out");
   }
 }

@@ -24,6 +24,38 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+// The bytes of the UTF-8 character that `text` begins with, its number in `code`; 0 when the bytes
+// are not UTF-8 (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
+size_t utf8_character(std::string_view text, char32_t& code) {
+  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  const size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3
+                        : first < 0xf5                                          ? 4
+                                                                                : 0;
+  if (length == 0 || length > text.size()) return 0;
+  code = length == 1 ? first : first & (0x7fu >> length);
+  for (size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+    code = code << 6 | (byte(i) & 0x3f);
+  }
+  const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+  if (overlong || (code >= 0xd800 && code <= 0xdfff) || code > 0x10ffff) return 0;
+  return length;
+}
+
+bool controls_a_terminal(char32_t code) {
+  if (code == '\n' || code == '\t') return false;
+  return code < 0x20 || (code >= 0x7f && code <= 0x9f) || code == 0x200e || code == 0x200f ||
+         (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+}
+
+std::string escaped(const char* mark, unsigned code, int digits) {
+  static const char* const kHex = "0123456789abcdef";
+  std::string text = mark;
+  for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) text += kHex[code >> shift & 0xf];
+  return text;
+}
+
 }  // namespace
 
 std::string exact(double value) {
@@ -70,6 +102,23 @@ std::string join(const std::vector<std::string>& items, std::string_view separat
     result += items[i];
   }
   return result;
+}
+
+std::string printable(std::string_view text) {
+  std::string shown;
+  shown.reserve(text.size());
+  while (!text.empty()) {
+    char32_t code = 0;
+    const size_t length = utf8_character(text, code);
+    if (length == 0)
+      shown += escaped("\\x", static_cast<unsigned char>(text.front()), 2);
+    else if (!controls_a_terminal(code))
+      shown += text.substr(0, length);
+    else
+      shown += code < 0x100 ? escaped("\\x", code, 2) : escaped("\\u", code, 4);
+    text.remove_prefix(std::max<size_t>(1, length));
+  }
+  return shown;
 }
 
 }  // namespace ayumi::text

@@ -280,7 +280,8 @@ void read_sensors(const JsonNode& node, SensorDescription& sensors) {
   if (const auto axes = node.find("gyro")) read_axes(*axes, sensors.gyro);
   if (const auto link = node.find("imu_link")) sensors.imu_link = link->string();
   if (const auto position = node.find("imu_position")) sensors.imu_position = position->vector3();
-  read_not_negative(node, "latency", sensors.latency);
+  // Readings older than one second are of no use to a balance law; the bound is that of a scenario.
+  if (const auto latency = node.find("latency")) sensors.latency = latency->number_within(0, 1);
   read_not_negative(node, "attitude_noise", sensors.attitude_noise);
   read_number(node, "attitude_bias", sensors.attitude_bias);
   read_not_negative(node, "gyro_noise", sensors.gyro_noise);

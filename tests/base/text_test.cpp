@@ -1,0 +1,55 @@
+#include "ayumi/base/text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace ayumi {
+namespace {
+
+TEST(PrintableText, KeepsWordsLinesAndTabsOfAnyLanguage) {
+  for (const std::string text : {"", "a walk\n\tof 4.3 s, 0.5°", "歩み", "z̈ ≤ g, 𝜃"})
+    EXPECT_EQ(text::printable(text), text);
+}
+
+TEST(PrintableText, WritesOutWhatSteersATerminal) {
+  EXPECT_EQ(text::printable("a\x1b[2Jb"), "a\\x1b[2Jb");
+  EXPECT_EQ(text::printable("over\rwritten"), "over\\x0dwritten");
+  EXPECT_EQ(text::printable("\a\b\x7f"), "\\x07\\x08\\x7f");
+  EXPECT_EQ(text::printable("\xc2\x9b"
+                            "31m"),
+            "\\x9b31m")
+      << "the control sequence introducer of Latin-1";
+  EXPECT_EQ(text::printable("\u202egnp.\u202c"), "\\u202egnp.\\u202c") << "right-to-left override";
+  EXPECT_EQ(text::printable("\u2066x\u2069\u200f"), "\\u2066x\\u2069\\u200f");
+  EXPECT_EQ(text::printable(std::string("a\0b", 3)), "a\\x00b");
+}
+
+TEST(PrintableText, WritesOutBytesThatAreNotUtf8) {
+  EXPECT_EQ(text::printable("caf\xe9"), "caf\\xe9") << "cut off at the end";
+  EXPECT_EQ(text::printable("caf\xe9 au lait"), "caf\\xe9 au lait");
+  EXPECT_EQ(text::printable("\xc0\x9b"), "\\xc0\\x9b") << "an overlong form of escape";
+  EXPECT_EQ(text::printable("\xe0\x82\x9b"), "\\xe0\\x82\\x9b") << "an overlong form";
+  EXPECT_EQ(text::printable("\xed\xa0\x80"), "\\xed\\xa0\\x80") << "half of a surrogate pair";
+  EXPECT_EQ(text::printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80") << "above U+10FFFF";
+  EXPECT_EQ(text::printable("\x80\xff"), "\\x80\\xff");
+}
+
+// Whatever the bytes are, nothing that steers a terminal is left, and a second pass changes
+// nothing.
+TEST(PrintableText, IsPrintableForAnyBytes) {
+  unsigned state = 12345;
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::string bytes;
+    for (int i = 0; i < 12; ++i) {
+      state = state * 1664525u + 1013904223u;
+      bytes += static_cast<char>(state >> 24);
+    }
+    const std::string shown = text::printable(bytes);
+    for (const unsigned char c : shown) {
+      EXPECT_TRUE((c >= 0x20 && c != 0x7f) || c == '\n' || c == '\t') << int{c};
+    }
+    EXPECT_EQ(text::printable(shown), shown);
+  }
+}
+
+}  // namespace
+}  // namespace ayumi
