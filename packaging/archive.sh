@@ -16,10 +16,10 @@ root=$tree/$name
 mkdir -p "$root"/{bin,lib/ayumi,share}
 
 cp -r "$prefix/share/." "$root/share/"
-programs=("$prefix/bin/ayumi")
+programs=("$prefix/bin/ayumi" "$prefix/libexec/ayumi/ayumi-mesh-reader")
 if command -v ffmpeg >/dev/null; then programs+=("$(command -v ffmpeg)"); fi
 cp "${programs[@]}" "$root/lib/ayumi/"
-strip "$root/lib/ayumi/ayumi"
+strip "$root/lib/ayumi/ayumi" "$root/lib/ayumi/ayumi-mesh-reader"
 
 # Every library below the programs but those of libc, which belong to the kernel and the loader. The
 # first picture loads OSMesa.

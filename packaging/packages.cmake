@@ -57,8 +57,8 @@ endif()
 set(CPACK_DEBIAN_AYUMI_PACKAGE_RECOMMENDS ffmpeg)
 set(CPACK_DEBIAN_AYUMI_PACKAGE_SUGGESTS "ayumi-doc, python3-ayumi")
 set(CPACK_DEBIAN_LIBAYUMI-DEV_PACKAGE_DEPENDS
-    "libeigen3-dev, coinor-libipopt-dev, libceres-dev, liburdfdom-dev, libtinyxml-dev, \
-libassimp-dev, nlohmann-json3-dev, libssl-dev, zlib1g-dev, libzstd-dev, libzip-dev, libyaml-cpp-dev, \
+    "ayumi (= ${PROJECT_VERSION}), libeigen3-dev, coinor-libipopt-dev, libceres-dev, liburdfdom-dev, libtinyxml-dev, \
+nlohmann-json3-dev, libssl-dev, zlib1g-dev, libzstd-dev, libzip-dev, libyaml-cpp-dev, \
 libosmesa6, libegl-dev, libjpeg62-turbo-dev, libcairo2-dev")
 set(CPACK_DEBIAN_LIBAYUMI-DEV_PACKAGE_RECOMMENDS libmujoco-dev)
 if(Python_FOUND)

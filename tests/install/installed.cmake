@@ -18,11 +18,20 @@ endfunction()
 
 # A copy in another place: nothing depends on where the build meant to install it.
 set(copy ${elsewhere}/moved)
-file(COPY ${stage}/bin ${stage}/share DESTINATION ${copy})
+file(COPY ${stage}/bin ${stage}/share ${stage}/libexec DESTINATION ${copy})
 run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${copy}/bin/ayumi check patterns/hoap1_walk.json)
 expect("hoap1_walk.json: consistent" "a bundled pattern by its name")
 run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${copy}/bin/ayumi robots)
 expect("hoap1" "the bundled robots")
+run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${copy}/bin/ayumi inspect hoap1)
+expect("20 DOF" "a robot with meshes")
+# The copy reads meshes by the program beside it: with another one there, it says so.
+find_program(another_program false REQUIRED)
+file(COPY_FILE ${another_program} ${copy}/libexec/ayumi/ayumi-mesh-reader)
+execute_process(COMMAND ${copy}/bin/ayumi inspect hoap1 ERROR_VARIABLE output RESULT_VARIABLE code
+                OUTPUT_QUIET WORKING_DIRECTORY ${elsewhere})
+expect("${copy}/libexec/ayumi/ayumi-mesh-reader: the mesh reader ended before it began"
+       "a broken reader of meshes (exit code ${code})")
 
 run(bash -c [=[source "$0"
 COMP_WORDS=(ayumi new walk --str) COMP_CWORD=3

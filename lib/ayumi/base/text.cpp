@@ -29,9 +29,12 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 size_t utf8_character(std::string_view text, char32_t& code) {
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
-  const size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3
-                        : first < 0xf5                                          ? 4
-                                                                                : 0;
+  const size_t length = first < 0x80   ? 1
+                        : first < 0xc2 ? 0
+                        : first < 0xe0 ? 2
+                        : first < 0xf0 ? 3
+                        : first < 0xf5 ? 4
+                                       : 0;
   if (length == 0 || length > text.size()) return 0;
   code = length == 1 ? first : first & (0x7fu >> length);
   for (size_t i = 1; i < length; ++i) {

@@ -1,34 +1,46 @@
-// Each node of the scene carries T = T_parent T_node; a vertex becomes s (T v) with the scale s per
-// axis, a normal the unit vector along (s T)^-T n. Where det(s T) < 0 the triangles are turned.
-
 #include "ayumi/io/robot/mesh.hpp"
 
-#include <assimp/config.h>
-#include <assimp/material.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <algorithm>
-#include <assimp/Importer.hpp>
-#include <charconv>
-#include <cmath>
-#include <cstring>
+#include <atomic>
+#include <csignal>
+#include <optional>
 
+#include "ayumi/base/child_process.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/in_parallel.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/robot/mesh_message.hpp"
+#include "ayumi/io/robot/mesh_reader_place.hpp"
 
 namespace ayumi {
 
 namespace {
 
 namespace fs = std::filesystem;
+using Exchange = ChildProcess::Exchange;
 
-// Triangles of all meshes of a robot. Chosen: at 96 bytes each they take 0.5 GB.
-constexpr size_t kMostTriangles = 5'000'000;
-// [bytes] Chosen: 400,000 facets of 50 bytes; of so many neither edges nor facets show.
-constexpr size_t kLargeStl = 20'000'000;
-// [deg] Chosen: sharper edges keep separate normals, the facets of round parts do not.
-constexpr float kCreaseAngle = 40.0f;
+// Readers side by side. Chosen: each takes 3 ms to start, and a robot has about 20 small meshes.
+constexpr size_t kMeshReaders = 4;
+// Companion files of one mesh. Chosen: an OBJ has one, a glTF a handful.
+constexpr int kMostCompanions = 64;
+constexpr size_t kMostCompanionBytes = size_t{1} << 30;
+constexpr size_t kLongestCompanionName = 4096;
+// [bytes] Chosen: a line or two of a message for people.
+constexpr size_t kLongestRefusal = 400;
+// An answer is received in pieces, so that one that states a size and ends takes no memory. Chosen.
+constexpr size_t kAnswerPiece = size_t{4} << 20;
+
+// The archive of the program brings its own shared libraries. The others are those of sanitizers.
+const std::vector<std::string> kReaderEnvironment = {"LD_LIBRARY_PATH", "ASAN_OPTIONS",
+                                                     "UBSAN_OPTIONS", "LSAN_OPTIONS"};
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kReaderErrors = true;  // where the sanitizer reports
+#else
+constexpr bool kReaderErrors = false;
+#endif
+
+const char* const kRemedy = "; export it again as STL, OBJ, COLLADA or glTF";
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -37,27 +49,50 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
-  Eigen::Matrix4d result;
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) result(row, column) = m[row][column];
-  return result;
+// What the reader says may come from the mesh file.
+std::string harmless(std::string words) {
+  if (words.size() > kLongestRefusal) words = words.substr(0, kLongestRefusal) + "...";
+  for (char& c : words)
+    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e) c = '?';
+  return words;
 }
 
-Eigen::Vector3d vector(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+std::string mebibytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
-float srgb(float linear) {
-  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-}
+// A mesh that a reader could not finish. Where other meshes were read before by the same reader,
+// they may be the reason.
+struct ReaderLost {
+  std::string message;
+  bool try_again = true;
+};
 
-class Collector {
+// One reader at a time, used for one mesh after the other.
+class MeshReader {
  public:
-  Collector(const aiScene& scene, const fs::path& path, const Eigen::Vector3d& scale)
-      : scene_(scene), path_(path), scale_(scale.asDiagonal()) {}
+  explicit MeshReader(const MeshReading& reading)
+      : reading_(reading),
+        program_(reading.program.empty() ? find_mesh_reader() : reading.program) {}
 
-  TriangleMesh collect() {
-    add_node(*scene_.mRootNode, Eigen::Matrix4d::Identity());
-    return std::move(mesh_);
+  TriangleMesh read(const MeshRequest& request) {
+    path_ = request.path;
+    if (!request.scale.allFinite()) complain("the scale is not finite");
+    const std::string bytes = read_file(path_);
+    if (bytes.empty()) complain("the mesh file is empty");
+    while (true) {
+      const bool fresh = !child_;
+      try {
+        if (fresh) child_.emplace(program_, kReaderEnvironment, kReaderErrors);
+        TriangleMesh mesh = ask_reader(request, bytes, fresh);
+        for (MeshPart& part : mesh.parts) part.texture_file = texture_of(part.texture_file);
+        return mesh;
+      } catch (const ReaderLost& lost) {
+        child_.reset();
+        if (fresh || !lost.try_again) complain(lost.message);
+      } catch (...) {
+        child_.reset();  // a question of the reader may be open
+        throw;
+      }
+    }
   }
 
  private:
@@ -65,166 +100,196 @@ class Collector {
     fail(ErrorCode::bad_file, path_.string() + ": " + message);
   }
 
-  void add_node(const aiNode& node, const Eigen::Matrix4d& parent) {
-    const Eigen::Matrix4d transform = parent * matrix(node.mTransformation);
-    for (unsigned i = 0; i < node.mNumMeshes; ++i)
-      add_mesh(*scene_.mMeshes[node.mMeshes[i]], transform);
-    for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(*node.mChildren[i], transform);
-  }
-
-  void add_mesh(const aiMesh& source, const Eigen::Matrix4d& transform) {
-    const Eigen::Matrix3d turn = scale_ * transform.topLeftCorner<3, 3>();
-    const Eigen::Vector3d shift = scale_ * transform.topRightCorner<3, 1>();
-    if (std::abs(turn.determinant()) < 1e-30) complain("a scale of zero flattens the mesh");
-    const Eigen::Matrix3d normal_turn = turn.inverse().transpose();
-    MeshPart part;
-    for (unsigned i = 0; i < source.mNumVertices; ++i) {
-      part.vertices.push_back((turn * vector(source.mVertices[i]) + shift).cast<float>());
-      if (!part.vertices.back().allFinite()) complain("a vertex is not finite; repair the mesh");
-      Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-      if (source.HasNormals()) normal = normal_turn * vector(source.mNormals[i]);
-      const bool usable = std::isfinite(normal.norm()) && normal.norm() > 1e-12;
-      part.normals.emplace_back(usable ? normal.normalized().cast<float>().eval()
-                                       : Eigen::Vector3f::Zero().eval());
-      if (source.HasTextureCoords(0))
-        part.uvs.emplace_back(source.mTextureCoords[0][i].x, source.mTextureCoords[0][i].y);
-    }
-    add_triangles(source, turn.determinant() < 0, part);
-    make_missing_normals(part);
-    add_material(source, part);
-    if (!part.triangles.empty()) mesh_.parts.push_back(std::move(part));
-  }
-
-  void add_triangles(const aiMesh& source, bool mirrored, MeshPart& part) {
-    for (unsigned i = 0; i < source.mNumFaces; ++i) {
-      const aiFace& face = source.mFaces[i];
-      if (face.mNumIndices != 3) continue;
-      std::array<std::uint32_t, 3> corners = {face.mIndices[0], face.mIndices[1], face.mIndices[2]};
-      for (const std::uint32_t corner : corners)
-        if (corner >= part.vertices.size()) complain("a triangle names a vertex that is not there");
-      if (mirrored) std::swap(corners[1], corners[2]);
-      part.triangles.push_back(corners);
-    }
-    total_ += part.triangles.size();
-    if (total_ > kMostTriangles)
-      complain("more than " + std::to_string(kMostTriangles) + " triangles; simplify the mesh");
-  }
-
-  // Where the file has none: the area-weighted mean of the triangles around the vertex.
-  static void make_missing_normals(MeshPart& part) {
-    std::vector<Eigen::Vector3f> sums(part.vertices.size(), Eigen::Vector3f::Zero());
-    for (const auto& [a, b, c] : part.triangles) {
-      const Eigen::Vector3f& at = part.vertices[a];
-      const Eigen::Vector3f area = (part.vertices[b] - at).cross(part.vertices[c] - at);
-      for (const std::uint32_t corner : {a, b, c}) sums[corner] += area;
-    }
-    for (size_t i = 0; i < sums.size(); ++i) {
-      if (!part.normals[i].isZero()) continue;
-      const float length = sums[i].norm();
-      part.normals[i] = length > 0 ? (sums[i] / length).eval() : Eigen::Vector3f::UnitZ().eval();
+  // The request and everything up to its answer.
+  TriangleMesh ask_reader(const MeshRequest& request, const std::string& bytes, bool fresh) {
+    companions_ = 0;
+    companion_bytes_ = 0;
+    child_->set_time(reading_.time);
+    send_request(request, bytes);
+    if (fresh) receive_hello();
+    while (true) {
+      const MeshMessageHead head = receive_head();
+      switch (head.kind) {
+        case MeshMessage::ask:
+          answer(receive_bytes(head.size, kLongestCompanionName));
+          break;
+        case MeshMessage::mesh:
+          return decode(receive_bytes(head.size, reading_.answer_size));
+        case MeshMessage::refusal:
+          complain(harmless(receive_bytes(head.size, reading_.answer_size)));
+        case MeshMessage::memory:
+          throw ReaderLost{"reading this mesh of " + std::to_string(bytes.size()) +
+                           " bytes takes more memory than the " +
+                           mebibytes(reading_.base_memory +
+                                     reading_.memory_per_byte * (bytes.size() + companion_bytes_)) +
+                           " that a file of its size may take; it is broken, or simplify it"};
+        default:
+          throw ReaderLost{"the mesh reader's answer is not valid (message " +
+                           std::to_string(static_cast<std::uint32_t>(head.kind)) + ")" + kRemedy};
+      }
     }
   }
 
-  void add_material(const aiMesh& source, MeshPart& part) const {
-    if (source.mMaterialIndex >= scene_.mNumMaterials) return;
-    const aiMaterial& material = *scene_.mMaterials[source.mMaterialIndex];
-    const std::string extension = lower_extension(path_);
-    aiString name;
-    material.Get(AI_MATKEY_NAME, name);
-    const bool invented =
-        extension == ".stl" || std::strcmp(name.C_Str(), AI_DEFAULT_MATERIAL_NAME) == 0;
-    aiColor4D color;
-    if (!invented && material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS) {
-      const bool linear = extension == ".gltf" || extension == ".glb";
-      part.color = {color.r, color.g, color.b, color.a};
-      if (linear) part.color.head<3>() = part.color.head<3>().unaryExpr(&srgb).eval();
-      float opacity = 1;
-      if (extension == ".obj" && material.Get(AI_MATKEY_OPACITY, opacity) == AI_SUCCESS)
-        part.color[3] = opacity;
-      part.has_color = true;
+  void send_request(const MeshRequest& request, const std::string& bytes) {
+    const std::string name = path_.filename().string();
+    MeshRequestHead about;
+    for (int i = 0; i < 3; ++i) about.scale[i] = request.scale[i];
+    about.base_memory = reading_.base_memory;
+    about.memory_per_byte = reading_.memory_per_byte;
+    about.cpu_time = reading_.cpu_time;
+    about.name_size = name.size();
+    send_head(MeshMessage::request, sizeof about + name.size() + bytes.size());
+    need(child_->send(&about, sizeof about));
+    need(child_->send(name.data(), name.size()));
+    need(child_->send(bytes.data(), bytes.size()));
+  }
+
+  void send_head(MeshMessage kind, size_t size) {
+    const MeshMessageHead head{kind, 0, size};
+    need(child_->send(&head, sizeof head));
+  }
+
+  void receive_hello() {
+    MeshMessageHead head;
+    const Exchange exchange = child_->receive(&head, sizeof head);
+    if (exchange == Exchange::closed)
+      fail(ErrorCode::bad_file, program_.string() + ": the mesh reader ended before it began (" +
+                                    child_->end().words() +
+                                    "); start it by itself to see why, or install Ayumi again");
+    need(exchange);
+    if (head.kind != MeshMessage::hello || head.size != kMeshMessageVersion)
+      fail(ErrorCode::bad_file,
+           program_.string() +
+               ": this is not the mesh reader of this version of Ayumi; install Ayumi as a whole");
+  }
+
+  MeshMessageHead receive_head() {
+    MeshMessageHead head;
+    need(child_->receive(&head, sizeof head));
+    return head;
+  }
+
+  std::string receive_bytes(std::uint64_t size, std::uint64_t most) {
+    if (size > most)
+      throw ReaderLost{"the mesh reader answers with " + std::to_string(size) +
+                       " bytes, more than the " + std::to_string(most) +
+                       " that are accepted; simplify the mesh"};
+    std::string bytes;
+    while (bytes.size() < size) {
+      const size_t got = bytes.size();
+      bytes.resize(got + std::min<size_t>(size - got, std::max(kAnswerPiece, got)));
+      need(child_->receive(bytes.data() + got, bytes.size() - got));
     }
-    aiString texture;
-    if (material.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == AI_SUCCESS && texture.length > 0)
-      part.texture_file = texture_of(texture.C_Str());
+    return bytes;
   }
 
-  // A path, or "data:" and the bytes of a picture inside the file; empty for bare texels.
-  std::string texture_of(std::string name) const {
-    if (const aiTexture* inside = scene_.GetEmbeddedTexture(name.c_str()))
-      return inside->mHeight > 0
-                 ? ""
-                 : "data:" + std::string(reinterpret_cast<char*>(inside->pcData), inside->mWidth);
-    std::replace(name.begin(), name.end(), '\\', '/');
-    if (name.starts_with("file://")) name.erase(0, 7);
-    return (path_.parent_path() / name).lexically_normal().string();
+  TriangleMesh decode(const std::string& bytes) const {
+    try {
+      return decode_mesh(bytes);
+    } catch (const Error& error) {
+      throw ReaderLost{std::string("the mesh reader's answer is not valid (") + error.what() + ")" +
+                       kRemedy};
+    }
   }
 
-  const aiScene& scene_;
-  const fs::path& path_;
-  Eigen::Matrix3d scale_;
-  TriangleMesh mesh_;
-  size_t total_ = 0;
+  // Throws ReaderLost unless the exchange is done.
+  void need(Exchange exchange) {
+    if (exchange == Exchange::done) return;
+    if (exchange == Exchange::too_late)
+      throw ReaderLost{"reading this mesh takes longer than " + text::brief(reading_.time) +
+                           " s; simplify the mesh, or give the machine less other work",
+                       false};
+    const ChildEnding ending = child_->end();
+    if (ending.signal == SIGXCPU)
+      throw ReaderLost{"reading this mesh takes more than " + std::to_string(reading_.cpu_time) +
+                           " s of the processor; it is broken, or simplify it",
+                       false};
+    throw ReaderLost{"the mesh reader crashed on this file (" + ending.words() +
+                     "), which is broken or hostile" + kRemedy};
+  }
+
+  // Sends the companion file of this name, or that there is none.
+  void answer(const std::string& name) {
+    if (++companions_ > kMostCompanions)
+      throw ReaderLost{"it names more than " + std::to_string(kMostCompanions) +
+                       " other files; merge them"};
+    const std::optional<std::string> bytes = companion(name);
+    const char there = 1;
+    send_head(MeshMessage::file, bytes ? 1 + bytes->size() : 0);
+    if (!bytes) return;
+    need(child_->send(&there, 1));
+    need(child_->send(bytes->data(), bytes->size()));
+  }
+
+  // A reader that a mesh has taken over may ask for any file: it gets none but those that may
+  // belong to a mesh.
+  std::optional<std::string> companion(const std::string& name) {
+    const fs::path relative = name;
+    const std::string extension = lower_extension(relative);
+    if (relative.is_absolute() || name.find('\0') != std::string::npos) return {};
+    if (extension != ".mtl" && extension != ".bin") return {};
+    const fs::path file = path_.parent_path() / relative;
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) return {};
+    try {
+      std::string bytes = read_file(file, kMostCompanionBytes - companion_bytes_);
+      companion_bytes_ += bytes.size();
+      return bytes;
+    } catch (const Error& error) {
+      complain(std::string("it needs ") + error.what());
+    }
+  }
+
+  // A path, or "data:" and the bytes of a picture inside the file.
+  std::string texture_of(std::string texture) const {
+    if (texture.empty()) return texture;
+    const bool inside = texture[0] == kTextureBytes;
+    texture.erase(0, 1);
+    if (inside) return "data:" + texture;
+    std::replace(texture.begin(), texture.end(), '\\', '/');
+    if (texture.starts_with("file://")) texture.erase(0, 7);
+    return (path_.parent_path() / texture).lexically_normal().string();
+  }
+
+  const MeshReading& reading_;
+  fs::path program_, path_;
+  std::optional<ChildProcess> child_;
+  int companions_ = 0;
+  size_t companion_bytes_ = 0;
 };
-
-// assimp believes COLLADA's numbers and fills the memory for a wrong one: no count and no index can
-// exceed the number of bytes.
-void check_collada(const std::string& bytes, const fs::path& path) {
-  const auto check = [&](const char* at, const char* end) {
-    while (at != end) {
-      while (at != end && std::isspace(static_cast<unsigned char>(*at))) ++at;
-      const char* const stop =
-          std::find_if(at, end, [](unsigned char c) { return std::isspace(c) != 0; });
-      if (at == stop) break;
-      size_t value = 0;
-      const auto [last, error] = std::from_chars(at, stop, value);
-      if (error != std::errc() || last != stop || value > bytes.size())
-        fail(ErrorCode::bad_file, path.string() + ": '" + std::string(at, stop) +
-                                      "' is no count or index of this file; export it again");
-      at = stop;
-    }
-  };
-  for (const auto& [begin, end] : {std::pair{"<p>", "<"}, {"<vcount>", "<"}, {" count=\"", "\""}})
-    for (size_t at = bytes.find(begin); at != std::string::npos; at = bytes.find(begin, at)) {
-      at += std::strlen(begin);
-      const size_t stop = std::min(bytes.find(end, at), bytes.size());
-      check(bytes.data() + at, bytes.data() + stop);
-      at = stop;
-    }
-}
 
 }  // namespace
 
-TriangleMesh load_mesh(const fs::path& path, const Eigen::Vector3d& scale) {
-  if (!scale.allFinite()) fail(ErrorCode::bad_file, path.string() + ": the scale is not finite");
-  const std::string bytes = read_file(path);
-  if (bytes.empty()) fail(ErrorCode::bad_file, path.string() + ": the mesh file is empty");
-  if (lower_extension(path) == ".dae") check_collada(bytes, path);
-  Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngle);
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
-                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = nullptr;
-  std::string reason;
-  try {
-    unsigned steps = aiProcess_Triangulate | aiProcess_GenSmoothNormals |
-                     aiProcess_JoinIdenticalVertices | aiProcess_SortByPType;
-    // STL has one normal per facet, often zero: round surfaces would look faceted, or edges round.
-    // Of very many facets neither shows, and assimp's search among them takes long.
-    if (lower_extension(path) == ".stl" && bytes.size() < kLargeStl)
-      steps |= aiProcess_ForceGenNormals;
-    scene = importer.ReadFile(path.string(), steps);
-    reason = importer.GetErrorString();
-  } catch (const std::exception& error) {
-    reason = error.what();
-  }
-  if (!scene || !scene->mRootNode)
-    fail(ErrorCode::bad_file, path.string() + ": cannot be read as a mesh (" + reason +
-                                  "); export it again as STL, OBJ, COLLADA or glTF");
-  TriangleMesh mesh = Collector(*scene, path, scale).collect();
-  if (mesh.parts.empty())
-    fail(ErrorCode::bad_file, path.string() + ": the mesh has no triangle; export it again");
-  return mesh;
+TriangleMesh load_mesh(const fs::path& path, const Eigen::Vector3d& scale,
+                       const MeshReading& reading) {
+  return MeshReader(reading).read({path, scale});
+}
+
+std::vector<TriangleMesh> load_meshes(const std::vector<MeshRequest>& requests,
+                                      MeshFailure& failure, const MeshReading& reading) {
+  std::vector<TriangleMesh> meshes(requests.size());
+  const size_t groups = std::min(kMeshReaders, requests.size());
+  std::vector<MeshFailure> failures(groups);
+  // Which reader reads which meshes does not depend on the machine. The first failure of each group
+  // is known, and so is the first of all.
+  const auto read_group = [&](size_t group) {
+    size_t i = group;
+    try {
+      MeshReader reader(reading);
+      for (; i < requests.size(); i += groups) meshes[i] = reader.read(requests[i]);
+    } catch (const Error&) {
+      failures[group] = {i, std::current_exception()};
+    }
+  };
+  std::atomic<bool> stop = false;
+  in_parallel(groups, static_cast<int>(groups), stop, read_group);
+  failure = {};
+  for (const MeshFailure& candidate : failures)
+    if (candidate.error && (!failure.error || candidate.request < failure.request))
+      failure = candidate;
+  if (failure.error)
+    for (size_t i = failure.request; i < meshes.size(); ++i) meshes[i] = {};
+  return meshes;
 }
 
 }  // namespace ayumi

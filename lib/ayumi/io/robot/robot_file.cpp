@@ -53,25 +53,37 @@ fs::path find_file(const std::string& name, const RobotSearch& search) {
 
 // What the robot touches with is always read; what it looks like only where it is drawn.
 void fill_meshes(RobotDescription& robot, bool visuals) {
-  std::map<std::string, TriangleMesh> loaded;
-  const auto fill = [&](std::vector<PlacedShape>& shapes, const std::string& link) {
+  std::vector<MeshRequest> requests;    // each mesh once
+  std::vector<std::string> first_link;  // that needs it
+  std::map<std::string, size_t> known;
+  std::vector<std::pair<MeshShape*, size_t>> wanted;
+  const auto want = [&](std::vector<PlacedShape>& shapes, const std::string& link) {
     for (PlacedShape& placed : shapes) {
       auto* shape = std::get_if<MeshShape>(&placed.shape);
       if (!shape) continue;
       const std::string key = shape->file + " " + text::exact(shape->scale.x()) + " " +
                               text::exact(shape->scale.y()) + " " + text::exact(shape->scale.z());
-      if (!loaded.contains(key)) try {
-          loaded[key] = load_mesh(shape->file, shape->scale);
-        } catch (const Error& error) {
-          fail(error.code(), robot.urdf_file + ": link " + link + ": mesh " + error.what());
-        }
-      shape->mesh = loaded[key];
+      const auto [place, fresh] = known.emplace(key, requests.size());
+      if (fresh) {
+        requests.push_back({shape->file, shape->scale});
+        first_link.push_back(link);
+      }
+      wanted.emplace_back(shape, place->second);
     }
   };
   for (LinkDescription& link : robot.links) {
-    if (visuals) fill(link.visuals, link.name);
-    fill(link.collisions, link.name);
+    if (visuals) want(link.visuals, link.name);
+    want(link.collisions, link.name);
   }
+  MeshFailure failure;
+  const std::vector<TriangleMesh> meshes = load_meshes(requests, failure);
+  if (failure.error) try {
+      std::rethrow_exception(failure.error);
+    } catch (const Error& error) {
+      fail(error.code(),
+           robot.urdf_file + ": link " + first_link[failure.request] + ": mesh " + error.what());
+    }
+  for (const auto& [shape, request] : wanted) shape->mesh = meshes[request];
 }
 
 }  // namespace

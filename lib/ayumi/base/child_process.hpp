@@ -1,0 +1,62 @@
+#pragma once
+// A program that runs beside this one, has nothing of it but one connection, and can be ended at
+// any time.
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ayumi {
+
+/// How a child process ended.
+struct ChildEnding {
+  int exit_code = -1;         ///< -1: a signal ended it, or it was ended by us
+  int signal = 0;             ///< 0: no signal
+  bool by_us = false;         ///< it did not end by itself and was killed
+  std::string words() const;  ///< "signal 11, Segmentation fault", "exit code 7", ...
+};
+
+/// A child process. Its standard input is one end of a socket on which it reads and writes;
+/// its standard output and standard error lead nowhere; every other open file of this process is
+/// closed in it. It is in a process group of its own, so Ctrl-C on a terminal reaches this process
+/// alone. Signals that this process blocks or ignores have their usual effect in the child.
+class ChildProcess {
+ public:
+  /// What became of an exchange of bytes.
+  enum class Exchange {
+    done,
+    closed,   ///< the child closed the connection, mostly because it has ended
+    too_late  ///< the time was over first
+  };
+
+  /// Starts `program` without arguments. Its environment has the variables of this process that
+  /// `environment` names, and no others. `errors`: standard error is that of this process. Throws
+  /// Error(bad_file) naming the program and the reason when it cannot be started.
+  ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& environment,
+               bool errors = false);
+  ~ChildProcess();  ///< kills it where it still runs
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// From now on, exchanges have `seconds` altogether before they are too late.
+  void set_time(double seconds);
+  Exchange send(const void* bytes, size_t size);
+  /// Receives exactly `size` bytes.
+  Exchange receive(void* bytes, size_t size);
+  /// Closes the connection and waits until the child has ended, for at most one second; then it
+  /// is killed.
+  ChildEnding end();
+
+ private:
+  bool wait_for(short events);
+
+  int socket_ = -1;
+  pid_t process_ = -1;
+  std::chrono::steady_clock::time_point deadline_;
+};
+
+}  // namespace ayumi

@@ -1,0 +1,68 @@
+#pragma once
+// What Ayumi and the program ayumi-mesh-reader send each other. Both run on the same machine, so
+// numbers have its byte order.
+//
+// The reader begins with a hello. Then, as often as wanted: Ayumi sends a request; the reader asks
+// for companion files, each of which Ayumi answers with a file; the reader ends with a mesh or with
+// a refusal. The reader ends when the connection is closed.
+//
+// A message is a head and `size` bytes:
+//   hello    nothing; the number `version` is in `size`
+//   request  MeshRequestHead, the name of the file, the bytes of the file
+//   ask      the path of a companion file, relative to the folder of the mesh
+//   file     nothing where there is no such file, else one byte (1) and the bytes of the file
+//   mesh     what encode_mesh() makes
+//   refusal  why the file is no mesh, for people
+//   memory   nothing: reading took more memory than the request allows
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "ayumi/geometry/shape.hpp"
+
+namespace ayumi {
+
+constexpr std::uint64_t kMeshMessageVersion = 1;
+
+enum class MeshMessage : std::uint32_t {
+  hello = 0x4d595901,  ///< no small number, so that another program is not taken for the reader
+  request,
+  ask,
+  file,
+  mesh,
+  refusal,
+  memory
+};
+
+struct MeshMessageHead {
+  MeshMessage kind = MeshMessage::refusal;
+  std::uint32_t unused = 0;
+  std::uint64_t size = 0;  ///< bytes that follow
+};
+
+struct MeshRequestHead {
+  double scale[3] = {1, 1, 1};
+  std::uint64_t base_memory = 0;      ///< [bytes] that reading may take, whatever the file's size
+  std::uint64_t memory_per_byte = 0;  ///< [bytes] more for each byte of the mesh and its companions
+  std::uint64_t cpu_time = 0;         ///< [s] of the processor for this mesh
+  std::uint64_t name_size = 0;        ///< bytes of the name
+};
+
+/// Triangles of all parts of a mesh file. Chosen: at 96 bytes each they take 0.5 GB.
+constexpr size_t kMostMeshTriangles = 5'000'000;
+
+/// The first byte of MeshPart::texture_file in an encoded mesh, which holds no resolved path: the
+/// name of a file as the mesh has it, or the bytes of a picture.
+constexpr char kTextureName = 'n', kTextureBytes = 'b';
+
+/// The mesh as bytes. The same mesh gives the same bytes.
+std::string encode_mesh(const TriangleMesh& mesh);
+
+/// The mesh in the bytes that a reader sent, which are not trusted: every count is compared with
+/// the bytes that are left before memory is taken, every index with the number of vertices, every
+/// number has to be finite, every normal a unit vector. Throws Error(bad_file) saying what is
+/// wrong.
+TriangleMesh decode_mesh(std::string_view bytes);
+
+}  // namespace ayumi
