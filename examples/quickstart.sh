@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 .ci/install_packages build
 jobs=$(nproc)
 cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release -DAYUMI_BUILD_TESTS=OFF
-cmake --build build/release --parallel $((jobs < 2 ? jobs : 2))
+cmake --build build/release --parallel $((jobs < 2 ? jobs : 2)) --target ayumi
 
 out=out/hoap1_walk
 status=0
