@@ -1,0 +1,15 @@
+// Answers of the mesh reader, which Ayumi does not trust. What is accepted is encoded as the same.
+
+#include <cmath>
+
+#include "ayumi/io/robot/mesh_message.hpp"
+#include "fuzz_target.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace ayumi;
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  TriangleMesh mesh;
+  if (!fuzz::accepts([&] { mesh = decode_mesh(bytes); })) return 0;
+  fuzz::expect(encode_mesh(mesh) == bytes, "an answer that was read and encoded is the same");
+  return 0;
+}
