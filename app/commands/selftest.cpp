@@ -1,5 +1,5 @@
 // Compares the results of this machine with those that every machine should give, bit for bit.
-// Hashes change with every change of the numbers: `ayumi selftest --json` prints the new ones.
+// Where a change is meant to move numbers, tests/update_selftest.sh writes the new hashes.
 
 #include <array>
 #include <nlohmann/json.hpp>

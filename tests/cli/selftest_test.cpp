@@ -37,6 +37,7 @@ TEST(Selftest, GivesTheCommittedHashesEverywhere) {
 // A robot with 1 % more mass in one link is another robot.
 TEST(Selftest, SaysWhatDiffers) {
   const Folder folder;
+  fs::create_directories(folder / "robots");
   fs::copy(fs::path(AYUMI_SOURCE_DIR) / "robots/hoap1", folder / "robots/hoap1",
            fs::copy_options::recursive);
   const fs::path urdf = folder / "robots/hoap1/robot.urdf";
