@@ -15,7 +15,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=0 UBSAN_OPTIONS=print_stacktrace=1
 
 short() {
-  local build folder count
+  local build count
   build=$(realpath "$1")
   folder=$(mktemp -d)
   trap 'rm -rf "$folder"' EXIT
