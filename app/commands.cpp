@@ -177,8 +177,23 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   return option_message(app, error);
 }
 
+// A message with long words of a file in it, such as a name of a megabyte, without its middle.
+std::string shortened(const std::string& message) {
+  constexpr size_t kMost = 2000;  // [bytes] Chosen: a screen of 25 lines
+  if (message.size() <= kMost) return message;
+  const auto whole = [&](size_t at) {  // not inside a character of UTF-8
+    while ((static_cast<unsigned char>(message[at]) & 0xc0) == 0x80 && at + 1 < message.size())
+      ++at;
+    return at;
+  };
+  const size_t begin = whole(kMost / 2), end = whole(message.size() - kMost / 2);
+  return message.substr(0, begin) + " ... (" + std::to_string(end - begin) + " bytes more) ... " +
+         message.substr(end);
+}
+
 // The error on standard error for people and, with --json, as an object on standard output.
-int failed(const Context& context, const std::string& message, int exit_code) {
+int failed(const Context& context, const std::string& text, int exit_code) {
+  const std::string message = shortened(text);
   complain(message);
   context.print_json(nlohmann::ordered_json{{"error", message}, {"exit_code", exit_code}}.dump(
       2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));

@@ -351,6 +351,21 @@ TEST(SoundInput, IsTaken) {
   }
 }
 
+// A word of a file may have a megabyte; what is said about it fits on a screen.
+TEST(LongMessage, LosesItsMiddle) {
+  const Folder folder;
+  write(folder / "p.json",
+        replaced(kPattern, "\"robot\"", "\"" + std::string(1'000'000, 'a') + "\": 1, \"robot\""));
+  for (const char* option : {"--quiet", "--json"}) {
+    const Output output = run_program({"check", "p.json", option}, folder.path());
+    EXPECT_EQ(output.exit_code, 3);
+    EXPECT_LT(output.err.size(), 2200u);
+    EXPECT_LT(output.out.size(), 2400u);
+    EXPECT_NE(output.err.find("p.json"), std::string::npos);
+    EXPECT_NE(output.err.find("bytes more"), std::string::npos);
+  }
+}
+
 // Names come from strangers' files and are printed, so none may steer the terminal of the reader.
 TEST(SoundInput, NamesAreShownWithoutControlCharacters) {
   const Folder folder;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ayumi/control/support_region.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -48,7 +49,7 @@ CaptureRegion capture_region(const RobotModel& model, const CommandSeries& serie
   region.impulse_per_length = model.mass() * w;
   for (int i = 0; i < directions; ++i) {
     const double angle = 2 * M_PI * i / directions;
-    region.normals.emplace_back(std::cos(angle), std::sin(angle));
+    region.normals.emplace_back(elementary::cos(angle), elementary::sin(angle));
   }
   region.support.assign(region.normals.size(), 0.0);
 
@@ -62,7 +63,7 @@ CaptureRegion capture_region(const RobotModel& model, const CommandSeries& serie
   double begin = 1;
   for (long j = std::min(k, end - 1) + 1; j < end; ++j) {
     if (same_support(sample_at(series, j - 1), sample_at(series, j))) continue;
-    const double left = std::exp(-w * series.dt * static_cast<double>(j - k));
+    const double left = elementary::exp(-w * series.dt * static_cast<double>(j - k));
     add(begin - left);
     begin = left;
     polygon = planned_support(model, sample_at(series, j));

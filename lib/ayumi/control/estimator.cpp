@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -54,7 +55,7 @@ Estimator::Estimator(const RobotModel& model, double dt)
     : model_(&model),
       data_(model),
       imu_(std::max(0, model.find_link(model.description().sensors.imu_link))),
-      filter_(1.0 - std::exp(-dt / kLoadFilterTime)) {
+      filter_(1.0 - elementary::exp(-dt / kLoadFilterTime)) {
   for (Side side : {Side::left, Side::right}) {
     const int i = static_cast<int>(side);
     sole_[i] = ConvexPolygon(model.sole(side).polygon);
@@ -93,7 +94,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   const Isometry3d sole_in_base = sole_pose(*model_, data_, e.stance);
   const double yaw =
       matrix_to_rpy(feet[stance].linear()).z() - matrix_to_rpy(R * sole_in_base.linear()).z();
-  const Matrix3d turn = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix();
+  const Matrix3d turn = elementary::turn_matrix(yaw, Vector3d::UnitZ());
   s.base.attitude = Quaterniond(Matrix3d(turn * R)).normalized();
   s.base_angular_velocity = turn * w;
   const Matrix3d attitude = s.base.attitude.toRotationMatrix();

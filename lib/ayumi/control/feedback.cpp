@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -61,7 +62,7 @@ double push_stiffness(double z_H, double z_d) { return 2 * kGravity * z_H / (z_d
 double landing_stiffness(double speed, double z_d) { return speed * speed / (z_d * z_d); }
 
 double low_pass_share(double dt, double omega, double tau) {
-  return 1.0 - std::exp(-dt * omega / tau);
+  return 1.0 - elementary::exp(-dt * omega / tau);
 }
 
 }  // namespace ayumi

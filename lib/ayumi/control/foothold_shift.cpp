@@ -13,6 +13,7 @@
 #include "ayumi/control/support_region.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/plan/foot_plan.hpp"
 
@@ -94,7 +95,7 @@ ConvexPolygon about_zmp(const ConvexPolygon& polygon, const Vector2d& center) {
 Vector2d error_after(const Vector2d& error, const ConvexPolygon& polygon, const Vector2d& zmp,
                      double omega, double time, double share) {
   if (time <= 0) return error;
-  const double growth = std::exp(omega * time), can = (growth - 1) * share;
+  const double growth = elementary::exp(omega * time), can = (growth - 1) * share;
   const Vector2d wanted = error * growth / can;
   return can * (wanted - (polygon.project(wanted + zmp) - zmp));
 }
@@ -139,7 +140,7 @@ void command_between(const CommandSeries& series, double phase, CommandSample& c
   mix(c.state.base.position, d.state.base.position, share);
   mix(c.state.base_velocity, d.state.base_velocity, share);
   mix(c.state.base_angular_velocity, d.state.base_angular_velocity, share);
-  c.state.base.attitude = c.state.base.attitude.slerp(share, d.state.base.attitude);
+  c.state.base.attitude = elementary::between(c.state.base.attitude, d.state.base.attitude, share);
   mix(c.cog, d.cog, share);
   mix(c.dcog, d.dcog, share);
   mix(c.ddcog, d.ddcog, share);
@@ -147,7 +148,7 @@ void command_between(const CommandSeries& series, double phase, CommandSample& c
   c.fz += share * (d.fz - c.fz);
   for (int i = 0; i < 2; ++i) {
     const Quaterniond from(c.feet[i].linear()), to(d.feet[i].linear());
-    c.feet[i].linear() = from.slerp(share, to).toRotationMatrix();
+    c.feet[i].linear() = elementary::between(from, to, share).toRotationMatrix();
     c.feet[i].translation() += share * (d.feet[i].translation() - c.feet[i].translation());
   }
 }
@@ -200,7 +201,7 @@ FootholdShift::Step FootholdShift::step_of(const PlannedSwing& swing) const {
 
 /// Share of a shift that the ZMP makes evenly within `time` which the DCM has made at its start.
 double FootholdShift::ramp_share(double time) const {
-  return time > 0 ? (1 - std::exp(-omega_ * time)) / (omega_ * time) : 1.0;
+  return time > 0 ? (1 - elementary::exp(-omega_ * time)) / (omega_ * time) : 1.0;
 }
 
 /// From the foot that stood to the one that has landed, evenly over the double support.
@@ -217,9 +218,10 @@ Vector2d FootholdShift::dcm_shift(double time_scale, const Vector2d& target) con
     shift += ramp_share(seconds_to(steps_[coming_ - 1].swing.rest)) * (after_ - shift);
   if (coming_ == steps_.size()) return shift;
   const Step& step = steps_[coming_];
-  const double time = seconds_to(step.swing.land), decay = std::exp(-omega_ * time / time_scale);
+  const double time = seconds_to(step.swing.land),
+               decay = elementary::exp(-omega_ * time / time_scale);
   shift += step.share * decay * (target - after_);
-  if (time_scale != 1) shift += (decay - std::exp(-omega_ * time)) * (step.dcm - step.zmp);
+  if (time_scale != 1) shift += (decay - elementary::exp(-omega_ * time)) * (step.dcm - step.zmp);
   return shift;
 }
 

@@ -11,6 +11,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -47,7 +48,7 @@ MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
     dx = unit(n - 2);
     zmp = unit(n - 1);
   }
-  const double filter = 1 - std::exp(-dt * w / p.zmp_filter);
+  const double filter = 1 - elementary::exp(-dt * w / p.zmp_filter);
   A.row(filtered) = unit(filtered) + filter * (zmp - unit(filtered));
   const RowVectorXd gap = A.row(filtered) - K * x - D * dx - unit(offset);
   A.row(offset) = unit(offset);

@@ -12,6 +12,7 @@
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
 
@@ -101,8 +102,7 @@ struct Stance {
       at.base.position[coordinate] += step;
     else if (coordinate < 6)
       at.base.attitude =
-          (Eigen::Quaterniond(Eigen::AngleAxisd(step, Vector3d::Unit(coordinate - 3))) *
-           at.base.attitude)
+          (elementary::turn_quaternion(step, Vector3d::Unit(coordinate - 3)) * at.base.attitude)
               .normalized();
     else
       at.theta[coordinate - 6] += step;

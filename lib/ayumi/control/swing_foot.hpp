@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "ayumi/control/estimator.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -24,7 +25,7 @@ bool bears(const RobotModel& model, const Estimate& estimate, Side side);
 
 /// Height of a swing foot as a share of the lift, `share` of the swing after its lift-off (0 to 1):
 /// 64 (s (1 - s))^3, with rate and acceleration zero at both ends.
-inline double swing_height(double share) { return std::pow(4 * share * (1 - share), 3); }
+inline double swing_height(double share) { return elementary::power<3>(4 * share * (1 - share)); }
 
 /// The path of least jerk from where something is, with its rate and acceleration, to rest at a
 /// target in a given time, planned anew in every tick, so that the target may move.

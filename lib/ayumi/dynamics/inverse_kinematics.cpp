@@ -10,6 +10,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -170,7 +171,7 @@ void InverseKinematics::find_leg_bodies(Side side) {
     if (bodies[i].prismatic) ratio = INFINITY;
   }
   largest_bend_rate_ =
-      std::max(largest_bend_rate_, 37 * std::pow(ratio * ratio * (1 + reach * reach), 3));
+      std::max(largest_bend_rate_, 37 * elementary::power<3>(ratio * ratio * (1 + reach * reach)));
 }
 
 // The knee is the middle one of the first three joints of a leg whose axes lie across the trunk.

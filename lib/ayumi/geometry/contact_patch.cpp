@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 using Eigen::Isometry3d;
@@ -54,7 +56,7 @@ Feature of_segment(double half, const Vector3d& direction) {
 Feature of_cylinder(const ConvexCore& core, const Vector3d& direction) {
   Feature f;
   const double z = core.half.z(), r = core.disc;
-  const double radial = std::hypot(direction.x(), direction.y());
+  const double radial = elementary::hypot(direction.x(), direction.y());
   const Vector2d out =
       radial > 1e-9 ? Vector2d(direction.head<2>() / radial) : Vector2d(Vector2d::UnitX());
   if (std::abs(direction.z()) < 0.7) {
@@ -65,7 +67,8 @@ Feature of_cylinder(const ConvexCore& core, const Vector3d& direction) {
   const double side = direction.z() > 0 ? 1 : -1;
   f.normal = {0, 0, side};
   for (int k = 0; k < 8; ++k) {
-    const double angle = side * 0.25 * M_PI * k, c = std::cos(angle), s = std::sin(angle);
+    const double angle = side * 0.25 * M_PI * k, c = elementary::cos(angle),
+                 s = elementary::sin(angle);
     f.add({r * (c * out.x() - s * out.y()), r * (s * out.x() + c * out.y()), side * z});
   }
   return f;
@@ -141,7 +144,7 @@ struct Outline {
 class Over {
  public:
   Over(const Feature& reference, const Feature& other)
-      : reference_(reference), other_(other), up_(reference.normal), origin_(reference.corner[0]) {
+      : other_(other), up_(reference.normal), origin_(reference.corner[0]) {
     x_ = (reference.corner[1] - origin_).normalized();
     y_ = up_.cross(x_);
     below_ = seen(reference, false);
@@ -210,7 +213,7 @@ class Over {
     add(kCrossing + 16 * above_.name[static_cast<size_t>(i)] + j, a + s * along, false);
   }
 
-  const Feature &reference_, &other_;
+  const Feature& other_;
   Vector3d up_, origin_, x_, y_;
   Outline below_, above_;
   double reach_ = 0, apart_ = 0;

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 using Eigen::Isometry3d;
@@ -38,7 +40,7 @@ Vector3d farthest(const ConvexCore& core, const Isometry3d& pose, const Vector3d
            *std::max_element(core.points.begin(), core.points.end(),
                              [&](const auto& p, const auto& q) { return p.dot(d) < q.dot(d); });
   Vector3d p(sign(d.x()) * core.half.x(), sign(d.y()) * core.half.y(), sign(d.z()) * core.half.z());
-  const double radial = std::hypot(d.x(), d.y());
+  const double radial = elementary::hypot(d.x(), d.y());
   if (core.disc > 0 && radial > 0) {
     p.x() += core.disc * d.x() / radial;
     p.y() += core.disc * d.y() / radial;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 using Eigen::Isometry3d;
@@ -83,7 +85,7 @@ Collider::Collider(const Shape& shape, MeshAs mesh_as) {
   } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     core_.half.z() = 0.5 * cylinder->length;
     core_.disc = cylinder->radius;
-    radius_ = std::hypot(cylinder->radius, 0.5 * cylinder->length);
+    radius_ = elementary::hypot(cylinder->radius, 0.5 * cylinder->length);
   } else {
     const Bounds bounds = mesh_bounds(std::get<MeshShape>(shape));
     core_.half = 0.5 * (bounds.high - bounds.low);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 using Eigen::Vector3d;
@@ -71,7 +73,7 @@ std::vector<Vector3d> outer_vertices(const TriangleMesh& mesh) {
   for (int i = 0; i < kDirections; ++i) {  // a spiral from pole to pole
     const double z = 1 - (2 * i + 1.0) / kDirections, turn = M_PI * (3 - std::sqrt(5.0)) * i;
     const double r = std::sqrt(1 - z * z);
-    const Vector3d out(r * std::cos(turn), r * std::sin(turn), z);
+    const Vector3d out(r * elementary::cos(turn), r * elementary::sin(turn), z);
     result.push_back(*std::max_element(all.begin(), all.end(), [&](const auto& p, const auto& q) {
       return p.dot(out) < q.dot(out);
     }));

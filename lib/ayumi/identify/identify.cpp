@@ -10,6 +10,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/identify/recording_checks.hpp"
 #include "ayumi/identify/servo_fit.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -110,7 +111,7 @@ bool load_changes_sign(const std::vector<JointRecording>& joints) {
 
 // Whether the recording shows that `a` holds, and not `b`.
 bool fits_better(const ServoFit& a, const ServoFit& b) {
-  return 2 * a.independent * std::log(b.rms / a.rms) > kLawSeen;
+  return 2 * a.independent * elementary::log(b.rms / a.rms) > kLawSeen;
 }
 
 // Whether the recording shows inertia and damping.

@@ -8,6 +8,7 @@
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/motion/differentiate.hpp"
 
 namespace ayumi {
@@ -188,7 +189,7 @@ VectorXd smooth_motion(const RecordedMotion& motion, Index dof) {
 VectorXd low_pass(const VectorXd& x, double dt, double cutoff) {
   const Index n = x.size();
   if (n < 3 || cutoff * dt >= 0.4) return x;
-  const double w = std::tan(M_PI * cutoff * dt), root = std::sqrt(2.0) * w;
+  const double w = elementary::tan(M_PI * cutoff * dt), root = std::sqrt(2.0) * w;
   const double scale = 1 / (1 + root + w * w);
   const double b = w * w * scale, a1 = 2 * (w * w - 1) * scale, a2 = (1 - root + w * w) * scale;
   // Mirrored beyond its ends, so that the ends keep their value and their rate.

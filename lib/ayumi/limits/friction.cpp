@@ -10,6 +10,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -39,7 +40,7 @@ struct ConeRow {
   double rounding = 0;  // over the weight
 
   double tangential(const Vector6d& w) const {
-    return std::sqrt(w.head<2>().squaredNorm() + std::pow(rounding / scale, 2));
+    return std::sqrt(w.head<2>().squaredNorm() + elementary::power<2>(rounding / scale));
   }
 
   VectorXd value(const Vector6d& w) const {

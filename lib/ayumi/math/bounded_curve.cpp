@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -35,7 +36,7 @@ VectorXd bounded_cog(const VectorXd& z, const VectorXd& w2, double h) {
 double rest_bump(double omega, double t, double duration) {
   if (t <= 0 || t >= duration) return 0;
   const double u = omega * t, fade = 1 - t / duration;
-  return u * u * std::exp(-u) * fade * fade;
+  return u * u * elementary::exp(-u) * fade * fade;
 }
 
 RestToRest rest_to_rest_cog(const VectorXd& z, const VectorXd& w2, double h) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 /// SplitMix64 with uniform and normal deviates.
@@ -21,8 +23,8 @@ class Random {
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
   /// Mean 0, standard deviation 1 (Box-Muller, one of the pair).
   double normal() {
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(2.0 * M_PI * uniform());
+    const double radius = std::sqrt(-2.0 * elementary::log(1.0 - uniform()));
+    return radius * elementary::cos(2.0 * M_PI * uniform());
   }
 
  private:

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 using Eigen::Index;
@@ -116,7 +118,7 @@ VectorXd smoothed_within(const VectorXd& x, double band, double cutoff) {
   constexpr Index kLeast = 8;
   if (x.size() < kLeast || !(band > 0) || x.maxCoeff() == x.minCoeff()) return x;
   const VectorXd scaled = (x.array() - x[0]) / band;
-  const double weight = std::pow(2 * EIGEN_PI * cutoff, -6);
+  const double weight = 1 / elementary::power<6>(2 * EIGEN_PI * cutoff);
   return x + band * within_one(scaled, weight);
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
@@ -23,7 +24,7 @@ inline std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model,
     if (body.prismatic)
       motion.translation() = q * body.axis;
     else
-      motion.linear() = Eigen::AngleAxisd(q, body.axis).toRotationMatrix();
+      motion.linear() = elementary::turn_matrix(q, body.axis);
     poses.push_back(poses[body.parent] * body.placement * motion);
   }
   return poses;

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/model/body_poses.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -204,7 +205,7 @@ class Doctor {
     if (torque.maxCoeff() > largest)
       warn("limits", "a torque limit of " + text::brief(torque.maxCoeff()) +
                          " N m could throw the robot; is this a placeholder?");
-    const double decade = std::log10(torque[0]);
+    const double decade = elementary::log10(torque[0]);
     if (torque.minCoeff() == torque.maxCoeff() && std::abs(decade - std::round(decade)) < 1e-9)
       warn("limits", "every joint has the torque limit " + text::brief(torque[0]) +
                          " N m; is this a placeholder?");
@@ -291,13 +292,13 @@ class Doctor {
     for (const Side side : {Side::left, Side::right})
       soles.push_back(poses[model_.sole(side).body] * model_.sole(side).frame);
     const Eigen::Vector3d up = soles[0].linear().col(2);
-    const double tilt = std::acos(std::clamp(up.dot(soles[1].linear().col(2)), -1.0, 1.0));
+    const double tilt = elementary::acos(std::clamp(up.dot(soles[1].linear().col(2)), -1.0, 1.0));
     const double step = up.dot(soles[1].translation() - soles[0].translation());
     if (tilt > kDegree || std::abs(step) > 0.001)
       warn("posture home", "the soles are not on one plane: tilted by " +
                                text::fixed(tilt / kDegree, 1) + " deg, apart in height by " +
                                millimetres(std::abs(step)) + "; correct the ankle angles");
-    const double lean = std::acos(std::clamp(up.z(), -1.0, 1.0));
+    const double lean = elementary::acos(std::clamp(up.z(), -1.0, 1.0));
     if (lean > 5 * kDegree)
       warn("posture home", "the root link leans by " + text::fixed(lean / kDegree, 1) +
                                " deg against the soles; is this intended?");

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "ayumi/geometry/box_corner.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -24,8 +25,8 @@ std::vector<Eigen::Vector3d> rings_of(const std::vector<Ring>& rings) {
   for (const Ring& ring : rings)
     for (int i = 0; i < 16; ++i) {
       const double angle = i * std::numbers::pi / 8;
-      points.emplace_back(ring.radius * std::cos(angle), ring.radius * std::sin(angle),
-                          ring.height);
+      points.emplace_back(ring.radius * elementary::cos(angle),
+                          ring.radius * elementary::sin(angle), ring.height);
     }
   return points;
 }
@@ -35,8 +36,8 @@ std::vector<Eigen::Vector3d> rounded(double radius, double length) {
   std::vector<Ring> rings;
   for (int i = 0; i <= 8; ++i) {
     const double latitude = (i - 4) * std::numbers::pi / 8;
-    rings.push_back({radius * std::cos(latitude),
-                     radius * std::sin(latitude) + (i < 4 ? -length / 2 : length / 2)});
+    rings.push_back({radius * elementary::cos(latitude),
+                     radius * elementary::sin(latitude) + (i < 4 ? -length / 2 : length / 2)});
   }
   if (length > 0) rings.push_back({radius, -length / 2});
   return rings_of(rings);

@@ -9,6 +9,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/differentiate.hpp"
@@ -36,7 +37,7 @@ JacobianFactors jacobian_factors(double f2) {
             -1.0 / 24 + f2 * (1.0 / 360 - f2 / 13440),
             -1.0 / 120 + f2 * (1.0 / 2520 - f2 / 120960)};
   }
-  const double f = std::sqrt(f2), s = std::sin(f), c = std::cos(f);
+  const double f = std::sqrt(f2), s = elementary::sin(f), c = elementary::cos(f);
   const double a = (1 - c) / f2, b = (f - s) / (f2 * f);
   return {a, b, (s / f - 2 * a) / (2 * f2), (a - 3 * b) / (2 * f2)};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -22,8 +23,9 @@ double share_of(const FloorMotion& motion, double t) {
     return s * s * s * (10 - 15 * s + 6 * s * s);
   }
   if (since >= motion.duration) return 0;
-  return motion.path.shape == MotionShape::sine ? std::sin(2 * M_PI * motion.path.frequency * since)
-                                                : std::sin(M_PI * since / motion.duration);
+  return motion.path.shape == MotionShape::sine
+             ? elementary::sin(2 * M_PI * motion.path.frequency * since)
+             : elementary::sin(M_PI * since / motion.duration);
 }
 
 }  // namespace
@@ -39,7 +41,7 @@ int block_corners(const GroundBlock& block, std::array<Vector2d, 8>& corners) {
   for (int i = 0; i < 8; ++i) {
     const double a = M_PI * (0.125 + 0.25 * i);
     corners[static_cast<size_t>(i)] =
-        block.center + block.radius * Vector2d(std::cos(a), std::sin(a));
+        block.center + block.radius * Vector2d(elementary::cos(a), elementary::sin(a));
   }
   return 8;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 namespace {
@@ -12,7 +14,7 @@ ReferenceRow between(const ReferenceRow& a, const ReferenceRow& b, double u) {
   row.theta = (1 - u) * a.theta + u * b.theta;
   row.contact = a.contact;
   row.base.position = (1 - u) * a.base.position + u * b.base.position;
-  row.base.attitude = a.base.attitude.slerp(u, b.base.attitude);
+  row.base.attitude = elementary::between(a.base.attitude, b.base.attitude, u);
   row.cog = (1 - u) * a.cog + u * b.cog;
   row.zmp = (1 - u) * a.zmp + u * b.zmp;
   row.fz = (1 - u) * a.fz + u * b.fz;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 Eigen::VectorXd velocity_lead(const ActuatorLimits& actuators) {
@@ -22,7 +24,7 @@ DenseTable postures_of(const RobotModel& model, const ActuatorLimits& actuators,
     const int dof = model.find_dof(table.joints[i]);
     if (dof < 0 || !(lead[dof] > 0)) continue;
     auto column = table.theta.col(static_cast<Eigen::Index>(i));
-    const double kept = std::exp(-table.dt / lead[dof]);
+    const double kept = elementary::exp(-table.dt / lead[dof]);
     const double slope = 1 - (1 - kept) * lead[dof] / table.dt;
     double before = column[0];
     for (Eigen::Index k = 1; k < column.size(); ++k) {

@@ -6,6 +6,7 @@
 
 #include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/differentiate.hpp"
@@ -43,7 +44,7 @@ Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t,
     return rpy_to_matrix({torso[0].at(t).value, torso[1].at(t).value, torso[2].at(t).value});
   }
   const Vector3d heading = feet[0].linear().col(0) + feet[1].linear().col(0);
-  return rpy_to_matrix({0, 0, std::atan2(heading.y(), heading.x())});
+  return rpy_to_matrix({0, 0, elementary::atan2(heading.y(), heading.x())});
 }
 
 namespace {
@@ -275,7 +276,7 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
   if (!job.tracks.zmp && any && !both) origin["zmp"] += "; of the full model where COG is keyed";
   const double moved =
       std::max(plan.bump[0].cwiseAbs().maxCoeff(), plan.bump[1].cwiseAbs().maxCoeff()) * 4 *
-      std::exp(-2.0);
+      elementary::exp(-2.0);
   if (moved > 5e-5)
     origin["zmp"] += ", moved by up to " + millimetres(moved) +
                      " near the ends so that the motion starts and stops at rest";

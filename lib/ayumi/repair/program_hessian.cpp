@@ -8,6 +8,8 @@
 #include <cmath>
 #include <set>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 namespace policy = repair_policy;
@@ -24,7 +26,7 @@ constexpr double kCurvatureGram[] = {8.0 / 3, -1.5, 0, 1.0 / 6};
 
 void place_objective(const VectorXd& weights, const CorrectionVariables& v, ProgramHessian& h) {
   const double spacing = v.zero.spacing;
-  const double smooth = std::pow(policy::change_weight::kSmoothTime, 4);
+  const double smooth = elementary::power<4>(policy::change_weight::kSmoothTime);
   std::vector<double> values;
   for (int point = 0; point < v.index.rows(); ++point)
     for (int column = 0; column < v.index.cols(); ++column)

@@ -5,6 +5,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/repair/policy.hpp"
 
@@ -69,7 +70,7 @@ WeightedChange weighted_change(const RobotModel& model, const CommandSeries& bef
     fail(ErrorCode::usage, "motions sampled every " + text::exact(before.dt) + " s and every " +
                                text::exact(after.dt) + " s cannot be compared");
   const size_t count = std::min(before.samples.size(), after.samples.size());
-  const double smooth = std::pow(policy::change_weight::kSmoothTime, 4);
+  const double smooth = elementary::power<4>(policy::change_weight::kSmoothTime);
   std::vector<Vector3d> r;
   for (size_t k = 0; k < count; ++k)
     r.push_back(base_rotation_change(before.samples[k], after.samples[k]));

@@ -5,6 +5,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -75,13 +76,13 @@ Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
     plan += p.translation();
     real += r.translation();
     const double yaw = matrix_to_rpy(r.linear()).z() - matrix_to_rpy(p.linear()).z();
-    sine += std::sin(yaw);
-    cosine += std::cos(yaw);
+    sine += elementary::sin(yaw);
+    cosine += elementary::cos(yaw);
     ++count;
   }
   Isometry3d turn = Isometry3d::Identity();
   turn.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal).toRotationMatrix() *
-                  Eigen::AngleAxisd(std::atan2(sine, cosine), Vector3d::UnitZ()).toRotationMatrix();
+                  elementary::turn_matrix(elementary::atan2(sine, cosine), Vector3d::UnitZ());
   turn.translation() = real / count - turn.linear() * plan / count;
   return turn;
 }
@@ -110,7 +111,7 @@ bool FallMonitor::observe(double t, const CommandSample& command, const Simulati
                           const RobotData& truth, const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
   const Vector3d up = truth.rotation[model_->trunk_body()].col(2);
-  const double tilt = std::acos(std::clamp(up.dot(normal()), -1.0, 1.0));
+  const double tilt = elementary::acos(std::clamp(up.dot(normal()), -1.0, 1.0));
   SimulationResult& r = result_;
   const bool fallen_before = r.fell_at >= 0;
   if (!fallen_before) {
@@ -194,7 +195,8 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
       const double slip = (place - stance_start_[i]).head<2>().norm();
       result_.max_slip = std::max(result_.max_slip, slip);
       const Vector3d planned = to_world.linear() * command.feet[i].linear().col(2);
-      const double tilt = std::acos(std::clamp(planned.dot(sole.linear().col(2)), -1.0, 1.0));
+      const double tilt =
+          elementary::acos(std::clamp(planned.dot(sole.linear().col(2)), -1.0, 1.0));
       largest_.foot_tilt = std::max(largest_.foot_tilt, tilt);
     }
     in_stance_[i] = supports(command.support, side) && (in_stance_[i] || loaded);
@@ -240,7 +242,7 @@ SimulationResult FallMonitor::conclude(const CommandSample& command, const Robot
   const double z = command.cog.z() - command.zmp.z();
   const double omega = std::sqrt(kGravity / z);
   const Vector3d up = data.rotation[model_->trunk_body()].col(2);
-  const double tilt = std::acos(std::clamp(up.dot(normal()), -1.0, 1.0));
+  const double tilt = elementary::acos(std::clamp(up.dot(normal()), -1.0, 1.0));
   const bool rest = r.final_cog_error < kRestError * z && r.final_speed < kRestSpeed * omega * z &&
                     tilt < kRestTilt && r.zmp_amplitude < kRestZmp * z;
   r.outcome = rest ? Outcome::stands : Outcome::unsettled;

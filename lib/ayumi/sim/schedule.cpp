@@ -7,6 +7,7 @@
 #include "ayumi/base/overloaded.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/sim/run_caution.hpp"
 #include "ayumi/sim/step_check.hpp"
@@ -49,9 +50,10 @@ int find_joint(const RobotModel& model, const std::string& name) {
 double shape_factor(const Push& push, long i, long n) {
   if (push.shape == PushShape::rectangle) return 1.0;
   const double phase = M_PI * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-  if (push.kind != PushKind::impulse) return std::sin(phase);
+  if (push.kind != PushKind::impulse) return elementary::sin(phase);
   // The sum of sin over midpoints is 1 / sin(pi / 2n).
-  return static_cast<double>(n) * std::sin(M_PI / (2.0 * static_cast<double>(n))) * std::sin(phase);
+  return static_cast<double>(n) * elementary::sin(M_PI / (2.0 * static_cast<double>(n))) *
+         elementary::sin(phase);
 }
 
 /// The force or torque of a push of rectangular shape over `time` [N] or [N m].

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ayumi/math/elementary.hpp"
+
 namespace ayumi {
 
 double gear_stiffness(const ServoDescription& servo) {
@@ -65,9 +67,8 @@ double dry_friction(const ServoDescription& servo, double rate, double motor, do
   const LoadFriction& load = servo.load;
   double friction = servo.coulomb + std::abs(load.external * external - load.motor * motor);
   if (servo.stribeck_rate <= 0) return friction;
-  // In single precision, which is right to 1e-7 of the friction and takes a quarter of the time.
-  const auto share = static_cast<float>(std::abs(rate) / servo.stribeck_rate);
-  const double s = std::exp(-std::pow(share, static_cast<float>(servo.stribeck_exponent)));
+  const double share = std::abs(rate) / servo.stribeck_rate;
+  const double s = elementary::exp(-elementary::power(share, servo.stribeck_exponent));
   double at_rest = servo.stribeck_torque +
                    std::abs(load.external_stribeck * external - load.motor_stribeck * motor);
   if (external * motor < 0)

@@ -15,6 +15,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/capture_bound.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/random.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "ayumi/study/runs.hpp"
@@ -109,7 +110,8 @@ class Search {
 Simulator Search::pushed(double impulse, const Variation& variation) const {
   Simulator run = *baseline_.simulator;
   const double angle = case_.direction + variation.angle;
-  const Push push{.magnitude = impulse, .direction = {std::cos(angle), std::sin(angle), 0}};
+  const Push push{.magnitude = impulse,
+                  .direction = {elementary::cos(angle), elementary::sin(angle), 0}};
   run.set_scenario(
       {{.at = case_.phase.at + variation.time, .duration = options_.duration, .what = push}});
   return run;
@@ -275,7 +277,8 @@ double Study::standing_edge_bound() const {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kEdgeDirections; ++i) {
     const double angle = 2 * M_PI * i / kEdgeDirections;
-    least = std::min(least, edge_bound(model, stand, 0, {std::cos(angle), std::sin(angle)}));
+    least = std::min(least,
+                     edge_bound(model, stand, 0, {elementary::cos(angle), elementary::sin(angle)}));
   }
   return least;
 }
@@ -285,7 +288,7 @@ PushCase Study::plan(size_t i) const {
   PushCase result;
   result.phase = phases[i / directions];
   result.direction = 2 * M_PI * static_cast<double>(i % directions) / options.directions;
-  const Vector2d u(std::cos(result.direction), std::sin(result.direction));
+  const Vector2d u(elementary::cos(result.direction), elementary::sin(result.direction));
   const CommandSeries& plan = series_of(result.phase);
   const long k = std::lround(result.phase.at / plan.dt);
   result.bound = capture_bound(capture_region(model, plan, k), u);

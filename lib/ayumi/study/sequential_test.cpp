@@ -6,6 +6,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -46,7 +47,7 @@ class Paths {
 }  // namespace
 
 long failure_free_runs(double failure, double confidence) {
-  const double exact = std::log1p(-confidence) / std::log1p(-failure);
+  const double exact = elementary::log1p(-confidence) / elementary::log1p(-failure);
   return std::max(1L, static_cast<long>(std::ceil(exact * (1 - 1e-12))));
 }
 

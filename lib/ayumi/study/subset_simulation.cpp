@@ -8,6 +8,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/in_parallel.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/random.hpp"
 
 namespace ayumi {
@@ -133,9 +134,10 @@ SubsetResult subset_simulation(size_t dimension,
   }
   result.probability = probability;
   result.variation = std::sqrt(variance);
-  const double spread = normal_quantile(0.5 * (1 + confidence)) * std::sqrt(std::log1p(variance));
-  result.interval = {probability * std::exp(-spread),
-                     std::min(1.0, probability * std::exp(spread))};
+  const double spread =
+      normal_quantile(0.5 * (1 + confidence)) * std::sqrt(elementary::log1p(variance));
+  result.interval = {probability * elementary::exp(-spread),
+                     std::min(1.0, probability * elementary::exp(spread))};
   result.runs = done;
   return result;
 }

@@ -6,6 +6,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/capture_bound.hpp"
 #include "ayumi/control/gain_design.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/study/runs.hpp"
 
@@ -89,7 +90,7 @@ Simulator Tuner::begin(const PushPhase& phase, const Gains& gains) const {
 double Tuner::push(const Simulator& baseline, const PushPhase& phase, int direction) const {
   const double angle = 2 * M_PI * direction / options.directions;
   const CommandSeries& plan = series_of(phase);
-  const Vector2d u(std::cos(angle), std::sin(angle));
+  const Vector2d u(elementary::cos(angle), elementary::sin(angle));
   const long k = std::lround(phase.at / plan.dt);
   const double bound = capture_bound(capture_region(model, plan, k), u);
   if (!(bound > 0)) return 0;

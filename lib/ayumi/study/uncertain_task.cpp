@@ -8,6 +8,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/random.hpp"
 #include "ayumi/math/statistics.hpp"
 #include "ayumi/sim/payload.hpp"
@@ -325,7 +326,7 @@ Disturbance UncertainTask::push(size_t index, const std::vector<double>& drawn) 
   const auto [size, direction, time, link] = part;
   const size_t phase = static_cast<size_t>(time);
   const double at = push.phases ? phases_[phase % phases_.size()].at : time;
-  const Vector2d u(std::cos(direction), std::sin(direction));
+  const Vector2d u(elementary::cos(direction), elementary::sin(direction));
   double impulse = size;
   if (push.bounds) {
     const long k = std::clamp(std::lround(at / series_->dt), 0L,

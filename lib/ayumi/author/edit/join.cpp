@@ -9,6 +9,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/pattern_context.hpp"
@@ -45,7 +46,7 @@ Isometry3d stand(const Feet& feet) {
   frame.translation() = 0.5 * (feet[0].translation() + feet[1].translation());
   frame.translation().z() = 0;
   frame.linear() =
-      Eigen::AngleAxisd(std::atan2(-across.x(), across.y()), Vector3d::UnitZ()).toRotationMatrix();
+      elementary::turn_matrix(elementary::atan2(-across.x(), across.y()), Vector3d::UnitZ());
   return frame;
 }
 
@@ -123,12 +124,12 @@ std::vector<RobotState> transition(const RobotModel& model, const RobotState& fr
     const double s = rest_to_rest(static_cast<double>(k) / ticks);
     PostureTarget target;
     target.cog = (1 - s) * a.cog + s * b.cog;
-    target.trunk = Eigen::Quaterniond(a.trunk).slerp(s, Eigen::Quaterniond(b.trunk));
+    target.trunk = elementary::between(Eigen::Quaterniond(a.trunk), Eigen::Quaterniond(b.trunk), s);
     for (size_t i = 0; i < 2; ++i) {
       target.feet[i].translation() =
           (1 - s) * a.feet[i].translation() + s * b.feet[i].translation();
-      target.feet[i].linear() = Eigen::Quaterniond(a.feet[i].linear())
-                                    .slerp(s, Eigen::Quaterniond(b.feet[i].linear()))
+      target.feet[i].linear() = elementary::between(Eigen::Quaterniond(a.feet[i].linear()),
+                                                    Eigen::Quaterniond(b.feet[i].linear()), s)
                                     .toRotationMatrix();
     }
     for (int i = 0; i < model.dof_count(); ++i)
@@ -157,7 +158,7 @@ Pattern plain(const RobotModel& model, const Pattern& pattern, const CommandSeri
 }
 
 double angle_between(const Matrix3d& a, const Matrix3d& b) {
-  return Eigen::AngleAxisd(a.transpose() * b).angle();
+  return elementary::angle_between(Eigen::Quaterniond(a), Eigen::Quaterniond(b));
 }
 
 void require_same_stand(const Pattern& second, const Feet& last, const Feet& first) {
@@ -177,7 +178,7 @@ void require_same_posture(const RobotModel& model, const Pattern& second, const 
   int worst = 0;
   const double most = (last.theta - first.theta).cwiseAbs().maxCoeff(&worst);
   const double distance = (last.base.position - first.base.position).norm();
-  const double turn = last.base.attitude.angularDistance(first.base.attitude);
+  const double turn = elementary::angle_between(last.base.attitude, first.base.attitude);
   if (distance > kSameBase || turn > kSameJoint)
     fail(ErrorCode::bad_pattern, in_file(second, "start") + ": the base begins " +
                                      text::fixed(1000 * distance, 2) + " mm and " +

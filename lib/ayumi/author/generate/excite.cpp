@@ -10,6 +10,7 @@
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/foot_plan.hpp"
@@ -75,7 +76,7 @@ class Motion {
   void chirp_and_steps() {
     double side = 1;
     for (const double half : kChirp) {
-      at(half, side * std::pow(half / kChirp[0], 2));
+      at(half, side * elementary::power<2>(half / kChirp[0]));
       side = -side;
     }
     at(kChirp.back(), 0);
@@ -146,7 +147,8 @@ void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Si
     if (what == OnOneFoot::sway_aside) point.y() += kSoleShare * scale * half.y() * u;
     zmp(key, point);
     // Down only: the legs may be nearly straight.
-    const double down = what == OnOneFoot::squat ? 0.5 * (1 - std::cos(M_PI * std::abs(u))) : 0.0;
+    const double down =
+        what == OnOneFoot::squat ? 0.5 * (1 - elementary::cos(M_PI * std::abs(u))) : 0.0;
     key.cog_height = height - depth * down;
   });
   if (what == OnOneFoot::swing_ahead || what == OnOneFoot::swing_aside)

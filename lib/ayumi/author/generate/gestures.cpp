@@ -8,6 +8,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/reach.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
@@ -144,7 +145,7 @@ double sinks_by_bowing(const RobotModel& model, double angle) {
       moment += model.bodies()[b].inertia.mass *
                 (data.com[b].z() - data.position[static_cast<size_t>(hip)].z());
   }
-  return std::max(0.0, moment / model.mass()) * (1 - std::cos(angle));
+  return std::max(0.0, moment / model.mass()) * (1 - elementary::cos(angle));
 }
 
 void require_seat(const char* name, const RobotModel& model, const SeatParameters& p) {

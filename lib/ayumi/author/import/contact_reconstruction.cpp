@@ -10,6 +10,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/track.hpp"
 
@@ -136,7 +137,7 @@ class Grounding {
     Isometry3d center = Isometry3d::Identity();
     center.translation() = 0.5 * (feet[0].translation() + feet[1].translation());
     const Vector3d heading = feet[0].linear().col(0) + feet[1].linear().col(0);
-    center.linear() = rpy_to_matrix({0, 0, std::atan2(heading.y(), heading.x())});
+    center.linear() = rpy_to_matrix({0, 0, elementary::atan2(heading.y(), heading.x())});
     return center;
   }
 
@@ -208,7 +209,8 @@ class Grounding {
     const Isometry3d by_right = place_[run][1] * soles_[1][k].inverse();
     BasePose base;
     base.position = (1 - right) * by_left.translation() + right * by_right.translation();
-    base.attitude = Quaterniond(by_left.linear()).slerp(right, Quaterniond(by_right.linear()));
+    base.attitude =
+        elementary::between(Quaterniond(by_left.linear()), Quaterniond(by_right.linear()), right);
     return base;
   }
 

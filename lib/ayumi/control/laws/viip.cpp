@@ -19,6 +19,7 @@
 #include "ayumi/control/support_region.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/plan/foot_plan.hpp"
@@ -200,7 +201,7 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
 
 Footsteps Viip::new_path(const std::array<Isometry3d, 2>& feet) const {
   const double period = params_.single_support + params_.double_support;
-  return Footsteps(*model_, feet, period / omega_, std::exp(period), params_.recovery,
+  return Footsteps(*model_, feet, period / omega_, elementary::exp(period), params_.recovery,
                    params_.zmp_inset * height_);
 }
 
@@ -256,7 +257,7 @@ Vector2d Viip::regulate(const Vector2d& dcm, int state) const {
   };
   const auto arriving = [&](Side stance, double time) {
     const PlannedStep step = planned_step(stance);
-    return zmp_to_arrive(dcm, step.landing.position + step.offset, std::exp(omega_ * time));
+    return zmp_to_arrive(dcm, step.landing.position + step.offset, elementary::exp(omega_ * time));
   };
   const double single = params_.single_support / omega_, both = params_.double_support / omega_;
   switch (stage_) {
@@ -266,7 +267,7 @@ Vector2d Viip::regulate(const Vector2d& dcm, int state) const {
       const PlannedStep step = planned_step(anchor_);
       const Vector2d to_landing = step.landing.position + step.offset - step.stance_place;
       return inside_support(
-          standing(step.stance_place + to_landing * std::exp(-params_.single_support)));
+          standing(step.stance_place + to_landing * elementary::exp(-params_.single_support)));
     }
     case Stage::single_support:
       // Shortly before the landing only the foothold can still answer.
@@ -340,20 +341,21 @@ void Viip::choose_time_scale(const PlannedStep& step, const Vector2d& dcm) {
   time_scale_ = 1;
   if (!params_.feedback || left <= dt_) return;
   const Vector2d a = zmp_[0] - step.offset - step.landing.position, c = dcm - zmp_[0];
-  const double bound = params_.early_step_bound * height_, grown = std::exp(omega_ * left);
+  const double bound = params_.early_step_bound * height_, grown = elementary::exp(omega_ * left);
   if ((a + c * grown).norm() <= bound) return;
   // The larger root of |a + c E| = bound.
   const double cc = c.squaredNorm(), ac = a.dot(c);
   const double root = ac * ac - cc * (a.squaredNorm() - bound * bound);
   const double growth = root > 0 ? (std::sqrt(root) - ac) / cc : 1.0;
-  const double time = std::max(std::log(std::max(growth, 1.0)), params_.least_step_time) / omega_;
+  const double time =
+      std::max(elementary::log(std::max(growth, 1.0)), params_.least_step_time) / omega_;
   time_scale_ = std::clamp(left / time, 1.0, kStepTimeScaleLimit);
 }
 
 // Where the DCM will need the foot, within reach and beside the stance foot.
 Vector2d Viip::landing_point(const PlannedStep& step, const Vector2d& dcm) const {
   const Side foot = other(anchor_);
-  const double growth = std::exp(omega_ * time_to_landing());
+  const double growth = elementary::exp(omega_ * time_to_landing());
   Vector2d target = zmp_[0] + (dcm - zmp_[0]) * growth - step.offset;
   const Vector2d nominal = step.landing.position;
   const double reach = params_.reach * height_;

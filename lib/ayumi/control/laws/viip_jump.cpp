@@ -22,6 +22,7 @@
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/weighted_solve.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -128,7 +129,7 @@ Vector2d middle_of_soles(const RobotModel& model, const std::array<Eigen::Isomet
 
 double heading_of_feet(const std::array<Eigen::Isometry3d, 2>& feet) {
   const Eigen::Vector3d x = feet[0].linear().col(0) + feet[1].linear().col(0);
-  return std::atan2(x.y(), x.x());
+  return elementary::atan2(x.y(), x.x());
 }
 
 /// Angular momentum about the COG per generalised velocity: 3 x (6 + dof).
@@ -147,7 +148,7 @@ JumpFigures jump_figures(const JumpGoal& goal) {
   f.lift_off_speed = std::sqrt(2 * kGravity * (f.apex - f.lift_off));
   f.touchdown_speed = std::sqrt(2 * kGravity * f.apex);
   // z - r = -zd cos(sqrt(k) t)
-  f.push = std::acos(std::clamp(-f.lift_off / goal.stoop, -1.0, 1.0)) / std::sqrt(k);
+  f.push = elementary::acos(std::clamp(-f.lift_off / goal.stoop, -1.0, 1.0)) / std::sqrt(k);
   f.flight = (f.lift_off_speed + f.touchdown_speed) / kGravity;
   return f;
 }
@@ -257,7 +258,7 @@ CogReference ViipJump::cog_reference(const Estimate& e) {
     const JumpFigures f = jump_figures(goal_);
     const double yaw = heading_of_feet(plan_.feet), s = std::min(1.0, elapsed_ / f.push);
     const Vector2d speed =
-        goal_.forward / (f.push + f.flight) * Vector2d(std::cos(yaw), std::sin(yaw));
+        goal_.forward / (f.push + f.flight) * Vector2d(elementary::cos(yaw), elementary::sin(yaw));
     goal += speed * f.push * (s * s * s - 0.5 * s * s * s * s);
     rate = speed * smooth_rise(s);
     acceleration = speed / f.push * 6 * s * (1 - s);
@@ -309,7 +310,7 @@ Resolution ViipJump::resolve_standing(const Vector3d& trunk_rate, double level) 
   options.trunk_rate *= level;
   options.in_order = false;  // docs/theory.md says why
   const double yaw = heading_of_feet(plan_.feet);
-  options.turn.lean = lean() * Vector3d(-std::sin(yaw), std::cos(yaw), 0);
+  options.turn.lean = lean() * Vector3d(-elementary::sin(yaw), elementary::cos(yaw), 0);
   return resolve(*model_, limits_, reference_, data_, anchor_, dcog_, wanted, wanted, dt_, weight_,
                  options);
 }
@@ -444,7 +445,7 @@ void ViipJump::release() {
                        std::min(kRetractionTime, kRetractionFlightShare * flight_.duration) / 2;
 
   const double yaw = heading_of_feet(plan_.feet);
-  const Vector3d forward = goal_.forward * Vector3d(std::cos(yaw), std::sin(yaw), 0);
+  const Vector3d forward = goal_.forward * Vector3d(elementary::cos(yaw), elementary::sin(yaw), 0);
   Vector3d landing = flight_.cog + flight_.duration * flight_.velocity;
   landing.z() = ground + height_ + flight_.retraction;
   for (const Side side : {Side::left, Side::right}) {
@@ -463,7 +464,7 @@ Vector3d ViipJump::foot_position(int side, double t) const {
   const auto s = static_cast<size_t>(side);
   const double T = f.duration;
   Vector3d place = f.feet[s] + smooth_rise((t / T - 0.05) / 0.75) * (f.landing[s] - f.feet[s]) -
-                   f.velocity * t * std::exp(-t / kRunOnTime);
+                   f.velocity * t * elementary::exp(-t / kRunOnTime);
   const double last = std::min(kRetractionTime, kRetractionFlightShare * T),
                u = (t - (T - last)) / last;
   if (u > 0) place.z() += f.retraction * (u < 1 ? u * u : 2 * u - 1);

@@ -56,14 +56,14 @@ inline void store_part(const Tile& tile, int rows, int columns, double* out, int
 
 // The other half of a symmetric product: column k of a tile becomes a row.
 inline void store_across(const Tile& tile, double* out, int stride) {
-  const Four a = __builtin_shuffle(tile.c0, tile.c1, FourIndex{0, 4, 2, 6}),
-             b = __builtin_shuffle(tile.c0, tile.c1, FourIndex{1, 5, 3, 7}),
-             c = __builtin_shuffle(tile.c2, tile.c3, FourIndex{0, 4, 2, 6}),
-             d = __builtin_shuffle(tile.c2, tile.c3, FourIndex{1, 5, 3, 7});
-  store_four(out, __builtin_shuffle(a, c, FourIndex{0, 1, 4, 5}));
-  store_four(out + stride, __builtin_shuffle(b, d, FourIndex{0, 1, 4, 5}));
-  store_four(out + 2 * stride, __builtin_shuffle(a, c, FourIndex{2, 3, 6, 7}));
-  store_four(out + 3 * stride, __builtin_shuffle(b, d, FourIndex{2, 3, 6, 7}));
+  const Four a = __builtin_shufflevector(tile.c0, tile.c1, 0, 4, 2, 6),
+             b = __builtin_shufflevector(tile.c0, tile.c1, 1, 5, 3, 7),
+             c = __builtin_shufflevector(tile.c2, tile.c3, 0, 4, 2, 6),
+             d = __builtin_shufflevector(tile.c2, tile.c3, 1, 5, 3, 7);
+  store_four(out, __builtin_shufflevector(a, c, 0, 1, 4, 5));
+  store_four(out + stride, __builtin_shufflevector(b, d, 0, 1, 4, 5));
+  store_four(out + 2 * stride, __builtin_shufflevector(a, c, 2, 3, 6, 7));
+  store_four(out + 3 * stride, __builtin_shufflevector(b, d, 2, 3, 6, 7));
 }
 
 // out(i, j) = sum over t of A(t, i) B(t, j) for i < rows, j < columns; A and B have `depth` lines

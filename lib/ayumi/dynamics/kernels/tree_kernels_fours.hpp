@@ -5,7 +5,6 @@ namespace {
 
 typedef double Four __attribute__((vector_size(32)));
 typedef double Two __attribute__((vector_size(16)));
-typedef long FourIndex __attribute__((vector_size(32)));
 
 inline Four load_four(const double* from) {
   Four x;
@@ -24,7 +23,7 @@ inline void store_three(double* to, const Four& x) {
   __builtin_memcpy(to, &low, sizeof low);
   to[2] = x[2];
 }
-inline Four next(const Four& a) { return __builtin_shuffle(a, FourIndex{1, 2, 0, 3}); }
+inline Four next(const Four& a) { return __builtin_shufflevector(a, a, 1, 2, 0, 3); }
 inline Four cross_four(const Four& a, const Four& b) { return next(a * next(b) - next(a) * b); }
 inline double sum_of_three(const Four& t) { return (t[0] + t[1]) + t[2]; }
 inline double dot_four(const Four& a, const Four& b) { return sum_of_three(a * b); }

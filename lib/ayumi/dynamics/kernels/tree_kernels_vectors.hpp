@@ -1,5 +1,12 @@
 // Part of tree_kernels_body.hpp: vectors and turns of scalars T, sines and cosines, joints.
 
+// Declared here, because its header brings inline functions, which are not for every processor when
+// they are compiled here.
+namespace ayumi::elementary {
+double sin(double x);
+double cos(double x);
+}  // namespace ayumi::elementary
+
 namespace {
 
 using ayumi::kernels::Job;
@@ -137,7 +144,7 @@ __attribute__((noinline)) void far_sine_cosine(T q, T& s, T& c) {
   for (unsigned i = 0; i < sizeof(T) / sizeof(double); ++i) {
     double angle;
     __builtin_memcpy(&angle, reinterpret_cast<const char*>(&q) + i * sizeof(double), sizeof angle);
-    const double sine = __builtin_sin(angle), cosine = __builtin_cos(angle);
+    const double sine = ayumi::elementary::sin(angle), cosine = ayumi::elementary::cos(angle);
     __builtin_memcpy(reinterpret_cast<char*>(&s) + i * sizeof(double), &sine, sizeof sine);
     __builtin_memcpy(reinterpret_cast<char*>(&c) + i * sizeof(double), &cosine, sizeof cosine);
   }

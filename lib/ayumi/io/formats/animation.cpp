@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -23,8 +24,8 @@ std::string centimetres(const Eigen::Vector3d& metres) {
 // R = Rz Rx Ry in degrees.
 std::string channels(const Eigen::Matrix3d& rotation) {
   const Eigen::Matrix3d r = y_up() * rotation * y_up().transpose();
-  const double x = std::asin(std::clamp(r(2, 1), -1.0, 1.0));
-  const double z = std::atan2(-r(0, 1), r(1, 1)), y = std::atan2(-r(2, 0), r(2, 2));
+  const double x = elementary::asin(std::clamp(r(2, 1), -1.0, 1.0));
+  const double z = elementary::atan2(-r(0, 1), r(1, 1)), y = elementary::atan2(-r(2, 0), r(2, 2));
   constexpr double degree = 180 / EIGEN_PI;
   return text::brief(z * degree, 8) + " " + text::brief(x * degree, 8) + " " +
          text::brief(y * degree, 8);
@@ -72,9 +73,8 @@ std::vector<WrittenFile> write_bvh(const RobotModel& model, const MotionFile& mo
       const Body& body = model.bodies()[order[i]];
       Eigen::Matrix3d turn = body.placement.linear();
       if (!body.prismatic)
-        turn = turn *
-               Eigen::AngleAxisd(body.ratio * motion.values(k, body.dof) + body.offset, body.axis)
-                   .toRotationMatrix();
+        turn = turn * elementary::turn_matrix(body.ratio * motion.values(k, body.dof) + body.offset,
+                                              body.axis);
       text += " " + channels(turn);
     }
     text += "\n";

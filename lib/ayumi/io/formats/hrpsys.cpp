@@ -6,6 +6,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -119,7 +120,7 @@ MotionFile read_hrpsys(const MotionInput& source) {
       double most = 0;
       for (size_t k = 0; k < rows; ++k) {
         const Eigen::Quaterniond q(rpy_to_matrix(vector_at(hip->rows[k], 1)));
-        most = std::max(most, q.angularDistance(motion.base[k].attitude));
+        most = std::max(most, elementary::angle_between(q, motion.base[k].attitude));
       }
       // Difference that rounding to six decimals explains. Chosen [rad].
       constexpr double kRounding = 1e-5;

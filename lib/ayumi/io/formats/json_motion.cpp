@@ -10,6 +10,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -74,7 +75,8 @@ void set_values(const std::vector<std::vector<double>>& rows, size_t first, size
 
 // y up to z up: x stays, y becomes z.
 const Eigen::Quaterniond& upright() {
-  static const Eigen::Quaterniond turn(Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitX()));
+  static const Eigen::Quaterniond turn(
+      elementary::turn_quaternion(EIGEN_PI / 2, Eigen::Vector3d::UnitX()));
   return turn;
 }
 

@@ -11,6 +11,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -27,11 +28,11 @@ struct Function {
 // Angles are in radians, whatever the unit of the file.
 const std::map<std::string, Function>& functions() {
   static const std::map<std::string, Function> all = {
-      {"sin", {1, [](double x, double) { return std::sin(x); }}},
-      {"cos", {1, [](double x, double) { return std::cos(x); }}},
+      {"sin", {1, [](double x, double) { return elementary::sin(x); }}},
+      {"cos", {1, [](double x, double) { return elementary::cos(x); }}},
       {"sqrt", {1, [](double x, double) { return std::sqrt(x); }}},
       {"abs", {1, [](double x, double) { return std::abs(x); }}},
-      {"atan2", {2, [](double y, double x) { return std::atan2(y, x); }}},
+      {"atan2", {2, [](double y, double x) { return elementary::atan2(y, x); }}},
       {"min", {2, [](double a, double b) { return std::min(a, b); }}},
       {"max", {2, [](double a, double b) { return std::max(a, b); }}},
   };

@@ -34,7 +34,8 @@ std::string json_text(const std::string& text) { return nlohmann::json(text).dum
 
 // As many digits as make the written value the rounded one.
 std::string rounded_text(double value, int digits) {
-  const double unit = std::pow(10, digits);
+  double unit = 1;
+  for (int i = 0; i < digits; ++i) unit *= 10;
   return text::exact(std::round(value * unit) / unit + 0.0);
 }
 

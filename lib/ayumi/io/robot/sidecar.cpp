@@ -13,6 +13,7 @@
 #include "ayumi/io/robot/servo_reader.hpp"
 #include "ayumi/io/robot/urdf.hpp"
 #include "ayumi/io/run/sha256.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/model/validate.hpp"
 
 namespace ayumi {
@@ -63,10 +64,7 @@ Eigen::Isometry3d pose_of(const JsonNode& node) {
   if (const auto origin = node.find("origin")) pose.translation() = origin->vector3();
   if (const auto rpy = node.find("rpy")) {
     const Eigen::Vector3d angles = rpy->vector3();
-    pose.linear() = (Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
-                     Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
-                     Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()))
-                        .toRotationMatrix();
+    pose.linear() = rpy_to_matrix(angles);
   }
   return pose;
 }
@@ -327,8 +325,9 @@ void read_links(const JsonNode& node, RobotDescription& robot) {
   std::vector<std::string> names;
   for (const LinkDescription& link : robot.links) names.push_back(link.name);
   for (const auto& [name, entry] : node.members()) {
-    const auto link = std::find_if(robot.links.begin(), robot.links.end(),
-                                   [&](const LinkDescription& each) { return each.name == name; });
+    const auto link =
+        std::find_if(robot.links.begin(), robot.links.end(),
+                     [&name = name](const LinkDescription& each) { return each.name == name; });
     if (link == robot.links.end())
       entry.complain("the URDF has no link '" + name + "'" + text::suggestion(name, names));
     entry.only_keys({"mass", "com", "inertia"});
@@ -349,7 +348,7 @@ void read_position_limits(const JsonNode& node, RobotDescription& robot) {
   for (const auto& [name, entry] : node.members()) {
     const auto joint =
         std::find_if(robot.joints.begin(), robot.joints.end(),
-                     [&](const JointDescription& each) { return each.name == name; });
+                     [&name = name](const JointDescription& each) { return each.name == name; });
     if (joint == robot.joints.end() || !contains(moving_joints(robot), name))
       entry.complain("'" + name + "' is not a moving joint of the robot" +
                      text::suggestion(name, moving_joints(robot)));

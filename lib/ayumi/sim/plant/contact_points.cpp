@@ -7,6 +7,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/geometry/box_corner.hpp"
 #include "ayumi/geometry/mesh_hull.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -38,7 +39,7 @@ std::vector<ContactPoint> touch_points(const PlacedShape& placed) {
     for (int k = 0; k < 16; ++k) {
       const double a = 0.25 * M_PI * (k / 2);
       const double z = (k % 2 - 0.5) * cylinder->length;
-      add({cylinder->radius * std::cos(a), cylinder->radius * std::sin(a), z}, 0);
+      add({cylinder->radius * elementary::cos(a), cylinder->radius * elementary::sin(a), z}, 0);
     }
     for (double s : {-0.5, 0.5}) {
       add({0, 0, s * cylinder->length}, 0);

@@ -1,0 +1,127 @@
+// Compares the results of this machine with those that every machine should give, bit for bit.
+// Where a change is meant to move numbers, tests/update_selftest.sh writes the new hashes.
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/io/run/simulation_log_file.hpp"
+#include "ayumi/repair/repair_pattern.hpp"
+#include "ayumi/study/push.hpp"
+#include "pattern_input.hpp"
+#include "push_results.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Job {
+  const char* name;
+  const char* words;
+  std::string (*text)(const Context&);  ///< what is hashed
+  const char* sha256;                   ///< of the text, on every machine
+};
+
+Task bundled_task(const Context& context, const char* name) {
+  PatternOptions options;
+  Task task = load_pattern(context, data_folder("patterns") / name, options);
+  task.threads = context.threads;
+  return task;
+}
+
+/// Everything that a run of the pattern computes, without the names of files.
+std::string run_text(const Context& context, const char* name) {
+  const Task task = bundled_task(context, name);
+  SimulationLog log = simulate(task, simulate_options(task), context.progress());
+  log.provenance = {};
+  return plain_log_bytes(log);
+}
+
+std::string walk_text(const Context& context) { return run_text(context, "hoap1_walk.json"); }
+std::string jump_text(const Context& context) { return run_text(context, "hoap1_jump.json"); }
+std::string viip_text(const Context& context) { return run_text(context, "hoap1_viip_walk.json"); }
+
+/// The correction of the walk with its ZMP 36 mm outwards in the fifth step.
+std::string repair_text(const Context& context) {
+  Task task = bundled_task(context, "hoap1_walk.json");
+  Pattern pattern = task.pattern;
+  pattern.scenario.clear();
+  for (Keyframe& key : pattern.keyframes)
+    if (std::abs(key.t - 3.32) < 1e-9)
+      key.zmp = ZmpKey{ZmpKey::Place::point, Eigen::Vector2d(0.12, 0.075)};
+  task = make_task(pattern, task.robot, "", context.progress(), context.threads);
+  RepairOptions options = preferred_options(pattern);
+  options.check = check_options(task);
+  const RepairResult result = repair(task.robot, pattern, task.series, options, context.progress());
+  return std::string(name_of(result.status)) + "\n" + correction_text(result.correction);
+}
+
+/// Largest impulses by which the walk does not fall: standing and in a single support, from two
+/// directions.
+std::string push_text(const Context& context) {
+  const Task task = bundled_task(context, "hoap1_walk.json");
+  PushOptions push;
+  push.threads = context.threads;
+  push.simulate.profile = task.profile;
+  push.simulate.world = task.pattern.world;
+  push.controllers = {task.pattern.controller};
+  push.phases = {{"standing", 0.3, true}, {"single support", 2.9, false}};
+  push.directions = 2;
+  push.replicas = 1;
+  const std::vector<PushCase> cases =
+      push_limits(task.robot, task.series, push, {}, {}, context.progress());
+  return thresholds_json(cases, push.controllers).dump();
+}
+
+const std::array<Job, 5> kJobs = {{
+    {"walk", "a walk with a push and DTAD", walk_text,
+     "4efa347459949b014205d8df1e997a9ba6037dc0057deedd47d6c7814f1f5365"},
+    {"jump", "a jump", jump_text,
+     "7f0e8932ce3376ace415a626bf5d188364f2ab347b5e71029a82db0a1a97b02c"},
+    {"viip", "a walk by VIIP", viip_text,
+     "f946bae5ce7b70b166e3196a3360c8e67a46e2fd151de2cf72e0f72e0491a004"},
+    {"repair", "a repaired walk", repair_text,
+     "115346d20a41eeea70868f26c341550e3d4e50ab586137e817e309da76da85f6"},
+    {"push", "limits of pushes", push_text,
+     "0bcf10d7962e156ad391cb66afce103f989daec720ee909b72e3ec6195b0f6a7"},
+}};
+
+void compare(Context& context) {
+  Json results = Json::array();
+  std::string table;
+  int different = 0;
+  for (const Job& job : kJobs) {
+    const std::string found = sha256(job.text(context));
+    const bool same = found == job.sha256;
+    different += !same;
+    results.push_back(
+        {{"job", job.name}, {"same", same}, {"sha256", found}, {"expected_sha256", job.sha256}});
+    table += std::string(same ? "same       " : "different  ") + job.words + "\n";
+    if (!same) table += "           SHA-256 " + found + ", expected " + job.sha256 + "\n";
+  }
+  table += different == 0
+               ? "This machine gives the published bits.\n"
+               : text::counted(different, "result") + (different == 1 ? " differs" : " differ") +
+                     " in bits. Verdicts are still right where the tests pass, but tables "
+                     "of this machine are not byte for byte those of others: the robot or the "
+                     "patterns are not those of this version, or the compiler or a library "
+                     "rounds in another way. Please report it with `ayumi --version`.\n";
+  context.print(table);
+  context.print_json(Json{{"same", different == 0}, {"results", results}}.dump(2));
+  context.exit_code = different == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_selftest(CLI::App& app, Context& context) {
+  CLI::App* command = app.add_subcommand(
+      "selftest", "compare the results of this machine with the published ones, bit for bit");
+  command->footer("Examples:\n  ayumi selftest\n  ayumi selftest --json");
+  command->callback([&context] { compare(context); });
+}
+
+}  // namespace ayumi::app

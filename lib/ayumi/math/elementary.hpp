@@ -1,0 +1,46 @@
+#pragma once
+// Sine, exponential function and their relatives with the same bits on every machine. Those of the
+// C library differ in the last bit from version to version, and with the processor (with and
+// without fused multiply-add); a simulation of a walk makes a visible difference of it. Only
+// operations that IEEE 754 rounds in one way are used here: + - * / and the square root.
+//
+// Errors are below 1 unit in the last place for sin, cos (to 1e9 rad), exp, log, and atan, and
+// below 2 for the others, except power(). The rooms that compute use these, not those of <cmath>;
+// architecture_tests looks for the latter.
+
+#include <Eigen/Geometry>
+
+namespace ayumi::elementary {
+
+double sin(double x);
+double cos(double x);
+double tan(double x);
+double exp(double x);
+double log(double x);  ///< -infinity at 0, not a number below
+double log10(double x);
+double log1p(double x);  ///< log(1 + x), exact near 0
+double atan2(double y, double x);
+double asin(double x);
+double acos(double x);
+double hypot(double x, double y);  ///< without overflow
+/// x^y for x >= 0; not a number below.
+double power(double x, double y);
+
+/// x^N by multiplication.
+template <int N>
+double power(double x) {
+  static_assert(N >= 0);
+  double result = 1;
+  for (int i = 0; i < N; ++i) result *= x;
+  return result;
+}
+
+/// Rotation by `angle` [rad] about the unit vector `axis`, as Eigen::AngleAxisd.
+Eigen::Matrix3d turn_matrix(double angle, const Eigen::Vector3d& axis);
+Eigen::Quaterniond turn_quaternion(double angle, const Eigen::Vector3d& axis);
+/// The rotation on the shortest way from a to b at `share` of its angle, as Eigen's slerp().
+Eigen::Quaterniond between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b, double share);
+/// Angle between two attitudes [rad], as Eigen's angularDistance().
+double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
+
+}  // namespace ayumi::elementary

@@ -1,0 +1,60 @@
+#!/bin/bash
+# Runs tests under the tools that see what a test alone does not. All must be clean. It takes hours;
+# .ci/sanitize runs a part.
+#
+#   tests/sanitizers.sh [asan] [tsan] [valgrind] [tidy]     no name: all of them
+#
+# asan      the whole suite under the address, undefined-behaviour and leak sanitizers
+# tsan      what uses threads under the thread sanitizer
+# valgrind  a short set under memcheck, which sees what is used before it is set
+# tidy      clang-tidy over every source
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+jobs=$(nproc)
+jobs=$((jobs < 2 ? jobs : 2))
+
+run_asan() {
+  cmake --preset asan -DAYUMI_WARNINGS_AS_ERRORS=ON >/dev/null
+  cmake --build build/asan --parallel "$jobs"
+  # Mesa's drawing and fontconfig keep memory until the end.
+  ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
+    ctest --test-dir build/asan --output-on-failure --parallel "$jobs"
+}
+
+# Rooms whose functions start threads: sampling, check, studies, meshes, and the pictures of clips.
+run_tsan() {
+  local targets=() rooms=(base plan check study io)
+  for room in "${rooms[@]}"; do targets+=("${room}_tests"); done
+  cmake --preset tsan >/dev/null
+  cmake --build build/tsan --parallel "$jobs" --target "${targets[@]}"
+  TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan --output-on-failure \
+    --parallel "$jobs" -R "^($(IFS='|'; echo "${rooms[*]}"))\\."
+}
+
+run_valgrind() {
+  local rooms=(base math geometry dynamics)
+  local targets=()
+  for room in "${rooms[@]}"; do targets+=("${room}_tests"); done
+  cmake --preset release >/dev/null
+  cmake --build build/release --parallel "$jobs" --target "${targets[@]}"
+  for target in "${targets[@]}"; do
+    # What takes minutes there, and what measures time, is left out.
+    valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite \
+      "build/release/tests/$target" --gtest_brief=1 \
+      --gtest_filter='-*Elementary*:*Quick*:*Time*:*Mujoco*:*Many*'
+  done
+}
+
+run_tidy() {
+  cmake --preset tidy >/dev/null
+  cmake --build build/tidy --parallel "$jobs"
+}
+
+[[ $# -gt 0 ]] || set -- asan tsan valgrind tidy
+for tool in "$@"; do
+  case $tool in
+    asan | tsan | valgrind | tidy) "run_$tool" ;;
+    *) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  esac
+  echo "$tool: clean"
+done
