@@ -61,6 +61,7 @@ TEST(Loci, NamesWhatItShows) {
 // (26) and (27) are references of f_z: the last panel shows them beside the force.
 TEST(Loci, ThePanelOfTheForceHasItsReference) {
   TwoRuns runs;
+  for (SimulationSample& s : runs.standing.samples) s.reference_fz = s.fz;
   const auto lines = [&](const LociOptions& options) {
     const Drawing drawing = draw_loci({{"DTAD", &runs.standing}}, options);
     return std::count_if(drawing.items.begin(), drawing.items.end(),

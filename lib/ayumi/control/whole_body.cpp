@@ -409,9 +409,10 @@ void ReferenceBody::fly(const Vector3d& tilt, const CommandSample& command,
 
 void ReferenceBody::send(const VectorXd& dtheta, const CommandSample& command,
                          const CommandSample& next, const VectorXd& offsets, ControlOutput& out) {
+  // The posture of this tick with its base, and the rates that lead to the next.
   reference_.dtheta = dtheta;
-  reference_.theta += dt_ * dtheta;
   out.reference = reference_;
+  reference_.theta += dt_ * dtheta;
   out.target = reference_.theta + lead_.cwiseProduct(dtheta) + offsets;
   bound_target(command, next, out);
 }

@@ -18,6 +18,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/support_region.hpp"
+#include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -339,8 +340,12 @@ VectorXd ViipJump::torque(const VectorXd& velocity) {
   state.dtheta = velocity.tail(model_->dof_count());
   const VectorXd force = inverse_dynamics(*model_, state, acceleration, data_);
   VectorXd torque = force.tail(model_->dof_count());
-  for (int j = 0; j < model_->dof_count(); ++j)
-    torque[j] += limits_.servo[static_cast<size_t>(j)].rotor_inertia * acceleration[6 + j];
+  for (int j = 0; j < model_->dof_count(); ++j) {
+    const ServoDescription& servo = limits_.servo[static_cast<size_t>(j)];
+    const double rate = state.dtheta[j];
+    torque[j] += servo.rotor_inertia * acceleration[6 + j] + servo.viscous * rate +
+                 servo.coulomb * std::clamp(rate / kCoulombRate, -1.0, 1.0);
+  }
   if (stage_ == Stage::flight) return torque;
   const Vector3d f = 0.5 * force.head<3>(), n = 0.5 * force.segment<3>(3);
   for (const Side side : {Side::left, Side::right})
@@ -359,8 +364,8 @@ void ViipJump::move_joints(const VectorXd& velocity, ControlOutput& out) {
   const bool last = stage_ == Stage::settle && elapsed_ > kTorqueFadeTime;
   forward_ = std::clamp(forward_ + (last ? -dt_ : dt_) / kTorqueFadeTime, 0.0, 1.0);
   reference_.dtheta = velocity.tail(model_->dof_count());
+  out.reference = reference_;  // the posture of this tick with its base
   reference_.theta += dt_ * reference_.dtheta;
-  out.reference = reference_;
   out.target = reference_.theta + lead_.cwiseProduct(reference_.dtheta);
   for (int j = 0; j < out.target.size(); ++j) {
     const Dof& dof = model_->dofs()[j];
