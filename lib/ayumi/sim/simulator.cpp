@@ -226,6 +226,14 @@ void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
   s.command_cog = cmd.cog;
   s.command_zmp = cmd.zmp;
   s.command_fz = cmd.fz;
+  s.measured_dcog = estimate.dcog;
+  s.command_dcog = cmd.dcog;
+  s.reference_dcog = out.cog_reference.dcog;
+  s.reference_ddcog = out.cog_reference.ddcog;
+  s.reference_dtheta = out.reference.dtheta;
+  s.law = out.terms;
+  s.residuals = out.residuals;
+  s.weight = out.weight;
   s.measured_cog = estimate.cog;
   s.measured_zmp = estimate.zmp;
   s.measured_fz = estimate.fz;
@@ -343,6 +351,7 @@ SimulationLog Simulator::take_log() {
   SimulationLog log;
   log.dt = series_->dt;
   log.controller = options_.controller.type;
+  log.gains = gains_in_use(*law_model_, options_.controller);
   log.plant = options_.plant.name;
   log.world = options_.world;
   log.scenario = options_.scenario;
