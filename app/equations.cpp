@@ -4,156 +4,354 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/control/feedback.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi::app {
 
 using Eigen::Vector3d;
-using Lines = std::vector<std::string>;
 
 namespace {
 
+using S = SimulationSample;
+
+constexpr char kAxis[] = "xyz";
+
 std::string mm(double metres) { return text::fixed(1e3 * metres, 1) + " mm"; }
 std::string fixed(double value, int digits) { return text::fixed(value, digits); }
+std::string acceleration(double value) { return fixed(value, 3) + " m/s2"; }
 
-double height(const SimulationSample& s) { return s.command_cog.z() - s.command_zmp.z(); }
+/// Collects lines and values; a number that is put into words is a value too.
+class Writer {
+ public:
+  explicit Writer(const RunInstant& instant) : s_(instant.now()) {}
 
-struct Delta {
-  Vector3d e, de;
+  const S& now() const { return s_; }
+  void line(const std::string& words) { out_.lines.push_back(words); }
+
+  double scalar(const std::string& name, const char* unit, double value,
+                std::optional<double> computed = {}) {
+    out_.values.push_back(
+        {name + (std::string(unit) == "1" ? "" : "[" + std::string(unit) + "]"), value, computed});
+    return value;
+  }
+  double part(const std::string& name, const char* unit, const Vector3d& value, int axis,
+              std::optional<double> computed = {}) {
+    return scalar(name + "." + kAxis[axis], unit, value[axis], computed);
+  }
+  EquationNumbers take() { return std::move(out_); }
+
+ private:
+  const S& s_;
+  EquationNumbers out_;
 };
 
-/// (21): command - measured.
-Delta delta(const RunInstant& i) {
-  return {i.now().command_cog - i.now().measured_cog,
-          i.rate(&SimulationSample::command_cog) - i.rate(&SimulationSample::measured_cog)};
+/// Whether DTAD made this tick; a run under one controller may have phases of the other.
+bool dtad(const RunInstant& i) {
+  const LawStage stage = i.now().law.stage;
+  return stage == LawStage::follow || stage == LawStage::follow_flight;
+}
+bool literal(const RunInstant& i) {
+  return dtad(i) && i.log.controller->demonstration == Demonstration::literal;
+}
+/// Whether the gains of the log are those of the law that made this tick.
+bool own_gains(const RunInstant& i) {
+  return i.log.controller &&
+         i.log.controller->kind == (dtad(i) ? ControllerKind::dtad : ControllerKind::viip);
 }
 
-double K(const RunInstant& i) { return long_term_k(i.gains); }
-double D(const RunInstant& i) {
-  const double w = std::sqrt(kGravity / height(i.now()));
-  return long_term_d(i.gains) / w;
-}
-
-Lines cog_numbers(const RunInstant& i) {
-  const SimulationSample& s = i.now();
-  Lines lines;
-  for (int a = 0; a < 3; ++a)
-    lines.push_back(std::string("COG ") + "xyz"[a] + ": true " + mm(s.cog[a]) + ", estimated " +
-                    mm(s.measured_cog[a]) + ", reference " + mm(s.reference_cog[a]) +
-                    ", commanded " + mm(s.command_cog[a]));
-  return lines;
-}
-
-Lines pendulum_numbers(const RunInstant& i) {
-  const SimulationSample& s = i.now();
-  const double w2 = i.omega_squared();
-  Lines lines;
-  for (int a = 0; a < 2; ++a) {
-    const double x = s.measured_cog[a], wanted = s.reference_zmp[a], real = s.measured_zmp[a];
-    lines.push_back(std::string(1, "xy"[a]) + ": required " + fixed(w2, 1) + " /s2 x (" + mm(x) +
-                    " - " + mm(wanted) + ") = " + fixed(w2 * (x - wanted), 3) +
-                    " m/s2; the ground gives " + fixed(w2, 1) + " x (" + mm(x) + " - " + mm(real) +
-                    ") = " + fixed(w2 * (x - real), 3) + " m/s2");
-    lines.push_back("   the difference is w2 (ZMP - ref ZMP) = " + fixed(w2 * (real - wanted), 3) +
-                    " m/s2; ka = " + text::brief(i.gains.zmp_gain) +
-                    " times this difference is added to the reference");
+const char* stage_words(LawStage stage) {
+  switch (stage) {
+    case LawStage::replay:
+      return "open loop: the servos receive the command, and nothing is measured";
+    case LawStage::follow:
+      return "DTAD follows the command on the ground";
+    case LawStage::follow_flight:
+      return "DTAD in flight: the posture returns to the command, and nothing about the COG is "
+             "measured";
+    case LawStage::stand:
+      return "VIIP stands on both feet";
+    case LawStage::weight_shift:
+      return "VIIP shifts the weight before its first step";
+    case LawStage::single_support:
+      return "VIIP steps, on one foot";
+    case LawStage::double_support:
+      return "VIIP steps, on both feet";
+    case LawStage::stoop:
+      return "VIIP stoops for a jump, by (24)(25)";
+    case LawStage::push:
+      return "VIIP pushes off, by (26)";
+    case LawStage::flight:
+      return "VIIP is in flight: no ground force is asked for";
+    case LawStage::landing:
+      return "VIIP lands, by (27)";
+    case LawStage::settle:
+      return "VIIP comes back to its height, by (24)(25)";
   }
-  return lines;
+  return "";
 }
 
-Lines vertical_numbers(const RunInstant& i) {
-  const SimulationSample& s = i.now();
-  const double m = i.model.mass();
-  return {"z: ref f_z / m - g = " + fixed(s.reference_fz, 1) + " N / " + fixed(m, 2) +
-          " kg - g = " + fixed(s.reference_fz / m - kGravity, 3) + " m/s2; measured f_z " +
-          fixed(s.measured_fz, 1) + " N gives " + fixed(s.measured_fz / m - kGravity, 3) + " m/s2"};
+bool on_ground(LawStage stage) {
+  return stage != LawStage::replay && stage != LawStage::follow_flight && stage != LawStage::flight;
 }
 
-Lines omega_numbers(const RunInstant& i) {
-  const SimulationSample& s = i.now();
-  const double w2 = i.omega_squared();
-  return {"w2 = " + fixed(s.reference_fz, 1) + " N / (" + fixed(i.model.mass(), 2) + " kg x " +
-          mm(height(s)) + ") = " + fixed(w2, 2) + " /s2, omega = " + fixed(std::sqrt(w2), 2) +
-          " /s: an error grows by the factor e in " + fixed(1e3 / std::sqrt(w2), 0) + " ms"};
+Writer begin(const RunInstant& i) {
+  Writer w(i);
+  w.line(stage_words(i.now().law.stage));
+  w.scalar("law.stage", "1", static_cast<double>(i.now().law.stage));
+  return w;
 }
 
-Lines zmp_numbers(const RunInstant& i) {
-  const SimulationSample& s = i.now();
-  const Delta d = delta(i);
-  Lines lines = {"K = " + text::brief(K(i)) + ", D = " + fixed(1e3 * D(i), 0) + " ms"};
-  Vector3d cut_off = Vector3d::Zero();
-  for (int a = 0; a < 2; ++a) {
-    const double wanted = s.command_zmp[a] - K(i) * d.e[a] - D(i) * d.de[a];
-    const double cut = cut_off[a] = s.reference_zmp[a] - wanted;
-    lines.push_back(
-        std::string(1, "xy"[a]) + ": " + mm(s.command_zmp[a]) + " - K x " + mm(d.e[a]) + " - D x " +
-        fixed(1e3 * d.de[a], 1) + " mm/s = " + mm(wanted) +
-        (std::abs(cut) > 1e-3
-             ? "; moved to " + mm(s.reference_zmp[a]) + ", the nearest point of the support"
-             : "; inside the support, so ref ZMP = " + mm(s.reference_zmp[a])));
-  }
-  if (cut_off.norm() > 1e-3)
-    lines.push_back("the wanted ZMP is " + mm(cut_off.norm()) + " outside the support of the " +
-                    (s.planned_contact[0] && s.planned_contact[1] ? "feet"
-                     : s.planned_contact[0]                       ? "left foot"
-                                                                  : "right foot"));
-  return lines;
-}
-
-Lines force_numbers(const RunInstant& i) {
-  const SimulationSample& s = i.now();
-  const Delta d = delta(i);
-  const double m = i.model.mass(), w = std::sqrt(kGravity / height(s));
-  const double kz = i.gains.height_stiffness * w * w, dz = i.gains.height_damping * w;
-  return {"ref f_z = " + fixed(s.command_fz, 1) + " + " + fixed(m, 2) + " x (" + fixed(kz, 1) +
-          " x " + mm(d.e.z()) + " + " + fixed(dz, 1) + " x " + fixed(1e3 * d.de.z(), 1) +
-          " mm/s) = " + fixed(s.command_fz + m * (kz * d.e.z() + dz * d.de.z()), 1) +
-          " N; the log has " + fixed(s.reference_fz, 1) + " N"};
-}
-
-Lines delta_numbers(const RunInstant& i) {
-  const Delta d = delta(i);
-  Lines lines;
+EquationNumbers cog_numbers(const RunInstant& i) {
+  Writer w = begin(i);
+  const S& s = w.now();
   for (int a = 0; a < 3; ++a)
-    lines.push_back(std::string("Delta ") + "xyz"[a] + " = " + mm(d.e[a]) + ", its rate " +
-                    fixed(1e3 * d.de[a], 1) + " mm/s");
-  return lines;
+    w.line(std::string("COG ") + kAxis[a] + ": true " + mm(w.part("cog", "m", s.cog, a)) +
+           ", estimated " + mm(w.part("measured.cog", "m", s.measured_cog, a)) + ", reference " +
+           mm(w.part("ref.cog", "m", s.reference_cog, a)) + ", commanded " +
+           mm(w.part("cmd.cog", "m", s.command_cog, a)));
+  return w.take();
+}
+
+/// The summands of the reference's acceleration along an axis, and their sum.
+void acceleration_lines(Writer& w, const RunInstant& i, int a) {
+  const S& s = w.now();
+  const LawTerms& law = s.law;
+  const bool plan = dtad(i) && !literal(i);
+  const double sum = law.motion[a] + law.pull[a] + law.short_term[a] + law.rocking[a];
+  w.line(std::string(1, kAxis[a]) + ": " + (plan ? "commanded " : "of the pendulum itself ") +
+         fixed(w.part("law.motion", "m/s^2", law.motion, a), 3) + ", short term " +
+         fixed(w.part("law.short_term", "m/s^2", law.short_term, a), 3) + ", pull to the " +
+         (plan ? "command " : "measured state ") +
+         fixed(w.part("law.pull", "m/s^2", law.pull, a), 3) + ", damping of the rocking " +
+         fixed(w.part("law.rocking", "m/s^2", law.rocking, a), 3) + "; together " +
+         acceleration(sum));
+  const double asked = w.part("ref.ddcog", "m/s^2", s.reference_ddcog, a);
+  if (std::abs(asked - sum) > 1e-9) w.line("   bounded to " + acceleration(asked));
+}
+
+EquationNumbers pendulum_numbers(const RunInstant& i) {
+  Writer w = begin(i);
+  const S& s = w.now();
+  const LawTerms& law = s.law;
+  if (!on_ground(law.stage)) return w.take();
+  const double w2 = w.scalar("law.omega2", "1/s^2", law.omega2);
+  for (int a = 0; a < 2; ++a) {
+    const double x = w.part("measured.cog", "m", s.measured_cog, a);
+    const double wanted = w.part("ref.zmp", "m", s.reference_zmp, a);
+    const double real = w.part("law.filtered_zmp", "m", law.filtered_zmp, a);
+    w.line(std::string(1, kAxis[a]) + ": required " + fixed(w2, 1) + " /s2 x (" + mm(x) + " - " +
+           mm(wanted) + ") = " + acceleration(w2 * (x - wanted)) + "; the ground gives " +
+           fixed(w2, 1) + " x (" + mm(x) + " - " + mm(real) +
+           ") = " + acceleration(w2 * (x - real)));
+    if (literal(i)) {
+      w.part("law.motion", "m/s^2", law.motion, a, w2 * (x - wanted));
+      w.line("   the required one is integrated as it is");
+      continue;
+    }
+    const double offset = w.part("law.offset", "m", law.offset, a);
+    const double ka = own_gains(i) ? i.gain("ka") : 0;
+    if (law.short_term.head<2>().isZero(0)) {
+      w.line("   short term: none, because no foot bears or its gain is 0");
+    } else if (ka > 0) {
+      // DTAD moves its offset after it has used it: the gap is that of the term itself.
+      const double gap = law.short_term[a] / (ka * w2);
+      w.line("   short term: ka = " + text::brief(ka) + " times w2 x (ZMP - ref ZMP" +
+             (offset != 0 ? " - offset " + mm(offset) : std::string()) + "), here " + mm(gap) +
+             " of ZMP");
+    }
+    acceleration_lines(w, i, a);
+  }
+  return w.take();
+}
+
+EquationNumbers vertical_numbers(const RunInstant& i) {
+  Writer w = begin(i);
+  const S& s = w.now();
+  const double wanted = w.scalar("ref.fz", "N", s.reference_fz),
+               measured = w.scalar("measured.fz", "N", s.measured_fz);
+  w.line("z: ref f_z / m - g = " + fixed(wanted, 1) + " N / " + fixed(i.mass, 2) +
+         " kg - g = " + acceleration(wanted / i.mass - kGravity) + "; measured f_z " +
+         fixed(measured, 1) + " N gives " + acceleration(measured / i.mass - kGravity));
+  if (on_ground(s.law.stage)) acceleration_lines(w, i, 2);
+  return w.take();
+}
+
+EquationNumbers omega_numbers(const RunInstant& i) {
+  Writer w = begin(i);
+  const S& s = w.now();
+  if (!on_ground(s.law.stage)) {
+    w.line("no pendulum: w is not used");
+    return w.take();
+  }
+  const double f = w.scalar("ref.fz", "N", s.reference_fz);
+  const double z = w.scalar("law.height", "m", s.law.height);
+  const double w2 = w.scalar("law.omega2", "1/s^2", s.law.omega2, f / (i.mass * z));
+  w.line("w2 = " + fixed(f, 1) + " N / (" + fixed(i.mass, 2) + " kg x " + mm(z) +
+         ") = " + fixed(w2, 2) + " /s2, omega = " + fixed(std::sqrt(w2), 2) +
+         " /s: an error grows by the factor e in " + fixed(1e3 / std::sqrt(w2), 0) + " ms");
+  return w.take();
+}
+
+EquationNumbers zmp_numbers(const RunInstant& i) {
+  Writer w = begin(i);
+  const S& s = w.now();
+  const LawTerms& law = s.law;
+  if (!on_ground(law.stage)) {
+    w.line("(18)(19) rest; ref ZMP is that of the plan");
+    return w.take();
+  }
+  const double K = w.scalar("law.K", "1", law.K), D = w.scalar("law.D", "s", law.D);
+  w.line(dtad(i) ? "K = " + text::brief(K) + ", D = " + fixed(1e3 * D, 0) + " ms"
+                 : "the wanted ZMP moves by K = " + fixed(K, 3) +
+                       " times what the COG moves, and by D = " + fixed(1e3 * D, 0) +
+                       " ms times its speed");
+  const Vector3d e = s.command_cog - s.measured_cog, de = s.command_dcog - s.measured_dcog;
+  for (int a = 0; a < 2; ++a) {
+    const double planned = w.part("law.planned_zmp", "m", law.planned_zmp, a);
+    if (dtad(i)) {
+      const double wanted =
+          w.part("law.wanted_zmp", "m", law.wanted_zmp, a, planned - K * e[a] - D * de[a]);
+      w.line(std::string(1, kAxis[a]) + ": " + mm(planned) + " - K x " + mm(e[a]) + " - D x " +
+             fixed(1e3 * de[a], 1) + " mm/s = " + mm(wanted));
+    } else {
+      w.line(std::string(1, kAxis[a]) + ": wanted by the measured state " +
+             mm(w.part("law.wanted_zmp", "m", law.wanted_zmp, a)) + ", of the reference pendulum " +
+             mm(planned));
+    }
+  }
+  const Vector3d cut = s.reference_zmp - law.wanted_zmp;
+  w.part("ref.zmp", "m", s.reference_zmp, 0);
+  w.part("ref.zmp", "m", s.reference_zmp, 1);
+  const std::string feet = s.planned_contact[0] && s.planned_contact[1] ? "both feet"
+                           : s.planned_contact[0]                       ? "the left foot"
+                                                                        : "the right foot";
+  if (cut.head<2>().norm() > 1e-12)
+    w.line("moved by " + mm(cut.head<2>().norm()) + " to the nearest point of the support of " +
+           feet + ": ref ZMP = " + mm(s.reference_zmp.x()) + ", " + mm(s.reference_zmp.y()));
+  else
+    w.line("inside the support of " + feet + ", so it is the ref ZMP");
+  return w.take();
+}
+
+EquationNumbers force_numbers(const RunInstant& i) {
+  Writer w = begin(i);
+  const S& s = w.now();
+  if (!dtad(i)) {
+    w.line(s.law.stage == LawStage::replay ? "ref f_z is the commanded one"
+                                           : "the height follows (24) to (27), not (20)");
+    w.scalar("ref.fz", "N", s.reference_fz);
+    return w.take();
+  }
+  const double command = w.scalar("cmd.fz", "N", s.command_fz);
+  if (!on_ground(s.law.stage)) {
+    w.scalar("ref.fz", "N", s.reference_fz, 0.0);
+    w.line("ref f_z = 0 in flight");
+    return w.take();
+  }
+  const double kz = w.scalar("law.K_z", "1/s^2", s.law.K_z),
+               dz = w.scalar("law.D_z", "1/s", s.law.D_z);
+  const double e = s.command_cog.z() - s.measured_cog.z(),
+               de = s.command_dcog.z() - s.measured_dcog.z();
+  const double wanted = command + i.mass * (kz * e + dz * de);
+  const double force = w.scalar("ref.fz", "N", s.reference_fz, admissible_force(wanted, i.mass));
+  w.line("ref f_z = " + fixed(command, 1) + " + " + fixed(i.mass, 2) + " x (" + fixed(kz, 1) +
+         " x " + mm(e) + " + " + fixed(dz, 1) + " x " + fixed(1e3 * de, 1) +
+         " mm/s) = " + fixed(wanted, 1) + " N" +
+         (force != wanted ? ", raised to the least admissible " + fixed(force, 1) + " N" : ""));
+  return w.take();
+}
+
+EquationNumbers delta_numbers(const RunInstant& i) {
+  Writer w = begin(i);
+  const S& s = w.now();
+  for (int a = 0; a < 3; ++a) {
+    const double e =
+        w.part("cmd.cog", "m", s.command_cog, a) - w.part("measured.cog", "m", s.measured_cog, a);
+    const double de = w.part("cmd.dcog", "m/s", s.command_dcog, a) -
+                      w.part("measured.dcog", "m/s", s.measured_dcog, a);
+    w.line(std::string("Delta ") + kAxis[a] + " = " + mm(e) + ", its rate " + fixed(1e3 * de, 1) +
+           " mm/s");
+  }
+  if (s.law.stage != LawStage::follow) w.line("Delta is not fed back here");
+  return w.take();
+}
+
+/// (24) to (27): the spring that held the height at this instant.
+EquationNumbers spring_numbers(const RunInstant& i) {
+  Writer w = begin(i);
+  const S& s = w.now();
+  const LawTerms& law = s.law;
+  if (law.K_Pz == 0) {
+    w.line(dtad(i) ? "under DTAD the height follows (20)" : "no spring acts here");
+    w.scalar("ref.fz", "N", s.reference_fz);
+    return w.take();
+  }
+  const double kp = w.scalar("law.K_Pz", "N/m", law.K_Pz),
+               kd = w.scalar("law.K_Dz", "N s/m", law.K_Dz);
+  const double goal = w.scalar("law.spring_goal", "m", law.spring_goal),
+               z = w.scalar("law.spring_height", "m", law.spring_height),
+               dz = w.scalar("law.spring_rate", "m/s", law.spring_rate);
+  const double wanted = kp * (goal - z) - kd * dz + i.mass * kGravity;
+  const bool lands = law.stage == LawStage::landing, pushes = law.stage == LawStage::push;
+  const double bounded = lands    ? wanted
+                         : pushes ? std::max(0.0, wanted)
+                                  : admissible_force(wanted, i.mass);
+  const double force = w.scalar("ref.fz", "N", s.reference_fz, bounded);
+  w.line("ref f_z = " + fixed(kp, 0) + " N/m x (" + mm(goal) + " - " + mm(z) + ") - " +
+         fixed(kd, 1) + " N s/m x " + fixed(1e3 * dz, 1) + " mm/s + m g = " + fixed(wanted, 1) +
+         " N" + (bounded != wanted ? ", bounded to " + fixed(force, 1) + " N" : std::string()));
+  if (!lands && !pushes)
+    w.line("(25): K_Dz^2 = " + fixed(kd * kd, 0) +
+           (kd * kd >= 4 * i.mass * kp * (1 - 1e-12) ? " is at least" : " is below") +
+           " 4 m K_Pz = " + fixed(4 * i.mass * kp, 0) + " N2s2/m2");
+  return w.take();
 }
 
 /// Joints that have met a limit by now, and the tasks that gave way to them.
-Lines limit_numbers(const RunInstant& i) {
+void limit_lines(Writer& w, const RunInstant& i) {
   const double t = i.log.dt * (static_cast<double>(i.k) + 0.5);
-  Lines lines;
+  bool any = false;
   for (const SimulationEvent& event : i.log.events)
-    if (event.kind == "saturation" && event.t < t)
-      lines.push_back("from " + fixed(event.t, 3) + " s on: " + event.text);
-  if (lines.empty())
-    lines.push_back(
-        "so far no joint has reached a limit, and the controller has followed all its targets");
-  return lines;
+    if (event.kind == "saturation" && event.t < t) {
+      any = true;
+      w.line("from " + fixed(event.t, 3) + " s on: " + event.text);
+    }
+  if (!any) w.line("so far no joint has reached a limit");
 }
 
-Lines resolution_numbers(const RunInstant& i) {
-  const size_t n = i.log.samples.size();
-  const size_t a = i.k > 0 ? i.k - 1 : 0, b = std::min(i.k + 1, n - 1);
-  const double dt = i.log.dt * static_cast<double>(std::max<size_t>(1, b - a));
-  const Eigen::VectorXd rates =
-      (i.log.samples[b].reference_theta - i.log.samples[a].reference_theta) / dt;
-  const Vector3d cog = (i.log.samples[b].reference_cog - i.log.samples[a].reference_cog) / dt;
+EquationNumbers resolution_numbers(const RunInstant& i) {
+  Writer w = begin(i);
+  const S& s = w.now();
+  if (s.law.stage == LawStage::replay || s.law.stage == LawStage::follow_flight) {
+    w.line("nothing is resolved: the joints follow their command");
+    return w.take();
+  }
+  const Eigen::VectorXd& rates = s.reference_dtheta;
   std::vector<int> order(static_cast<size_t>(rates.size()));
   for (size_t j = 0; j < order.size(); ++j) order[j] = static_cast<int>(j);
   std::stable_sort(order.begin(), order.end(),
                    [&](int x, int y) { return std::abs(rates[x]) > std::abs(rates[y]); });
   std::string joints;
-  for (size_t j = 0; j < std::min<size_t>(5, order.size()); ++j)
-    joints += (j ? ", " : "") + i.log.joints[static_cast<size_t>(order[j])] + " " +
-              fixed(rates[order[j]], 2);
-  Lines lines = {"ref COG rate " + fixed(1e3 * cog.x(), 1) + ", " + fixed(1e3 * cog.y(), 1) + ", " +
-                     fixed(1e3 * cog.z(), 1) + " mm/s is produced by " +
-                     std::to_string(rates.size()) + " joints together; the fastest joints [rad/s]:",
-                 "  " + joints};
-  for (const std::string& line : limit_numbers(i)) lines.push_back(line);
-  return lines;
+  for (size_t j = 0; j < std::min<size_t>(5, order.size()); ++j) {
+    const std::string& name = i.log.joints[static_cast<size_t>(order[j])];
+    joints += (j ? ", " : "") + name + " " +
+              fixed(w.scalar("ref.dtheta." + name, "rad/s", rates[order[j]]), 2) + " (W " +
+              text::brief(w.scalar("weight." + name, "1", s.weight[order[j]])) + ")";
+  }
+  w.line("ref COG rate " + fixed(1e3 * w.part("ref.dcog", "m/s", s.reference_dcog, 0), 1) + ", " +
+         fixed(1e3 * w.part("ref.dcog", "m/s", s.reference_dcog, 1), 1) + ", " +
+         fixed(1e3 * w.part("ref.dcog", "m/s", s.reference_dcog, 2), 1) + " mm/s is produced by " +
+         std::to_string(rates.size()) + " joints together; the fastest joints [rad/s]:");
+  w.line("  " + joints);
+  const TaskResiduals& left = s.residuals;
+  w.line("what J_U ref dtheta leaves of u: COG " +
+         text::brief(1e3 * w.scalar("residual.cog", "m/s", left.cog)) + " mm/s, foot " +
+         text::brief(1e3 * w.scalar("residual.foot", "m/s", left.foot)) + " mm/s and " +
+         text::brief(w.scalar("residual.foot_turn", "rad/s", left.foot_turn)) + " rad/s, trunk " +
+         text::brief(w.scalar("residual.trunk", "rad/s", left.trunk)) + " rad/s");
+  limit_lines(w, i);
+  return w.take();
 }
 
 const char* kTree =
@@ -194,21 +392,17 @@ const char* kSynergy =
 
 }  // namespace
 
-Vector3d RunInstant::rate(Vector3d SimulationSample::*point) const {
-  const size_t a = k >= 2 ? k - 2 : 0, b = std::min(k + 2, log.samples.size() - 1);
-  if (a == b) return Vector3d::Zero();
-  return (log.samples[b].*point - log.samples[a].*point) / (log.dt * static_cast<double>(b - a));
-}
-
-double RunInstant::omega_squared() const {
-  return now().reference_fz / (model.mass() * height(now()));
+double RunInstant::gain(const std::string& name) const {
+  for (const auto& [key, value] : log.gains)
+    if (key == name) return value;
+  return 0;
 }
 
 const std::vector<Equation>& equations() {
   static const std::vector<Equation> all = [] {
     std::vector<Equation> list;
     const auto add = [&](int first, int last, const char* formula, const char* words,
-                         Lines (*numbers)(const RunInstant&)) {
+                         EquationNumbers (*numbers)(const RunInstant&)) {
       for (int n = first; n <= last; ++n) list.push_back({n, formula, words, numbers});
     };
     add(1, 4, "0v_k = 0J_k dtheta,  0w_k = 0J_wk dtheta", kTree, nullptr);
@@ -237,7 +431,7 @@ const std::vector<Equation>& equations() {
         delta_numbers);
     add(22, 23, "ref dtheta = cmd dtheta + W^-1 J_U' (J_U W^-1 J_U')^-1 v,  v = u - J_U cmd dtheta",
         kResolve, resolution_numbers);
-    add(24, 27, "ref f_z = K_Pz (ref z - z) + K_Dz (ref dz - dz) + m g", kJump, vertical_numbers);
+    add(24, 27, "ref f_z = K_Pz (ref z - z) + K_Dz (ref dz - dz) + m g", kJump, spring_numbers);
     add(28, 29, "ref dtheta = W^-1 J_U' (J_U W^-1 J_U')^-1 u", kSynergy, resolution_numbers);
     return list;
   }();

@@ -1,10 +1,10 @@
 #pragma once
 // The paper's equations in words, and with the numbers of one instant of a run.
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "ayumi/control/laws/dtad.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi::app {
@@ -12,22 +12,33 @@ namespace ayumi::app {
 /// One instant of a run, as the equations need it.
 struct RunInstant {
   const SimulationLog& log;
-  const RobotModel& model;
-  DtadParams gains;
-  size_t k = 0;  ///< sample
+  double mass = 0;  ///< of the robot [kg]
+  size_t k = 0;     ///< sample
 
   const SimulationSample& now() const { return log.samples[k]; }
-  /// Rate of a logged point by differences over 4 ms [1/s].
-  Eigen::Vector3d rate(Eigen::Vector3d SimulationSample::*point) const;
-  double omega_squared() const;  ///< (17) with the reference force
+  /// A gain that the run used, by its name in files; 0 where the controller has none.
+  double gain(const std::string& name) const;
+};
+
+/// A number of the log, and where the equation gives it by the log's other numbers, that.
+struct LoggedValue {
+  std::string name;  ///< of the log's column, as "ref.zmp.x[m]"
+  double value = 0;
+  std::optional<double> computed = {};
+};
+
+/// What an equation was at one instant of a run.
+struct EquationNumbers {
+  std::vector<std::string> lines;   ///< in words
+  std::vector<LoggedValue> values;  ///< behind the words, unrounded
 };
 
 struct Equation {
   int number;
   std::string formula;  ///< in one line, corrected where the printed form cannot be followed
   std::string words;    ///< its meaning and its purpose
-  /// Lines with the numbers of a run; null where a log does not contain them.
-  std::vector<std::string> (*numbers)(const RunInstant&);
+  /// The numbers of a run; null where a log does not contain them.
+  EquationNumbers (*numbers)(const RunInstant&);
 };
 
 /// The equations of the paper that this program uses, by number.

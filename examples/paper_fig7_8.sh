@@ -1,5 +1,5 @@
 #!/bin/bash
-# Strips and loci in the manner of Figs. 7 and 8 of the paper: VIIP shifts the weight of HOAP-1 on both
+# Figs. 7, 8 and 11 of the paper, on its robot of 30 degrees of freedom: VIIP shifts the weight on both
 # feet, steps in place under a push, and walks. Needs the program: build it first (quickstart.sh).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -10,11 +10,13 @@ if [ ! -x "$ayumi" ]; then
 fi
 
 out=${1:-out}
-for name in hoap1_viip_shift hoap1_viip_step hoap1_viip_walk; do
+for name in humanoid30_viip_shift humanoid30_viip_step humanoid30_viip_walk; do
   run=$out/$name
-  "$ayumi" run "patterns/$name.json" -o "$run" --force
+  "$ayumi" run "patterns/$name.json" -o "$run" --no-pictures --force
+  "$ayumi" --force preview "$run" --log closed_loop --strip 8 -o "$run/fig7_snapshots.png"
   # Against time: COG, ref ZMP and ZMP in the frame of the feet. From above: with the footholds.
   "$ayumi" --force plot "$run" --log closed_loop -o "$run/fig8_loci.svg"
   "$ayumi" --force plot "$run" --log closed_loop --top -o "$run/top.png"
 done
-echo "Figures in $out/hoap1_viip_shift, hoap1_viip_step and hoap1_viip_walk"
+"$ayumi" --force inspect humanoid30 --picture "$out/fig11_robot.png"
+echo "Figures in $out: fig11_robot.png, humanoid30_viip_shift, humanoid30_viip_step and humanoid30_viip_walk"

@@ -22,7 +22,6 @@ using Json = nlohmann::ordered_json;
 
 struct ExplainCommand {
   std::string equation, run, log, robot;
-  std::vector<std::string> gains;
 };
 
 const Equation& find_equation(const std::string& word) {
@@ -74,7 +73,7 @@ std::string wrapped(const std::string& words) {
 }
 
 struct Numbers {
-  std::vector<std::string> lines;
+  EquationNumbers of;
   std::string where, controller;
   double t = 0;
   std::map<std::string, std::string> sampled_from;  ///< of the pattern's tracks, by track
@@ -92,13 +91,9 @@ Numbers numbers_of(const Context& context, const Equation& e, const ExplainComma
   if (model.dof_names() != log.joints)
     fail(ErrorCode::usage, place.run + ": the joints of the run are not those of the robot '" +
                                model.name() + "'; name the robot of the run with --robot");
-  ControllerSpec spec;
-  for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
-    spec.gains.emplace_back(name, value);
-  const RunInstant instant{log, model, dtad_params(model, spec),
-                           static_cast<size_t>(std::lround(place.t / log.dt))};
+  const RunInstant instant{log, model.mass(), static_cast<size_t>(std::lround(place.t / log.dt))};
   Numbers result;
-  if (e.numbers) result.lines = e.numbers(instant);
+  if (e.numbers) result.of = e.numbers(instant);
   result.where = place.run;
   if (log.controller) result.controller = name_of(*log.controller);
   result.t = log.dt * static_cast<double>(instant.k);
@@ -114,12 +109,18 @@ void explain(Context& context, const ExplainCommand& options) {
   if (!options.run.empty()) {
     const Numbers n = numbers_of(context, e, options);
     out += n.where + ", " + n.controller + ", t = " + text::fixed(n.t, 3) + " s\n";
-    if (n.lines.empty()) out += "  The log has no numbers for this equation.\n";
-    for (const std::string& line : n.lines) out += "  " + line + "\n";
+    if (n.of.lines.empty()) out += "  The log has no numbers for this equation.\n";
+    for (const std::string& line : n.of.lines) out += "  " + line + "\n";
     if (!n.sampled_from.empty()) out += origin_words(n.sampled_from);
+    Json values = Json::array();
+    for (const LoggedValue& v : n.of.values) {
+      values.push_back({{"name", v.name}, {"value", v.value}});
+      if (v.computed) values.back()["computed"] = *v.computed;
+    }
     json.update({{"controller", n.controller},
                  {"t_s", n.t},
-                 {"numbers", n.lines},
+                 {"numbers", n.of.lines},
+                 {"values", values},
                  {"sampled_from", n.sampled_from}});
   }
   context.print(out);
@@ -134,17 +135,13 @@ void add_explain(CLI::App& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi explain 18\n"
       "  ayumi explain 14 out/hoap1_walk@3.05\n"
-      "  ayumi explain 14 out/hoap1_walk@3.05 --log open_loop\n"
-      "The gains are the robot's. If the run used other gains, give them with --gain.");
+      "  ayumi explain 14 out/hoap1_walk@3.05 --log open_loop");
   auto options = std::make_shared<ExplainCommand>();
   command->add_option("EQ", options->equation, "Number of the equation, 1 to 29.")->required();
   command->add_option("RUN@t", options->run, "Run folder or log file, and a time [s].");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
   command->add_option("--robot", options->robot,
                       "Robot to use in place of the one that the run names.");
-  command->add_option("--gain", options->gains, "Gain that the run used (default: the robot's).")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
   command->callback([options, &context] { explain(context, *options); });
 }
 

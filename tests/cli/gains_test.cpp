@@ -1,8 +1,14 @@
 // ayumi gains, tune, explain: numbers one can work out by hand, and reasons for refusals.
 
 #include <cmath>
+#include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/run/log_fields.hpp"
+#include "ayumi/io/run/run_folder.hpp"
 #include "tests/cli/program.hpp"
 
 namespace ayumi::test {
@@ -139,6 +145,109 @@ TEST(ExplainCommand, WordsAndTheNumbersOfARun) {
   EXPECT_NE(late.err.find("t = 20 s is outside the run"), std::string::npos) << late.err;
   EXPECT_EQ(run_here({"explain", "30"}).exit_code, 2);
   EXPECT_EQ(run_here({"explain", "18", "run"}).exit_code, 2);
+}
+
+/// Every column of a log's sample by its name.
+std::map<std::string, double> columns_of(const SimulationLog& log, size_t k) {
+  std::string bytes;
+  append_values(log.samples.at(k), log.joints.size(), bytes);
+  std::map<std::string, double> columns;
+  size_t at = 0;
+  for (const LogQuantity& quantity : log_quantities(log.joints))
+    for (size_t c = 0; c < quantity.columns(); ++c, at += sizeof(double))
+      std::memcpy(&columns[quantity.column(c)], bytes.data() + at, sizeof(double));
+  EXPECT_EQ(at, bytes.size());
+  return columns;
+}
+
+struct Explained {
+  const char *name, *pattern;
+  std::vector<std::string> options;
+  std::vector<double> times;
+  bool all = false;
+};
+
+// All equations under open loop, DTAD, the literal law, VIIP's steps under a push and its jump:
+// stance, swing, push, flight and landing. `value` is the log's own number, and `computed` is what
+// the equation makes of the other numbers.
+TEST(ExplainCommand, EveryNumberIsTheLogsOwn) {
+  const std::string patterns = AYUMI_SOURCE_DIR "/patterns/";
+  const Explained runs[] = {
+      {"open", "hoap1_walk", {"--controller", "none", "--scenario", "none"}, {3.005}},
+      {"dtad", "hoap1_walk", {}, {3.005, 0, 3.35}, true},
+      {"gains", "hoap1_walk", {"--gain", "ka=0.7", "--gain", "q=0.5"}, {3.05}},
+      {"literal", "hoap1_walk", {"--controller", "dtad-literal"}, {0.4}},
+      {"viip", "hoap1_viip_step", {}, {2.21, 0.2, 2.6}, true},
+      {"jump", "hoap1_jump", {}, {1.32, 0.5, 1.45, 1.55, 2.4}, true},
+  };
+  const std::set<int> groups = {5, 14, 16, 17, 18, 20, 21, 22, 24};
+  for (const Explained& run : runs) {
+    const Folder folder;
+    std::vector<std::string> words = {"simulate", patterns + run.pattern + ".json", "-o", "run",
+                                      "-q"};
+    words.insert(words.end(), run.options.begin(), run.options.end());
+    run_program(words, folder.path());
+    const SimulationLog log = read_run_log(folder / "run");
+    size_t computed = 0;
+    for (const double t : run.times) {
+      const std::map<std::string, double> columns =
+          columns_of(log, static_cast<size_t>(std::lround(t / log.dt)));
+      size_t values = 0;
+      for (int n = 1; n <= 29; ++n) {
+        // All equations once under each of DTAD, VIIP and its jump, else one of each group.
+        if (!(run.all && t == run.times[0]) && !groups.contains(n)) continue;
+        SCOPED_TRACE(std::string(run.name) + " (" + std::to_string(n) + ") at " +
+                     std::to_string(t));
+        const Output each = run_program(
+            {"explain", std::to_string(n), "run@" + text::exact(t), "--json"}, folder.path());
+        ASSERT_EQ(each.exit_code, 0) << each.err;
+        const Json json = Json::parse(each.out);
+        for (const Json& value : json.at("values")) {
+          ++values;
+          const std::string name = value.at("name");
+          ASSERT_TRUE(columns.contains(name)) << name;
+          const double own = columns.at(name), scale = std::max(1.0, std::abs(own));
+          EXPECT_NEAR(value.at("value").get<double>(), own, 1e-9 * scale) << name;
+          if (!value.contains("computed")) continue;
+          ++computed;
+          EXPECT_NEAR(value.at("computed").get<double>(), own, 1e-9 * scale) << name;
+        }
+      }
+      EXPECT_GT(values, 30u) << run.name << " at " << t;
+    }
+    if (std::string(run.name) != "open") {
+      EXPECT_GT(computed, 3u) << run.name;
+    }
+  }
+}
+
+// A ZMP is said to be moved into the support exactly where the log has one that was.
+TEST(ExplainCommand, SaysCutOnlyWhereSomethingWasCut) {
+  const Folder folder;
+  std::string pattern = contents(kWalk);  // with a push that takes the ZMP to the edge
+  const std::string gentle = "\"impulse\": 1.1", hard = "\"impulse\": 1.5";
+  ASSERT_NE(pattern.find(gentle), std::string::npos);
+  pattern.replace(pattern.find(gentle), gentle.size(), hard);
+  write(folder / "hard.json", pattern);
+  ASSERT_EQ(run_program({"simulate", "hard.json", "-o", "run", "-q"}, folder.path()).exit_code, 0);
+  const SimulationLog log = read_run_log(folder / "run");
+  int cut = 0, whole = 0;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const SimulationSample& s = log.samples[k];
+    const bool moved = (s.reference_zmp - s.law.wanted_zmp).head<2>().norm() > 1e-12;
+    // Four of each kind.
+    int& count = moved ? cut : whole;
+    if (count == 4 || (count > 0 && k % 50 != 0)) continue;
+    ++count;
+    const std::string words =
+        run_program({"explain", "18", "run@" + text::exact(log.dt * static_cast<double>(k))},
+                    folder.path())
+            .out;
+    EXPECT_EQ(words.find("nearest point of the support of") != std::string::npos, moved) << words;
+    EXPECT_EQ(words.find("inside the support of") != std::string::npos, !moved) << words;
+  }
+  EXPECT_GT(cut, 0);
+  EXPECT_GT(whole, 0);
 }
 
 }  // namespace

@@ -50,12 +50,27 @@ TEST(Loci, NamesWhatItShows) {
   const TwoRuns runs;
   const Drawing drawing = draw_loci(runs.both(), {});
   for (const char* wanted :
-       {"sway", "command", "open loop (fell at 0.60 s)", "DTAD (stands)", "reference ZMP of DTAD",
-        "COG x [m]", "COG y [m]", "COG z [m]", "ZMP x [m]", "ZMP y [m]", "f_z [N]", "time [s]",
-        "push 0.4 N s at 0.3 s", "both", "left"})
+       {"sway", "command", "open loop (fell at 0.60 s)", "DTAD (stands)",
+        "reference ZMP and f_z of DTAD", "COG x [m]", "COG y [m]", "COG z [m]", "ZMP x [m]",
+        "ZMP y [m]", "f_z [N]", "time [s]", "push 0.4 N s at 0.3 s", "both", "left"})
     EXPECT_TRUE(has(drawing, wanted)) << wanted;
   EXPECT_EQ(loci_series({}).size(), 6u);
   EXPECT_EQ(loci_series({.cog = false}).size(), 3u);
+}
+
+// (26) and (27) are references of f_z: the last panel shows them beside the force.
+TEST(Loci, ThePanelOfTheForceHasItsReference) {
+  TwoRuns runs;
+  for (SimulationSample& s : runs.standing.samples) s.reference_fz = s.fz;
+  const auto lines = [&](const LociOptions& options) {
+    const Drawing drawing = draw_loci({{"DTAD", &runs.standing}}, options);
+    return std::count_if(drawing.items.begin(), drawing.items.end(),
+                         [](const auto& item) { return std::holds_alternative<DrawnPath>(item); });
+  };
+  const LociOptions with{.cog = false, .zmp = false};
+  const LociOptions without{.cog = false, .zmp = false, .reference = false};
+  EXPECT_EQ(lines(with), lines(without) + 2);  // in the panel and in the legend
+  EXPECT_TRUE(has(draw_loci(runs.both(), with), "reference f_z of DTAD"));
 }
 
 // A change is drawn by what it changed; the rest is named.

@@ -66,8 +66,25 @@ TEST(LogReading, FlightsAreWorthShowing) {
   EXPECT_NEAR(times[3], 1, 1e-12) << "within the run";
 }
 
+// The made-up push lasts from 0.3 to 0.32 s.
+TEST(LogReading, PushesAreWorthShowing) {
+  SimulationLog log = test::box_run(test::box_robot());
+  std::vector<double> times = telling_instants(log, 5);
+  ASSERT_EQ(times.size(), 5u);
+  EXPECT_NEAR(times.front(), 0.05, 1e-12) << "a little before";
+  EXPECT_NEAR(times[1], 0.31, 1e-12) << "the push itself, not 0.2875";
+  EXPECT_NEAR(times.back(), 1, 1e-12) << "within the run";
+  const size_t end = log.samples.size();
+  for (size_t k = 0; k < 3 * end; ++k) log.samples.push_back(log.samples[end - 1]);
+  EXPECT_NEAR(telling_instants(log, 5).back(), 1.57, 1e-12) << "not the rest of the run";
+  log.result.outcome = Outcome::fell;
+  log.result.fell_at = 1.9;
+  EXPECT_NEAR(telling_instants(log, 5).back(), 3.15, 1e-12) << "after the fall";
+}
+
 TEST(LogReading, AWalkIsShownOnBothFeet) {
   SimulationLog log = test::box_run(test::box_robot());
+  for (SimulationSample& sample : log.samples) sample.push_force.setZero();
   for (size_t k = 0; k < log.samples.size(); ++k) {
     const bool left = k % 100 < 50;  // 0.1 s on each foot
     log.samples[k].planned_contact = {left, !left};

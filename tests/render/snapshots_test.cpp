@@ -21,6 +21,13 @@ StripOptions small(int count) {
   return options;
 }
 
+/// The made-up run without its push, around which snapshots would gather.
+SimulationLog unpushed(const RobotModel& model) {
+  SimulationLog log = box_run(model);
+  for (SimulationSample& sample : log.samples) sample.push_force.setZero();
+  return log;
+}
+
 /// Part of a sheet.
 Image cut(const Image& sheet, int left, int top, int width, int height) {
   Image out = tile(width, height, 0);
@@ -42,7 +49,7 @@ TEST(Strip, TilesLieInReadingOrder) {
 
 TEST(Strip, ShowsEvenlySpacedInstants) {
   const RobotModel model = box_robot();
-  const SimulationLog log = box_run(model);
+  const SimulationLog log = unpushed(model);
   const Image strip = draw_strip(model, log, small(3));
   EXPECT_EQ(strip.width, 128);
   EXPECT_EQ(strip.height, 96);
@@ -65,7 +72,7 @@ TEST(Strip, ChosenInstantsAreHeldWithinTheRun) {
 
 TEST(Strip, SeveralInstantsInOnePicture) {
   const RobotModel model = box_robot();
-  SimulationLog log = box_run(model);
+  SimulationLog log = unpushed(model);
   for (size_t k = 0; k < log.samples.size(); ++k)  // two metres sideways
     log.samples[k].state.base.position.y() = log.samples[k].cog.y() = 0.004 * double(k);
   StripOptions options = small(3);

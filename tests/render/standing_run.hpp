@@ -26,7 +26,8 @@ inline SimulationLog standing(const RobotModel& model) {
   sample.target = sample.torque = sample.reference_theta = sample.command_theta =
       sample.state.theta;
   sample.reference_base = sample.command_base = sample.state.base;
-  sample.state.dtheta = Eigen::VectorXd::Zero(model.dof_count());
+  sample.state.dtheta = sample.reference_dtheta = sample.weight =
+      Eigen::VectorXd::Zero(model.dof_count());
   SimulationLog log;
   log.controller = ControllerKind::dtad;
   log.provenance.robot = "hoap1";

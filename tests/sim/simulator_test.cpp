@@ -6,6 +6,8 @@
 #include <memory>
 
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
 #include "ayumi/plan/sample.hpp"
@@ -82,6 +84,152 @@ TEST(Simulator, RefusesAnUnknownLinkWhenTheScenarioIsReplaced) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("no link 'trunkk'"), std::string::npos);
   }
+}
+
+// Second route: the COG of the logged posture, in the noise of sensors and under a push.
+TEST(Simulator, ALogRowHasPostureAndBaseOfOneTick) {
+  Stand stand;
+  stand.options.scenario = {Stand::push(0.8)};
+  const SimulationLog log = simulate(stand.model, stand.series, stand.options);
+  RobotData data(stand.model);
+  double fastest = 0;
+  for (const SimulationSample& s : log.samples) {
+    RobotState posture;
+    posture.base = s.reference_base;
+    posture.theta = s.reference_theta;
+    posture.dtheta = Eigen::VectorXd::Zero(s.reference_theta.size());
+    update_positions(stand.model, posture, data);
+    EXPECT_LT((data.cog - s.reference_cog).norm(), 1e-12);
+  }
+  for (size_t k = 1; k < log.samples.size(); ++k)
+    fastest = std::max(
+        fastest, (log.samples[k].reference_cog - log.samples[k - 1].reference_cog).norm() / log.dt);
+  EXPECT_GT(fastest, 0.01);  // it moves, so a row that mixed two ticks would be seen
+}
+
+TEST(Simulator, ServosReceiveWholeCountsWhereSensorsAreSimulated) {
+  Stand stand;
+  const SimulationLog counted = simulate(stand.model, stand.series, stand.options);
+  stand.options.sensor_noise = false;
+  const SimulationLog exact = simulate(stand.model, stand.series, stand.options);
+  const auto off = [&](const SimulationLog& log) {
+    double most = 0;
+    for (const SimulationSample& s : log.samples)
+      for (int j = 0; j < stand.model.dof_count(); ++j) {
+        const double counts =
+            s.target[j] * stand.model.dofs()[j].encoder.counts_per_degree * 180 / M_PI;
+        most = std::max(most, std::abs(counts - std::round(counts)));
+      }
+    return most;
+  };
+  EXPECT_LT(off(counted), 1e-6);
+  EXPECT_GT(off(exact), 0.1);
+}
+
+// Dry and viscous friction that the sidecar states costs the unpushed walk next to nothing.
+TEST(Friction, OfTheSidecarIsFedForward) {
+  const RobotModel smooth = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const auto rms = [](const RobotModel& model, ControllerKind kind, const char* pattern) {
+    const CommandSeries series = sample(model, read_pattern(pattern));
+    SimulateOptions options;
+    options.controller.type = kind;
+    const SimulationLog log = simulate(model, series, options);
+    EXPECT_EQ(log.result.outcome, Outcome::stands);
+    return log.result.zmp_tracking_rms;
+  };
+  const auto with = [&](double coulomb, double viscous) {
+    RobotDescription description = smooth.description();
+    for (auto& [joint, servo] : description.servos) {
+      servo.coulomb = coulomb;
+      servo.viscous = viscous;
+    }
+    return RobotModel(std::move(description));
+  };
+  const RobotModel dry = with(0.1, 0), thick = with(0.05, 0.3);
+  for (const auto& [kind, pattern] :
+       {std::pair{ControllerKind::dtad, AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json"},
+        std::pair{ControllerKind::viip, AYUMI_SOURCE_DIR "/patterns/hoap1_viip_shift.json"}}) {
+    const double without = rms(smooth, kind, pattern);
+    EXPECT_LT(rms(dry, kind, pattern), 1.05 * without) << pattern;
+    EXPECT_LT(rms(thick, kind, pattern), 1.05 * without) << pattern;
+  }
+}
+
+// Ankles whose encoders are off by about a degree, of one foot, of both, and about both axes.
+TEST(StandingCalibration, FindsTheOffsetsOfTheAnkles) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const CommandSeries series = sample(model, stand_pattern(model, 0.6));
+  constexpr double kDegree = M_PI / 180;
+  using Offsets = std::vector<std::pair<std::string, double>>;
+  for (const Offsets& truth : {Offsets{{"l_ankle_pitch", 1.0}}, Offsets{{"r_ankle_roll", -1.2}},
+                               Offsets{{"l_ankle_roll", 0.8}, {"r_ankle_pitch", -1.0}}}) {
+    SimulateOptions options;
+    options.controller.type = ControllerKind::dtad;
+    for (const auto& [joint, degrees] : truth)
+      options.scenario.push_back(
+          {.duration = 100, .what = EncoderOffset{.joint = joint, .offset = degrees * kDegree}});
+    const SimulationLog log = simulate(model, series, options);
+    SCOPED_TRACE(truth[0].first);
+    EXPECT_EQ(log.result.outcome, Outcome::stands);
+    EXPECT_LT(log.result.max_tilt, 0.005);
+    EXPECT_LT(log.result.zmp_tracking_rms, 0.003);
+    size_t found = 0;
+    for (const SimulationEvent& event : log.events) {
+      if (event.kind != "calibration") continue;
+      ++found;
+      bool named = false;
+      for (const auto& [joint, degrees] : truth) {
+        const size_t at = event.text.find(joint + " reads ");
+        if (at == std::string::npos) continue;
+        named = true;
+        EXPECT_NEAR(std::stod(event.text.substr(at + joint.size() + 7)), std::abs(degrees), 0.15);
+        EXPECT_NE(event.text.find(degrees > 0 ? "deg too much" : "deg too little"),
+                  std::string::npos)
+            << event.text;
+      }
+      EXPECT_TRUE(named) << event.text;
+    }
+    EXPECT_EQ(found, truth.size());
+  }
+}
+
+// The bias of the IMU, 5 mrad about x and y, is all that the noise of the sensors leaves.
+TEST(StandingCalibration, FindsAnOffsetInTheNoiseOfTheSensors) {
+  Stand stand;
+  stand.options.scenario = {
+      {.duration = 100, .what = EncoderOffset{.joint = "l_ankle_roll", .offset = 0.03}}};
+  const SimulationLog log = simulate(stand.model, stand.series, stand.options);
+  EXPECT_EQ(log.result.outcome, Outcome::stands);
+  EXPECT_LT(log.result.max_tilt, 0.012);
+  const std::string start = "the encoder of l_ankle_roll reads ";
+  double found = 0;
+  for (const SimulationEvent& event : log.events)
+    if (event.text.rfind(start, 0) == 0) found = std::stod(event.text.substr(start.size()));
+  EXPECT_NEAR(found, 0.03 * 180 / M_PI, 0.45);
+}
+
+// Nothing but the word of the event changes where a slope of the ground explains as much.
+TEST(StandingCalibration, BothAnklesAlikeMayBeASlope) {
+  Stand stand;
+  stand.options.sensor_noise = false;
+  const SimulationLog level = simulate(stand.model, stand.series, stand.options);
+  stand.options.world.slope = {0, 0.017};
+  const SimulationLog log = simulate(stand.model, stand.series, stand.options);
+  int words = 0;
+  for (const SimulationEvent& event : log.events) {
+    if (event.kind != "calibration") continue;
+    ++words;
+    EXPECT_NE(event.text.find("or the ground slopes"), std::string::npos) << event.text;
+  }
+  EXPECT_EQ(words, 2);
+  // An offset would turn the ankles by 0.017 rad.
+  EXPECT_LT((log.samples[0].target - level.samples[0].target).cwiseAbs().maxCoeff(), 0.008);
+}
+
+TEST(StandingCalibration, LeavesARobotAloneThatStandsOnItsSoles) {
+  const Stand stand;
+  for (const SimulationEvent& event : simulate(stand.model, stand.series, stand.options).events)
+    EXPECT_NE(event.kind, "calibration") << event.text;
 }
 
 }  // namespace

@@ -14,6 +14,13 @@ void check_controller(const RobotModel& model, const ControllerSpec& spec) {
   viip_params(model, spec);
 }
 
+std::vector<std::pair<std::string, double>> gains_in_use(const RobotModel& model,
+                                                         const ControllerSpec& spec) {
+  if (spec.type.kind == ControllerKind::dtad) return gains_of(dtad_params(model, spec));
+  if (spec.type.kind == ControllerKind::viip) return gains_of(viip_params(model, spec));
+  return {};
+}
+
 Controller::Controller(const RobotModel& model, const ActuatorLimits& limits,
                        const CommandSeries& series, const ControllerSpec& spec)
     : model_(&model),

@@ -17,6 +17,10 @@ namespace ayumi {
 /// Throws Error(usage) for an unknown gain or a gain out of range.
 void check_controller(const RobotModel& model, const ControllerSpec& spec);
 
+/// Gains by name as the controller uses them; none in open loop. Throws as check_controller().
+std::vector<std::pair<std::string, double>> gains_in_use(const RobotModel& model,
+                                                         const ControllerSpec& spec);
+
 class Controller {
  public:
   /// Series and model outlive it and its copies. Throws as check_controller() and

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ayumi/control/command_plan.hpp"
+#include "ayumi/motion/law_terms.hpp"
 
 namespace ayumi {
 
@@ -23,6 +24,9 @@ struct ControlOutput {
   RobotState reference;    ///< reference posture, plan frame
   CogReference cog_reference;
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< of the reference posture [m]
+  LawTerms terms;
+  TaskResiduals residuals;
+  Eigen::VectorXd weight;          ///< W of (22) and (28), by dof; empty: nothing was resolved
   std::vector<std::string> notes;  ///< what gave way in this tick: saturated joints, held limits
 };
 

@@ -263,6 +263,11 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     if (result.scale == 1 && (result.held.empty() || task_done(work.softened, result.dtheta)))
       break;
   }
+  work.left = task.J.lazyProduct(result.dtheta) - u;
+  result.residuals.cog = work.left.head<3>().norm();
+  result.residuals.foot = work.left.segment<3>(3).norm();
+  result.residuals.foot_turn = work.left.segment<3>(6).norm() / length;
+  result.residuals.trunk = work.left.tail<3>().norm() / length;
 }
 
 Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
@@ -367,6 +372,8 @@ void ReferenceBody::advance(const CogReference& wanted, double z, const CommandS
   if (resolution_.limiting_dof >= 0 || !resolution_.held.empty())
     for (const std::string& note : limit_notes(*model_, resolution_)) out.notes.push_back(note);
 
+  out.residuals = resolution_.residuals;
+  out.weight = weight_;
   send(resolution_.dtheta, command, next, offsets, out);
 }
 
@@ -404,14 +411,17 @@ void ReferenceBody::fly(const Vector3d& tilt, const CommandSample& command,
   }
   dcog_ = next.dcog;
   out.cog_reference.dcog = dcog_;
+  out.residuals = {};
+  out.weight.setZero(model_->dof_count());
   send(dtheta, command, next, offsets, out);
 }
 
 void ReferenceBody::send(const VectorXd& dtheta, const CommandSample& command,
                          const CommandSample& next, const VectorXd& offsets, ControlOutput& out) {
+  // The posture of this tick with its base, and the rates that lead to the next.
   reference_.dtheta = dtheta;
-  reference_.theta += dt_ * dtheta;
   out.reference = reference_;
+  reference_.theta += dt_ * dtheta;
   out.target = reference_.theta + lead_.cwiseProduct(dtheta) + offsets;
   bound_target(command, next, out);
 }

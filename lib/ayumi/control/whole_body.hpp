@@ -58,6 +58,7 @@ struct Resolution {
   int limiting_dof = -1;   ///< the joint whose speed limit made tasks give way, or the motion slow
   std::vector<int> held;   ///< joints held at a position limit
   YieldingTasks yielding;  ///< what gave way
+  TaskResiduals residuals;
 };
 
 /// One line per joint at a limit, with what gives way to it.
@@ -67,6 +68,7 @@ std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& 
 struct ResolverWork {
   StackedTask task, softened, moving;  ///< as it is; some rows yielding; without the joints held
   StackedTask::Rows weighted;
+  StackedTask::Vector left;  // of the task by the rates
   Eigen::MatrixXd cog;
   Eigen::VectorXd bias, start;
   std::optional<RobotData> planned;  ///< where the trunk is not the root

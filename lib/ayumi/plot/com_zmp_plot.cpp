@@ -102,13 +102,9 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
   if (options.zmp && options.model && options.model->has_soles())
     panels.push_back({"margin [m]", zmp_margin(*options.model), {}, {}, 0.02, false});
   if (options.fz)
-    panels.push_back({"f_z [N]",
-                      [](const S& s) { return s.fz; },
+    panels.push_back({"f_z [N]", [](const S& s) { return s.fz; },
                       [](const S& s) { return s.command_fz; },
-                      {},
-                      10,
-                      true,
-                      0.1});
+                      [](const S& s) { return s.reference_fz; }, 10, true, 0.1});
   for (PanelPlan& panel : panels) {
     if (!options.command) panel.command = {};
     if (!options.reference) panel.reference = {};
@@ -304,7 +300,11 @@ Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) 
   Drawing drawing = start_drawing(runs, options, "Loci against time");
   const std::vector<PushRecord> pushed = all_pushes(runs, time);
   const std::vector<Phase> supports = phases(*runs.back().log, time);
-  Legend entries = legend(runs, options.zmp && options.reference, options.command);
+  std::string reference;
+  if (options.reference && options.zmp) reference = "reference ZMP";
+  if (options.reference && options.fz)
+    reference += reference.empty() ? "reference f_z" : " and f_z";
+  Legend entries = legend(runs, reference, options.command);
   if (std::any_of(panels.begin(), panels.end(), [](const auto& p) { return !p.limits.empty(); }))
     entries.emplace_back("limit of a joint", kLimitStyle);
   double top = draw_legend(drawing, entries, 44) + (pushed.empty() ? 20 : 38);

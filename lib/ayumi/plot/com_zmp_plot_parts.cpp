@@ -90,15 +90,14 @@ double draw_legend(Drawing& drawing, const Legend& entries, double top) {
   return y + 0.8 * kLegend;
 }
 
-Legend legend(const std::vector<LociRun>& runs, bool with_reference, bool with_command) {
+Legend legend(const std::vector<LociRun>& runs, const std::string& reference, bool with_command) {
   Legend entries;
   if (with_command) entries.emplace_back("command", kCommandStyle);
   for (size_t i = 0; i < runs.size(); ++i)
     entries.emplace_back(legend_name(runs[i]), run_style(i, runs.size()));
-  if (with_reference)
-    entries.emplace_back(
-        "reference ZMP" + (runs.size() > 1 ? " of " + runs.back().label : std::string()),
-        kReferenceStyle);
+  if (!reference.empty())
+    entries.emplace_back(reference + (runs.size() > 1 ? " of " + runs.back().label : std::string()),
+                         kReferenceStyle);
   return entries;
 }
 

@@ -37,7 +37,8 @@ std::string legend_name(const LociRun& run);
 
 using Legend = std::vector<std::pair<std::string, LineStyle>>;
 /// Command where asked for, runs, and the reference ZMP when `with_reference`.
-Legend legend(const std::vector<LociRun>& runs, bool with_reference, bool with_command = true);
+Legend legend(const std::vector<LociRun>& runs, const std::string& reference,
+              bool with_command = true);
 
 /// Entries from left to right, broken where the line ends; returns the bottom [pixel].
 double draw_legend(Drawing& drawing, const Legend& entries, double top);

@@ -158,23 +158,37 @@ double telling_instant(const SimulationLog& log) {
 std::vector<double> telling_instants(const SimulationLog& log, int count) {
   // The push before the flights and the landing after them [s].
   constexpr double kBefore = 0.25, kAfter = 0.35;
+  // From a push to the end of what it causes, and after a fall [s].
+  constexpr double kRecovery = 1.25;
   const std::vector<FlightRecord> flown = flights(log);
+  const std::vector<PushRecord> pushed = pushes(log);
   double begin = 0, end = duration(log);
-  if (!flown.empty()) {
+  if (flown.empty() && !pushed.empty()) {
+    begin = std::max(begin, pushed.front().begin - kBefore);
+    const double last = std::max(pushed.back().end, log.result.fell_at);
+    end = std::min(end, last + kRecovery);
+  } else if (!flown.empty()) {
     begin = std::max(begin, flown.front().begin - kBefore);
     end = std::min(end, flown.back().end + kAfter);
   }
   std::vector<double> times;
   for (int i = 0; i < count; ++i)
     times.push_back(begin + (end - begin) * i / std::max(1, count - 1));
-  if (flown.empty()) alternate_feet(log, 0.5 * (end - begin) / std::max(1, count - 1), times);
-  if (2 * static_cast<int>(flown.size()) > count) return times;
-  for (const FlightRecord& flight : flown) {
-    const double middle = 0.5 * (flight.begin + flight.end);
-    *std::min_element(times.begin(), times.end(), [&](double a, double b) {
-      return std::abs(a - middle) < std::abs(b - middle);
-    }) = middle;
-  }
+  if (flown.empty() && pushed.empty())
+    alternate_feet(log, 0.5 * (end - begin) / std::max(1, count - 1), times);
+  const auto show = [&](const auto& records) {
+    if (2 * static_cast<int>(records.size()) > count) return;
+    for (const auto& record : records) {
+      const double middle = 0.5 * (record.begin + record.end);
+      *std::min_element(times.begin(), times.end(), [&](double a, double b) {
+        return std::abs(a - middle) < std::abs(b - middle);
+      }) = middle;
+    }
+  };
+  if (flown.empty())
+    show(pushed);
+  else
+    show(flown);
   return times;
 }
 

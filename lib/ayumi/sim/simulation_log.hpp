@@ -10,6 +10,7 @@
 
 #include "ayumi/model/robot_state.hpp"
 #include "ayumi/motion/controller_spec.hpp"
+#include "ayumi/motion/law_terms.hpp"
 #include "ayumi/motion/reference_trajectory.hpp"
 #include "ayumi/motion/scenario.hpp"
 #include "ayumi/sim/energy_balance.hpp"
@@ -22,21 +23,29 @@ struct SimulationSample {
   Eigen::VectorXd torque;           ///< applied by the servos [N m]
   BasePose reference_base;          ///< base of the reference posture
   Eigen::VectorXd reference_theta;  ///< reference posture, without the servo lead [rad, m]
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();            ///< true, world [m]
-  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();           ///< [m/s]
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();            ///< true, world; held in flight [m]
-  double fz = 0;                                            ///< true vertical ground force [N]
-  Eigen::Vector3d measured_cog = Eigen::Vector3d::Zero();   ///< estimated, plan frame [m]
-  Eigen::Vector3d measured_zmp = Eigen::Vector3d::Zero();   ///< from load cells, plan frame [m]
-  double measured_fz = 0;                                   ///< [N]
-  BasePose command_base;                                    ///< base of the commanded posture
-  Eigen::VectorXd command_theta;                            ///< cmd theta [rad]
-  Eigen::Vector3d command_cog = Eigen::Vector3d::Zero();    ///< cmd p_G [m]
-  Eigen::Vector3d command_zmp = Eigen::Vector3d::Zero();    ///< cmd p_Z [m]
-  double command_fz = 0;                                    ///< [N]
-  Eigen::Vector3d reference_cog = Eigen::Vector3d::Zero();  ///< of the reference posture [m]
-  Eigen::Vector3d reference_zmp = Eigen::Vector3d::Zero();  ///< ref p_Z [m]
-  double reference_fz = 0;                                  ///< [N]
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();              ///< true, world [m]
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();             ///< [m/s]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();              ///< true, world; held in flight [m]
+  double fz = 0;                                              ///< true vertical ground force [N]
+  Eigen::Vector3d measured_cog = Eigen::Vector3d::Zero();     ///< estimated, plan frame [m]
+  Eigen::Vector3d measured_zmp = Eigen::Vector3d::Zero();     ///< from load cells, plan frame [m]
+  double measured_fz = 0;                                     ///< [N]
+  BasePose command_base;                                      ///< base of the commanded posture
+  Eigen::VectorXd command_theta;                              ///< cmd theta [rad]
+  Eigen::Vector3d command_cog = Eigen::Vector3d::Zero();      ///< cmd p_G [m]
+  Eigen::Vector3d command_zmp = Eigen::Vector3d::Zero();      ///< cmd p_Z [m]
+  double command_fz = 0;                                      ///< [N]
+  Eigen::Vector3d reference_cog = Eigen::Vector3d::Zero();    ///< of the reference posture [m]
+  Eigen::Vector3d reference_zmp = Eigen::Vector3d::Zero();    ///< ref p_Z [m]
+  double reference_fz = 0;                                    ///< [N]
+  Eigen::Vector3d measured_dcog = Eigen::Vector3d::Zero();    ///< estimated [m/s]
+  Eigen::Vector3d command_dcog = Eigen::Vector3d::Zero();     ///< [m/s]
+  Eigen::Vector3d reference_dcog = Eigen::Vector3d::Zero();   ///< ref dp_G [m/s]
+  Eigen::Vector3d reference_ddcog = Eigen::Vector3d::Zero();  ///< ref ddp_G [m/s^2]
+  Eigen::VectorXd reference_dtheta;                           ///< ref dtheta of (22), (28) [rad/s]
+  LawTerms law;                                               ///< of what the reference was made
+  TaskResiduals residuals;                                    ///< of (22), (28)
+  Eigen::VectorXd weight;  ///< W of (22), (28), by dof; 0 where nothing was resolved
   std::array<Eigen::Vector3d, 2> foot_force = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   std::array<Eigen::Vector3d, 2> foot_cop = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   std::array<bool, 2> planned_contact = {true, true};    ///< left, right
@@ -82,7 +91,9 @@ struct SimulationResult {
 struct SimulationLog {
   double dt = 0.001;                         ///< control tick [s]
   std::optional<ControllerType> controller;  ///< empty for a plan that nothing carried out
-  std::string plant = "ayumi";               ///< what integrated the motion: "ayumi", "mujoco"
+  /// Its gains by name, as it used them.
+  std::vector<std::pair<std::string, double>> gains;
+  std::string plant = "ayumi";  ///< what integrated the motion: "ayumi", "mujoco"
   Provenance provenance;
   World world;
   std::vector<Disturbance> scenario;

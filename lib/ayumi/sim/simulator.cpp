@@ -10,6 +10,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/plant/plant.hpp"
+#include "ayumi/sim/standing_calibration.hpp"
 
 namespace ayumi {
 
@@ -22,6 +23,9 @@ namespace {
 /// periods of an oscillation of 10 Hz, so that soles and servos come to rest. Figures change by
 /// less than 5 % from half to twice.
 constexpr double kBeforeStart = 0.4;
+/// Longest time for which ankles turn before t = 0 until their soles lie flat [s]. Chosen: as long
+/// as an offset of 3 degrees takes (sim/standing_calibration).
+constexpr double kLongestCalibration = 3;
 /// Simulated time after a fall [s]. Chosen: the robot has reached the ground, which a replay shows.
 /// Figures change by less than 5 % from half to twice.
 constexpr double kAfterFall = 0.8;
@@ -50,6 +54,7 @@ PlantInterface make_plant(const RobotModel& model, const ActuatorLimits& limits,
 Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
                      const SimulateOptions& options)
     : model_(options.unit ? &options.unit->model : &model),
+      law_model_(&model),
       series_(&checked(series, options)),
       options_(options),
       limits_(options.unit ? options.unit->actuators : model.limits(options.profile)),
@@ -63,6 +68,8 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
       controller_(options.prepared ? *options.prepared
                                    : Controller(model, model.limits(options.profile), series,
                                                 options.controller)),
+      counts_targets_(options.sensor_noise && !options.true_state &&
+                      model_->description().sensors.encoder_quantisation),
       saturated_(static_cast<size_t>(model.dof_count())) {
   model.sole(Side::left);  // throws when the robot has no soles
   set_scenario(options.scenario);
@@ -75,6 +82,52 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
     schedule_.fill(i, plant_.data(), input_);
     report_ = plant_.step(controller_.target(), input_, h_);
   }
+  if (!options.true_state && options.controller.type != ControllerKind::none) calibrate_ankles();
+}
+
+// Before the first tick, with sensors of their own, so that a robot that stands on its soles takes
+// the same readings as without.
+void Simulator::calibrate_ankles() {
+  Sensors sensors = sensors_;
+  Estimator estimator = estimator_;
+  StandingCalibration calibration(*law_model_, series_->dt);
+  const CommandSample& plan = controller_.plan();
+  const auto measure = [&]() -> const Measurement& {
+    schedule_.fill(-1, plant_.data(), input_);
+    return sensors.read(plant_.state(), plant_.data(), report_, schedule_.sensor_fault(-1),
+                        input_.joints);
+  };
+  if (!calibration.needed(measure(), plan)) return;
+  const PlantInterface before = plant_;
+  const StepReport report_before = report_;
+  const long most = std::lround(kLongestCalibration / series_->dt);
+  for (long k = 0; k < most && !calibration.done(); ++k) {
+    encoder_offset_ = calibration.offsets();
+    const Measurement& measurement = corrected(measure());
+    calibration.update(measurement, estimator.update(measurement, plan.feet), plan.feet);
+    encoder_offset_ = calibration.offsets();
+    for (int i = 0; i < options_.substeps; ++i)
+      report_ = plant_.step(controller_.target() + encoder_offset_, input_, h_);
+  }
+  if (!calibration.done() || !calibration.found()) {
+    plant_ = before;
+    report_ = report_before;
+    encoder_offset_.resize(0);
+  }
+  if (!calibration.done()) {
+    events_.push_back({0, "calibration",
+                       "a sole bears on its edge while the robot stands, and no offsets of the "
+                       "ankles' encoders explain it"});
+    return;
+  }
+  for (const std::string& line : calibration.lines()) events_.push_back({0, "calibration", line});
+}
+
+const Measurement& Simulator::corrected(const Measurement& measurement) {
+  if (encoder_offset_.size() == 0) return measurement;
+  corrected_ = measurement;
+  corrected_.theta -= encoder_offset_;
+  return corrected_;
 }
 
 void Simulator::set_scenario(const std::vector<Disturbance>& scenario) {
@@ -139,6 +192,20 @@ const ControlOutput& Simulator::with_targets_of_caller(double t, const ControlOu
   return changed_;
 }
 
+/// The servos read their encoders, and with sensors as the sidecar describes them they receive
+/// whole counts.
+const ControlOutput& Simulator::in_counts(const ControlOutput& out) {
+  if (encoder_offset_.size() == 0 && !counts_targets_) return out;
+  changed_ = out;
+  if (encoder_offset_.size() > 0) changed_.target += encoder_offset_;
+  if (!counts_targets_) return changed_;
+  for (int j = 0; j < model_->dof_count(); ++j) {
+    const double counts = std::abs(model_->dofs()[j].encoder.counts_per_degree) * 180 / M_PI;
+    if (counts > 0) changed_.target[j] = std::round(changed_.target[j] * counts) / counts;
+  }
+  return changed_;
+}
+
 /// Fills last_ from the plant, the plan and the controller's output; its lists keep their memory.
 void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
                             const ControlOutput& out) {
@@ -159,6 +226,14 @@ void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
   s.command_cog = cmd.cog;
   s.command_zmp = cmd.zmp;
   s.command_fz = cmd.fz;
+  s.measured_dcog = estimate.dcog;
+  s.command_dcog = cmd.dcog;
+  s.reference_dcog = out.cog_reference.dcog;
+  s.reference_ddcog = out.cog_reference.ddcog;
+  s.reference_dtheta = out.reference.dtheta;
+  s.law = out.terms;
+  s.residuals = out.residuals;
+  s.weight = out.weight;
   s.measured_cog = estimate.cog;
   s.measured_zmp = estimate.zmp;
   s.measured_fz = estimate.fz;
@@ -215,13 +290,13 @@ void Simulator::step_once() {
                                        : sensors_.read(plant_.state(), plant_.data(), report_,
                                                        schedule_.sensor_fault(step), input_.joints);
   const Vector3d zmp_before = estimate_.zmp;
-  estimate_ = estimator_.update(measurement, cmd.feet);
+  estimate_ = estimator_.update(corrected(measurement), cmd.feet);
   if (options_.true_state) {
     estimate_.zmp = zmp_before;  // keeps its value in flight
     replace_estimate_by_truth();
   }
   const ControlOutput& law = controller_.update(estimate_);
-  const ControlOutput& out = options_.targets ? with_targets_of_caller(t, law) : law;
+  const ControlOutput& out = in_counts(options_.targets ? with_targets_of_caller(t, law) : law);
   take_sample(cmd, estimate_, out);
   if (!last_.state.theta.allFinite() || !last_.state.base.position.allFinite())
     fail(ErrorCode::internal,
@@ -276,6 +351,7 @@ SimulationLog Simulator::take_log() {
   SimulationLog log;
   log.dt = series_->dt;
   log.controller = options_.controller.type;
+  log.gains = gains_in_use(*law_model_, options_.controller);
   log.plant = options_.plant.name;
   log.world = options_.world;
   log.scenario = options_.scenario;

@@ -58,12 +58,16 @@ class Simulator {
   void step_once();
   double energy() const;
   void replace_estimate_by_truth();
+  void calibrate_ankles();
+  const Measurement& corrected(const Measurement& measurement);
+  const ControlOutput& in_counts(const ControlOutput& out);
   const ControlOutput& with_targets_of_caller(double t, const ControlOutput& law);
   void take_sample(const CommandSample& cmd, const Estimate& estimate, const ControlOutput& out);
   void take_forces(const CommandSample& cmd);
   void note(double t, const std::vector<std::string>& texts);
 
-  const RobotModel* model_;  // of the robot that is simulated
+  const RobotModel* model_;      // of the robot that is simulated
+  const RobotModel* law_model_;  // by which the controller works
   const CommandSeries* series_;
   SimulateOptions options_;
   ActuatorLimits limits_;  // of the robot that is simulated
@@ -75,8 +79,11 @@ class Simulator {
   Schedule schedule_;
   StepInput input_;
   Controller controller_;
-  ControlOutput changed_;  // the law's with the targets of the caller; empty where there are none
-  CommandSample plan_;     // of the last tick done
+  ControlOutput changed_;           // the law's with the targets of the caller, or in counts
+  bool counts_targets_;             // servos receive whole counts of their encoders
+  Measurement corrected_;           // readings less encoder_offset_
+  Eigen::VectorXd encoder_offset_;  // estimated while standing [rad, m]; empty: none was found
+  CommandSample plan_;              // of the last tick done
   StepReport report_;
   Eigen::Vector3d zmp_ = Eigen::Vector3d::Zero();
   std::set<std::string> noted_;

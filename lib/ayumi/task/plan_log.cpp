@@ -55,6 +55,8 @@ SimulationLog plan_log(const RobotModel& model, const ActuatorLimits& actuators,
     sample.torque = now.torque;
     sample.target = sample.reference_theta = s.state.theta;
     sample.reference_base = s.state.base;
+    sample.reference_dtheta = s.state.dtheta;
+    sample.weight.setZero(s.state.theta.size());
     sample.reference_cog = sample.cog;
     sample.command_base = c.state.base;
     sample.command_theta = c.state.theta;

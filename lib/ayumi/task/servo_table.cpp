@@ -69,18 +69,22 @@ ReferenceTrajectory table_of_log(const RobotModel& model, const std::string& pro
   if (content == ServoContent::lead_and_sag && same) return table;
   const Eigen::VectorXd lead = velocity_lead(limits), own_lead = velocity_lead(own);
   const size_t last = log.samples.empty() ? 0 : log.samples.size() - 1;
+  // A law that measures sends the posture that it has moved to in the tick, the next row's.
+  const size_t ahead = log.controller && log.controller->kind != ControllerKind::none ? 1 : 0;
+  const auto sent = [&](size_t k) -> const Eigen::VectorXd& {
+    return log.samples[std::min(k + ahead, last)].reference_theta;
+  };
   for (size_t k = 0; k <= last && k < table.rows.size(); ++k) {
-    const Eigen::VectorXd& theta = log.samples[k].reference_theta;
     Eigen::VectorXd& target = table.rows[k].theta;
     if (content == ServoContent::ideal) {
-      target = theta;
+      target = log.samples[k].reference_theta;
       continue;
     }
+    const Eigen::VectorXd& theta = sent(k);
     const size_t before = k > 0 ? k - 1 : 0, after = std::min(k + 1, last);
     Eigen::VectorXd rate = Eigen::VectorXd::Zero(theta.size());
     if (after > before)
-      rate = (log.samples[after].reference_theta - log.samples[before].reference_theta) /
-             (static_cast<double>(after - before) * log.dt);
+      rate = (sent(after) - sent(before)) / (static_cast<double>(after - before) * log.dt);
     Eigen::VectorXd sag = Eigen::VectorXd::Zero(theta.size());
     if (content == ServoContent::lead_and_sag)
       for (Eigen::Index j = 0; j < sag.size(); ++j) {

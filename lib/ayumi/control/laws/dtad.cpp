@@ -43,20 +43,23 @@ constexpr double kOffsetLimit = 0.09;
 // 5; twice: rough walk, touchdowns 6 to 7.
 constexpr double kContactTiltTime = 0.33;
 
+std::map<std::string, double*> gain_fields(DtadParams& p) {
+  return {{"q", &p.pole_ratio},         {"ka", &p.zmp_gain},
+          {"ks", &p.pull_rate},         {"kd", &p.pull_damping},
+          {"damp", &p.rocking_damping}, {"tau_z", &p.zmp_filter},
+          {"margin", &p.margin},        {"kz", &p.height_stiffness},
+          {"dz", &p.height_damping},    {"kaz", &p.fz_gain},
+          {"washout", &p.offset_time},  {"ankle", &p.ankle_share},
+          {"conform", &p.compliance},   {"momentum", &p.momentum_gain},
+          {"step", &p.step_share},      {"hurry", &p.time_scale_limit},
+          {"long", &p.long_term},       {"as_printed", &p.as_printed}};
+}
+
 }  // namespace
 
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   DtadParams p;
-  const std::map<std::string, double*> fields = {
-      {"q", &p.pole_ratio},         {"ka", &p.zmp_gain},
-      {"ks", &p.pull_rate},         {"kd", &p.pull_damping},
-      {"damp", &p.rocking_damping}, {"tau_z", &p.zmp_filter},
-      {"margin", &p.margin},        {"kz", &p.height_stiffness},
-      {"dz", &p.height_damping},    {"kaz", &p.fz_gain},
-      {"washout", &p.offset_time},  {"ankle", &p.ankle_share},
-      {"conform", &p.compliance},   {"momentum", &p.momentum_gain},
-      {"step", &p.step_share},      {"hurry", &p.time_scale_limit},
-      {"long", &p.long_term},       {"as_printed", &p.as_printed}};
+  const std::map<std::string, double*> fields = gain_fields(p);
   std::vector<std::string> names = {"k", "d"};
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where,
@@ -109,6 +112,13 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   return p;
 }
 
+std::vector<std::pair<std::string, double>> gains_of(DtadParams p) {
+  std::vector<std::pair<std::string, double>> gains = {{"k", long_term_k(p)},
+                                                       {"d", long_term_d(p)}};
+  for (const auto& [name, value] : gain_fields(p)) gains.emplace_back(name, *value);
+  return gains;
+}
+
 double long_term_k(const DtadParams& p) { return p.long_term * (p.k ? *p.k : 1 + p.pole_ratio); }
 
 double long_term_d(const DtadParams& p) {
@@ -135,7 +145,7 @@ void Dtad::take_over(const Handover& handover) {
 }
 
 // (14)-(21), in the order of the derivation above.
-CogReference Dtad::cog_reference(const Estimate& estimate) {
+CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   const DtadParams& p = params_;
   const CommandSample& command = plan();
   const double m = model_->mass();
@@ -167,20 +177,33 @@ CogReference Dtad::cog_reference(const Estimate& estimate) {
 
   filter_.update(estimate, low_pass_share(command_.dt(), w, p.zmp_filter));
   const double w2 = omega_squared(ref.fz, m, z);
+  terms = {.stage = LawStage::follow, .K = K, .D = D, .height = z, .omega2 = w2};
+  terms.K_z = p.height_stiffness * w * w;
+  terms.D_z = p.height_damping * w;
+  const double ground = command.zmp.z();
+  terms.planned_zmp << planned, ground;
+  terms.wanted_zmp << wanted, ground;
+  terms.filtered_zmp << filter_.zmp(), ground;
+  terms.offset.head<2>() = offset_;
   if (p.literal) {
     ref.ddcog.head<2>() = horizontal_acceleration(w2, estimate.cog.head<2>(), ref.zmp.head<2>());
     ref.ddcog.z() = vertical_acceleration(ref.fz, m);
+    terms.motion = ref.ddcog;
     return ref;
   }
   const bool carries = estimate.contact && command.support != Support::none;
   const Vector2d gap = carries ? zmp_gap(ref.zmp.head<2>(), w, z) : Vector2d(Vector2d::Zero());
   const Vector3d pull = p.pull_rate * p.pull_rate * w * w * (command.cog - body_.cog()) +
                         2 * p.pull_damping * w * (command.dcog - body_.dcog());
-  ref.ddcog = command.ddcog + pull;
-  ref.ddcog.head<2>() += short_term_acceleration(p.zmp_gain, w2, gap);
+  terms.motion = command.ddcog;
+  terms.pull = pull;
+  terms.short_term.head<2>() = short_term_acceleration(p.zmp_gain, w2, gap);
   if (carries)
-    ref.ddcog.head<2>() += rocking_acceleration(p.rocking_damping, w, z, body_.dcog(), estimate);
-  if (estimate.contact) ref.ddcog.z() += p.fz_gain * (ref.fz - filter_.fz()) / m;
+    terms.rocking.head<2>() = rocking_acceleration(p.rocking_damping, w, z, body_.dcog(), estimate);
+  if (estimate.contact) terms.short_term.z() = p.fz_gain * (ref.fz - filter_.fz()) / m;
+  ref.ddcog = terms.motion + terms.pull;
+  ref.ddcog += terms.short_term;
+  ref.ddcog += terms.rocking;
   return ref;
 }
 
@@ -213,6 +236,9 @@ bool Dtad::in_flight(const Estimate& estimate) {
 // are, not where the robot is. The posture returns to the command, the legs to the vertical.
 void Dtad::fly(const Estimate& e, const CommandSample& next, ControlOutput& out) {
   const CommandSample& command = plan();
+  out.terms = {.stage = LawStage::follow_flight};
+  out.terms.planned_zmp = out.terms.wanted_zmp = command.zmp;
+  out.terms.motion = command.ddcog;
   body_.release(command);
   out.cog = body_.cog();
   out.cog_reference.zmp = command.zmp;
@@ -244,7 +270,7 @@ void Dtad::update(const Estimate& estimate, ControlOutput& out) {
   if (command.support == Support::right) anchor_ = Side::right;
   body_.anchor(anchor_, command.feet[static_cast<size_t>(anchor_)]);
   out.cog = body_.cog();
-  const CogReference wanted = cog_reference(estimate);
+  const CogReference wanted = cog_reference(estimate, out.terms);
   const double z = command.cog.z() - command.zmp.z(), w = std::sqrt(kGravity / z);
   const AnkleLaw ankles = {.share = params_.ankle_share,
                            .compliance = params_.compliance,

@@ -46,6 +46,9 @@ struct DtadParams {
 /// unknown gain, K <= 1 or D <= 0, q together with k and d, or a value out of range.
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec);
 
+/// Its gains by the names of files; K and D omega as the law uses them are "k" and "d".
+std::vector<std::pair<std::string, double>> gains_of(DtadParams params);
+
 /// K and D (times omega) of (18)(19) as the law uses them, share and sign put in.
 double long_term_k(const DtadParams& params);
 double long_term_d(const DtadParams& params);
@@ -72,7 +75,7 @@ class Dtad {
   }
 
  private:
-  CogReference cog_reference(const Estimate& estimate);
+  CogReference cog_reference(const Estimate& estimate, LawTerms& terms);
   Eigen::Vector2d zmp_gap(const Eigen::Vector2d& ref_zmp, double omega, double z);
   void turn_upper_body(double omega);
   bool in_flight(const Estimate& estimate);

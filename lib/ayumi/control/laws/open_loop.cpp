@@ -28,6 +28,10 @@ void OpenLoop::update(const Estimate& estimate, ControlOutput& out) {
     out.target = now.state.theta + velocity_lead_.cwiseProduct(now.state.dtheta) + torque_lead;
   out.cog = now.cog;
   out.cog_reference = {now.zmp, now.fz, Eigen::Vector3d::Zero(), now.dcog};
+  out.terms = {};
+  out.terms.planned_zmp = out.terms.wanted_zmp = now.zmp;
+  out.residuals = {};
+  out.weight.setZero(out.target.size());
   target_ = out.target;
   command_.advance();
 }

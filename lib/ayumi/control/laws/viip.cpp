@@ -87,30 +87,40 @@ GroundPose ground_middle(const RobotModel& model, const std::array<Isometry3d, 2
 
 Vector3d rotated(const Vector3d& v, double yaw) { return rpy_to_matrix({0, 0, yaw}) * v; }
 
+std::map<std::string, double*> gain_fields(ViipParams& p) {
+  return {{"q", &p.pole_ratio},
+          {"goal", &p.goal_lag},
+          {"ka", &p.zmp_gain},
+          {"av", &p.velocity_leak},
+          {"ax", &p.position_leak},
+          {"damp", &p.rocking_damping},
+          {"tau_z", &p.zmp_filter},
+          {"margin", &p.margin},
+          {"kz", &p.height_rate},
+          {"yield", &p.yielding},
+          {"dz", &p.height_damping},
+          {"ankle", &p.ankle_share},
+          {"single", &p.single_support},
+          {"both", &p.double_support},
+          {"lift", &p.lift},
+          {"reach", &p.reach},
+          {"hold", &p.recovery},
+          {"inside", &p.zmp_inset},
+          {"hurry", &p.early_step_bound},
+          {"soonest", &p.least_step_time}};
+}
+
 }  // namespace
+
+std::vector<std::pair<std::string, double>> gains_of(ViipParams p) {
+  std::vector<std::pair<std::string, double>> gains;
+  for (const auto& [name, value] : gain_fields(p)) gains.emplace_back(name, *value);
+  return gains;
+}
 
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   ViipParams p;
-  const std::map<std::string, double*> fields = {{"q", &p.pole_ratio},
-                                                 {"goal", &p.goal_lag},
-                                                 {"ka", &p.zmp_gain},
-                                                 {"av", &p.velocity_leak},
-                                                 {"ax", &p.position_leak},
-                                                 {"damp", &p.rocking_damping},
-                                                 {"tau_z", &p.zmp_filter},
-                                                 {"margin", &p.margin},
-                                                 {"kz", &p.height_rate},
-                                                 {"yield", &p.yielding},
-                                                 {"dz", &p.height_damping},
-                                                 {"ankle", &p.ankle_share},
-                                                 {"single", &p.single_support},
-                                                 {"both", &p.double_support},
-                                                 {"lift", &p.lift},
-                                                 {"reach", &p.reach},
-                                                 {"hold", &p.recovery},
-                                                 {"inside", &p.zmp_inset},
-                                                 {"hurry", &p.early_step_bound},
-                                                 {"soonest", &p.least_step_time}};
+  const std::map<std::string, double*> fields = gain_fields(p);
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where,
@@ -145,27 +155,37 @@ double stepping_time(const ViipParams& p, double omega, int steps) {
   return (kShiftTime + steps * (p.single_support + p.double_support) + kSettleTime) / omega;
 }
 
-double viip_force(const ViipParams& p, double mass, double omega, double goal, double z,
-                  double dz) {
+HeightGains viip_height_gains(const ViipParams& p, double mass, double omega) {
   const double rate = p.height_rate * omega;
   HeightGains gains;
   gains.stiffness = mass * rate * rate;
   gains.damping = 2 * p.height_damping * std::sqrt(mass * gains.stiffness);
-  return height_force(gains, mass * kGravity, goal, z, dz);
+  return gains;
+}
+
+double viip_force(const ViipParams& p, double mass, double omega, double goal, double z,
+                  double dz) {
+  return height_force(viip_height_gains(p, mass, omega), mass * kGravity, goal, z, dz);
 }
 
 Vector2d viip_acceleration(const ViipParams& p, double omega, double omega2, double dt,
                            const ReferencePendulum& reference, const Vector2d& measured_zmp,
-                           const Estimate& e, ReactionFilter& filter) {
-  Vector2d ddcog = horizontal_acceleration(omega2, reference.cog, reference.zmp);
+                           const Estimate& e, ReactionFilter& filter, LawTerms& terms) {
+  terms.motion.head<2>() = horizontal_acceleration(omega2, reference.cog, reference.zmp);
+  Vector2d ddcog = terms.motion.head<2>();
   if (!p.feedback) return ddcog;
-  ddcog += p.velocity_leak * omega * (e.dcog.head<2>() - reference.dcog) +
-           p.position_leak * omega * omega * (e.cog.head<2>() - reference.cog);
+  terms.pull.head<2>() = p.velocity_leak * omega * (e.dcog.head<2>() - reference.dcog) +
+                         p.position_leak * omega * omega * (e.cog.head<2>() - reference.cog);
+  ddcog += terms.pull.head<2>();
   if (!e.contact) return ddcog;
-  ddcog += rocking_acceleration(p.rocking_damping, omega, kGravity / (omega * omega),
-                                Vector3d(reference.dcog.x(), reference.dcog.y(), 0), e);
+  terms.rocking.head<2>() =
+      rocking_acceleration(p.rocking_damping, omega, kGravity / (omega * omega),
+                           Vector3d(reference.dcog.x(), reference.dcog.y(), 0), e);
+  ddcog += terms.rocking.head<2>();
   filter.update(e, low_pass_share(dt, omega, p.zmp_filter));
-  ddcog += short_term_acceleration(p.zmp_gain, omega2, filter.zmp() - measured_zmp);
+  terms.short_term.head<2>() =
+      short_term_acceleration(p.zmp_gain, omega2, filter.zmp() - measured_zmp);
+  ddcog += terms.short_term.head<2>();
   return ddcog;
 }
 
@@ -251,10 +271,29 @@ PlannedStep Viip::planned_step(Side stance) const {
                          steps_left_, offset_.head<2>());
 }
 
-Vector2d Viip::regulate(const Vector2d& dcm, int state) const {
+LawStage Viip::law_stage() const {
+  switch (stage_) {
+    case Stage::weight_shift:
+      return LawStage::weight_shift;
+    case Stage::single_support:
+      return LawStage::single_support;
+    case Stage::double_support:
+      return LawStage::double_support;
+    case Stage::stand:
+      break;
+  }
+  return LawStage::stand;
+}
+
+Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
   const auto standing = [&](const Vector2d& goal) -> Vector2d {
     return regulating_zmp(goal, params_.pole_ratio, dcm);
   };
+  const auto growth = [&](double time) {  // of zmp_to_arrive()
+    const double E = elementary::exp(omega_ * time);
+    return E / (E - 1);
+  };
+  const double stands = 1 + params_.pole_ratio;
   const auto arriving = [&](Side stance, double time) {
     const PlannedStep step = planned_step(stance);
     return zmp_to_arrive(dcm, step.landing.position + step.offset, elementary::exp(omega_ * time));
@@ -266,33 +305,34 @@ Vector2d Viip::regulate(const Vector2d& dcm, int state) const {
     case Stage::weight_shift: {
       const PlannedStep step = planned_step(anchor_);
       const Vector2d to_landing = step.landing.position + step.offset - step.stance_place;
-      return inside_support(
-          standing(step.stance_place + to_landing * elementary::exp(-params_.single_support)));
+      return {standing(step.stance_place + to_landing * elementary::exp(-params_.single_support)),
+              stands};
     }
     case Stage::single_support:
       // Shortly before the landing only the foothold can still answer.
-      if (time_to_landing() < kLeastTimeToLanding) return inside_support(zmp_[state]);
-      return inside_support(arriving(anchor_, time_to_landing()));
+      if (time_to_landing() < kLeastTimeToLanding) return {zmp_[state], 0};
+      return {arriving(anchor_, time_to_landing()), growth(time_to_landing())};
     case Stage::double_support: {
       const double share = std::min(1.0, elapsed_ / both);
       const Vector2d& before = zmp_before_[state];
       if (steps_left_ == 0) {
         const Vector2d after = standing(standing_goal(displacement_[2]).head<2>());
-        return inside_support((1 - share) * before + share * after);
+        return {(1 - share) * before + share * after, share * stands};
       }
       // From foot to foot the ZMP moves gradually; the answer to a push is added at once.
       const Side foot = other(anchor_);
       const Vector2d place =
           footsteps_.zmp_on(foot, ground_pose(*model_, foot, plan_.feet[index(foot)]));
       const Vector2d after = arriving(foot, both - elapsed_ + single);
-      return inside_support((1 - share) * before + share * place + (after - place));
+      return {(1 - share) * before + share * place + (after - place),
+              growth(both - elapsed_ + single)};
     }
   }
-  return inside_support(standing(standing_goal(displacement_[2]).head<2>()));
+  return {standing(standing_goal(displacement_[2]).head<2>()), stands};
 }
 
 // (24), (16), (17), then (14)(15) closed on the measured ZMP.
-CogReference Viip::cog_reference(const Estimate& e) {
+CogReference Viip::cog_reference(const Estimate& e, LawTerms& terms) {
   const double m = model_->mass(), ground = ground_of(plan_.feet);
   const Vector3d goal = standing_goal(displacement_[2]);
   const double z = body_.cog().z() - ground;
@@ -308,13 +348,30 @@ CogReference Viip::cog_reference(const Estimate& e) {
   lift_ = vertical_acceleration(ref.fz - params_.yielding * push_, m);
   ref.ddcog.z() = lift_;
   const double w2 = omega_squared(ref.fz, m, z);
+  const HeightGains gains = viip_height_gains(params_, m, omega_);
+  terms = {.stage = law_stage(), .height = z, .omega2 = w2};
+  terms.K_Pz = gains.stiffness;
+  terms.K_Dz = gains.damping;
+  terms.spring_goal = goal.z() - ground;
+  terms.spring_height = z + sag_;
+  terms.spring_rate = body_.dcog().z();
+  terms.motion.z() = vertical_acceleration(ref.fz, m);
+  terms.short_term.z() = lift_ - terms.motion.z();
 
-  zmp_[1] = regulate(divergent_component(body_.cog(), body_.dcog(), omega_).head<2>(), 1);
-  zmp_[0] = params_.feedback ? regulate(divergent_component(e.cog, e.dcog, omega_).head<2>(), 0)
-                             : zmp_[1];
+  WantedZmp wanted = regulate(divergent_component(body_.cog(), body_.dcog(), omega_).head<2>(), 1);
+  const WantedZmp by_robot =
+      params_.feedback ? regulate(divergent_component(e.cog, e.dcog, omega_).head<2>(), 0) : wanted;
+  zmp_[1] = inside_support(wanted.zmp);
+  zmp_[0] = params_.feedback ? inside_support(by_robot.zmp) : zmp_[1];
+  terms.planned_zmp << zmp_[1], ground;
+  terms.wanted_zmp << by_robot.zmp, ground;
+  terms.K = by_robot.gain;
+  terms.D = by_robot.gain / omega_;
   ref.zmp << zmp_[0], ground;
   const ReferencePendulum reference = {body_.cog().head<2>(), body_.dcog().head<2>(), zmp_[1]};
-  ref.ddcog.head<2>() = viip_acceleration(params_, omega_, w2, dt_, reference, zmp_[0], e, filter_);
+  ref.ddcog.head<2>() =
+      viip_acceleration(params_, omega_, w2, dt_, reference, zmp_[0], e, filter_, terms);
+  terms.filtered_zmp << filter_.zmp(), ground;
   return ref;
 }
 
@@ -484,7 +541,7 @@ void Viip::update(const Estimate& estimate, ControlOutput& out) {
   next_ = plan_;
   body_.anchor(anchor_, plan_.feet[index(anchor_)]);
   out.cog = body_.cog();
-  const CogReference wanted = cog_reference(estimate);
+  const CogReference wanted = cog_reference(estimate, out.terms);
   const double ankle = params_.feedback ? params_.ankle_share : 0;
   const Eigen::VectorXd offsets =
       dynamics_.lead() +

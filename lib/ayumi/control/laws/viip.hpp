@@ -45,6 +45,9 @@ struct ViipParams {
 /// unknown gain or a value out of range, for dz with (25).
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec);
 
+/// Its gains by the names of files, in alphabetical order.
+std::vector<std::pair<std::string, double>> gains_of(ViipParams params);
+
 /// The pendulum that VIIP regulates: its state and the ZMP its regulator asks for [m], [m/s].
 struct ReferencePendulum {
   Eigen::Vector2d cog, dcog, zmp;
@@ -52,14 +55,18 @@ struct ReferencePendulum {
 
 /// Horizontal acceleration of the reference [m/s^2]: (14)(15) of the reference pendulum, the
 /// short-term absorption of DTAD, and pulls to the measured COG and its velocity. `measured_zmp` is
-/// what the regulator asks for by the measured state. `filter` takes in the estimate.
+/// what the regulator asks for by the measured state. `filter` takes in the estimate, `terms` the
+/// horizontal summands.
 Eigen::Vector2d viip_acceleration(const ViipParams& params, double omega, double omega2, double dt,
                                   const ReferencePendulum& reference,
                                   const Eigen::Vector2d& measured_zmp, const Estimate& estimate,
-                                  ReactionFilter& filter);
+                                  ReactionFilter& filter, LawTerms& terms);
 
 /// How long `steps` counted steps take from standing to standing [s].
 double stepping_time(const ViipParams& params, double omega, int steps);
+
+/// K_Pz and K_Dz of (24).
+HeightGains viip_height_gains(const ViipParams& params, double mass, double omega);
 
 /// Ref f_z of (24) with the gains of `params` [N] for a COG at height z moving at dz that is to be
 /// at `goal`.
@@ -94,9 +101,15 @@ class Viip {
   enum class Stage { stand, weight_shift, single_support, double_support };
 
   Eigen::Vector3d standing_goal(const Eigen::Vector3d& displacement) const;
-  Eigen::Vector2d regulate(const Eigen::Vector2d& dcm, int state) const;
+  LawStage law_stage() const;
+  /// A ZMP before the nearest point of the support is taken [m], and its growth with the DCM [1].
+  struct WantedZmp {
+    Eigen::Vector2d zmp;
+    double gain = 0;
+  };
+  WantedZmp regulate(const Eigen::Vector2d& dcm, int state) const;
   Eigen::Vector2d inside_support(const Eigen::Vector2d& zmp) const;
-  CogReference cog_reference(const Estimate& estimate);
+  CogReference cog_reference(const Estimate& estimate, LawTerms& terms);
   PlannedStep planned_step(Side stance) const;
   Footsteps new_path(const std::array<Eigen::Isometry3d, 2>& feet) const;
   void step_state_machine(const Estimate& estimate);

@@ -18,6 +18,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/support_region.hpp"
+#include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -212,15 +213,40 @@ void ViipJump::enter(Stage stage) {
   }
 }
 
+LawStage ViipJump::law_stage() const {
+  switch (stage_) {
+    case Stage::stoop:
+      return LawStage::stoop;
+    case Stage::push:
+      return LawStage::push;
+    case Stage::flight:
+      return LawStage::flight;
+    case Stage::landing:
+      return LawStage::landing;
+    case Stage::settle:
+      break;
+  }
+  return LawStage::settle;
+}
+
 // Ref f_z of the stage, (24)-(27) with gains per unit mass.
-double ViipJump::vertical_force() const {
+double ViipJump::vertical_force(LawTerms& terms) const {
   const double m = model_->mass();
   const double z = data_.cog.z() - ground_of(plan_.feet), dz = dcog_.z();
+  const auto note = [&](double goal, const HeightGains& gains) {
+    terms.K_Pz = m * gains.stiffness;
+    terms.K_Dz = m * gains.damping;
+    terms.spring_goal = goal;
+    terms.spring_height = z;
+    terms.spring_rate = dz;
+  };
   const auto towards = [&](double goal, double rate) {
     const HeightGains gains = {rate * rate, 2 * params_.height_damping * rate};
+    note(goal, gains);
     return admissible_force(m * height_force(gains, kGravity, goal, z, dz), m);
   };
   const auto spring = [&](double middle) {
+    note(middle, {stiffness_, 0});
     return m * height_force({stiffness_, 0}, kGravity, middle, z, dz);
   };
   switch (stage_) {
@@ -244,12 +270,16 @@ double ViipJump::progress() const {
   return std::clamp(std::abs(z - from_) / depth_, 0.0, 1.0);
 }
 
-CogReference ViipJump::cog_reference(const Estimate& e) {
+CogReference ViipJump::cog_reference(const Estimate& e, LawTerms& terms) {
   const double m = model_->mass(), ground = ground_of(plan_.feet);
   CogReference ref;
-  ref.fz = vertical_force();
+  const double z = data_.cog.z() - ground;
+  terms = {.stage = law_stage(), .height = z};
+  ref.fz = vertical_force(terms);
   ref.ddcog.z() = vertical_acceleration(ref.fz, m);
-  const double w2 = omega_squared(ref.fz, m, data_.cog.z() - ground);
+  const double w2 = omega_squared(ref.fz, m, z);
+  terms.omega2 = w2;
+  terms.motion.z() = ref.ddcog.z();
 
   Vector2d goal = middle_of_soles(*model_, plan_.feet) + offset_;
   Vector2d rate = Vector2d::Zero(), acceleration = Vector2d::Zero();
@@ -268,17 +298,28 @@ CogReference ViipJump::cog_reference(const Estimate& e) {
   // (18)(19) about the moving goal.
   const auto regulate = [&](const Vector3d& x, const Vector3d& dx) -> Vector2d {
     const Vector2d dcm = x.head<2>() - goal + (dx.head<2>() - rate) / omega_;
-    const Vector2d zmp = goal + (1 + params_.pole_ratio) * dcm - acceleration / std::max(w2, 1.0);
+    return goal + (1 + params_.pole_ratio) * dcm - acceleration / std::max(w2, 1.0);
+  };
+  const auto inside = [&](const Vector2d& zmp) {
     return polygon.empty() ? zmp : polygon.project(zmp);
   };
-  const Vector2d by_reference = regulate(data_.cog, dcog_);
-  zmp_ = params_.feedback ? regulate(e.cog, e.dcog) : by_reference;
+  Vector2d wanted = regulate(data_.cog, dcog_);
+  const Vector2d by_reference = inside(wanted);
+  if (params_.feedback) wanted = regulate(e.cog, e.dcog);
+  zmp_ = inside(wanted);
+  terms.K = 1 + params_.pole_ratio;
+  terms.D = terms.K / omega_;
+  terms.planned_zmp << by_reference, ground;
+  terms.wanted_zmp << wanted, ground;
   ref.zmp << zmp_, ground;
   const ReferencePendulum reference = {data_.cog.head<2>(), dcog_.head<2>(), by_reference};
-  Vector2d ddx = viip_acceleration(params_, omega_, w2, dt_, reference, zmp_, e, filter_);
+  Vector2d ddx = viip_acceleration(params_, omega_, w2, dt_, reference, zmp_, e, filter_, terms);
   // The share of the ground's moment that turns the body.
-  const double lever = m * (data_.cog.z() - ground);
-  ddx += Vector2d(-momentum_rate_.y(), momentum_rate_.x()) / lever;
+  const double lever = m * z;
+  const Vector2d turning = Vector2d(-momentum_rate_.y(), momentum_rate_.x()) / lever;
+  ddx += turning;
+  terms.motion.head<2>() += turning;
+  terms.filtered_zmp << filter_.zmp(), ground;
   ref.ddcog.head<2>() = ddx;
   return ref;
 }
@@ -340,8 +381,12 @@ VectorXd ViipJump::torque(const VectorXd& velocity) {
   state.dtheta = velocity.tail(model_->dof_count());
   const VectorXd force = inverse_dynamics(*model_, state, acceleration, data_);
   VectorXd torque = force.tail(model_->dof_count());
-  for (int j = 0; j < model_->dof_count(); ++j)
-    torque[j] += limits_.servo[static_cast<size_t>(j)].rotor_inertia * acceleration[6 + j];
+  for (int j = 0; j < model_->dof_count(); ++j) {
+    const ServoDescription& servo = limits_.servo[static_cast<size_t>(j)];
+    const double rate = state.dtheta[j];
+    torque[j] += servo.rotor_inertia * acceleration[6 + j] + servo.viscous * rate +
+                 servo.coulomb * std::clamp(rate / kCoulombRate, -1.0, 1.0);
+  }
   if (stage_ == Stage::flight) return torque;
   const Vector3d f = 0.5 * force.head<3>(), n = 0.5 * force.segment<3>(3);
   for (const Side side : {Side::left, Side::right})
@@ -360,8 +405,8 @@ void ViipJump::move_joints(const VectorXd& velocity, ControlOutput& out) {
   const bool last = stage_ == Stage::settle && elapsed_ > kTorqueFadeTime;
   forward_ = std::clamp(forward_ + (last ? -dt_ : dt_) / kTorqueFadeTime, 0.0, 1.0);
   reference_.dtheta = velocity.tail(model_->dof_count());
+  out.reference = reference_;  // the posture of this tick with its base
   reference_.theta += dt_ * reference_.dtheta;
-  out.reference = reference_;
   out.target = reference_.theta + lead_.cwiseProduct(reference_.dtheta);
   for (int j = 0; j < out.target.size(); ++j) {
     const Dof& dof = model_->dofs()[j];
@@ -377,7 +422,7 @@ void ViipJump::move_joints(const VectorXd& velocity, ControlOutput& out) {
 void ViipJump::stand(const Estimate& e, ControlOutput& out) {
   anchor_base(*model_, anchor_, plan_.feet[static_cast<size_t>(anchor_)], reference_, data_);
   out.cog = data_.cog;
-  out.cog_reference = cog_reference(e);
+  out.cog_reference = cog_reference(e, out.terms);
   dcog_ += dt_ * out.cog_reference.ddcog;
   const bool last = stage_ == Stage::push && leaves_now();
   out.cog_reference.dcog = dcog_;
@@ -386,6 +431,8 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
                                                   : 0.0;
   const Resolution r = resolve_with_momentum(share);
   for (const std::string& note : limit_notes(*model_, r)) out.notes.push_back(note);
+  out.residuals = r.residuals;
+  out.weight = weight_;
   dcog_ *= r.scale;
   const VectorXd velocity = anchored_velocity_map(*model_, data_, anchor_) * r.dtheta;
   MatrixXd M;
@@ -483,6 +530,9 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
   move_base(reference_.base, data_);
   out.cog = cog;
   out.cog_reference = {Vector3d(zmp_.x(), zmp_.y(), ground_of(plan_.feet)), 0, fall, dcog_};
+  out.terms = {.stage = LawStage::flight};
+  out.terms.planned_zmp = out.terms.wanted_zmp = out.cog_reference.zmp;
+  out.terms.motion = fall;
 
   MatrixXd M;
   mass_matrix(*model_, data_, M);
@@ -523,6 +573,13 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
       dtheta[j] = std::clamp(dtheta[j], (dof.lower - reference_.theta[j]) / dt_,
                              (dof.upper - reference_.theta[j]) / dt_);
   }
+  // Of both soles.
+  const VectorXd left = J * dtheta - u;
+  out.residuals = {};
+  out.residuals.foot = std::hypot(left.head<3>().norm(), left.segment<3>(6).norm());
+  out.residuals.foot_turn =
+      std::hypot(left.segment<3>(3).norm(), left.tail<3>().norm()) / kFlightLength;
+  out.weight = weight_;
   VectorXd velocity(6 + n);
   velocity << base_map * dtheta + base_drift, dtheta;
   move_joints(velocity, out);

@@ -46,8 +46,9 @@ class ViipJump {
   };
 
   void enter(Stage stage);
-  CogReference cog_reference(const Estimate& estimate);
-  double vertical_force() const;
+  LawStage law_stage() const;
+  CogReference cog_reference(const Estimate& estimate, LawTerms& terms);
+  double vertical_force(LawTerms& terms) const;
   double progress() const;
   bool leaves_now();
   double lean() const;

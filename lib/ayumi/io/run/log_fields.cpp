@@ -24,8 +24,8 @@ class ListQuantities {
         {name, {"x", "y", "z", "qw", "qx", "qy", "qz"}, {unit, unit, unit, "1", "1", "1", "1"}});
   }
   template <typename Scalar>
-  std::enable_if_t<std::is_arithmetic_v<Scalar>> operator()(const std::string& name,
-                                                            const char* unit, const Scalar&) const {
+  std::enable_if_t<std::is_arithmetic_v<Scalar> || std::is_enum_v<Scalar>> operator()(
+      const std::string& name, const char* unit, const Scalar&) const {
     list_.push_back({name, {}, {unit}});
   }
 
@@ -54,8 +54,8 @@ class AppendValues {
     for (const double value : {q.w(), q.x(), q.y(), q.z()}) add(value);
   }
   template <typename Scalar>
-  std::enable_if_t<std::is_arithmetic_v<Scalar>> operator()(const std::string&, const char*,
-                                                            const Scalar& value) const {
+  std::enable_if_t<std::is_arithmetic_v<Scalar> || std::is_enum_v<Scalar>> operator()(
+      const std::string&, const char*, const Scalar& value) const {
     add(static_cast<double>(value));
   }
 

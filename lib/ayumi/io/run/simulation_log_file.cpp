@@ -50,6 +50,11 @@ class TakeValues {
   }
   void operator()(const std::string&, const char*, double& value) const { value = take(); }
   void operator()(const std::string&, const char*, bool& value) const { value = take() != 0; }
+  void operator()(const std::string&, const char*, LawStage& stage) const {
+    const double number = take();
+    const bool known = number >= 0 && number <= static_cast<double>(LawStage::settle);
+    stage = known ? static_cast<LawStage>(static_cast<int>(number)) : LawStage::replay;
+  }
   void operator()(const std::string&, const char*, int& value) const {
     const double number = take();
     value = std::abs(number) < 2e9 ? static_cast<int>(number) : 0;
@@ -127,6 +132,8 @@ std::string header_of(const SimulationLog& log, const std::string& command_line,
   OrderedJson header = {{"format", "ayumi.log/" + std::to_string(version_of_file)}};
   header.update(about_log(log));
   header["provenance"]["command_line"] = command_line;
+  header["gains"] = OrderedJson::object();
+  for (const auto& [name, value] : log.gains) header["gains"][name] = value;
   header["world"] = OrderedJson::parse(world_text(log.world, false));
   header["scenario"] = OrderedJson::array();
   for (const Disturbance& push : log.scenario)
@@ -147,6 +154,8 @@ void read_header(const JsonNode& header, SimulationLog& log) {
   if (!controller.string().empty())
     log.controller = controller_type(controller.one_of(controller_names()));
   if (const auto plant = header.find("plant")) log.plant = plant->string();
+  if (const auto gains = header.find("gains"))
+    for (const auto& [name, value] : gains->members()) log.gains.emplace_back(name, value.number());
   const JsonNode provenance = header.at("provenance");
   for_each_provenance(log.provenance, [&](const char* key, std::string& value) {
     value = provenance.at(key).string();
