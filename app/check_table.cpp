@@ -7,6 +7,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/finding_groups.hpp"
 #include "ayumi/limits/amount_text.hpp"
+#include "ayumi/model/diagnose.hpp"
 #include "terminal.hpp"
 
 namespace ayumi::app {
@@ -108,8 +109,16 @@ std::string check_table(const ConsistencyReport& report, const RobotModel& model
   out += "  share of the limits: " + text::join(shares, ", ") + "\n";
   out += "  feet: slip " + mm(at(FindingKind::foot_slip)) + ", sink " +
          mm(at(FindingKind::foot_penetration)) + ", gap while standing " +
-         mm(at(FindingKind::foot_float)) + "; nearest bodies " +
-         mm(at(FindingKind::self_collision)) + " apart" + place(FindingKind::self_collision) + "\n";
+         mm(at(FindingKind::foot_float)) + "; ";
+  const std::vector<std::string> bare = bodies_without_collision_shapes(model);
+  const double apart = at(FindingKind::self_collision);
+  if (std::isnan(apart))
+    out += "self-collision not checked, because the legs have no collision shapes";
+  else
+    out += "nearest bodies " + mm(apart) + " apart" + place(FindingKind::self_collision);
+  if (!std::isnan(apart) && !bare.empty())
+    out += "; self-collision not checked for " + text::join(bare, ", ") + " (no collision shapes)";
+  out += "\n";
   return out;
 }
 

@@ -36,9 +36,15 @@ constexpr AddCommand kCommands[] = {
 };
 
 // Options that must not show in written files, and whether a value follows them.
-constexpr std::pair<const char*, bool> kUnrecorded[] = {
-    {"-o", true},      {"--out", true},    {"--threads", true}, {"--robot-path", true},
-    {"--json", false}, {"--quiet", false}, {"-q", false},       {"--force", false}};
+constexpr std::pair<const char*, bool> kUnrecorded[] = {{"-o", true},
+                                                        {"--out", true},
+                                                        {"--threads", true},
+                                                        {"--robot-path", true},
+                                                        {"--package-path", true},
+                                                        {"--json", false},
+                                                        {"--quiet", false},
+                                                        {"-q", false},
+                                                        {"--force", false}};
 
 std::string recorded_command_line(int argc, char** argv) {
   std::string line = "ayumi";
@@ -98,6 +104,10 @@ void add_global_options(CLI::App& app, Context& context) {
       ->group("");
   app.add_option("--robot-path", context.robot_path,
                  "Folder with robots, searched before the bundled ones.")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  app.add_option("--package-path", context.package_path,
+                 "Folder with the packages that robots name as package://NAME/..., or one of them.")
       ->type_name("DIR")
       ->allow_extra_args(false);
 }
@@ -260,6 +270,12 @@ RobotSearch robot_search(const Context& context) {
     search.folders.emplace_back(folder);
   }
   search.folders.push_back(data_folder("robots"));
+  for (const std::string& folder : context.package_path) {
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored))
+      fail(ErrorCode::bad_file, "--package-path " + folder + ": this is not a folder");
+    search.packages.emplace_back(folder);
+  }
   return search;
 }
 

@@ -20,8 +20,9 @@ struct Context {
   bool force = false;
   int threads = 0;  ///< 0: all cores
   std::uint64_t seed = 1;
-  std::vector<std::string> robot_path;  ///< folders searched for robots before the bundled ones
-  std::string command_line;             ///< as typed, without output paths
+  std::vector<std::string> robot_path;    ///< folders searched for robots before the bundled ones
+  std::vector<std::string> package_path;  ///< folders searched for the packages of meshes
+  std::string command_line;               ///< as typed, without output paths
 
   /// Progress lines or bar on stderr; stops the work after Ctrl-C.
   Progress progress() const;

@@ -1,5 +1,6 @@
 #include "simulation.hpp"
 
+#include <cstdio>
 #include <numbers>
 
 #include "ayumi/base/error.hpp"
@@ -52,6 +53,19 @@ void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool a
   if (!reason.empty())
     fail(ErrorCode::bad_pattern,
          reason + "; --allow-unstable simulates with these gains nevertheless");
+}
+
+void note_missing_noise(const RobotModel& robot, bool noise) {
+  const SensorDescription& sensors = robot.description().sensors;
+  if (!noise || sensors.latency > 0 || sensors.attitude_noise > 0 || sensors.attitude_bias != 0 ||
+      sensors.gyro_noise > 0 || sensors.accelerometer_noise > 0 || sensors.force_noise > 0 ||
+      sensors.force_resolution > 0 || sensors.encoder_quantisation)
+    return;
+  std::fprintf(stderr,
+               "ayumi: --noise changes nothing: the files of %s state no noise, bias or latency of "
+               "sensors; state them under \"sensors\" of its sidecar (`ayumi init` writes a first "
+               "guess)\n",
+               text::printable(robot.name()).c_str());
 }
 
 ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choice) {
@@ -119,6 +133,7 @@ SimulateOptions simulation_options(const Context& context, const Task& input,
   else if (!choice.scenario.empty())
     options.scenario = read_pattern(choice.scenario).scenario;
   options.sensor_noise = choice.noise;
+  note_missing_noise(input.robot, choice.noise);
   options.true_state = choice.true_state;
   options.substeps = choice.substeps;
   options.plant = plant_of(choice.plant);

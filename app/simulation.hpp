@@ -32,6 +32,9 @@ void add_unstable_flag(CLI::App& command, bool& allowed);
 /// Throws Error(bad_pattern) with the reason for DTAD gains that `ayumi gains` refuses.
 void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool allowed);
 
+/// Says on standard error where `noise` was asked for and the robot's files state none.
+void note_missing_noise(const RobotModel& robot, bool noise);
+
 /// The pattern's controller under the choice.
 ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choice);
 

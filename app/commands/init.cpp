@@ -1,4 +1,4 @@
-// Writes the first sidecar of a robot that has a URDF only.
+// Writes the first sidecar of a robot that has links and joints only.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -104,17 +104,20 @@ void init(const Context& context, const InitOptions& options) {
 }  // namespace
 
 void add_init(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
-      "init", "write the first sidecar of a robot from its URDF, with a picture and a to-do list");
+  CLI::App* command = app.add_subcommand("init",
+                                         "write the first sidecar of a robot from its URDF, MJCF, "
+                                         "SDF or body file, with a picture and a to-do list");
   command->footer(
       "Examples:\n  ayumi init somebody.urdf -o my_robots/somebody\n"
       "Then follow the to-do list, and make a motion:\n"
       "  ayumi new walk --robot my_robots/somebody -o walk.json\n  ayumi run walk.json -o "
       "walk_run");
   auto options = std::make_shared<InitOptions>();
-  command->add_option("robot", options->robot, "URDF, or a folder with one URDF.")
+  command
+      ->add_option("robot", options->robot,
+                   "URDF, MJCF, SDF or Choreonoid body, or a folder with one such file.")
       ->required()
-      ->type_name("URDF");
+      ->type_name("FILE");
   command->add_option("-o,--out", options->out, "Folder of the robot; it is made where needed.")
       ->required()
       ->type_name("DIR");

@@ -1,5 +1,6 @@
 // The model doctor: everything a robot's files say, what was inferred, and what is suspicious.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -140,6 +141,45 @@ std::vector<std::string> posture_names(const RobotModel& model) {
   return names;
 }
 
+// Joints that move together: those that mimic another one, and those that move both legs.
+struct Coupling {
+  std::string joint, driver, relation;
+};
+
+std::vector<Coupling> couplings(const RobotModel& model) {
+  std::vector<Coupling> found;
+  for (const JointDescription& joint : model.description().joints) {
+    if (joint.mimic.empty()) continue;
+    const JointDescription* driver = &joint;
+    double ratio = 1, offset = 0;
+    while (!driver->mimic.empty()) {
+      offset += ratio * driver->mimic_offset;
+      ratio *= driver->mimic_multiplier;
+      const std::string name = driver->mimic;
+      for (const JointDescription& each : model.description().joints)
+        if (each.name == name) driver = &each;
+    }
+    found.push_back(
+        {joint.name, driver->name,
+         text::brief(ratio) + " times " + driver->name +
+             (offset == 0 ? ""
+                          : (offset > 0 ? " + " : " - ") + text::brief(std::abs(offset)) +
+                                (joint.type == JointType::prismatic ? " m" : " rad"))});
+  }
+  return found;
+}
+
+// Joints of which each leg has one of its own, as coupled hips are; a waist above both is none.
+std::vector<std::string> joints_of_both_legs(const RobotModel& model) {
+  std::vector<std::string> names;
+  if (!model.has_soles()) return names;
+  for (int left = model.sole(Side::left).body; left > 0; left = model.bodies()[left].parent)
+    for (int right = model.sole(Side::right).body; right > 0; right = model.bodies()[right].parent)
+      if (left != right && model.bodies()[left].dof == model.bodies()[right].dof)
+        names.push_back(model.dofs()[model.bodies()[left].dof].name);
+  return names;
+}
+
 OrderedJson inspection_json(const RobotModel& model, const Stance& stance,
                             const std::vector<ModelWarning>& warnings) {
   OrderedJson joints = OrderedJson::array(), notes = OrderedJson::array();
@@ -149,6 +189,10 @@ OrderedJson inspection_json(const RobotModel& model, const Stance& stance,
   OrderedJson links = OrderedJson::array();
   for (const Link& link : model.links())
     links.push_back({{"name", link.name}, {"mass_kg", link.inertia.mass}});
+  OrderedJson coupled = OrderedJson::array();
+  for (const Coupling& each : couplings(model))
+    coupled.push_back(
+        {{"joint", each.joint}, {"driver", each.driver}, {"relation", each.relation}});
   const RobotDescription& files = model.description();
   return {{"robot", model.name()},
           {"dof", model.dof_count()},
@@ -156,6 +200,8 @@ OrderedJson inspection_json(const RobotModel& model, const Stance& stance,
           {"height_m", stance.height},
           {"cog_m", {stance.cog.x(), stance.cog.y(), stance.cog.z()}},
           {"joints", joints},
+          {"coupled_joints", coupled},
+          {"joints_of_both_legs", joints_of_both_legs(model)},
           {"links", links},
           {"soles", soles_json(model)},
           {"profiles", model.profile_names()},
@@ -182,16 +228,24 @@ std::string angle(const Dof& dof, double value) {
 
 std::string limit(double value) { return std::isinf(value) ? "-" : text::brief(value); }
 
+// As wide as the longest name, so that columns do not run together.
+size_t name_width(const RobotModel& model) {
+  size_t width = 20;
+  for (const Dof& dof : model.dofs()) width = std::max(width, dof.name.size());
+  return width;
+}
+
 std::string joint_lines(const RobotModel& model) {
+  const size_t width = name_width(model);
   std::string text =
-      "Joints [deg, sliders mm]; servo kp [N m/rad], kd [N m s/rad]\n  " + padded("", 20) +
+      "Joints [deg, sliders mm]; servo kp [N m/rad], kd [N m s/rad]\n  " + padded("", width) +
       "   lower   upper    home       kp       kd     rotor  weight  " + "device  counts/deg\n";
   for (int i = 0; i < model.dof_count(); ++i) {
     const Dof& dof = model.dofs()[i];
-    const auto column = [&](const std::string& value, size_t width) {
-      text += right_aligned(value, width);
+    const auto column = [&](const std::string& value, size_t columns) {
+      text += " " + right_aligned(value, columns - 1);
     };
-    text += "  " + padded(dof.name, 20);
+    text += "  " + padded(dof.name, width);
     column(angle(dof, dof.lower), 8);
     column(angle(dof, dof.upper), 8);
     column(angle(dof, model.posture()[i]), 8);
@@ -213,21 +267,34 @@ std::string posture_line(const RobotModel& model) {
 }
 
 std::string profile_lines(const RobotModel& model) {
-  std::string text =
-      "Actuator limits: speed [rad/s], peak / continuous torque [N m]\n  " + padded("", 20);
-  for (const std::string& name : model.profile_names()) text += right_aligned(name, 22);
-  text += "\n";
-  for (int i = 0; i < model.dof_count(); ++i) {
-    text += "  " + padded(model.dofs()[i].name, 20);
-    for (const std::string& name : model.profile_names()) {
-      const ActuatorLimits& limits = model.limits(name);
-      text += right_aligned(limit(limits.speed[i]) + "  " + limit(limits.peak_torque[i]) + " / " +
-                                limit(limits.continuous_torque[i]),
-                            22);
-    }
-    text += "\n";
+  const size_t width = name_width(model);
+  std::vector<std::string> lines(static_cast<size_t>(model.dof_count()) + 1,
+                                 "  " + padded("", width));
+  for (int i = 0; i < model.dof_count(); ++i)
+    lines[static_cast<size_t>(i) + 1] = "  " + padded(model.dofs()[i].name, width);
+  for (const std::string& name : model.profile_names()) {
+    const ActuatorLimits& limits = model.limits(name);
+    std::vector<std::string> cells = {name};
+    size_t widest = 20;
+    for (int i = 0; i < model.dof_count(); ++i)
+      cells.push_back(limit(limits.speed[i]) + "  " + limit(limits.peak_torque[i]) + " / " +
+                      limit(limits.continuous_torque[i]));
+    for (const std::string& cell : cells) widest = std::max(widest, cell.size());
+    for (size_t i = 0; i < lines.size(); ++i) lines[i] += right_aligned(cells[i], widest + 2);
   }
-  return text;
+  return "Actuator limits: speed [rad/s], peak / continuous torque [N m]\n" +
+         text::join(lines, "\n") + "\n";
+}
+
+std::string coupling_lines(const RobotModel& model) {
+  std::string text;
+  for (const Coupling& each : couplings(model))
+    text += "  " + each.joint + " = " + each.relation + "\n";
+  const std::vector<std::string> shared = joints_of_both_legs(model);
+  if (!shared.empty())
+    text += "  both legs move with " + text::join(shared, ", ") +
+            ": they cannot turn against each other, so the trunk turns and leans instead\n";
+  return text.empty() ? "" : "Coupled joints [rad, sliders m]\n" + text + "\n";
 }
 
 std::string sole_lines(const RobotModel& model) {
@@ -235,7 +302,7 @@ std::string sole_lines(const RobotModel& model) {
   std::string text = "Soles [mm, ahead of and left of the ankle]\n";
   for (const Side side : {Side::left, Side::right}) {
     text += "  " + padded(name_of(side), 7) +
-            padded(model.description().soles.at(name_of(side)).link, 14);
+            padded(model.description().soles.at(name_of(side)).link, 14) + " ";
     for (const Eigen::Vector2d& corner : model.sole(side).polygon)
       text +=
           " (" + text::fixed(1000 * corner.x(), 1) + ", " + text::fixed(1000 * corner.y(), 1) + ")";
@@ -287,8 +354,8 @@ std::string inspection_text(const RobotModel& model, const Stance& stance,
          text::fixed(cog.x(), 1) + ", y " + text::fixed(cog.y(), 1) + ", z " +
          text::fixed(cog.z(), 1) + " mm from " +
          (model.has_soles() ? "the middle between the sole frames" : "the root link") + "\n\n" +
-         joint_lines(model) + "\n" + profile_lines(model) + "\n" + sole_lines(model) +
-         sensor_lines(model) + gain_lines(model) + posture_line(model) + "\n" +
+         joint_lines(model) + "\n" + coupling_lines(model) + profile_lines(model) + "\n" +
+         sole_lines(model) + sensor_lines(model) + gain_lines(model) + posture_line(model) + "\n" +
          list_lines("Assumptions", model.description().assumptions) + list_lines("Warnings", notes);
 }
 
@@ -315,9 +382,11 @@ void add_inspect(CLI::App& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi inspect hoap1\n  ayumi inspect my_robot/robot.json --json\n"
       "  ayumi inspect somebody.urdf --picture somebody.png\n"
-      "For a bare URDF, soles, servos and limits are inferred and listed as assumptions.");
+      "What the robot's file does not state is inferred and listed as an assumption.");
   auto options = std::make_shared<InspectOptions>();
-  command->add_option("robot", options->robot, "Name of a bundled robot, folder, sidecar or URDF.")
+  command
+      ->add_option("robot", options->robot,
+                   "Name of a bundled robot, folder, sidecar, URDF, MJCF, SDF or body file.")
       ->required()
       ->type_name("ROBOT");
   command->add_option("--picture", options->picture, "Draw the home posture on the ground, .png.")

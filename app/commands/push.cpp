@@ -179,6 +179,7 @@ void find_limits(Context& context, const PushCommand& options) {
   }
   if (!options.out.empty()) require_file_target(options.out);
   const Task input = load_pattern(context, options.pattern, options.input);
+  note_missing_noise(input.robot, options.push.simulate.sensor_noise);
   const PushOptions push = push_options(context, input, options);
   const Json study = study_json(input, push);
   KnownCases known(push.phases.size() * static_cast<size_t>(push.directions));

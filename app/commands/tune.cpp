@@ -13,6 +13,7 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
+#include "simulation.hpp"
 
 namespace ayumi::app {
 
@@ -69,6 +70,7 @@ void tune(Context& context, TuneCommand& options) {
   }
   const Task input = load_pattern(context, options.pattern, options.input);
   TuneOptions& t = options.tune;
+  note_missing_noise(input.robot, t.simulate.sensor_noise);
   t.threads = context.threads;
   t.simulate.profile = input.profile;
   t.simulate.world = input.pattern.world;

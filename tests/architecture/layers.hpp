@@ -126,7 +126,7 @@ inline const std::vector<ThirdParty>& third_parties() {
       {"CLI11", std::regex("CLI/.*"), {"app"}},
       {"cpp-httplib", std::regex("httplib\\.h"), {"app"}},
       {"pybind11", std::regex("pybind11/.*"), {"python"}},
-      {"MuJoCo", std::regex("mujoco/.*"), {"sim/plant_mujoco"}},
+      {"MuJoCo", std::regex("mujoco/.*"), {"sim/plant_mujoco", "io"}},
       {"POSIX",
        std::regex("sys/.*|(unistd|fcntl|signal|spawn|poll|termios|pthread|malloc)\\.h"),
        {"base", "render", "app", "mesh_reader"}},

@@ -140,15 +140,6 @@ std::vector<Broken> broken_robots() {
          return std::vector<std::string>{"inspect", "\x1b[2J\u202egone.urdf"};
        },
        "\\x1b[2J\\u202egone.urdf"},
-      {"mesh_missing",
-       [](const Folder& folder) -> std::vector<std::string> {
-         write(folder / "robot.urdf",
-               replaced(small_urdf(), "<link name='arm'>",
-                        "<link name='arm'><visual><geometry><mesh filename='gone.stl'/></geometry>"
-                        "</visual>"));
-         return {"inspect", "robot.urdf"};
-       },
-       "gone.stl"},
       {"no_permission",
        [](const Folder& folder) -> std::vector<std::string> {
          write(folder / "secret.urdf", small_urdf());

@@ -86,7 +86,8 @@ TEST(BrokenRobot, WhatIsNoFile) {
             "robot 'empty_folder': no such file, folder or bundled robot");
   std::filesystem::create_directory(folder.path() / "bare");
   EXPECT_EQ(message_of(folder, "bare"),
-            "bare: holds neither a robot.json nor exactly one .urdf; name the robot's file");
+            "bare: holds neither a robot.json nor exactly one robot in another format; name the "
+            "robot's file");
   std::filesystem::create_symlink("loop.urdf", folder.path() / "loop.urdf");
   EXPECT_EQ(message_of(folder, "loop.urdf"),
             "loop.urdf: cannot be read (Too many levels of symbolic links)");
@@ -98,8 +99,10 @@ TEST(BrokenRobot, WhatIsNoUrdf) {
   EXPECT_TRUE(urdf_error("<robot name=\"r\">\n<link name=\"a\">\n</robot>").starts_with("r.urdf"));
   EXPECT_EQ(urdf_error("<sdf/>"),
             "r.urdf:1: the outermost element is <sdf>, a URDF starts with <robot name=\"...\">");
-  EXPECT_EQ(urdf_error(urdf("  <xacro:macro/>\n")),
-            "r.urdf:3: this is a xacro macro file; expand it to a URDF first");
+  EXPECT_EQ(
+      urdf_error(urdf("  <xacro:macro/>\n")),
+      "r.urdf:3: this is a xacro file; expand it with `xacro FILE > robot.urdf` of ROS, and use "
+      "robot.urdf");
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
   EXPECT_EQ(urdf_error(deep), "r.urdf: nested too deeply for a URDF");
@@ -204,20 +207,8 @@ TEST(BrokenRobot, WrongMeshes) {
     return urdf(link("trunk", std::string(kInertia) + "<visual><geometry><mesh filename=\"" + file +
                                   "\"/></geometry></visual>"));
   };
-  EXPECT_EQ(urdf_error(with_mesh("meshes/trunk.stl")),
-            "r.urdf: link trunk: mesh meshes/trunk.stl: there is no file meshes/trunk.stl; add it "
-            "or correct the name");
-  EXPECT_EQ(urdf_error(with_mesh("package://nowhere_at_all/trunk.stl")),
-            "r.urdf: link trunk: mesh package://nowhere_at_all/trunk.stl: no package "
-            "'nowhere_at_all' in the URDF's folder or above it; put the URDF inside its package or "
-            "name the mesh relative to the URDF");
   const TemporaryFolder folder;
-  folder.write("r.urdf", with_mesh("Trunk.OBJ"));
   folder.write("trunk.obj", "this is no mesh\n");
-  EXPECT_EQ(
-      message_of(folder, "r.urdf", {}),
-      "r.urdf: link trunk: mesh Trunk.OBJ: there is no file Trunk.OBJ, but there is trunk.obj; "
-      "upper and lower case must match, correct the name");
   folder.write("r.urdf", with_mesh("trunk.obj"));
   const std::string corrupt = message_of(folder, "r.urdf", {.meshes = true});
   EXPECT_TRUE(corrupt.starts_with("r.urdf: link trunk: mesh trunk.obj: ")) << corrupt;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -10,6 +11,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/attribution.hpp"
 #include "ayumi/limits/judged_motion.hpp"
+#include "ayumi/model/diagnose.hpp"
 
 namespace ayumi {
 
@@ -121,9 +123,14 @@ ConsistencyReport report_of(JudgedMotion& motion) {
   for (const FindingSpec* spec : summary_figures())  // nothing was near the limit at any time
     if (spec->figure.least && !std::isfinite(report.summary[spec->kind]))
       report.summary[spec->kind] = 0;
+  // Without shapes on both legs there is no clearance to speak of, and nothing was checked.
+  double& clearance = report.summary[FindingKind::self_collision];
+  if (motion.collisions.pairs().empty() ||
+      (clearance >= 0 && !legs_have_collision_shapes(motion.model)))
+    clearance = std::numeric_limits<double>::quiet_NaN();
   for (const FindingSpec* spec : summary_figures()) {
     const Violation& extreme = motion.extreme(spec->kind);
-    if (extreme.sample >= 0)
+    if (extreme.sample >= 0 && !std::isnan(report.summary[spec->kind]))
       report.summary_at[spec->kind] = {place_text(motion, extreme),
                                        extreme.sample * motion.series.dt};
   }

@@ -35,6 +35,15 @@ constexpr double kLargeShare = 0.05;
 /// Difference of left and right that is suspicious, as a fraction of a mass or of the robot's size.
 /// Chosen: above the differences that wiring and screws make.
 constexpr double kAsymmetry = 0.02;
+/// Distance up to which a joint is the mirror image of another, as a fraction of the robot's size.
+/// Chosen: below the distance of neighbouring joints, above any asymmetry that a robot has.
+constexpr double kPartner = 0.1;
+/// Share of its shape's size by which a centre of mass lies outside, from which on it is
+/// suspicious. Chosen: a motor behind a plate is less far away; half of the size is asked for.
+constexpr double kOutside = 0.25;
+/// Names that a warning lists in full, and how many it lists where there are more. Chosen: a line
+/// of a terminal holds them.
+constexpr size_t kMostNames = 6, kFewNames = 3;
 
 std::string millimetres(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 
@@ -59,51 +68,99 @@ class Doctor {
     examine_placeholder_torques();
     examine_symmetry();
     if (model_.has_soles()) examine_stance();
-    return std::move(warnings_);
+    return warnings();
   }
 
  private:
-  void warn(const std::string& where, const std::string& message) {
-    warnings_.push_back({where, message});
+  /// Something suspicious about a link, a joint or a pair of them. `message` is the cause, the same
+  /// for all that have it; `detail` has the figures, and `size` says which are the worst.
+  struct Suspicion {
+    std::string kind, message;
+    std::vector<std::string> names;
+    std::string detail, worst;
+    double size = 0;
+  };
+
+  void warn(const std::string& kind, const std::string& name, const std::string& message,
+            const std::string& detail = "", double size = 0) {
+    const auto same = std::find_if(suspicions_.begin(), suspicions_.end(), [&](const auto& each) {
+      return each.kind == kind && each.message == message;
+    });
+    Suspicion& suspicion = same != suspicions_.end() ? *same : suspicions_.emplace_back();
+    suspicion.kind = kind;
+    suspicion.message = message;
+    if (suspicion.names.empty() || size > suspicion.size) {
+      suspicion.detail = detail;
+      suspicion.worst = name;
+      suspicion.size = size;
+    }
+    suspicion.names.push_back(name);
+  }
+
+  /// One warning for each cause, whatever the number of links or joints that have it.
+  std::vector<ModelWarning> warnings() const {
+    std::vector<ModelWarning> warnings;
+    for (const Suspicion& each : suspicions_) {
+      const size_t count = each.names.size();
+      const bool pairs = each.names[0].find(", ") != std::string::npos;
+      const bool plural = (count > 1 || pairs) && !each.kind.ends_with('s');
+      const std::string kinds = each.kind + (plural ? "s" : "");
+      std::vector<std::string> shown = each.names;
+      if (count > kMostNames) shown.resize(kFewNames);
+      const std::string where =
+          (count > kMostNames ? std::to_string(count) + (pairs ? " pairs of " : " ") : "") + kinds +
+          (count > kMostNames ? " (" : " ") + text::join(shown, pairs ? "; " : ", ") +
+          (count > kMostNames ? ", ...)" : "");
+      const std::string detail = each.detail.empty() ? ""
+                                 : count == 1
+                                     ? " (" + each.detail + ")"
+                                     : " (most in " + each.worst + ": " + each.detail + ")";
+      const bool named = count > 1 || !each.names[0].empty();
+      warnings.push_back({named ? where : each.kind, each.message + detail});
+    }
+    return warnings;
   }
 
   void examine_root() {
     const Link& root = model_.links().front();
     if (root.inertia.mass > 0 && model_.description().sidecar_file.empty())
-      warn("link " + root.name, "the root link carries " + text::brief(root.inertia.mass) +
-                                    " kg; Ayumi counts this mass, but some URDF readers "
-                                    "ignore it and compute a smaller total mass");
+      warn("link", root.name,
+           "the root link carries " + text::brief(root.inertia.mass) +
+               " kg; Ayumi counts this mass, but some URDF readers ignore it and compute a smaller "
+               "total mass");
   }
 
   void examine_link(const Link& link) {
-    const std::string where = "link " + link.name;
     if (link.inertia.mass == 0) {
       const Body& body = model_.bodies()[link.body];
       if (body.inertia.mass == 0 && body.name == link.name)
-        warn(where,
+        warn("link", link.name,
              "has no mass although a joint moves it; Ayumi takes this link for a frame between two "
              "axes");
       else if (!link.visuals.empty() || !link.collisions.empty())
-        warn(where, "has a shape but no mass; its mass must be contained in " + body.name);
+        warn("link", link.name,
+             "has a shape but no mass; the body that carries it must contain its mass");
       return;
     }
-    examine_tensor(link, where);
-    examine_size(link, where);
+    examine_tensor(link);
+    examine_size(link);
   }
 
-  void examine_tensor(const Link& link, const std::string& where) {
+  void examine_tensor(const Link& link) {
     const Eigen::Vector3d principal =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia.about_com).eigenvalues();
     if (principal.maxCoeff() <= 0)
-      warn(where, "its inertia tensor is zero; give the one of its shape");
+      warn("link", link.name, "its inertia tensor is zero; give the one of its shape");
     else if (principal[2] > 1.01 * (principal[0] + principal[1]))
-      warn(where, "its largest principal moment " + text::brief(principal[2]) +
-                      " kg m^2 exceeds the sum of the other two, " +
-                      text::brief(principal[0] + principal[1]) +
-                      ", which no body can have; check the tensor and its frame");
+      warn("link", link.name,
+           "its largest principal moment exceeds the sum of the other two, which no body can have; "
+           "check the tensor and its frame",
+           text::brief(principal[2]) + " and " + text::brief(principal[0] + principal[1]) +
+               " kg m^2",
+           principal[2] / (principal[0] + principal[1]));
   }
 
-  void examine_size(const Link& link, const std::string& where) {
+  void examine_size(const Link& link) {
     Eigen::AlignedBox3d box;
     double reach = 0;  // largest distance of the shapes from the centre of mass
     for (const auto* shapes : {&link.visuals, &link.collisions})
@@ -115,26 +172,34 @@ class Doctor {
     const double gyration = std::sqrt(link.inertia.about_com.trace() / 2 / link.inertia.mass);
     if (box.isEmpty()) {
       if (gyration > size_)
-        warn(where, "its inertia is that of a body of " + millimetres(gyration) +
-                        " radius, more than the robot's size; is this a placeholder?");
+        warn("link", link.name,
+             "its inertia is that of a body larger than the robot; is this a placeholder?",
+             millimetres(gyration) + " radius", gyration);
       return;
     }
     if (gyration > reach)
-      warn(where, "its inertia is that of a body of " + millimetres(gyration) +
-                      " radius, but its shape reaches only " + millimetres(reach) +
-                      " from its centre of mass; is this a placeholder?");
+      warn("link", link.name,
+           "its inertia is that of a body larger than its shape; is this a placeholder?",
+           millimetres(gyration) + " radius, and its shape reaches " + millimetres(reach) +
+               " from its centre of mass",
+           gyration / std::max(reach, 1e-9));
     if (box.diagonal().norm() > 5 * size_)
-      warn(where, "its shape measures " + millimetres(box.diagonal().norm()) +
-                      ", far more than the robot; is the mesh in millimetres? set its scale");
+      warn("link", link.name,
+           "its shape is far larger than the robot; is the mesh in millimetres? set its scale",
+           millimetres(box.diagonal().norm()), box.diagonal().norm());
     const double outside = box.exteriorDistance(link.inertia.com);
-    if (outside > 0.25 * box.diagonal().norm())
-      warn(where, "its centre of mass lies " + millimetres(outside) +
-                      " outside its shape; check the frame of the inertia");
+    if (outside > kOutside * box.diagonal().norm())
+      warn("link", link.name,
+           "its centre of mass lies outside its shape; check the frame of the inertia",
+           "by " + millimetres(outside) + ", and the shape measures " +
+               millimetres(box.diagonal().norm()),
+           outside / box.diagonal().norm());
     const double density = link.inertia.mass / std::max(box.volume(), 1e-12);
     if (density > kDensest)
-      warn(where, text::brief(link.inertia.mass) + " kg in a box of " +
-                      millimetres(box.diagonal().norm()) +
-                      " diagonal is heavier than lead; check the mass or the shape");
+      warn("link", link.name, "it is heavier than lead; check the mass or the shape",
+           text::brief(link.inertia.mass) + " kg in a box of " +
+               millimetres(box.diagonal().norm()) + " diagonal",
+           density);
   }
 
   void examine_equal_tensors() {
@@ -152,50 +217,43 @@ class Doctor {
         other_mass |= heavy[j]->inertia.mass != heavy[i]->inertia.mass;
       }
       if (same.size() > 2 && other_mass)
-        warn("links " + text::join(same, ", "),
+        warn("link", text::join(same, ", "),
              "have the same inertia tensor but different masses; are these placeholders?");
     }
   }
 
   void examine_collisions() {
-    std::vector<bool> covered(model_.bodies().size(), false);
-    for (const Link& link : model_.links())
-      if (!link.collisions.empty()) covered[link.body] = true;
-    std::vector<std::string> missing;
-    for (size_t i = 0; i < covered.size(); ++i) {
-      const bool foot =
-          model_.has_soles() && (static_cast<int>(i) == model_.sole(Side::left).body ||
-                                 static_cast<int>(i) == model_.sole(Side::right).body);
-      const bool heavy = model_.bodies()[i].inertia.mass > kLargeShare * model_.mass();
-      if (!covered[i] && (foot || heavy)) missing.push_back(model_.bodies()[i].name);
-    }
-    if (!missing.empty())
-      warn("links " + text::join(missing, ", "),
+    const std::vector<std::string> missing = bodies_without_collision_shapes(model_);
+    if (missing.size() == 1)
+      warn("link", missing[0],
+           "has no collision shape; its contacts and self-collisions are not detected");
+    else if (!missing.empty())
+      warn("link", text::join(missing, ", "),
            "have no collision shape; their contacts and self-collisions are not detected");
   }
 
   void examine_dof(const Dof& dof) {
-    const std::string where = "joint " + dof.name;
     const int index = model_.find_dof(dof.name);
     const ActuatorLimits& limits = model_.limits();
+    const auto suspect = [&](const std::string& message) { warn("joint", dof.name, message); };
     if (!dof.limited)
-      warn(where, "has no position limits; state them");
+      suspect("has no position limits; state them");
     else if (dof.upper - dof.lower < 1e-6)
-      warn(where, "its lower and upper limit are equal; make it a fixed joint");
+      suspect("its lower and upper limit are equal; make it a fixed joint");
     else if (!dof.prismatic && dof.upper - dof.lower > 4 * std::numbers::pi)
-      warn(where, "its range is more than two turns; is this a placeholder?");
+      suspect("its range is more than two turns; is this a placeholder?");
     if (std::isinf(limits.speed[index]))
-      warn(where, "no speed limit is stated");
+      suspect("no speed limit is stated");
     else if (!dof.prismatic && limits.speed[index] > kFastest)
-      warn(where, "speed limit " + text::brief(limits.speed[index]) +
-                      " rad/s is faster than servos are; is this a placeholder?");
-    if (std::isinf(limits.peak_torque[index])) warn(where, "no torque limit is stated");
+      suspect("speed limit " + text::brief(limits.speed[index]) +
+              " rad/s is faster than servos are; is this a placeholder?");
+    if (std::isinf(limits.peak_torque[index])) suspect("no torque limit is stated");
     if (!limits.has_servo[static_cast<size_t>(index)])
-      warn(where, "has no servo constants; give it a kp and kd");
+      suspect("has no servo constants; give it a kp and kd");
     else if (limits.servo[static_cast<size_t>(index)].kp <= 0)
-      warn(where, "is passive: its servo's kp is 0");
+      suspect("is passive: its servo's kp is 0");
     if (dof.encoder.device == 0 && !model_.description().encoders.empty())
-      warn(where, "has no encoder entry although other joints have one");
+      suspect("has no encoder entry although other joints have one");
   }
 
   void examine_placeholder_torques() {
@@ -203,41 +261,74 @@ class Doctor {
     if (torque.size() < 3 || !torque.allFinite()) return;
     const double largest = 10 * model_.mass() * kGravity * size_;
     if (torque.maxCoeff() > largest)
-      warn("limits", "a torque limit of " + text::brief(torque.maxCoeff()) +
-                         " N m could throw the robot; is this a placeholder?");
+      warn("limits", "",
+           "a torque limit of " + text::brief(torque.maxCoeff()) +
+               " N m could throw the robot; is this a placeholder?");
     const double decade = elementary::log10(torque[0]);
     if (torque.minCoeff() == torque.maxCoeff() && std::abs(decade - std::round(decade)) < 1e-9)
-      warn("limits", "every joint has the torque limit " + text::brief(torque[0]) +
-                         " N m; is this a placeholder?");
+      warn("limits", "",
+           "every joint has the torque limit " + text::brief(torque[0]) +
+               " N m; is this a placeholder?");
   }
 
-  // The right-hand name that belongs to a left-hand name; empty when the name has no side.
-  static std::string mirrored_name(const std::string& name) {
-    static const std::pair<const char*, const char*> kSides[] = {
-        {"left", "right"}, {"Left", "Right"}, {"LEFT", "RIGHT"}, {"l_", "r_"}, {"L_", "R_"}};
-    for (const auto& [left, right] : kSides)
-      for (size_t at = name.find(left); at != std::string::npos; at = name.find(left, at + 1)) {
-        const bool word = std::string(left).size() > 2 || at == 0 || name[at - 1] == '_';
-        if (word) return name.substr(0, at) + right + name.substr(at + std::string(left).size());
-      }
-    return name[0] == 'L' ? "R" + name.substr(1) : "";
+  int joints_to_root(int body) const {
+    int joints = 0;
+    for (; model_.bodies()[body].parent >= 0; body = model_.bodies()[body].parent) ++joints;
+    return joints;
+  }
+
+  // The joints on the right that are mirror images of those on the left, by their places with every
+  // joint at 0: of the same kind, as many joints away from the root, nearest to the mirrored place,
+  // and the other one has none nearer either.
+  std::vector<std::pair<const Dof*, const Dof*>> partners() const {
+    const auto place = [&](const Dof& dof) { return zero_[dof.body].translation(); };
+    const auto mirrored_distance = [&](const Dof& a, const Dof& b) {
+      Eigen::Vector3d mirrored = place(a);
+      mirrored.y() = -mirrored.y();
+      // Joints with one centre differ by their axes.
+      const Eigen::Vector3d axis = zero_[a.body].linear() * model_.bodies()[a.body].axis;
+      const Eigen::Vector3d other = zero_[b.body].linear() * model_.bodies()[b.body].axis;
+      const Eigen::Vector3d turned(axis.x(), -axis.y(), axis.z());
+      return (mirrored - place(b)).norm() + 0.01 * size_ * (1 - std::abs(turned.dot(other)));
+    };
+    const auto nearest = [&](const Dof& dof) {
+      const Dof* best = nullptr;
+      for (const Dof& each : model_.dofs())
+        if (&each != &dof && each.prismatic == dof.prismatic &&
+            joints_to_root(each.body) == joints_to_root(dof.body) &&
+            (!best || mirrored_distance(dof, each) < mirrored_distance(dof, *best)))
+          best = &each;
+      return best;
+    };
+    std::vector<std::pair<const Dof*, const Dof*>> found;
+    for (const Dof& left : model_.dofs()) {
+      const Dof* right = nearest(left);
+      if (!right || nearest(*right) != &left) continue;
+      if (mirrored_distance(left, *right) > kPartner * size_) continue;
+      if (place(left).y() - place(*right).y() > kAsymmetry * size_)
+        found.emplace_back(&left, right);
+    }
+    return found;
   }
 
   void examine_symmetry() {
-    for (const Link& left : model_.links()) {
-      const int right = model_.find_link(mirrored_name(left.name));
-      if (right >= 0) compare_links(left, model_.links()[right]);
-    }
-    int conform = 0, against = 0;
     std::vector<std::string> same, opposite;
-    for (const Dof& left : model_.dofs()) {
-      const int right = model_.find_dof(mirrored_name(left.name));
-      if (right >= 0) compare_dofs(left, model_.dofs()[right], same, opposite);
+    const auto pairs = partners();
+    for (const auto& [left, right] : pairs) {
+      for (const Link& link : model_.links())
+        if (link.body == left->body && link.name == model_.bodies()[left->body].name)
+          compare_links(link, model_.links()[model_.find_link(model_.bodies()[right->body].name)]);
+      // What the joint before is displaced by is said there.
+      Eigen::Vector3d before = Eigen::Vector3d::Zero();
+      for (const auto& [above, other] : pairs)
+        if (above->body == model_.bodies()[left->body].parent &&
+            other->body == model_.bodies()[right->body].parent)
+          before = displacement(*above, *other);
+      compare_dofs(*left, *right, before, same, opposite);
     }
-    conform = static_cast<int>(opposite.size());
-    against = static_cast<int>(same.size());
+    const size_t conform = opposite.size(), against = same.size();
     if (conform == 0 || against == 0) return;
-    warn("joints " + text::join(conform >= against ? same : opposite, ", "),
+    warn("joints", text::join(conform >= against ? same : opposite, ", "),
          "one of the two encoder signs may be wrong: on the " +
              std::to_string(std::max(conform, against)) +
              " other pairs of joints, the left and the right sign are related in the opposite "
@@ -245,43 +336,49 @@ class Doctor {
   }
 
   void compare_links(const Link& left, const Link& right) {
-    const std::string where = "links " + left.name + ", " + right.name;
+    const std::string names = left.name + ", " + right.name;
     const double a = left.inertia.mass, b = right.inertia.mass;
     if (std::abs(a - b) > kAsymmetry * std::max(a, b))
-      warn(where,
-           "left and right masses differ: " + text::brief(a) + " and " + text::brief(b) + " kg");
+      warn("link", names, "left and right masses differ",
+           text::brief(a) + " and " + text::brief(b) + " kg", std::abs(a - b));
     Eigen::Vector3d mirrored = zero_[left.body] * left.pose * left.inertia.com;
     mirrored.y() = -mirrored.y();
     const double apart = (mirrored - zero_[right.body] * right.pose * right.inertia.com).norm();
     if (a > 0 && b > 0 && apart > kAsymmetry * size_)
-      warn(where, "their centres of mass are not mirror images of each other; the difference is " +
-                      millimetres(apart) + " with every joint at 0");
+      warn("link", names, "their centres of mass are not mirror images of each other",
+           millimetres(apart) + " apart with every joint at 0", apart);
   }
 
-  void compare_dofs(const Dof& left, const Dof& right, std::vector<std::string>& same,
-                    std::vector<std::string>& opposite) {
-    const std::string where = "joints " + left.name + ", " + right.name;
-    Eigen::Vector3d origin = zero_[left.body].translation();
+  // From the right joint to the mirror image of the left one.
+  Eigen::Vector3d displacement(const Dof& left, const Dof& right) const {
+    Eigen::Vector3d mirrored = zero_[left.body].translation();
+    mirrored.y() = -mirrored.y();
+    return mirrored - zero_[right.body].translation();
+  }
+
+  void compare_dofs(const Dof& left, const Dof& right, const Eigen::Vector3d& before,
+                    std::vector<std::string>& same, std::vector<std::string>& opposite) {
+    const std::string names = left.name + ", " + right.name;
     Eigen::Vector3d axis = zero_[left.body].linear() * model_.bodies()[left.body].axis;
-    origin.y() = -origin.y();
     axis = left.prismatic ? Eigen::Vector3d(axis.x(), -axis.y(), axis.z())
                           : Eigen::Vector3d(-axis.x(), axis.y(), -axis.z());
-    const double apart = (origin - zero_[right.body].translation()).norm();
+    const double apart = (displacement(left, right) - before).norm();
     if (apart > kAsymmetry * size_)
-      warn(where, "their places are not mirror images of each other; the difference is " +
-                      millimetres(apart));
+      warn("joint", names, "their places are not mirror images of each other",
+           millimetres(apart) + " apart", apart);
     const double along = axis.dot(zero_[right.body].linear() * model_.bodies()[right.body].axis);
     if (std::abs(along) < 0.99) {
-      warn(where, "their axes are not mirror images of each other");
+      warn("joint", names, "their axes are not mirror images of each other");
       return;
     }
     const double lower = along > 0 ? left.lower : -left.upper;
     const double upper = along > 0 ? left.upper : -left.lower;
     const auto differ = [](double a, double b) { return a != b && !(std::abs(a - b) <= kDegree); };
     if (differ(lower, right.lower) || differ(upper, right.upper))
-      warn(where, "left and right limits differ: mirrored, the left has " + text::brief(lower) +
-                      " to " + text::brief(upper) + ", the right has " + text::brief(right.lower) +
-                      " to " + text::brief(right.upper));
+      warn("joint", names, "left and right limits differ",
+           "mirrored, the left has " + text::brief(lower) + " to " + text::brief(upper) +
+               ", the right has " + text::brief(right.lower) + " to " + text::brief(right.upper),
+           std::max(std::abs(lower - right.lower), std::abs(upper - right.upper)));
     const double counts = left.encoder.counts_per_degree * right.encoder.counts_per_degree * along;
     if (counts != 0) (counts > 0 ? same : opposite).push_back(left.name + "/" + right.name);
   }
@@ -295,13 +392,15 @@ class Doctor {
     const double tilt = elementary::acos(std::clamp(up.dot(soles[1].linear().col(2)), -1.0, 1.0));
     const double step = up.dot(soles[1].translation() - soles[0].translation());
     if (tilt > kDegree || std::abs(step) > 0.001)
-      warn("posture home", "the soles are not on one plane: tilted by " +
-                               text::fixed(tilt / kDegree, 1) + " deg, apart in height by " +
-                               millimetres(std::abs(step)) + "; correct the ankle angles");
+      warn("posture", "home",
+           "the soles are not on one plane: tilted by " + text::fixed(tilt / kDegree, 1) +
+               " deg, apart in height by " + millimetres(std::abs(step)) +
+               "; correct the ankle angles");
     const double lean = elementary::acos(std::clamp(up.z(), -1.0, 1.0));
     if (lean > 5 * kDegree)
-      warn("posture home", "the root link leans by " + text::fixed(lean / kDegree, 1) +
-                               " deg against the soles; is this intended?");
+      warn("posture", "home",
+           "the root link leans by " + text::fixed(lean / kDegree, 1) +
+               " deg against the soles; is this intended?");
     Eigen::Vector3d cog = Eigen::Vector3d::Zero();
     for (size_t i = 0; i < poses.size(); ++i)
       cog += model_.bodies()[i].inertia.mass / model_.mass() *
@@ -320,17 +419,45 @@ class Doctor {
                 .head<2>());
     const double margin = ConvexPolygon(corners).margin((to_left * cog).head<2>());
     if (margin < 0)
-      warn("posture home", "the COG lies " + millimetres(-margin) +
-                               " outside the soles: the robot falls; shift it over the feet");
+      warn("posture", "home",
+           "the COG lies " + millimetres(-margin) +
+               " outside the soles: the robot falls; shift it over the feet");
   }
 
   const RobotModel& model_;
   std::vector<Eigen::Isometry3d> zero_;
   double size_ = 1;
-  std::vector<ModelWarning> warnings_;
+  std::vector<Suspicion> suspicions_;
 };
 
 }  // namespace
+
+std::vector<std::string> bodies_without_collision_shapes(const RobotModel& model) {
+  std::vector<bool> covered(model.bodies().size(), false);
+  for (const Link& link : model.links())
+    if (!link.collisions.empty()) covered[link.body] = true;
+  std::vector<std::string> missing;
+  for (size_t i = 0; i < covered.size(); ++i) {
+    const bool foot = model.has_soles() && (static_cast<int>(i) == model.sole(Side::left).body ||
+                                            static_cast<int>(i) == model.sole(Side::right).body);
+    const bool heavy = model.bodies()[i].inertia.mass > kLargeShare * model.mass();
+    if (!covered[i] && (foot || heavy)) missing.push_back(model.bodies()[i].name);
+  }
+  return missing;
+}
+
+bool legs_have_collision_shapes(const RobotModel& model) {
+  if (!model.has_soles()) return false;
+  for (const Side side : {Side::left, Side::right}) {
+    bool covered = false;
+    for (const Link& link : model.links()) {
+      if (link.collisions.empty()) continue;
+      for (const int dof : model.leg(side)) covered |= model.dofs()[dof].body == link.body;
+    }
+    if (!covered) return false;
+  }
+  return true;
+}
 
 std::vector<ModelWarning> diagnose(const RobotModel& model) { return Doctor(model).examine(); }
 

@@ -9,16 +9,23 @@
 namespace ayumi {
 
 struct ModelWarning {
-  std::string where;    ///< link, joint or field, e.g. "link head"
+  std::string where;    ///< links, joints or field, e.g. "link head", "links head, neck"
   std::string message;  ///< the suspicion and the remedy
 };
 
-/// Tests for: inertia that is implausible for mass and size (triangle inequality, placeholders,
-/// equal tensors on many links), mass on the root link that URDF readers drop, missing limits,
-/// effort or speed that are placeholders, left-right asymmetry of masses, lengths and limits, soles
-/// not level at the home posture, a COG outside the soles, sign conflicts of encoders between left
-/// and right, joints without servo or encoder, missing collision shapes, meshes far larger than the
-/// robot.
+/// One warning for each cause, which names all links or joints that have it, or the first few and
+/// their number. Tests for: inertia that is implausible for mass and size (triangle inequality,
+/// placeholders, equal tensors on many links), mass on the root link that URDF readers drop,
+/// missing limits, effort or speed that are placeholders, left-right asymmetry of masses, lengths
+/// and limits (partners are found by their places, not by their names), soles not level at the home
+/// posture, a COG outside the soles, sign conflicts of encoders between left and right, joints
+/// without servo or encoder, missing collision shapes, meshes far larger than the robot.
 std::vector<ModelWarning> diagnose(const RobotModel& model);
+
+/// Feet and bodies of more than 5 % of the robot's mass that have no collision shape, by name.
+std::vector<std::string> bodies_without_collision_shapes(const RobotModel& model);
+
+/// Whether both legs have collision shapes, so that a clearance means something.
+bool legs_have_collision_shapes(const RobotModel& model);
 
 }  // namespace ayumi

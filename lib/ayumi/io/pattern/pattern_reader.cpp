@@ -4,6 +4,7 @@
 #include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
+#include "ayumi/io/robot/robot_source.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/table/table.hpp"
 
@@ -260,7 +261,7 @@ void read_rest(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
 
 bool names_a_path(const std::string& robot) {
   return robot.find('/') != std::string::npos || robot.ends_with(".json") ||
-         robot.ends_with(".urdf");
+         has_robot_ending(robot);
 }
 
 Pattern read_pattern(const fs::path& path, const std::map<std::string, double>& set_parameters) {

@@ -225,8 +225,9 @@ std::string profiles_text(const RobotModel& model, const RobotGuess& guess) {
     if (std::isfinite(limits.speed[i]) || std::isfinite(limits.peak_torque[i]))
       groups[{limits.speed[i], limits.peak_torque[i]}].push_back(model.dofs()[i].name);
   std::string text = remark(
-      "Motors: speed [rad/s] and peak torque [N m] at the joint, from the URDF. The continuous "
-      "torque, which the motor bears without a time limit, is not in a URDF: add "
+      "Motors: speed [rad/s] and peak torque [N m] at the joint, from the robot's file. The "
+      "continuous "
+      "torque, which the motor bears without a time limit, is not in it: add "
       "\"continuous_torque\" to each group.");
   for (const PlaceholderLimits& each : guess.placeholders)
     text +=
@@ -268,6 +269,30 @@ std::string sensors_text(const RobotModel& model) {
          ", \"gyro_noise\": " + text::exact(kGyroNoise) +
          ",\n    \"accelerometer_noise\": " + text::exact(kAccelerometerNoise) +
          ", \"force_noise\": " + text::exact(kForceNoise) + "\n  }\n";
+}
+
+std::string seen_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  return fs::weakly_canonical(fs::absolute(file))
+      .lexically_relative(fs::weakly_canonical(fs::absolute(folder)))
+      .generic_string();
+}
+
+std::string packages_text(const RobotSearch& search, const std::filesystem::path& folder) {
+  if (search.packages.empty()) return "";
+  std::vector<std::string> folders;
+  for (const std::filesystem::path& each : search.packages)
+    folders.push_back(json_text(seen_from(folder, each)));
+  return remark("Folders with the packages of the meshes, as --package-path named them.") +
+         "  \"package_path\": [" + text::join(folders, ", ") + "],\n";
+}
+
+std::string held_text(const std::vector<std::string>& held) {
+  if (held.empty()) return "";
+  return remark(
+             "Joints that are held at 0. Guess: their links have no mass. Check whether they "
+             "should move, and give their links a mass in \"links\".") +
+         "  \"locked_joints\": " + joint_list(held) + ",\n";
 }
 
 std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& guess) {
@@ -313,8 +338,8 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
                                "; name its URDF to begin anew");
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
-  const std::string urdf_as_written =
-      urdf.lexically_relative(fs::weakly_canonical(fs::absolute(folder))).generic_string();
+  const std::string urdf_as_written = seen_from(folder, urdf);
+  const std::vector<std::string> held = hold_joints_without_mass(stated);
   const RobotGuess guess = guess_robot(std::move(stated));
   const RobotModel model(guess.robot);
   FirstSidecar result;
@@ -325,7 +350,8 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
              ", written by ayumi init. All values under \"Guess\" are to be checked; "
              "docs/formats.md explains the keys.") +
       "  \"format\": \"ayumi.robot/1\",\n  \"name\": " + json_text(model.name()) +
-      ",\n  \"urdf\": " + json_text(urdf_as_written) + ",\n" +
+      ",\n  \"urdf\": " + json_text(urdf_as_written) + ",\n" + packages_text(search, folder) +
+      held_text(held) +
       guessed(
           "Facing: axis of the URDF's root link along which the robot looks; the root link of "
           "this file is turned so that x is forward.",

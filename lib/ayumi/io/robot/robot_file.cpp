@@ -4,11 +4,12 @@
 #include <map>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/robot/mesh.hpp"
 #include "ayumi/io/robot/robot_guess.hpp"
+#include "ayumi/io/robot/robot_source.hpp"
 #include "ayumi/io/robot/sidecar.hpp"
-#include "ayumi/io/robot/urdf.hpp"
 
 namespace ayumi {
 
@@ -18,34 +19,33 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSidecarName = "robot.json";
 
-// The robot.json or the only URDF of a folder; empty: it has neither.
+// The robot.json or the only other robot of a folder; empty: it has neither.
 fs::path file_in_folder(const fs::path& folder) {
   std::error_code ignored;
   if (fs::is_regular_file(folder / kSidecarName, ignored)) return folder / kSidecarName;
-  std::vector<fs::path> urdfs;
+  std::vector<fs::path> robots;
   for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (entry.path().extension() == ".urdf") urdfs.push_back(entry.path());
-  return urdfs.size() == 1 ? urdfs[0] : fs::path();
+    if (has_robot_ending(entry.path())) robots.push_back(entry.path());
+  return robots.size() == 1 ? robots[0] : fs::path();
 }
 
 fs::path find_file(const std::string& name, const RobotSearch& search) {
   const fs::path path = name;
-  const std::string extension = path.extension().string();
+  const bool named = has_robot_ending(path) || path.extension() == ".json";
   std::error_code ignored;
-  const bool folder =
-      fs::is_directory(path, ignored) && extension != ".urdf" && extension != ".json";
+  const bool folder = fs::is_directory(path, ignored) && !named;
   if (folder)
     if (const fs::path file = file_in_folder(path); !file.empty()) return file;
-  if (!folder && (fs::exists(path, ignored) || extension == ".urdf" || extension == ".json"))
-    return path;
+  if (!folder && (fs::exists(path, ignored) || named)) return path;
   std::vector<std::string> known;
   for (const RobotEntry& entry : find_robots(search)) {
     if (entry.name == name) return entry.sidecar;
     known.push_back(entry.name);
   }
   if (folder)
-    fail(ErrorCode::bad_file, name + ": holds neither a " + kSidecarName +
-                                  " nor exactly one .urdf; name the robot's file");
+    fail(ErrorCode::bad_file,
+         name + ": holds neither a " + kSidecarName +
+             " nor exactly one robot in another format; name the robot's file");
   fail(ErrorCode::bad_file, "robot '" + name + "': no such file, folder or bundled robot" +
                                 (known.empty() ? "" : "; known: " + text::join(known, ", ")) +
                                 text::suggestion(name, known));
@@ -60,7 +60,7 @@ void fill_meshes(RobotDescription& robot, bool visuals) {
   const auto want = [&](std::vector<PlacedShape>& shapes, const std::string& link) {
     for (PlacedShape& placed : shapes) {
       auto* shape = std::get_if<MeshShape>(&placed.shape);
-      if (!shape) continue;
+      if (!shape || !shape->mesh.parts.empty()) continue;  // some formats bring their triangles
       const std::string key = shape->file + " " + text::exact(shape->scale.x()) + " " +
                               text::exact(shape->scale.y()) + " " + text::exact(shape->scale.z());
       const auto [place, fresh] = known.emplace(key, requests.size());
@@ -106,15 +106,19 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
   if (name_or_path.empty())
     fail(ErrorCode::bad_file, "robot '': a name, folder, sidecar or URDF is needed");
   const fs::path file = find_file(name_or_path, search);
-  const bool sidecar = file.extension() != ".urdf";
+  const std::string bytes = read_file(file);
+  const bool sidecar = robot_format(bytes, file) == RobotFormat::sidecar;
   const auto find = [&](const std::string& name) { return find_file(name, search); };
-  RobotDescription robot = sidecar ? read_sidecar(file, search.folders, find) : read_urdf(file);
+  RobotDescription robot = sidecar ? read_sidecar(file, search.folders, search.packages, find)
+                                   : parse_robot(bytes, file, search.packages);
   fill_meshes(robot, options.meshes);
   std::error_code ignored;
   if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))
     robot.assumptions.push_back("the " + std::string(kSidecarName) +
-                                " beside the URDF is not used; name the folder to use it");
-  return options.guess ? guess_robot(std::move(robot)).robot : robot;
+                                " beside this file is not used; name the folder to use it");
+  if (!options.guess) return robot;
+  if (!sidecar) hold_joints_without_mass(robot);
+  return guess_robot(std::move(robot)).robot;
 }
 
 RobotModel load_robot(const std::string& name_or_path, const RobotSearch& search,

@@ -11,9 +11,11 @@
 
 namespace ayumi {
 
-/// Folders that hold robots, searched in this order; each robot is a folder with a robot.json.
+/// Folders that hold robots, searched in this order; each robot is a folder with a robot.json. And
+/// folders that hold the packages of meshes.
 struct RobotSearch {
   std::vector<std::filesystem::path> folders;
+  std::vector<std::filesystem::path> packages = {};  ///< where "package://NAME/..." is looked for
 };
 
 struct LoadOptions {
@@ -29,7 +31,7 @@ struct RobotEntry {
 /// The robots in the search folders by name; an earlier folder hides a later one.
 std::vector<RobotEntry> find_robots(const RobotSearch& search);
 
-/// `name_or_path`: a name in the search folders, a folder, a robot.json, or a .urdf. What was not
+/// `name_or_path`: a name in the search folders, a folder, a robot.json, or a URDF. What was not
 /// stated but inferred is listed in `assumptions`. Throws Error(bad_file) when nothing is there or
 /// a file cannot be read, "file: /pointer: ..." for a sidecar that is not as specified,
 /// Error(bad_model) for an impossible robot.

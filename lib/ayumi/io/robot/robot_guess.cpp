@@ -567,12 +567,15 @@ void find_servos(RobotGuess& guess) {
   RobotDescription& robot = guess.robot;
   const RobotModel model(robot);
   const double z = cog_height(model), weight = model.mass() * kGravity;
-  robot.servos_inferred = true;
-  size_t estimated = 0;
+  size_t estimated = 0, inferred = 0;
   for (int i = 0; i < model.dof_count(); ++i) {
     const Dof& dof = model.dofs()[i];
     const JointDescription& joint = joint_of(model, i);
     const bool leg = is_of_leg(model, i);
+    // MJCF states servos and passive joints; of a motor it states all but the gains.
+    const auto stated = robot.servos.find(dof.name);
+    if (stated != robot.servos.end() && (stated->second.kp > 0 || joint.effort <= 0)) continue;
+    ++inferred;
     double effort = joint.effort;
     if (effort <= 0 || is_placeholder(guess.placeholders, "effort limits", joint.name)) {
       // A sliding joint has the force of a turning one at the lever of the COG's height.
@@ -588,7 +591,15 @@ void find_servos(RobotGuess& guess) {
     servo.rotor_inertia = to_digits(kInertiaPerEffort * effort / unit, 2);
     servo.viscous = joint.damping;
     servo.coulomb = joint.friction;
+    if (stated != robot.servos.end() && stated->second.rotor_inertia > 0)
+      servo.rotor_inertia = stated->second.rotor_inertia;
     robot.servos[dof.name] = servo;
+  }
+  robot.servos_inferred = inferred > 0;
+  if (inferred == 0) {
+    guess.servo_reason = {"the actuators of the robot's file state them",
+                          "that the robot's own servos have these gains"};
+    return;
   }
   guess.servo_reason = {
       "kp gives the full effort of the joint's own limit at an error of " +
@@ -608,6 +619,40 @@ void find_servos(RobotGuess& guess) {
 }
 
 }  // namespace
+
+std::vector<std::string> hold_joints_without_mass(RobotDescription& robot) {
+  std::map<std::string, double> mass;  // of a link and all that it carries
+  std::map<std::string, const JointDescription*> above;
+  for (const JointDescription& joint : robot.joints) above[joint.child] = &joint;
+  for (const LinkDescription& link : robot.links) {
+    const std::string* name = &link.name;
+    for (size_t steps = 0; steps <= robot.joints.size(); ++steps) {  // a loop is reported later
+      mass[*name] += link.inertia.mass;
+      const auto joint = above.find(*name);
+      if (joint == above.end()) break;
+      name = &joint->second->parent;
+    }
+  }
+  const auto moves = [](const JointDescription& joint) {
+    return joint.type != JointType::fixed && joint.type != JointType::floating;
+  };
+  if (std::none_of(robot.joints.begin(), robot.joints.end(), [&](const JointDescription& joint) {
+        return moves(joint) && mass[joint.child] > 0;
+      }))
+    return {};  // a robot that could not move at all is an error of its file
+  std::vector<std::string> held;
+  for (JointDescription& joint : robot.joints) {
+    if (!moves(joint) || mass[joint.child] > 0) continue;
+    joint.type = JointType::fixed;
+    joint.mimic.clear();
+    held.push_back(joint.name);
+  }
+  if (!held.empty())
+    robot.assumptions.push_back(
+        "joints that carry no mass are held at 0: " + text::join(held, ", ") +
+        "; give their links a mass and an inertia to move them");
+  return held;
+}
 
 std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model) {
   std::vector<PlaceholderLimits> found;
@@ -720,7 +765,7 @@ RobotGuess guess_robot(RobotDescription robot) {
         "bend the knees by 30 to 45 deg; a straight leg has no room to move"};
     files.assumptions.push_back("home posture: every joint at 0, or at the limit nearest to 0");
   }
-  if (files.servos.empty()) find_servos(guess);
+  if (files.servos.empty() || files.sidecar_file.empty()) find_servos(guess);
   for (const PlaceholderLimits& each : guess.placeholders)
     files.assumptions.push_back(each.what + " of " + each.value + " on " +
                                 std::to_string(each.joints.size()) +

@@ -44,6 +44,10 @@ struct RobotGuess {
 /// rad. What was inferred is added to `assumptions`.
 RobotGuess guess_robot(RobotDescription robot);
 
+/// Joints whose links weigh nothing cannot be moved by a motor's torque: they become fixed at 0,
+/// and `assumptions` says so. Returns their names.
+std::vector<std::string> hold_joints_without_mass(RobotDescription& robot);
+
 /// Limits that are placeholders. The same position limits on most joints, speeds above 60 rad/s,
 /// and efforts above five times m g z (mass, COG height) or the same on all joints.
 std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model);

@@ -6,6 +6,7 @@
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/robot/robot_source.hpp"
 
 namespace ayumi {
 
@@ -110,7 +111,7 @@ class BaseReader {
 
   MergedSidecar read(const fs::path& file) {
     open_.push_back(fs::weakly_canonical(file));
-    if (file.extension() == ".urdf")
+    if (has_robot_ending(file))
       return {{{"format", "ayumi.robot/1"}, {"urdf", file.filename().string()}},
               {{"", {file.string(), ""}}},
               ""};

@@ -10,8 +10,8 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/robot/facing.hpp"
+#include "ayumi/io/robot/robot_source.hpp"
 #include "ayumi/io/robot/servo_reader.hpp"
-#include "ayumi/io/robot/urdf.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/validate.hpp"
@@ -372,7 +372,9 @@ void read_lists(const JsonNode& root, RobotDescription& robot) {
       if (links.size() != 2) pair.complain("expected the names of two links");
       robot.collision_ignore.emplace_back(links[0], links[1]);
     }
-  if (const auto assumptions = root.find("assumptions")) robot.assumptions = assumptions->strings();
+  if (const auto assumptions = root.find("assumptions"))
+    for (const std::string& assumption : assumptions->strings())
+      robot.assumptions.push_back(assumption);
 }
 
 const std::vector<std::string> kKeys = {"$schema",
@@ -380,6 +382,7 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "name",
                                         "base",
                                         "urdf",
+                                        "package_path",
                                         "joint_order",
                                         "locked_joints",
                                         "links",
@@ -460,6 +463,7 @@ std::filesystem::path find_urdf(const JsonNode& node,
 
 RobotDescription read_sidecar(const std::filesystem::path& file,
                               const std::vector<std::filesystem::path>& folders,
+                              const std::vector<std::filesystem::path>& packages,
                               const FindRobot& find) {
   const MergedSidecar sidecar = read_merged_sidecar(file, find);
   const JsonNode root = sidecar.root();
@@ -467,7 +471,11 @@ RobotDescription read_sidecar(const std::filesystem::path& file,
   root.at("format").one_of({"ayumi.robot/1"});
   const std::filesystem::path urdf = find_urdf(root.at("urdf"), folders);
   const std::string urdf_bytes = read_file(urdf);
-  RobotDescription robot = parse_urdf(urdf_bytes, urdf);
+  std::vector<std::filesystem::path> places = packages;
+  if (const auto folders_of_packages = root.find("package_path"))
+    for (const JsonNode& folder : folders_of_packages->items())
+      places.push_back(std::filesystem::path(folder.file()).parent_path() / folder.string());
+  RobotDescription robot = parse_robot(urdf_bytes, urdf, places);
   robot.sidecar_file = file.string();
   std::string files;
   read_root(root, robot, files);

@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/file.hpp"
+#include "ayumi/io/robot/mesh_place.hpp"
 #include "ayumi/io/robot/urdf_check.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/model/validate.hpp"
@@ -56,109 +57,24 @@ Inertia inertia_of(const urdf::Inertial& inertial) {
           origin.linear() * tensor * origin.linear().transpose()};
 }
 
-bool names_package(const fs::path& package_xml, const std::string& name) {
-  TiXmlDocument document;
-  if (!document.LoadFile(package_xml.string())) return false;
-  const TiXmlElement* root = document.RootElement();
-  const TiXmlElement* tag = root ? root->FirstChildElement("name") : nullptr;
-  return tag && tag->GetText() && name == tag->GetText();
-}
-
-// The folder of a package, looked for beside the URDF and upwards; empty when there is none.
-fs::path package_folder(const fs::path& urdf, const std::string& name) {
-  std::error_code ignored;
-  for (fs::path folder = fs::absolute(urdf).lexically_normal().parent_path();;
-       folder = folder.parent_path()) {
-    if (folder.filename() == name) return folder;
-    if (fs::is_directory(folder / name, ignored)) return folder / name;
-    if (fs::is_regular_file(folder / "package.xml", ignored) &&
-        names_package(folder / "package.xml", name))
-      return folder;
-    if (folder == folder.root_path()) return {};
-  }
-}
-
-// The file whose name differs from `file` by capitals alone; empty when there is none.
-fs::path with_other_capitals(const fs::path& file) {
-  const auto lower = [](std::string name) {
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return name;
-  };
-  fs::path found = file.is_absolute() ? file.root_path() : fs::path(".");
-  std::error_code ignored;
-  for (const fs::path& part : file.relative_path()) {
-    fs::path next = found / part;
-    if (!fs::exists(next, ignored)) {
-      next.clear();
-      for (const auto& entry : fs::directory_iterator(found, ignored))
-        if (lower(entry.path().filename().string()) == lower(part.string())) next = entry.path();
-    }
-    if (next.empty()) return {};
-    found = next;
-  }
-  return found.lexically_normal();
-}
-
-std::string resolve_mesh(const RobotDescription& robot, const fs::path& urdf,
-                         const std::string& link, const std::string& name) {
-  fs::path file = urdf.parent_path() / name;
-  if (name.starts_with("file://")) file = name.substr(7);
-  for (const std::string scheme : {"package://", "model://"}) {
-    if (!name.starts_with(scheme)) continue;
-    const std::string rest = name.substr(scheme.size());
-    const size_t slash = std::min(rest.find('/'), rest.size());
-    const std::string package = rest.substr(0, slash);
-    const fs::path folder = package_folder(urdf, package);
-    if (folder.empty())
-      complain_urdf(robot, "link " + link + ": mesh " + name + ": no package '" + package +
-                               "' in the URDF's folder or above it; put the URDF inside its "
-                               "package or name the mesh relative to the URDF");
-    file = folder / rest.substr(std::min(slash + 1, rest.size()));
-  }
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) {
-    if (fs::is_directory(file, ignored))
-      complain_urdf(robot, "link " + link + ": mesh " + name + ": " +
-                               file.lexically_normal().string() + " is a folder; name its file");
-    const fs::path other = with_other_capitals(file.lexically_normal());
-    complain_urdf(robot,
-                  "link " + link + ": mesh " + name + ": there is no file " +
-                      file.lexically_normal().string() +
-                      (other.empty() ? "; add it or correct the name"
-                                     : ", but there is " + other.string() +
-                                           "; upper and lower case must match, correct the name"));
-  }
-  return file.lexically_normal().string();
-}
-
 class Converter {
  public:
-  Converter(RobotDescription& robot, const fs::path& urdf) : robot_(robot), urdf_(urdf) {}
+  explicit Converter(MeshPlaces& meshes) : meshes_(meshes) {}
 
-  template <typename Source>  // urdf::Visual or urdf::Collision
-  PlacedShape placed(const Source& source, const std::string& link) const {
-    PlacedShape placed;
-    placed.name = source.name;
-    placed.pose = isometry(source.origin);
-    placed.shape = shape(*source.geometry, link);
-    return placed;
-  }
-
-  LinkDescription link(const urdf::Link& source) const {
+  LinkDescription link(const urdf::Link& source) {
     LinkDescription link;
     link.name = source.name;
     link.has_inertial = source.inertial != nullptr;
     if (source.inertial) link.inertia = inertia_of(*source.inertial);
     for (const auto& visual : source.visual_array) {
-      link.visuals.push_back(placed(*visual, link.name));
-      if (!visual->material) continue;
+      if (!place(*visual, link.name, link.visuals) || !visual->material) continue;
       const urdf::Color& color = visual->material->color;
       const bool textured = !visual->material->texture_filename.empty();
       link.visuals.back().color = {color.r, color.g, color.b, color.a};
       link.visuals.back().has_color = !textured;
     }
     for (const auto& collision : source.collision_array)
-      link.collisions.push_back(placed(*collision, link.name));
+      place(*collision, link.name, link.collisions);
     return link;
   }
 
@@ -205,7 +121,19 @@ class Converter {
     }
   }
 
-  Shape shape(const urdf::Geometry& geometry, const std::string& link) const {
+  // false: its mesh is missing, and the shape is left out.
+  template <typename Source>  // urdf::Visual or urdf::Collision
+  bool place(const Source& source, const std::string& link, std::vector<PlacedShape>& shapes) {
+    const std::optional<Shape> found = shape(*source.geometry, link);
+    if (!found) return false;
+    PlacedShape& placed = shapes.emplace_back();
+    placed.name = source.name;
+    placed.pose = isometry(source.origin);
+    placed.shape = *found;
+    return true;
+  }
+
+  std::optional<Shape> shape(const urdf::Geometry& geometry, const std::string& link) {
     switch (geometry.type) {
       case urdf::Geometry::BOX:
         return Box{vector(static_cast<const urdf::Box&>(geometry).dim)};
@@ -217,13 +145,14 @@ class Converter {
       }
       default: {
         const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
-        return MeshShape{resolve_mesh(robot_, urdf_, link, mesh.filename), vector(mesh.scale), {}};
+        const std::string file = meshes_.find(link, mesh.filename);
+        if (file.empty()) return {};
+        return MeshShape{file, vector(mesh.scale), {}};
       }
     }
   }
 
-  RobotDescription& robot_;
-  const fs::path& urdf_;
+  MeshPlaces& meshes_;
 };
 
 // urdfdom keeps links and joints in maps by name: put them back into the file's order.
@@ -236,7 +165,8 @@ void sort_by_place(std::vector<Item>& items, const std::map<std::string, int>& p
 
 }  // namespace
 
-RobotDescription parse_urdf(const std::string& bytes, const fs::path& path) {
+RobotDescription parse_urdf(const std::string& bytes, const fs::path& path,
+                            const std::vector<fs::path>& packages) {
   const UrdfText text = check_urdf(bytes, path.string());
   urdf::ModelInterfaceSharedPtr source;
   std::string complaint;
@@ -256,15 +186,15 @@ RobotDescription parse_urdf(const std::string& bytes, const fs::path& path) {
   robot.name = source->getName();
   robot.urdf_file = path.string();
   robot.sha256 = sha256(bytes);
-  const Converter converter(robot, path);
+  MeshPlaces meshes(path, packages);
+  Converter converter(meshes);
   for (const auto& [name, link] : source->links_) robot.links.push_back(converter.link(*link));
   for (const auto& [name, joint] : source->joints_)
     robot.joints.push_back(converter.joint(*joint, text));
   sort_by_place(robot.links, text.link_place);
   sort_by_place(robot.joints, text.joint_place);
+  robot.assumptions = meshes.notes();
   return robot;
 }
-
-RobotDescription read_urdf(const fs::path& path) { return parse_urdf(read_file(path), path); }
 
 }  // namespace ayumi

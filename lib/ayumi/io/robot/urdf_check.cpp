@@ -1,32 +1,28 @@
 #include "ayumi/io/robot/urdf_check.hpp"
 
-#include <tinyxml.h>
-
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <set>
 #include <vector>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/robot/xml_text.hpp"
 #include "ayumi/model/validate.hpp"
 
 namespace ayumi {
 
 namespace {
 
-// Nested elements. Chosen: a URDF needs five, and the stack holds far more.
-constexpr int kDeepestNesting = 200;
+constexpr const char* kXacro =
+    "this is a xacro file; expand it with `xacro FILE > robot.urdf` of ROS, and use robot.urdf";
 
 // Links of a robot. Chosen: humanoids with hands have about a hundred; urdfdom and the tree of the
 // robot descend a chain of links by recursion, and some steps take the square of their number.
 constexpr size_t kMostLinks = 1000;
-// Attributes of an element. Chosen: URDF knows at most eight; TinyXML compares all of an element
-// with each other.
-constexpr int kMostAttributes = 100;
-
 // A numeric attribute and how many numbers it holds.
 struct NumericAttribute {
   const char* element;  // "*": any
@@ -64,12 +60,32 @@ const std::vector<std::string> kJointTypes = {"fixed",     "revolute", "continuo
                                               "prismatic", "floating", "planar"};
 const std::vector<std::string> kGeometries = {"box", "sphere", "cylinder", "mesh"};
 
+// The elements that URDF, its simulators and its planners know inside of an element. A name that is
+// none of these, and near to one that Ayumi reads, is a misspelling.
+struct KnownElements {
+  const char* parent;
+  std::vector<std::string> read, other;
+};
+const std::vector<KnownElements> kKnownElements = {
+    {"robot", {"link", "joint", "material"}, {"gazebo", "transmission", "sensor", "plugin"}},
+    {"link",
+     {"inertial", "visual", "collision"},
+     {"contact", "self_collision_checking", "collision_checking", "sensor", "kinematic", "site"}},
+    {"joint",
+     {"parent", "child", "origin", "axis", "limit", "dynamics", "mimic"},
+     {"calibration", "safety_controller", "hardwareInterface", "physics"}},
+    {"inertial", {"origin", "mass", "inertia"}, {}},
+    {"visual", {"origin", "geometry", "material"}, {"name"}},
+    {"collision", {"origin", "geometry"}, {"name", "material", "verbose"}},
+    {"geometry", {"box", "sphere", "cylinder", "mesh"}, {"capsule", "ellipsoid", "plane", "sdf"}},
+};
+
 class Checker {
  public:
   Checker(const std::string& file) : file_(file) {}
 
   [[noreturn]] void complain(const TiXmlElement* at, const std::string& message) const {
-    fail(ErrorCode::bad_file, file_ + ":" + std::to_string(at->Row()) + ": " + message);
+    complain_xml(file_, at, message);
   }
 
   std::string required(const TiXmlElement* element, const char* attribute,
@@ -88,6 +104,52 @@ class Checker {
     }
     for (auto* child = element->FirstChildElement(); child; child = child->NextSiblingElement())
       numbers(child, owner);
+  }
+
+  // A misspelt element would be ignored with all that stands in it: every one of its kind is
+  // counted, and the first is named.
+  void refuse_misspellings(const TiXmlElement* root) const {
+    struct Misspelling {
+      const TiXmlElement* first = nullptr;
+      std::string meant, parent;
+      size_t count = 0;
+    };
+    std::vector<std::pair<std::string, Misspelling>> found;
+    const std::function<void(const TiXmlElement*)> look = [&](const TiXmlElement* element) {
+      const auto known = std::find_if(
+          kKnownElements.begin(), kKnownElements.end(),
+          [&](const KnownElements& each) { return element->ValueStr() == each.parent; });
+      if (known == kKnownElements.end()) return;
+      for (auto* child = element->FirstChildElement(); child; child = child->NextSiblingElement()) {
+        const std::string& name = child->ValueStr();
+        const auto is_in = [&](const std::vector<std::string>& names) {
+          return std::find(names.begin(), names.end(), name) != names.end();
+        };
+        if (is_in(known->read)) {
+          look(child);
+          continue;
+        }
+        if (is_in(known->other) || name.find(':') != std::string::npos) continue;
+        const std::string meant = text::nearest(name, known->read);
+        if (meant.empty()) continue;
+        const auto same = std::find_if(found.begin(), found.end(),
+                                       [&](const auto& each) { return each.first == name; });
+        Misspelling& misspelling =
+            same != found.end() ? same->second : found.emplace_back(name, Misspelling{}).second;
+        if (misspelling.count++ == 0) {
+          misspelling.first = child;
+          misspelling.meant = meant;
+          misspelling.parent = known->parent;
+        }
+      }
+    };
+    look(root);
+    if (found.empty()) return;
+    std::vector<std::string> words;
+    for (const auto& [name, each] : found)
+      words.push_back("<" + name + "> is no element of a " + each.parent + "; did you mean <" +
+                      each.meant + ">? (" + text::counted(each.count, each.parent) + ")");
+    complain(found.front().second.first, text::join(words, "; "));
   }
 
   void link(TiXmlElement* element, RobotDescription& robot, UrdfText& text) const {
@@ -139,27 +201,10 @@ class Checker {
  private:
   void finite_numbers(const TiXmlElement* element, const std::string& owner,
                       const NumericAttribute& wanted, const std::string& text) const {
-    int count = 0;
-    const char* at = text.data();
-    const char* const end = at + text.size();
     const std::string place =
         owner + "<" + element->Value() + " " + wanted.name + "=\"" + text + "\">: ";
-    while (true) {
-      while (at != end && std::isspace(static_cast<unsigned char>(*at))) ++at;
-      if (at == end) break;
-      if (*at == '+') ++at;
-      double value = 0;
-      const auto [stop, error] = std::from_chars(at, end, value);
-      const bool whole = stop == end || std::isspace(static_cast<unsigned char>(*stop));
-      if (error != std::errc() || !whole || !std::isfinite(value))
-        complain(element, place + "'" + std::string(at, std::find(at, end, ' ')) +
-                              "' is not a finite number");
-      at = stop;
-      ++count;
-    }
-    if (count != wanted.count)
-      complain(element, place + std::to_string(wanted.count) + " numbers are needed, found " +
-                            std::to_string(count));
+    if (text.find("${") != std::string::npos) complain(element, place + kXacro);
+    xml_numbers(file_, element, place, text, wanted.count);
   }
 
   void geometry(const TiXmlElement* shape, const std::string& owner) const {
@@ -193,67 +238,11 @@ class Checker {
   const std::string& file_;
 };
 
-// TinyXML descends by recursion: refuse text that nests deeper than any robot's.
-void refuse_deep_nesting(const std::string& bytes, const std::string& file) {
-  int depth = 0;
-  for (size_t i = 0; i + 1 < bytes.size(); ++i) {
-    if (bytes[i] == '<' && bytes[i + 1] == '/') --depth;
-    if (bytes[i] == '<' && bytes[i + 1] != '/' && bytes[i + 1] != '!' && bytes[i + 1] != '?')
-      ++depth;
-    if (bytes[i] == '/' && bytes[i + 1] == '>') --depth;
-    if (depth > kDeepestNesting) fail(ErrorCode::bad_file, file + ": nested too deeply for a URDF");
-  }
+void refuse_xacro(const TiXmlElement* element, const Checker& checker) {
+  if (element->ValueStr().starts_with("xacro:")) checker.complain(element, kXacro);
+  for (auto* each = element->FirstChildElement(); each; each = each->NextSiblingElement())
+    refuse_xacro(each, checker);
 }
-
-// A byte '=' outside a quotation stands for one attribute.
-void refuse_many_attributes(const std::string& bytes, const std::string& file) {
-  int line = 1, count = 0;
-  char quote = 0;
-  for (size_t i = 0; i < bytes.size(); ++i) {
-    if (bytes[i] == '\n') ++line;
-    if (quote != 0) {
-      if (bytes[i] == quote) quote = 0;
-      continue;
-    }
-    if (bytes.compare(i, 4, "<!--") == 0) {
-      const size_t end = std::min(bytes.find("-->", i + 4), bytes.size());
-      line += static_cast<int>(std::count(bytes.begin() + i, bytes.begin() + end, '\n'));
-      i = end;
-      continue;
-    }
-    if (bytes[i] == '<') count = 0;
-    if (bytes[i] != '=') continue;
-    if (++count > kMostAttributes)
-      fail(ErrorCode::bad_file, file + ":" + std::to_string(line) + ": an element has more than " +
-                                    std::to_string(kMostAttributes) + " attributes");
-    size_t value = i + 1;
-    while (value < bytes.size() && std::isspace(static_cast<unsigned char>(bytes[value]))) ++value;
-    if (value >= bytes.size() || (bytes[value] != '"' && bytes[value] != '\'')) continue;
-    line += static_cast<int>(std::count(bytes.begin() + i + 1, bytes.begin() + value, '\n'));
-    quote = bytes[value];
-    i = value;
-  }
-}
-
-void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::string& file) {
-  const bool blank =
-      std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
-  if (blank) fail(ErrorCode::bad_file, file + ": the file is empty, a URDF is needed");
-  refuse_deep_nesting(bytes, file);
-  refuse_many_attributes(bytes, file);
-  document.Parse(bytes.c_str(), nullptr, TIXML_ENCODING_UTF8);
-  if (document.Error() && !document.RootElement())
-    fail(ErrorCode::bad_file, file + ": not XML (" + document.ErrorDesc() + "); a URDF is needed");
-  if (document.Error())
-    fail(ErrorCode::bad_file, file + ":" + std::to_string(document.ErrorRow()) + ": not XML (" +
-                                  document.ErrorDesc() + ")");
-  if (!document.RootElement())
-    fail(ErrorCode::bad_file, file + ": not XML (no element in it); a URDF is needed");
-}
-
-}  // namespace
-
-namespace {
 
 /// Materials that visuals define, as materials of the robot: a visual may name one that a later
 /// visual defines, which urdfdom would leave without colour. The first definition holds.
@@ -279,19 +268,19 @@ void share_materials(TiXmlElement* root) {
 
 UrdfText check_urdf(const std::string& bytes, const std::string& file) {
   TiXmlDocument document;
-  parse_xml(document, bytes, file);
+  parse_xml(document, bytes, file, "a URDF");
   TiXmlElement* root = document.RootElement();
   const Checker checker(file);
   if (root->ValueStr() != "robot")
     checker.complain(root, "the outermost element is <" + root->ValueStr() +
                                ">, a URDF starts with <robot name=\"...\">");
+  refuse_xacro(root, checker);
   checker.required(root, "name", "");
+  checker.refuse_misspellings(root);
   UrdfText text;
   RobotDescription tree;
   tree.urdf_file = file;
   for (auto* each = root->FirstChildElement(); each; each = each->NextSiblingElement()) {
-    if (each->ValueStr().starts_with("xacro:"))
-      checker.complain(each, "this is a xacro macro file; expand it to a URDF first");
     if (each->ValueStr() == "link") checker.link(each, tree, text);
     if (tree.links.size() > kMostLinks)
       checker.complain(each,

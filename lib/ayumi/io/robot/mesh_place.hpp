@@ -1,0 +1,41 @@
+#pragma once
+// Where the meshes lie that a robot's file names. What is not there is remembered, so that all of
+// it can be said at once. Included by io/*.cpp only.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_description.hpp"
+
+namespace ayumi {
+
+class MeshPlaces {
+ public:
+  /// `robot_file` names the meshes; `packages` are the folders of --package-path.
+  MeshPlaces(std::filesystem::path robot_file, std::vector<std::filesystem::path> packages)
+      : robot_file_(std::move(robot_file)), packages_(std::move(packages)) {}
+
+  /// The file of a mesh that `link` names: relative to the robot's file, "file://", or
+  /// "package://NAME/..." and "model://NAME/...". A package is a folder of that name, or one whose
+  /// package.xml has it: among `packages` and the folders in them, else in the folder of the
+  /// robot's file and in the folders above it and beside those. A file whose name differs by
+  /// capitals alone is taken. Empty where there is no such file.
+  std::string find(const std::string& link, const std::string& name);
+
+  /// The folder "model://NAME" or "package://NAME"; empty where there is none.
+  std::filesystem::path folder(const std::string& name) const { return named_file(name); }
+
+  /// What a person should know: every mesh that is missing, and every one that was taken although
+  /// its name differs. One sentence for each of the two.
+  std::vector<std::string> notes() const;
+
+ private:
+  std::filesystem::path named_file(const std::string& name) const;
+
+  std::filesystem::path robot_file_;
+  std::vector<std::filesystem::path> packages_;
+  std::vector<std::string> missing_, renamed_;  ///< each once
+};
+
+}  // namespace ayumi

@@ -1,0 +1,23 @@
+#pragma once
+// RobotDescription from MJCF, MuJoCo's own format. MuJoCo compiles the model, so that its rules
+// (default classes, frames, inertias from shapes) are the ones that hold, and the compiled tree is
+// read back. MuJoCo gets text that was read and cleaned here, and no file: meshes are placed by it
+// but read as those of other formats are. Included by io/*.cpp only.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ayumi/model/robot_description.hpp"
+
+namespace ayumi {
+
+/// Bodies, joints, inertias, geoms, position actuators, force limits, joint equalities (as mimic
+/// joints), excluded contacts and the site of the inertial unit. `path` is for messages and for
+/// files that the model names. What cannot be kept is listed in `assumptions`. Throws
+/// Error(bad_file) for text that is no MJCF, Error(bad_model) with MuJoCo's words for an impossible
+/// model, and Error(bad_file) with a remedy where Ayumi was built without MuJoCo.
+RobotDescription parse_mjcf(const std::string& bytes, const std::filesystem::path& path,
+                            const std::vector<std::filesystem::path>& packages);
+
+}  // namespace ayumi

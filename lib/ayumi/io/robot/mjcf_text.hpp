@@ -1,0 +1,48 @@
+#pragma once
+// The text of an MJCF model made ready for the MuJoCo at hand: included files stand in their place,
+// what does not describe the robot is left out, and so is what this MuJoCo does not know. Included
+// by io/*.cpp only.
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace ayumi {
+
+/// Name of the file that stands for every mesh in the text.
+constexpr const char* kMjcfProbe = "probe.msh";
+
+/// A mesh asset: MuJoCo gets a probe in its place.
+struct MjcfMesh {
+  std::string file;  ///< as resolved in the mesh folder, or a URL
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  Eigen::Isometry3d reference = Eigen::Isometry3d::Identity();  ///< refpos and refquat
+};
+
+struct MjcfText {
+  std::string xml;
+  std::string files;                             ///< bytes of included files, one after the other
+  std::map<std::string, MjcfMesh> meshes;        ///< by the name of the asset
+  std::map<std::string, double> force_limits;    ///< actuatorfrcrange of joints [N m, N]
+  std::map<std::string, double> damping_ratios;  ///< dampratio of actuators, by joint
+  std::map<std::string, double> velocity_gains;  ///< kv of position actuators, by joint
+  std::string imu_site;                          ///< of the gyroscope, else the accelerometer
+  std::vector<std::string> weighed_meshes;       ///< assets that give a body its mass
+  std::vector<std::string> notes;                ///< what was left out, in words
+};
+
+/// Elements, and the attributes of each, that a MuJoCo knows.
+using MjcfSchema = std::map<std::string, std::set<std::string>>;
+
+/// The schema in the words of mj_printSchema().
+MjcfSchema mjcf_schema(const std::string& printed);
+
+/// Throws Error(bad_file) with file and line for text that is no MJCF, for numbers that are none,
+/// and for included files that are missing or include each other.
+MjcfText mjcf_text(const std::string& bytes, const std::filesystem::path& path,
+                   const MjcfSchema& schema);
+
+}  // namespace ayumi

@@ -1,0 +1,116 @@
+#include "ayumi/io/robot/robot_source.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/io/robot/choreonoid_body.hpp"
+#include "ayumi/io/robot/mjcf.hpp"
+#include "ayumi/io/robot/sdf.hpp"
+#include "ayumi/io/robot/urdf.hpp"
+
+namespace ayumi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kReadRobots =
+    "Ayumi reads robots as URDF, MJCF, SDF and Choreonoid body, and its own robot.json";
+constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
+
+std::string robot_ending(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+std::string_view without_leading_blanks(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  return text;
+}
+
+// The name of the outermost element: behind the declaration, comments and a document type, in any
+// order. Empty when the text is no XML.
+std::string outermost_element(std::string_view text) {
+  while (true) {
+    text = without_leading_blanks(text);
+    if (text.size() < 2 || text[0] != '<') return {};
+    std::string_view end = ">";
+    if (text.starts_with("<!--"))
+      end = "-->";
+    else if (text[1] == '?')
+      end = "?>";
+    else if (text[1] != '!')
+      break;
+    const size_t at = text.find(end);
+    if (at == std::string_view::npos) return {};
+    text.remove_prefix(at + end.size());
+  }
+  const size_t stop = text.find_first_of(" \t\r\n/>");
+  return std::string(text.substr(1, std::min(stop, text.size()) - 1));
+}
+
+[[noreturn]] void refuse_robot(const fs::path& path, const std::string& what) {
+  fail(ErrorCode::bad_file, path.string() + ": " + what + "; " + kReadRobots);
+}
+
+}  // namespace
+
+bool has_robot_ending(const fs::path& path) {
+  static const std::vector<std::string> endings = {".urdf", ".xacro", ".xml",
+                                                   ".mjcf", ".sdf",   ".body"};
+  return std::find(endings.begin(), endings.end(), robot_ending(path)) != endings.end();
+}
+
+RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
+  std::string_view text = bytes;
+  const std::string extension = robot_ending(path);
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    refuse_robot(path, "this is text in UTF-16; save it as UTF-8");
+  // Binary data has a zero byte early on.
+  if (text.substr(0, 1024).find('\0') != std::string_view::npos)
+    refuse_robot(path, "this is binary data, and not the text of a robot");
+  if (text.starts_with(kUtf8Mark)) text.remove_prefix(kUtf8Mark.size());
+  text = without_leading_blanks(text);
+  if (extension == ".json") return RobotFormat::sidecar;
+  if (text.starts_with("<")) {
+    const std::string name = outermost_element(text);
+    if (name == "robot" || extension == ".urdf" || extension == ".xacro") return RobotFormat::urdf;
+    if (name == "mujoco") return RobotFormat::mjcf;
+    if (name == "sdf") return RobotFormat::sdf;
+    if (name == "mujocoinclude")
+      refuse_robot(path, "this is a part of an MJCF model; name the file that includes it");
+    refuse_robot(path, name.empty() ? "this XML has no complete element"
+                                    : "this is XML, but <" + name + "> is no robot");
+  }
+  if (extension == ".urdf" || extension == ".xacro") return RobotFormat::urdf;
+  if (text.starts_with("{") || text.starts_with("//") || text.starts_with("/*"))
+    return RobotFormat::sidecar;
+  // A line of a body file before any other that is not a remark.
+  if (extension == ".body" || text.substr(0, 4096).find("ChoreonoidBody") != std::string_view::npos)
+    return RobotFormat::body;
+  if (text.starts_with("#VRML")) refuse_robot(path, "this is a VRML model; convert it to URDF");
+  refuse_robot(path, text.empty() ? "the file is empty" : "this is no robot");
+}
+
+RobotDescription parse_robot(const std::string& bytes, const fs::path& path,
+                             const std::vector<fs::path>& packages) {
+  switch (robot_format(bytes, path)) {
+    case RobotFormat::urdf:
+      return parse_urdf(bytes, path, packages);
+    case RobotFormat::mjcf:
+      return parse_mjcf(bytes, path, packages);
+    case RobotFormat::sdf:
+      return parse_sdf(bytes, path, packages);
+    case RobotFormat::body:
+      return parse_choreonoid_body(bytes, path, packages);
+    case RobotFormat::sidecar:
+      break;
+  }
+  refuse_robot(path, "this is a sidecar, and the links and joints of a robot are needed");
+}
+
+}  // namespace ayumi

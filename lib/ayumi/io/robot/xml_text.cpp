@@ -1,0 +1,125 @@
+#include "ayumi/io/robot/xml_text.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Nested elements. Chosen: a URDF needs five, and the stack holds far more.
+constexpr int kDeepestNesting = 200;
+
+// Attributes of an element. Chosen: URDF knows at most eight; TinyXML compares all of an element
+// with each other.
+constexpr int kMostAttributes = 100;
+
+// TinyXML descends by recursion: refuse text that nests deeper than any robot's.
+void refuse_deep_nesting(const std::string& bytes, const std::string& file,
+                         const std::string& kind) {
+  int depth = 0;
+  for (size_t i = 0; i + 1 < bytes.size(); ++i) {
+    if (bytes[i] == '<' && bytes[i + 1] == '/') --depth;
+    if (bytes[i] == '<' && bytes[i + 1] != '/' && bytes[i + 1] != '!' && bytes[i + 1] != '?')
+      ++depth;
+    if (bytes[i] == '/' && bytes[i + 1] == '>') --depth;
+    if (depth > kDeepestNesting)
+      fail(ErrorCode::bad_file, file + ": nested too deeply for " + kind);
+  }
+}
+
+// A byte '=' outside a quotation stands for one attribute.
+void refuse_many_attributes(const std::string& bytes, const std::string& file) {
+  int line = 1, count = 0;
+  char quote = 0;
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    if (bytes[i] == '\n') ++line;
+    if (quote != 0) {
+      if (bytes[i] == quote) quote = 0;
+      continue;
+    }
+    if (bytes.compare(i, 4, "<!--") == 0) {
+      const size_t end = std::min(bytes.find("-->", i + 4), bytes.size());
+      line += static_cast<int>(std::count(bytes.begin() + i, bytes.begin() + end, '\n'));
+      i = end;
+      continue;
+    }
+    if (bytes[i] == '<') count = 0;
+    if (bytes[i] != '=') continue;
+    if (++count > kMostAttributes)
+      fail(ErrorCode::bad_file, file + ":" + std::to_string(line) + ": an element has more than " +
+                                    std::to_string(kMostAttributes) + " attributes");
+    size_t value = i + 1;
+    while (value < bytes.size() && std::isspace(static_cast<unsigned char>(bytes[value]))) ++value;
+    if (value >= bytes.size() || (bytes[value] != '"' && bytes[value] != '\'')) continue;
+    line += static_cast<int>(std::count(bytes.begin() + i + 1, bytes.begin() + value, '\n'));
+    quote = bytes[value];
+    i = value;
+  }
+}
+
+}  // namespace
+
+void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::string& file,
+               const std::string& kind) {
+  const bool blank =
+      std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
+  if (blank) fail(ErrorCode::bad_file, file + ": the file is empty, " + kind + " is needed");
+  refuse_deep_nesting(bytes, file, kind);
+  refuse_many_attributes(bytes, file);
+  document.Parse(bytes.c_str(), nullptr, TIXML_ENCODING_UTF8);
+  if (document.Error() && !document.RootElement())
+    fail(ErrorCode::bad_file,
+         file + ": not XML (" + document.ErrorDesc() + "); " + kind + " is needed");
+  if (document.Error())
+    fail(ErrorCode::bad_file, file + ":" + std::to_string(document.ErrorRow()) + ": not XML (" +
+                                  document.ErrorDesc() + ")");
+  if (!document.RootElement())
+    fail(ErrorCode::bad_file, file + ": not XML (no element in it); " + kind + " is needed");
+}
+
+void complain_xml(const std::string& file, const TiXmlElement* at, const std::string& message) {
+  fail(ErrorCode::bad_file, file + ":" + std::to_string(at->Row()) + ": " + message);
+}
+
+std::string xml_attribute(const TiXmlElement* element, const char* name, const std::string& other) {
+  const char* value = element ? element->Attribute(name) : nullptr;
+  return value ? value : other;
+}
+
+std::vector<double> xml_numbers(const std::string& file, const TiXmlElement* at,
+                                const std::string& place, const std::string& text, int count) {
+  std::vector<double> values;
+  const char* here = text.data();
+  const char* const end = here + text.size();
+  while (true) {
+    while (here != end && std::isspace(static_cast<unsigned char>(*here))) ++here;
+    if (here == end) break;
+    const char* const word = here;
+    if (*here == '+') ++here;
+    double value = 0;
+    const auto [stop, error] = std::from_chars(here, end, value);
+    const bool whole = stop == end || std::isspace(static_cast<unsigned char>(*stop));
+    if (error != std::errc() || !whole || !std::isfinite(value)) {
+      const std::string shown(word, std::find(word, end, ' '));
+      complain_xml(file, at,
+                   place + "'" + shown + "' is not a finite number" +
+                       (shown.find(',') != std::string::npos
+                            ? "; numbers have a decimal point, and blanks between them"
+                            : ""));
+    }
+    here = stop;
+    values.push_back(value);
+  }
+  if (static_cast<int>(values.size()) != count)
+    complain_xml(file, at,
+                 place + std::to_string(count) + " numbers are needed, found " +
+                     std::to_string(values.size()));
+  return values;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,376 @@
+// One robot in several formats is one robot: mass matrix, bias forces, COG, limits.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/io/robot/robot_source.hpp"
+#include "tests/support/random_robot.hpp"
+#include "tests/support/relative_error.hpp"
+#include "tests/support/robot_texts.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace ayumi {
+namespace {
+
+using test::relative_error;
+using test::TemporaryFolder;
+
+// Relative to the norms: the formats hold every digit, and what is left is rounding.
+constexpr double kSameRobot = 1e-9;
+
+bool has_mujoco() {
+  try {
+    parse_robot("<mujoco><worldbody><body/></worldbody></mujoco>", "m.xml", {});
+  } catch (const Error& error) {
+    return std::string(error.what()).find("built without it") == std::string::npos;
+  }
+  return true;
+}
+
+RobotModel from_text(const std::string& text, const std::string& name) {
+  return RobotModel(parse_robot(text, name, {}));
+}
+
+// Columns of `other` in the order of the joints of `model`.
+void expect_same(const RobotModel& model, const RobotModel& other, const std::string& what) {
+  ASSERT_EQ(other.dof_count(), model.dof_count()) << what;
+  const int n = model.velocity_count();
+  std::vector<int> column(static_cast<size_t>(n));
+  for (int i = 0; i < 6; ++i) column[static_cast<size_t>(i)] = i;
+  for (int i = 0; i < model.dof_count(); ++i) {
+    const int there = other.find_dof(model.dofs()[i].name);
+    ASSERT_GE(there, 0) << what << ": " << model.dofs()[i].name;
+    column[static_cast<size_t>(6 + i)] = 6 + there;
+    EXPECT_EQ(other.dofs()[there].limited, model.dofs()[i].limited) << what;
+    EXPECT_EQ(other.dofs()[there].lower, model.dofs()[i].lower) << what;
+    EXPECT_EQ(other.dofs()[there].upper, model.dofs()[i].upper) << what;
+  }
+  test::Random random(7);
+  RobotData data(model), other_data(other);
+  Eigen::MatrixXd M, other_M;
+  for (int k = 0; k < 20; ++k) {
+    const RobotState state = test::random_state(model, random);
+    RobotState there = state;
+    for (int i = 0; i < model.dof_count(); ++i) {
+      there.theta[column[static_cast<size_t>(6 + i)] - 6] = state.theta[i];
+      there.dtheta[column[static_cast<size_t>(6 + i)] - 6] = state.dtheta[i];
+    }
+    const Eigen::VectorXd bias = bias_force(model, state, data);
+    const Eigen::VectorXd other_bias = bias_force(other, there, other_data);
+    mass_matrix(model, data, M);
+    mass_matrix(other, other_data, other_M);
+    Eigen::VectorXd sorted_bias(n);
+    Eigen::MatrixXd sorted_M(n, n);
+    for (int i = 0; i < n; ++i) {
+      sorted_bias[i] = other_bias[column[static_cast<size_t>(i)]];
+      for (int j = 0; j < n; ++j)
+        sorted_M(i, j) = other_M(column[static_cast<size_t>(i)], column[static_cast<size_t>(j)]);
+    }
+    ASSERT_LT(relative_error(sorted_M, M), kSameRobot) << what << ", mass matrix";
+    ASSERT_LT(relative_error(sorted_bias, bias), kSameRobot) << what << ", bias forces";
+    ASSERT_LT((other_data.cog - data.cog).norm(), 1e-9) << what << ", COG";
+  }
+}
+
+void expect_same_in_all_formats(const RobotModel& model) {
+  expect_same(model, from_text(test::sdf_text_of(model), "r.sdf"), "SDF of " + model.name());
+  expect_same(model, from_text(test::body_text_of(model), "r.body"), "body of " + model.name());
+  if (!has_mujoco()) return;
+  for (const bool diagonal : {false, true})
+    for (const bool offsets : {false, true})
+      expect_same(model, from_text(test::mjcf_text_of(model, diagonal, offsets), "r.xml"),
+                  "MJCF of " + model.name() + (diagonal ? ", diagonal" : "") +
+                      (offsets ? ", with offsets" : ""));
+}
+
+TEST(RobotFormats, BundledRobotsAreTheSame) {
+  for (const char* name : {"hoap1", "humanoid30"})
+    expect_same_in_all_formats(load_robot(name, {{AYUMI_SOURCE_DIR "/robots"}}));
+}
+
+TEST(RobotFormats, RandomTreesAreTheSame) {
+  for (unsigned seed = 1; seed <= 12; ++seed)
+    expect_same_in_all_formats(
+        RobotModel(test::random_tree(seed, 6 + static_cast<int>(seed), false)));
+}
+
+TEST(RobotFormats, BodyOrderIsThatOfTheIds) {
+  const RobotModel model = load_robot("hoap1", {{AYUMI_SOURCE_DIR "/robots"}});
+  EXPECT_EQ(from_text(test::body_text_of(model), "r.body").dof_names(), model.dof_names());
+}
+
+RobotDescription mjcf(const std::string& inside, const std::string& around = "") {
+  return parse_robot("<mujoco model='m'><compiler angle='radian'/>" + around + "<worldbody>" +
+                         inside + "</worldbody></mujoco>",
+                     "m.xml", {});
+}
+
+// What MuJoCo's rules make of a model: classes, several joints of a body, inertia from shapes,
+// actuators, equalities, excluded pairs and what the MuJoCo at hand does not know.
+TEST(Mjcf, IsReadAsMujocoCompilesIt) {
+  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
+  const RobotDescription robot = parse_robot(R"(
+    <mujoco model='legs'>
+      <compiler angle='degree'/>
+      <option timestep='0.002' later='1'/>
+      <default><default class='motor'><joint armature='0.01' damping='0.5' actuatorfrcrange='-9 9'/>
+        <position kp='20' kv='0.3' forcerange='-4 4'/></default></default>
+      <asset><texture name='t' file='gone.png' type='2d'/><material name='m' texture='t' rgba='1 0 0 1'/></asset>
+      <worldbody>
+        <light pos='0 0 1'/><geom type='plane' size='1 1 1'/>
+        <body name='base'><freejoint/><geom type='box' size='0.1 0.1 0.05' density='1000' material='m'/>
+          <site name='imu' pos='0.01 0 0.02'/>
+          <body name='leg' pos='0 0.1 0' childclass='motor'>
+            <joint name='a' axis='1 0 0' range='-30 60'/><joint name='b' axis='0 1 0' pos='0 0 -0.1'/>
+            <geom type='capsule' size='0.02 0.1' pos='0 0 -0.1' contype='0' conaffinity='0'/>
+            <geom type='ellipsoid' size='0.02 0.03 0.1' pos='0 0 -0.1'/>
+            <body name='toe' pos='0 0 -0.2'><joint name='c' type='slide' axis='1 0 0' range='0 0.02'/>
+              <inertial pos='0 0 0' mass='0.2' diaginertia='1e-4 1e-4 1e-4'/></body>
+          </body>
+          <body name='tail'><joint name='d' axis='0 1 0'/><joint name='e' axis='1 0 0'/>
+            <inertial pos='0 0 0' mass='0.1' diaginertia='1e-5 1e-5 1e-5'/></body>
+        </body>
+      </worldbody>
+      <equality><joint joint1='d' joint2='b' polycoef='0.1 -2 0 0 0'/></equality>
+      <contact><exclude body1='base' body2='toe'/></contact>
+      <actuator><position class='motor' joint='a' gear='2'/><motor joint='b' ctrlrange='-3 3' ctrllimited='true' gear='2'/></actuator>
+      <sensor><gyro site='imu'/></sensor>
+      <keyframe><key qpos='0'/></keyframe>
+    </mujoco>)",
+                                             "legs.xml", {});
+  const RobotModel model(robot);
+  EXPECT_EQ(model.dof_names(), (std::vector<std::string>{"a", "b", "c", "e"}));
+  EXPECT_NEAR(model.dofs()[0].upper, std::numbers::pi / 3, 1e-12);
+  EXPECT_NEAR(model.dofs()[2].upper, 0.02, 1e-15);
+  EXPECT_FALSE(model.dofs()[1].limited);
+  const auto joint = [&](const std::string& name) {
+    for (const JointDescription& each : robot.joints)
+      if (each.name == name) return each;
+    throw std::runtime_error(name);
+  };
+  EXPECT_EQ(joint("d").mimic, "b");
+  EXPECT_EQ(joint("d").mimic_multiplier, -2);
+  EXPECT_EQ(joint("d").mimic_offset, 0.1);
+  EXPECT_EQ(joint("a").effort, 8);  // the force range at the joint
+  EXPECT_EQ(joint("b").effort, 9);  // actuatorfrcrange of its class
+  EXPECT_EQ(joint("b").damping, 0.5);
+  const ServoDescription& servo = robot.servos.at("a");
+  EXPECT_EQ(servo.kp, 80);
+  EXPECT_NEAR(servo.kd, 1.2, 1e-12);
+  EXPECT_EQ(servo.rotor_inertia, 0.01);
+  EXPECT_EQ(robot.servos.at("e").kp, 0);  // no actuator
+  EXPECT_EQ(robot.sensors.imu_link, "base");
+  EXPECT_TRUE(robot.sensors.imu_position.isApprox(Eigen::Vector3d(0.01, 0, 0.02)));
+  ASSERT_EQ(robot.collision_ignore.size(), 1u);
+  EXPECT_EQ(robot.collision_ignore[0].second, "toe");
+  const Link& base = model.links()[static_cast<size_t>(model.find_link("base"))];
+  EXPECT_NEAR(base.inertia.mass, 0.2 * 0.2 * 0.1 * 1000, 1e-9);
+  EXPECT_EQ(base.collisions.size(), 1u);
+  EXPECT_EQ(base.visuals[0].color.x(), 1);
+  const Link& leg = model.links()[static_cast<size_t>(model.find_link("leg"))];
+  EXPECT_EQ(leg.visuals.size(), 1u);
+  EXPECT_EQ(leg.collisions.size(), 1u);
+  EXPECT_TRUE(leg.visuals[0].pose.translation().isApprox(Eigen::Vector3d(0, 0, 0), 1e-12) ||
+              leg.visuals[0].pose.translation().norm() < 1e-12);
+}
+
+TEST(Mjcf, MeshesAreReadAsInOtherFormats) {
+  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
+  const TemporaryFolder folder;
+  // A box of 0.2 x 0.4 x 0.6 m, in millimetres, away from the origin.
+  std::string box;
+  for (int i = 0; i < 8; ++i)
+    box += "v " + std::to_string(i & 1 ? 300 : 100) + " " + std::to_string(i & 2 ? 200 : -200) +
+           " " + std::to_string(i & 4 ? 600 : 0) + "\n";
+  box +=
+      "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\nf 1 5 3\nf 3 5 7\n"
+      "f 2 4 6\nf 4 8 6\n";
+  folder.write("parts/Box.obj", box);
+  const std::string head =
+      "<mujoco model='m'><compiler meshdir='parts'/><asset><mesh name='box' file='box.obj' "
+      "scale='0.001 0.001 0.001'/><mesh file='gone.stl'/></asset><worldbody><body name='a'>"
+      "<freejoint/>";
+  const std::string tail =
+      "<geom type='mesh' mesh='box' density='1000'/><body name='b'><joint name='j' axis='0 0 1'/>"
+      "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><geom type='mesh' mesh='box' pos='0 0 "
+      "1'/>"
+      "<geom type='mesh' mesh='gone'/></body></body></worldbody></mujoco>";
+  const auto file = folder.write("m.xml", head + tail);
+  const RobotModel model = load_robot(file.string(), {}, {.meshes = true});
+  EXPECT_NEAR(model.links()[0].inertia.mass, 48, 1e-4);
+  EXPECT_TRUE(model.links()[0].inertia.com.isApprox(Eigen::Vector3d(0.2, 0, 0.3), 1e-6));
+  const Link& b = model.links()[1];
+  ASSERT_EQ(b.collisions.size(), 1u);
+  EXPECT_TRUE(
+      b.collisions[0].pose.isApprox(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1)), 1e-12));
+  EXPECT_EQ(std::get<MeshShape>(b.collisions[0].shape).mesh.parts.size(), 1u);
+  bool missing = false;
+  for (const std::string& each : model.description().assumptions)
+    missing |= each.find("gone.stl of link b") != std::string::npos;
+  EXPECT_TRUE(missing);
+  std::string without = head + tail;
+  without.replace(without.find("mesh='box' density"), 10, "mesh='gone'");
+  EXPECT_THROW(load_robot(folder.write("n.xml", without).string()), Error);
+}
+
+TEST(Mjcf, IncludedFilesStandInTheirPlace) {
+  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
+  const TemporaryFolder folder;
+  folder.write("legs.xml",
+               "<mujocoinclude><body name='leg'><joint name='j' axis='0 1 0'/><geom size='0.1'/>"
+               "</body></mujocoinclude>");
+  const std::string body =
+      "<body name='a'><freejoint/><geom size='0.1'/><include file='legs.xml'/></body>";
+  const auto text = [&](const std::string& more) {
+    return "<mujoco model='m'><worldbody>" + body + more + "</worldbody></mujoco>";
+  };
+  EXPECT_EQ(load_robot(folder.write("m.xml", text("")).string(), {}, {.guess = false}).dof_count(),
+            1);
+  const auto error = [&](const std::string& file) {
+    try {
+      load_robot((folder.path() / file).string());
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  folder.write("m.xml", text("<include file='legs.xml'/>"));
+  EXPECT_NE(error("m.xml").find("included a second time"), std::string::npos) << error("m.xml");
+  folder.write("m.xml", text("<include file='arms.xml'/>"));
+  EXPECT_NE(error("m.xml").find("m.xml:1: the included file"), std::string::npos) << error("m.xml");
+}
+
+TEST(Mjcf, WrongModelsAreRefusedInOneLine) {
+  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
+  const auto error = [](const std::string& inside, const std::string& around = "") {
+    try {
+      RobotModel(mjcf(inside, around));
+    } catch (const Error& e) {
+      const std::string words = e.what();
+      EXPECT_EQ(words.find('\n'), std::string::npos) << words;
+      EXPECT_TRUE(words.starts_with("m.xml")) << words;
+      return words;
+    }
+    return std::string("no error");
+  };
+  const auto has = [](const std::string& words, const std::string& part) {
+    EXPECT_NE(words.find(part), std::string::npos) << words;
+  };
+  const std::string base = "<body name='a'><freejoint/><geom size='0.1'/>";
+  has(error(base + "<body><joint type='ball'/><geom size='0.1'/></body></body>"), "ball joints");
+  has(error(base + "<body><joint axis='0 0 nan'/><geom size='0.1'/></body></body>"),
+      "not a finite");
+  has(error(base + "<body pos='0,1 0 0'><joint/><geom size='0.1'/></body></body>"),
+      "decimal point");
+  has(error(base + "<body><joint axis='0 0 0'/><geom size='0.1'/></body></body>"), "MuJoCo");
+  has(error(base + "<attach/></body>"), "does not know <attach>");
+  has(error("<geom size='1'/>"), "no body with a joint");
+  has(error(base + "<body><joint/><geom class='none' size='0.1'/></body></body>"), "MuJoCo");
+  EXPECT_THROW(parse_robot("<mujoco><worldbody>", "m.xml", {}), Error);
+}
+
+TEST(Sdf, FramesPosesAndNestedModels) {
+  const auto model = [](const std::string& inside, const std::string& version = "1.9") {
+    return parse_robot("<sdf version='" + version +
+                           "'><world name='w'><model name='ground'/><model name='r'>" + inside +
+                           "</model></world></sdf>",
+                       "r.sdf", {});
+  };
+  const std::string mass = "<inertial><mass>1</mass></inertial>";
+  const RobotDescription nested = model(
+      "<pose>5 5 5 0 0 0</pose><link name='base'>" + mass +
+      "</link><frame name='hip' "
+      "attached_to='base'><pose degrees='true'>0 0.1 0 0 0 90</pose></frame><model name='leg'>"
+      "<pose relative_to='hip'>1 0 0 0 0 0</pose><link name='thigh'><pose>0 0 1 0 0 0</pose>" +
+      mass + "</link><link name='foot'>" + mass +
+      "</link><joint name='knee' type='revolute'><pose>0 0 0.5 0 "
+      "0 0</pose><parent>thigh</parent><child>foot</child><axis><xyz expressed_in='__model__'>1 0 0"
+      "</xyz></axis></joint></model><joint name='hip_yaw' type='revolute'><parent>base</parent>"
+      "<child>leg::thigh</child><axis><xyz>0 0 1</xyz><limit><lower>-1</lower><upper>1</upper>"
+      "<effort>7</effort></limit></axis></joint>"
+      "<joint name='hold' type='fixed'><parent>world</parent><child>base</child></joint>");
+  const RobotModel robot(nested);
+  EXPECT_EQ(robot.dof_count(), 2);
+  RobotData data(robot);
+  RobotState state = robot.rest_state();
+  state.theta.setZero();
+  update_positions(robot, state, data);
+  const auto at = [&](const char* link) {
+    return link_pose(robot, data, robot.find_link(link)).translation().eval();
+  };
+  EXPECT_TRUE(at("leg::thigh").isApprox(Eigen::Vector3d(0, 1.1, 1), 1e-12)) << at("leg::thigh");
+  EXPECT_TRUE(at("leg::foot").isApprox(Eigen::Vector3d(0, 1.1, 0.5), 1e-12));  // its joint
+  const Body& foot = robot.bodies()[static_cast<size_t>(
+      robot.links()[static_cast<size_t>(robot.find_link("leg::foot"))].body)];
+  EXPECT_TRUE((data.rotation[static_cast<size_t>(
+                   robot.links()[static_cast<size_t>(robot.find_link("leg::foot"))].body)] *
+               foot.axis)
+                  .isApprox(Eigen::Vector3d(0, 1, 0), 1e-12));
+  EXPECT_EQ(nested.joints[1].effort, 7);
+  // Before version 1.5 an axis is in the frame of the model.
+  const std::string turned =
+      "<link name='a'>" + mass + "</link><link name='b'><pose>0 0 0 0 0 1.5707963267948966</pose>" +
+      mass +
+      "</link><joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>1 0 "
+      "0</xyz></axis></joint>";
+  EXPECT_TRUE(model(turned, "1.4").joints[0].axis.isApprox(Eigen::Vector3d(0, -1, 0), 1e-9));
+  EXPECT_TRUE(model(turned, "1.6").joints[0].axis.isApprox(Eigen::Vector3d(1, 0, 0), 1e-9));
+  const auto error = [&](const std::string& inside, const std::string& version = "1.9") {
+    try {
+      model(inside, version);
+    } catch (const Error& e) {
+      const std::string words = e.what();
+      EXPECT_TRUE(words.starts_with("r.sdf:")) << words;
+      return words;
+    }
+    return std::string("no error");
+  };
+  EXPECT_NE(error("<frame name='a'><pose relative_to='b'/></frame><frame name='b'><pose "
+                  "relative_to='a'/></frame><link name='l'><pose relative_to='a'/></link>")
+                .find("circle"),
+            std::string::npos);
+  EXPECT_NE(error("<link name='l'><pose relative_to='nowhere'/></link>").find("no frame 'nowhere'"),
+            std::string::npos);
+  EXPECT_NE(error("<link name='l'><pose>0 0 0,1 0 0 0</pose></link>").find("decimal point"),
+            std::string::npos);
+  EXPECT_NE(error("<link name='l'/>", "2.0").find("version 2.0"), std::string::npos);
+}
+
+TEST(ChoreonoidBody, WrongBodiesAreRefusedInOneLine) {
+  const std::string head = "format: ChoreonoidBody\nformat_version: 1.0\nlinks:\n";
+  const auto error = [&](const std::string& text) {
+    try {
+      parse_robot(text, "r.body", {});
+    } catch (const Error& e) {
+      const std::string words = e.what();
+      EXPECT_TRUE(words.starts_with("r.body")) << words;
+      EXPECT_EQ(words.find('\n'), std::string::npos) << words;
+      return words;
+    }
+    return std::string("no error");
+  };
+  const auto has = [](const std::string& words, const std::string& part) {
+    EXPECT_NE(words.find(part), std::string::npos) << words;
+  };
+  has(error("format: ChoreonoidBody\nformat_version: 9\nlinks:\n - {name: a}\n"), "version 9");
+  has(error(head + "  - { name: a, mass: nan }\n"), "r.body:4: 'nan' is not a finite number");
+  has(error(head + "  - { name: a, mass: '1,5' }\n"), "'1,5' is not a finite number");
+  has(error(head + "  - { name: a, mass: 1\n"), "not YAML");
+  has(error("format: ChoreonoidBody\n"), "no list of links");
+  has(error(head + "  - { name: a }\n  - { name: b, parent: a, joint_type: ball }\n"), "'ball'");
+  // Aliases inside aliases.
+  std::string bomb = "format: ChoreonoidBody\na0: &a0 { Shape: {} }\n";
+  for (int i = 1; i < 40; ++i)
+    bomb += "a" + std::to_string(i) + ": &a" + std::to_string(i) +
+            " [ { type: Transform, elements: *a" + std::to_string(i - 1) +
+            " }, { type: Transform, elements: *a" + std::to_string(i - 1) + " } ]\n";
+  has(error(bomb + "links:\n  - { name: r, elements: *a39 }\n"), "elements; simplify the body");
+}
+
+}  // namespace
+}  // namespace ayumi
