@@ -94,6 +94,18 @@ void remove_results(const fs::path& file) {
   for (const char* part : {"", "-wal", "-shm"}) fs::remove(file.string() + part, ignored);
 }
 
+/// A file that is there as a whole or not at all, also where the program is killed meanwhile.
+void create_results(const fs::path& file, const SweepHead& head) {
+  write_file_with(file, [&](const fs::path& temporary) {
+    try {
+      ResultsDatabase(temporary, head).close();
+    } catch (...) {
+      remove_results(temporary);
+      throw;
+    }
+  });
+}
+
 void run_sweep(Context& context, const SweepCommand& options) {
   if (options.study.empty())
     fail(ErrorCode::usage, "the argument STUDY is missing: a study file, merge or status");
@@ -109,13 +121,9 @@ void run_sweep(Context& context, const SweepCommand& options) {
   const SweepHead head = head_of(runner, context.seed);
   const FolderLock lock(options.out + ".lock");
   if (context.force) remove_results(options.out);
-  std::unique_ptr<ResultsDatabase> results;
-  if (fs::exists(options.out)) {
-    results = std::make_unique<ResultsDatabase>(options.out, ResultsDatabase::Mode::write);
-    results->require_study(head);
-  } else {
-    results = std::make_unique<ResultsDatabase>(options.out, head);
-  }
+  if (!fs::exists(options.out)) create_results(options.out, head);
+  const auto results = std::make_unique<ResultsDatabase>(options.out, ResultsDatabase::Mode::write);
+  results->require_study(head);
   judge_expectations(*results, options.outputs.expect);  // a wrong one is refused before the work
   if (!shard.whole()) results->add_shards({shard.word()});
   if (options.retry)

@@ -137,9 +137,10 @@ SweepHead head_of(const CaseRunner& runner, std::uint64_t seed) {
 
 void ResultsDatabase::complain(const std::string& doing) const {
   const int code = database_ ? sqlite3_errcode(database_) : SQLITE_NOMEM;
-  const int system = database_ ? sqlite3_system_errno(database_) : 0;
+  // A quota or a limit on the size of files shows as an error of writing.
+  const bool unwritten = database_ && sqlite3_extended_errcode(database_) == SQLITE_IOERR_WRITE;
   std::string why = database_ ? sqlite3_errmsg(database_) : "out of memory";
-  if (code == SQLITE_FULL || system == ENOSPC || system == EFBIG || system == EDQUOT)
+  if (code == SQLITE_FULL || unwritten)
     why =
         "the disk is full or the file may not grow; what was written before is kept. Make room "
         "and run the same command again to go on";

@@ -19,7 +19,7 @@ struct Sweep {
     const Output made = run({"new", "stand", "--duration", "1.2", "-o", "stand.json"});
     EXPECT_EQ(made.exit_code, 0) << made.err;
     write_study(R"({"product": [{"controller": ["dtad", "none"]},
-      {"latin_hypercube": {"samples": 12, "ranges": {"value.impulse": [0.1, 3.5]}}}]})");
+      {"latin_hypercube": {"samples": 12, "ranges": {"value.impulse": [0.1, 12]}}}]})");
   }
   void write_study(const std::string& cases, const std::string& more = "") const {
     write(folder / "study.json",
@@ -69,8 +69,8 @@ TEST(SweepCommand, SameBytesForThreadsAndShards) {
               contents(s.folder / (std::string("two") + type)));
   const std::string whole = contents(s.folder / "one.csv");
   EXPECT_EQ(line_count(whole), 25);
-  EXPECT_NE(whole.find("fell"), std::string::npos);
-  EXPECT_NE(whole.find("stands"), std::string::npos);
+  EXPECT_NE(whole.find(",fell,"), std::string::npos);
+  EXPECT_NE(whole.find(",stands,"), std::string::npos);
 
   ASSERT_EQ(s.sweep({"-o", "a.db", "--shard", "1/3"}).exit_code, 0);
   ASSERT_EQ(s.sweep({"-o", "b.db", "--shard", "2/3"}).exit_code, 0);
@@ -137,6 +137,25 @@ TEST(SweepCommand, RecordsFailuresAndRunsThemAgain) {
   EXPECT_EQ(Json::parse(s.sweep({"-o", "r.db", "--json"}).out).at("run_now"), 0);
   EXPECT_EQ(Json::parse(s.sweep({"-o", "r.db", "--json", "--retry"}).out).at("run_now"), 1);
   EXPECT_EQ(s.sweep({"-o", "r.db", "--expect", "errors == 1"}).exit_code, 0);
+}
+
+TEST(SweepCommand, JudgesExpectations) {
+  const Sweep s;
+  const Output met = s.sweep(
+      {"-o", "e.db", "--expect", "falls > 0", "--expect", "max_max_cog_error_m < 10", "--json"});
+  EXPECT_EQ(met.exit_code, 0) << met.err;
+  const Json json = Json::parse(met.out);
+  EXPECT_EQ(json.at("expectations").size(), 3u);
+  EXPECT_GT(json.at("falls"), 0);
+  EXPECT_EQ(json.at("worst_cases").at(0).at("outcome"), "fell");
+  const Output not_met = s.sweep({"-o", "e.db", "--expect", "falls == 0", "--junit", "e.xml"});
+  EXPECT_EQ(not_met.exit_code, 1);
+  EXPECT_NE(not_met.out.find("not met: falls == 0 (falls = "), std::string::npos) << not_met.out;
+  const std::string junit = contents(s.folder / "e.xml");
+  EXPECT_NE(junit.find("<testsuites tests=\"2\" failures=\"1\""), std::string::npos) << junit;
+  const Output wrong = s.sweep({"-o", "e.db", "--expect", "fals == 0"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("did you mean 'falls'?"), std::string::npos) << wrong.err;
 }
 
 // A case of a sweep is the run that `simulate` makes with the same settings.
@@ -206,6 +225,24 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "good.db"}), 3, "another study (the study was another one)");
   ASSERT_EQ(s.sweep({"-o", "other.db"}).exit_code, 0);
   expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file holds");
+}
+
+// The file may not grow over a limit, as on a full disk: what was committed stays.
+TEST(SweepCommand, AFullDiskLosesNothing) {
+  const Sweep s;
+  s.write_study(R"({"seed": {"from": 1, "to": 3000, "count": 3000}, "value.impulse": 0.2})",
+                R"(, "measure": ["check"])");
+  const Output full =
+      run_program({"-c", "trap '' XFSZ; ulimit -f 250; exec '" + program_under_test() +
+                             "' sweep study.json -o f.db --quiet --threads 1"},
+                  s.folder.path(), "/bin/sh");
+  EXPECT_EQ(full.exit_code, 3) << full.out << full.err;
+  EXPECT_NE(full.err.find("f.db: the results cannot be written: the disk is full"),
+            std::string::npos)
+      << full.err;
+  const Output again = s.sweep({"-o", "f.db"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(read_csv(s, "f.db"), s.csv("g.db"));
 }
 
 TEST(SweepCommand, TwoWritersAreRefused) {
