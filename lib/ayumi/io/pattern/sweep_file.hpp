@@ -37,7 +37,7 @@ struct SweepThresholds {
 
 class SweepStudy {
  public:
-  /// Largest number of cases. Chosen: ten times the largest study that docs/slurm.md plans.
+  /// Largest number of cases. Chosen: their numbers take some 100 MB of memory.
   static constexpr long kMostCases = 100'000'000;
 
   /// Of the bytes of a study file; `path` names it in messages. Throws Error(bad_pattern) "file:
