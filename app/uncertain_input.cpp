@@ -5,7 +5,13 @@
 namespace ayumi::app {
 
 Study load_study(const Task& input, const std::string& file) {
-  if (!file.empty()) return read_study(file);
+  if (!file.empty()) {
+    Study study = read_study(file);
+    if (study.uncertainty.empty())
+      fail(ErrorCode::bad_pattern,
+           file + ": the study has no uncertainty; add \"uncertainty\" to it");
+    return study;
+  }
   if (!input.pattern.uncertainty.empty())
     return {.name = input.pattern.name,
             .file = input.pattern.file,

@@ -19,6 +19,7 @@
 #include "certify_results.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
+#include "shard.hpp"
 #include "simulation.hpp"
 #include "uncertain_input.hpp"
 
@@ -158,41 +159,21 @@ void print_sources(const Context& context, const Study& study) {
                 ", of which " + std::to_string(assumed) + " assumed\n");
 }
 
-/// "2/4" as the remainder 1 of 4.
-void read_shard(const std::string& word, CertifyOptions& options) {
-  if (word.empty()) return;
-  int read = 0;
-  if (std::sscanf(word.c_str(), "%ld/%ld%n", &options.shard, &options.shards, &read) != 2 ||
-      static_cast<size_t>(read) != word.size() || options.shards < 1 || options.shard < 1 ||
-      options.shard > options.shards)
-    fail(ErrorCode::usage, "--shard " + word +
-                               ": give the number of the shard and how many there "
-                               "are, for example 1/4");
-  --options.shard;
-}
-
 /// The cases of the merged files. Every case that the verdict needs must be there.
 KnownResults merged(const CertifyCommand& options, const Json& study) {
   KnownResults results(static_cast<size_t>(most_cases(options.certify)));
-  std::string shard;
+  std::vector<std::string> shards;
   for (const std::string& file : options.merge) {
     const std::string theirs = add_case_results(file, study, true, results.size(), results);
-    if (shard.empty()) shard = theirs;
+    if (!theirs.empty()) shards.push_back(theirs);
   }
   const Certificate c = certificate(options.certify, results);
   const auto first = std::find(results.begin(), results.end(), std::nullopt);
   const bool complete = first == results.end();
   if (!complete && (!c.outcome.stopped || options.certify.all)) {
     const long number = first - results.begin();
-    const size_t slash = shard.find('/');
-    std::string which;
-    if (slash != std::string::npos) {
-      const long shards = std::stol(shard.substr(slash + 1));
-      which = "; shard " + std::to_string(number % shards + 1) + "/" + std::to_string(shards) +
-              " is missing or not finished";
-    }
-    fail(ErrorCode::bad_file,
-         "--merge: case " + std::to_string(number) + " is in none of the files" + which);
+    fail(ErrorCode::bad_file, "--merge: case " + std::to_string(number) +
+                                  " is in none of the files" + missing_shard(shards, number));
   }
   if (!options.certify.all)
     std::fill(results.begin() + c.outcome.runs, results.end(), std::nullopt);
@@ -274,7 +255,9 @@ void refuse_targets(const Context& context, const CertifyCommand& options) {
 }
 
 void certify_pattern(Context& context, CertifyCommand& options) {
-  read_shard(options.shard, options.certify);
+  const Shard part = read_shard(options.shard);
+  options.certify.shard = part.index;
+  options.certify.shards = part.count;
   options.certify.seed = context.seed;
   options.certify.threads = context.threads;
   refuse_targets(context, options);

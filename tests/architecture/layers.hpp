@@ -125,6 +125,7 @@ inline const std::vector<ThirdParty>& third_parties() {
       {"libjpeg", std::regex("jpeglib\\.h"), {"render"}},
       {"CLI11", std::regex("CLI/.*"), {"app"}},
       {"cpp-httplib", std::regex("httplib\\.h"), {"app"}},
+      {"SQLite", std::regex("sqlite3\\.h"), {"app"}},
       {"pybind11", std::regex("pybind11/.*"), {"python"}},
       {"MuJoCo", std::regex("mujoco/.*"), {"sim/plant_mujoco", "io"}},
       {"POSIX",

@@ -46,7 +46,7 @@ const std::map<std::string, std::vector<std::string>>& pattern_keys() {
       {"correction", {"begin", "spacing", "columns", "coefficients"}},
       {"repair", {"lock", "weights", "trust", "margin", "safety"}},
       {"lock", {"joints", "feet", "keyframes", "windows"}},
-      {"study", {"$schema", "format", "name", "units", "uncertainty"}},
+      {"study", {"$schema", "format", "name", "units", "uncertainty", "sweep"}},
       {"uncertainty", {"factors", "quantities", "pushes"}},
       {"factor", {"name", "source"}},
       {"quantity",

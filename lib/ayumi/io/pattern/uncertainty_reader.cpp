@@ -271,7 +271,10 @@ Study study_of_text(const std::string& text, const std::filesystem::path& path) 
   if (const auto name = root.find("name")) study.name = name->string();
   PatternScope scope;
   read_units(root, scope);
-  study.uncertainty = read_uncertainty(root.at("uncertainty"), scope);
+  if (const auto uncertainty = root.find("uncertainty"))
+    study.uncertainty = read_uncertainty(*uncertainty, scope);
+  else if (!root.has("sweep"))
+    root.complain("the study has neither \"uncertainty\" nor \"sweep\"; add one of them");
   return study;
 }
 

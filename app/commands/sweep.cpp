@@ -1,0 +1,272 @@
+// Many cases of one study, on this machine, in shards or on a cluster: results as one row per case.
+
+#include <algorithm>
+#include <memory>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "option_checks.hpp"
+#include "pattern_input.hpp"
+#include "shard.hpp"
+#include "sweep/expectations.hpp"
+#include "sweep/run_cases.hpp"
+#include "sweep/study_page.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+/// Files and judgements that are made of the results.
+struct SweepOutputs {
+  std::string csv, page, junit;
+  std::vector<std::string> expect;
+  int replays = 3;
+};
+
+struct SweepCommand {
+  std::string study, out, shard;
+  bool retry = false;
+  SweepOutputs outputs;
+};
+
+struct MergeCommand {
+  std::vector<std::string> files;
+  std::string out;
+  bool partial = false;
+};
+
+void refuse_bad_names(const Context& context, const SweepOutputs& outputs) {
+  for (const std::string& file : {outputs.csv, outputs.page, outputs.junit})
+    if (!file.empty()) refuse_overwriting(context, file);
+}
+
+std::string counts_words(const SweepCounts& c) {
+  std::string text = std::to_string(c.done) + " of " + text::counted(c.cases, "case") + ": " +
+                     std::to_string(c.stands) + " stand, " + std::to_string(c.falls) + " fell, " +
+                     std::to_string(c.unsettled) + " did not settle";
+  if (c.inconsistent > 0) text += ", " + std::to_string(c.inconsistent) + " inconsistent";
+  return text + ", " + std::to_string(c.errors) + " could not be run";
+}
+
+std::string first_errors(const ResultsDatabase& results) {
+  std::string text;
+  for (const auto& row : results.query(
+           "SELECT \"case\", error FROM cases WHERE error IS NOT NULL ORDER BY \"case\" LIMIT 3"))
+    text += "  case " + row[0] + " could not be run: " + row[1] + "\n";
+  return text;
+}
+
+/// Prints, writes and judges what there is.
+void conclude(Context& context, const ResultsDatabase& results, const SweepOutputs& outputs,
+              const CaseRunner* runner, Json json = Json::object()) {
+  const std::vector<Expectation> expectations = judge_expectations(results, outputs.expect);
+  if (!outputs.csv.empty()) write_file(outputs.csv, results.csv());
+  if (!outputs.junit.empty()) write_file(outputs.junit, junit_text(results, expectations));
+  if (!outputs.page.empty())
+    write_file(outputs.page,
+               study_page(results, expectations, runner, outputs.replays, context.progress()));
+  context.print(results.head().name + ", " + counts_words(results.counts()) + "\n" +
+                first_errors(results));
+  bool all = true;
+  for (const Expectation& e : expectations) {
+    if (!e.met || !outputs.expect.empty())
+      context.print("  " + std::string(e.met ? "met" : "not met") + ": " + e.text +
+                    (e.met ? "" : " (" + e.found + ")") + "\n");
+    all = all && e.met;
+  }
+  for (const std::string& file : {outputs.csv, outputs.junit, outputs.page})
+    if (!file.empty()) context.print("  written to " + file + "\n");
+  if (context.json) {
+    Json found = results_json(results, expectations);
+    for (const auto& [key, value] : json.items()) found[key] = value;
+    context.print_json(found.dump(2, ' ', false, Json::error_handler_t::replace));
+  }
+  context.exit_code = all ? 0 : 1;
+}
+
+void remove_results(const fs::path& file) {
+  std::error_code ignored;
+  for (const char* part : {"", "-wal", "-shm"}) fs::remove(file.string() + part, ignored);
+}
+
+/// A file that is there as a whole or not at all, also where the program is killed meanwhile.
+void create_results(const fs::path& file, const SweepHead& head) {
+  write_file_with(file, [&](const fs::path& temporary) {
+    try {
+      ResultsDatabase(temporary, head).close();
+    } catch (...) {
+      remove_results(temporary);
+      throw;
+    }
+  });
+}
+
+void run_sweep(Context& context, const SweepCommand& options) {
+  if (options.study.empty())
+    fail(ErrorCode::usage, "the argument STUDY is missing: a study file, merge or status");
+  if (options.out.empty())
+    fail(ErrorCode::usage,
+         "the option --out is missing: the file of the results, for example "
+         "results.db");
+  const Shard shard = read_shard(options.shard);
+  refuse_bad_names(context, options.outputs);
+  require_file_target(options.out);
+  const SweepStudy study(read_file(options.study), options.study);
+  const CaseRunner runner(context, study);
+  const SweepHead head = head_of(runner, context.seed);
+  const FolderLock lock(options.out + ".lock");
+  if (context.force) remove_results(options.out);
+  if (!fs::exists(options.out)) create_results(options.out, head);
+  const auto results = std::make_unique<ResultsDatabase>(options.out, ResultsDatabase::Mode::write);
+  results->require_study(head);
+  judge_expectations(*results, options.outputs.expect);  // a wrong one is refused before the work
+  if (!shard.whole()) results->add_shards({shard.word()});
+  if (options.retry)
+    context.print("  " + text::counted(results->forget_errors(), "case") +
+                  " that could not be run will be run again\n");
+  const std::vector<bool> done = results->done();
+  std::vector<long> missing;
+  for (long i = 0; i < study.size(); ++i)
+    if (shard.has(i) && !done[static_cast<size_t>(i)]) missing.push_back(i);
+  const RunCost cost = run_cases(runner, *results, missing, context.threads, context.progress());
+  if (cost.cases > 0)
+    context.print("  " + text::counted(cost.cases, "case") + " run, " +
+                  text::brief(cost.seconds / double(cost.cases), 3) + " s of one thread each, " +
+                  text::fixed(100 * (1 - cost.useful / std::max(1e-9, cost.seconds)), 2) +
+                  " % of it beside the simulation\n");
+  conclude(context, *results, options.outputs, &runner,
+           {{"run_now", cost.cases}, {"seconds", cost.seconds}, {"useful_seconds", cost.useful}});
+  results->close();
+}
+
+/// Every case that no file has.
+void refuse_missing(const std::vector<std::unique_ptr<ResultsDatabase>>& files, long cases) {
+  std::vector<bool> have(static_cast<size_t>(cases));
+  std::vector<std::string> shards;
+  for (const auto& file : files) {
+    const std::vector<bool> theirs = file->done();
+    for (size_t i = 0; i < have.size(); ++i) have[i] = have[i] || theirs[i];
+    const std::vector<std::string> more = file->shards();
+    shards.insert(shards.end(), more.begin(), more.end());
+  }
+  const auto first = std::find(have.begin(), have.end(), false);
+  if (first == have.end()) return;
+  const long number = first - have.begin();
+  fail(ErrorCode::bad_file, "merge: case " + std::to_string(number) + " is in none of the files" +
+                                missing_shard(shards, number) +
+                                "; nothing was merged. --partial merges what there is");
+}
+
+void merge_results(Context& context, const MergeCommand& options) {
+  const std::string out = options.out.empty() ? options.files.front() : options.out;
+  require_file_target(out);
+  if (!options.out.empty()) refuse_overwriting(context, out);
+  std::vector<std::unique_ptr<ResultsDatabase>> files;
+  for (const std::string& file : options.files) {
+    files.push_back(std::make_unique<ResultsDatabase>(file, ResultsDatabase::Mode::read));
+    files.back()->require_study(files.front()->head());
+  }
+  if (!options.partial) refuse_missing(files, files.front()->head().cases);
+  const SweepHead head = files.front()->head();
+  files.clear();
+  const FolderLock lock(out + ".lock");
+  long added = 0;
+  const auto merge_into = [&](ResultsDatabase& results) {
+    for (const std::string& file : options.files)
+      if (file != out) added += results.merge(file);
+  };
+  if (options.out.empty()) {
+    ResultsDatabase results(out, ResultsDatabase::Mode::write);
+    merge_into(results);
+    results.close();
+  } else {
+    write_file_with(out, [&](const fs::path& temporary) {
+      ResultsDatabase results(temporary, head);
+      merge_into(results);
+      results.close();
+    });
+  }
+  const ResultsDatabase results(out, ResultsDatabase::Mode::read);
+  context.print("  " + text::counted(added, "case") + " added to " + out + "\n");
+  conclude(context, results, {}, nullptr);
+}
+
+void show_status(Context& context, const std::string& file) {
+  const ResultsDatabase results(file, ResultsDatabase::Mode::read);
+  const SweepCounts counts = results.counts();
+  const std::vector<std::string> shards = results.shards();
+  context.print(file + ": " + results.head().name + ", " + counts_words(counts) + "; " +
+                std::to_string(counts.cases - counts.done) + " are missing" +
+                (shards.empty() ? "" : "; shards " + text::join(shards, ", ")) + "\n" +
+                first_errors(results));
+  context.print_json(Json({{"study", results.head().name},
+                           {"cases", counts.cases},
+                           {"done", counts.done},
+                           {"missing", counts.cases - counts.done},
+                           {"errors", counts.errors},
+                           {"stands", counts.stands},
+                           {"falls", counts.falls},
+                           {"unsettled", counts.unsettled},
+                           {"shards", shards}})
+                         .dump(2));
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, Context& context) {
+  CLI::App* command =
+      app.add_subcommand("sweep", "run every case of a study: patterns, robots, gains, pushes");
+  command->footer(
+      "Examples:\n  ayumi sweep examples/sweep/friction.json -o out/results.db --page "
+      "out/page.html\n"
+      "  ayumi sweep study.json -o a.db --shard 1/2\n  ayumi sweep merge a.db b.db -o all.db\n"
+      "  ayumi sweep study.json -o results.db --expect 'falls == 0' --junit results.xml\n"
+      "Run again with the same -o to go on: only what is missing is run. Exit code 1: an "
+      "expectation is not met, or a case could not be run.");
+  auto options = std::make_shared<SweepCommand>();
+  command->add_option("STUDY", options->study, "Study file with a \"sweep\".");
+  command->add_option("-o,--out", options->out, "Results, an SQLite file.")->type_name("F.db");
+  command->add_option("--shard", options->shard, "Run only one part of the cases, for example 1/4.")
+      ->type_name("I/N");
+  command->add_flag("--retry", options->retry, "Run the cases again that could not be run before.");
+  SweepOutputs& outputs = options->outputs;
+  command
+      ->add_option("--expect", outputs.expect,
+                   "What must hold of the results, for example 'falls == 0'; may be repeated.")
+      ->type_name("TEXT")
+      ->allow_extra_args(false);
+  command->add_option("--csv", outputs.csv, "All cases as CSV.")->type_name("F");
+  command->add_option("--junit", outputs.junit, "The expectations as JUnit XML.")->type_name("F");
+  command->add_option("--page", outputs.page, "Page with rates, maps and replays, .html.")
+      ->type_name("F");
+  command->add_option("--replays", outputs.replays, "Worst cases that the page replays.")
+      ->check(whole_number_within(0, 20).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+
+  CLI::App* merge = command->add_subcommand("merge", "put the results of shards together");
+  auto merging = std::make_shared<MergeCommand>();
+  merge->add_option("FILES", merging->files, "Results of the same study.")->required();
+  merge
+      ->add_option("-o,--out", merging->out,
+                   "A new file (default: the first one takes the others).")
+      ->type_name("F.db");
+  merge->add_flag("--partial", merging->partial, "Also where cases are missing.");
+  merge->callback([merging, &context] { merge_results(context, *merging); });
+
+  CLI::App* status = command->add_subcommand("status", "say how far a sweep is");
+  auto file = std::make_shared<std::string>();
+  status->add_option("FILE", *file, "Results.")->required();
+  status->callback([file, &context] { show_status(context, *file); });
+
+  command->callback([command, options, &context] {
+    if (command->get_subcommands().empty()) run_sweep(context, *options);
+  });
+}
+
+}  // namespace ayumi::app

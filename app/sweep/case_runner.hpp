@@ -1,0 +1,95 @@
+#pragma once
+// Runs the cases of a sweep, one at a time, from several threads. Patterns, robots and laws that
+// consecutive cases share are made once.
+
+#include <atomic>
+#include <list>
+#include <memory>
+#include <mutex>
+
+#include "ayumi/io/pattern/sweep_file.hpp"
+#include "ayumi/study/uncertain_task.hpp"
+#include "ayumi/task/task.hpp"
+#include "commands.hpp"
+
+namespace ayumi::app {
+
+/// One cell of the results: nothing, a number, or a text.
+using Cell = std::variant<std::monostate, double, std::string>;
+
+struct ResultColumn {
+  std::string name;  ///< with its unit
+  std::string type;  ///< "REAL", "INTEGER", "TEXT"
+};
+
+/// What is kept of one case.
+struct CaseRow {
+  long number = 0;
+  std::vector<Cell> axes;     ///< in the order of SweepStudy::axes()
+  std::string error;          ///< why the case could not be run; "" where it could
+  std::vector<Cell> figures;  ///< in the order of result_columns(); empty cells after an error
+};
+
+/// The figures that the study measures.
+std::vector<ResultColumn> result_columns(const SweepMeasures& measures);
+
+/// A file that the results depend on.
+struct SweepInput {
+  std::string kind;  ///< "study", "pattern", "robot", "uncertainty"
+  std::string name;  ///< as the study names it
+  std::string sha256;
+};
+
+class CaseRunner {
+ public:
+  /// Reads every pattern and robot that the study names. The study outlives it. Throws
+  /// Error(bad_file), Error(bad_model) or Error(bad_pattern) for what no case can use: a file that
+  /// is not there, and a parameter or gain that nothing uses.
+  CaseRunner(const Context& context, const SweepStudy& study);
+  ~CaseRunner();
+
+  const SweepStudy& study() const { return *study_; }
+  const std::vector<ResultColumn>& columns() const { return columns_; }
+  const std::vector<SweepInput>& inputs() const { return inputs_; }
+
+  /// Bad input of a single case (a step that the legs cannot make) is a row with an error. Any
+  /// number of threads may call it; the row depends on the number alone.
+  CaseRow run(long number) const;
+
+  /// The same simulation with its log, for a replay. `task` is what it was made of.
+  SimulationLog simulate(long number, std::shared_ptr<const Task>& task) const;
+
+  /// Seconds that all threads spent in run(), and the share of them in which Ayumi simulated,
+  /// checked or repaired.
+  double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_); }
+  double useful_seconds() const { return 1e-9 * static_cast<double>(useful_); }
+  /// Seconds that reading the inputs took.
+  double setup_seconds() const { return setup_seconds_; }
+
+ private:
+  struct Prepared;
+  struct Law;
+  struct Draws;
+  struct OneCase;
+  std::shared_ptr<Prepared> prepared(const Settings& settings) const;
+  std::shared_ptr<const Law> law(Prepared& motion, const Settings& settings) const;
+  /// Options and what they point to, which stays in `made`.
+  void make_case(long number, const Settings& settings, OneCase& made) const;
+  std::filesystem::path pattern_file(const std::string& word) const;
+  std::string robot_name(const std::string& word) const;
+  void refuse_unused() const;
+  std::vector<Cell> figures(long number, const Settings& settings) const;
+
+  const Context* context_;
+  const SweepStudy* study_;
+  std::vector<ResultColumn> columns_;
+  std::vector<SweepInput> inputs_;
+  double setup_seconds_ = 0;
+  std::map<std::string, Pattern> patterns_;  ///< by the word of the study, default parameters
+  std::map<std::string, RobotModel> robots_;
+  mutable std::mutex mutex_;
+  mutable std::list<std::shared_ptr<Prepared>> recent_;  ///< the last used first
+  mutable std::atomic<long> nanoseconds_ = 0, useful_ = 0;
+};
+
+}  // namespace ayumi::app

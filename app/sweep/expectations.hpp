@@ -1,0 +1,32 @@
+#pragma once
+// What a lab expects of a sweep ("falls == 0"), and the results for its tools: JSON and JUnit.
+
+#include <nlohmann/json.hpp>
+
+#include "sweep/results_database.hpp"
+
+namespace ayumi::app {
+
+/// Confidence of the intervals of failure rates. Definition.
+inline constexpr double kRateConfidence = 0.95;
+
+struct Expectation {
+  std::string text;  ///< as it was given
+  bool met = false;
+  std::string found;  ///< "falls = 3": what the names in it are
+};
+
+/// Each expectation is an SQL expression over the view "summary". "errors == 0" is always expected.
+/// Throws Error(usage) for one that SQLite cannot evaluate.
+std::vector<Expectation> judge_expectations(const ResultsDatabase& results,
+                                            const std::vector<std::string>& texts);
+
+/// Settings and figures of the worst cases; the worst first.
+nlohmann::ordered_json worst_cases(const ResultsDatabase& results, int count);
+nlohmann::ordered_json results_json(const ResultsDatabase& results,
+                                    const std::vector<Expectation>& expectations);
+/// One test case for each expectation.
+std::string junit_text(const ResultsDatabase& results,
+                       const std::vector<Expectation>& expectations);
+
+}  // namespace ayumi::app

@@ -1,0 +1,467 @@
+#include "sweep/results_database.hpp"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/base/version.hpp"
+#include "ayumi/io/run/sha256.hpp"
+
+namespace ayumi::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// "AYUM" in the head of the file, by which other programs know it. Definition.
+constexpr int kApplication = 0x4159554d;
+/// Version of the tables. Definition: another number with every change that an older program cannot
+/// read.
+constexpr int kFormat = 1;
+/// How long a reader waits for a writer [ms]. Chosen: a commit takes some ms.
+constexpr int kPatience = 10000;
+
+/// A prepared statement.
+class Statement {
+ public:
+  Statement(sqlite3* database, const std::string& sql) {
+    code_ = sqlite3_prepare_v2(database, sql.c_str(), -1, &statement_, nullptr);
+  }
+  ~Statement() { sqlite3_finalize(statement_); }
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  bool good() const { return code_ == SQLITE_OK && statement_ != nullptr; }
+  sqlite3_stmt* get() const { return statement_; }
+  /// True while there are rows.
+  bool step() {
+    code_ = sqlite3_step(statement_);
+    return code_ == SQLITE_ROW;
+  }
+  bool done() const { return code_ == SQLITE_DONE; }
+  void reset() { sqlite3_reset(statement_); }
+  void bind(int place, const Cell& cell) {
+    if (const auto* const number = std::get_if<double>(&cell))
+      sqlite3_bind_double(statement_, place, *number);
+    else if (const auto* const word = std::get_if<std::string>(&cell))
+      sqlite3_bind_text(statement_, place, word->data(), static_cast<int>(word->size()),
+                        SQLITE_TRANSIENT);
+    else
+      sqlite3_bind_null(statement_, place);
+  }
+  void bind(int place, long value) { sqlite3_bind_int64(statement_, place, value); }
+  std::string text(int column) const {
+    const auto* const bytes =
+        reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+    return bytes ? std::string(bytes, static_cast<size_t>(sqlite3_column_bytes(statement_, column)))
+                 : std::string();
+  }
+  long integer(int column) const { return sqlite3_column_int64(statement_, column); }
+  /// As in the CSV: the shortest number that reads back to the same double, or the text.
+  std::string cell(int column) const {
+    if (sqlite3_column_type(statement_, column) == SQLITE_FLOAT)
+      return text::exact(sqlite3_column_double(statement_, column));
+    return text(column);
+  }
+  int columns() const { return sqlite3_column_count(statement_); }
+
+ private:
+  sqlite3_stmt* statement_ = nullptr;
+  int code_ = SQLITE_OK;
+};
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+/// Every column of a row, in their order.
+std::vector<std::string> all_columns(const SweepHead& head) {
+  std::vector<std::string> names = {"case"};
+  for (const std::string& axis : head.axes) names.push_back(axis);
+  names.emplace_back("error");
+  for (const ResultColumn& column : head.columns) names.push_back(column.name);
+  return names;
+}
+
+std::string list_of(const std::vector<std::string>& names, const std::string& before = "") {
+  std::vector<std::string> quoted;
+  for (const std::string& name : names) quoted.push_back(before + sql_name(name));
+  return text::join(quoted, ", ");
+}
+
+}  // namespace
+
+std::string sql_name(const std::string& name) {
+  std::string quoted = "\"";
+  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string sql_text(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string SweepHead::fingerprint() const {
+  std::string all = version + "\n" + seed + "\n" + std::to_string(cases) + "\n";
+  for (const SweepInput& input : inputs)
+    all += input.kind + "\n" + input.name + "\n" + input.sha256 + "\n";
+  return sha256(all);
+}
+
+SweepHead head_of(const CaseRunner& runner, std::uint64_t seed) {
+  const SweepStudy& study = runner.study();
+  SweepHead head = {.name = study.name(),
+                    .study_file = study.file().filename().string(),
+                    .study_text = study.text(),
+                    .version = version(),
+                    .seed = std::to_string(seed),
+                    .cases = study.size(),
+                    .axes = study.axes(),
+                    .columns = runner.columns(),
+                    .inputs = runner.inputs()};
+  for (const std::string& axis : head.axes)
+    head.axis_types.push_back(
+        std::holds_alternative<std::string>(study.named().at(axis).value) ? "TEXT" : "REAL");
+  return head;
+}
+
+void ResultsDatabase::complain(const std::string& doing) const {
+  const int code = database_ ? sqlite3_errcode(database_) : SQLITE_NOMEM;
+  // A quota or a limit on the size of files shows as an error of writing.
+  const bool unwritten = database_ && sqlite3_extended_errcode(database_) == SQLITE_IOERR_WRITE;
+  std::string why = database_ ? sqlite3_errmsg(database_) : "out of memory";
+  if (code == SQLITE_FULL || unwritten)
+    why =
+        "the disk is full or the file may not grow; what was written before is kept. Make room "
+        "and run the same command again to go on";
+  else if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
+    why = "this is not a file of sweep results, or it is damaged";
+  else if (code == SQLITE_BUSY)
+    why = "another program is writing to this file";
+  fail(ErrorCode::bad_file, file_.string() + ": " + doing + ": " + why);
+}
+
+void ResultsDatabase::execute(const std::string& sql) const {
+  if (sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
+    complain("the results cannot be written");
+}
+
+void ResultsDatabase::open(int flags) {
+  if (sqlite3_open_v2(file_.c_str(), &database_, flags | SQLITE_OPEN_NOMUTEX, nullptr) != SQLITE_OK)
+    complain("the file cannot be opened");
+  sqlite3_busy_timeout(database_, kPatience);
+  sqlite3_extended_result_codes(database_, 0);
+}
+
+ResultsDatabase::ResultsDatabase(const fs::path& file, Mode mode) : file_(file) {
+  if (!fs::exists(file))
+    fail(ErrorCode::bad_file, file.string() + ": there is no such file of sweep results");
+  if (!fs::is_regular_file(fs::symlink_status(file)))
+    fail(ErrorCode::bad_file, file.string() + ": this is not a regular file");
+  open(mode == Mode::write ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY);
+  read_head();
+  if (mode == Mode::write) execute("PRAGMA synchronous = NORMAL");
+}
+
+ResultsDatabase::ResultsDatabase(const fs::path& file, const SweepHead& head)
+    : file_(file), head_(head) {
+  require_file_target(file);
+  open(SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  make_tables();
+}
+
+ResultsDatabase::~ResultsDatabase() { sqlite3_close(database_); }
+
+void ResultsDatabase::close() {
+  if (database_ == nullptr) return;
+  sqlite3_wal_checkpoint_v2(database_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
+  if (sqlite3_close(database_) != SQLITE_OK) complain("the file cannot be closed");
+  database_ = nullptr;
+}
+
+void ResultsDatabase::make_tables() {
+  execute("PRAGMA journal_mode = WAL");
+  execute("PRAGMA synchronous = NORMAL");
+  std::string columns = "\"case\" INTEGER PRIMARY KEY";
+  for (size_t i = 0; i < head_.axes.size(); ++i)
+    columns += ", " + sql_name(head_.axes[i]) + " " + head_.axis_types[i];
+  columns += ", error TEXT";
+  for (const ResultColumn& column : head_.columns)
+    columns += ", " + sql_name(column.name) + " " + column.type;
+  std::string sql =
+      "BEGIN IMMEDIATE;"
+      "PRAGMA application_id = " +
+      std::to_string(kApplication) + "; PRAGMA user_version = " + std::to_string(kFormat) +
+      "; CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;"
+      "CREATE TABLE inputs (place INTEGER PRIMARY KEY, kind TEXT, name TEXT, sha256 TEXT);"
+      "CREATE TABLE axes (place INTEGER PRIMARY KEY, name TEXT, type TEXT);"
+      "CREATE TABLE figures (place INTEGER PRIMARY KEY, name TEXT, type TEXT);"
+      "CREATE TABLE shards (shard TEXT PRIMARY KEY) WITHOUT ROWID;"
+      "CREATE TABLE cases (" +
+      columns + ");";
+  const std::pair<const char*, std::string> about[] = {{"format", "ayumi.sweep/1"},
+                                                       {"name", head_.name},
+                                                       {"study_file", head_.study_file},
+                                                       {"study", head_.study_text},
+                                                       {"version", head_.version},
+                                                       {"seed", head_.seed},
+                                                       {"cases", std::to_string(head_.cases)},
+                                                       {"fingerprint", head_.fingerprint()}};
+  for (const auto& [key, value] : about)
+    sql += "INSERT INTO about VALUES (" + sql_text(key) + ", " + sql_text(value) + ");";
+  for (size_t i = 0; i < head_.inputs.size(); ++i)
+    sql += "INSERT INTO inputs VALUES (" + std::to_string(i) + ", " +
+           sql_text(head_.inputs[i].kind) + ", " + sql_text(head_.inputs[i].name) + ", " +
+           sql_text(head_.inputs[i].sha256) + ");";
+  std::string rates;
+  for (size_t i = 0; i < head_.axes.size(); ++i) {
+    sql += "INSERT INTO axes VALUES (" + std::to_string(i) + ", " + sql_text(head_.axes[i]) + ", " +
+           sql_text(head_.axis_types[i]) + ");";
+    rates += (i ? " UNION ALL " : "") + std::string("SELECT ") + std::to_string(i) + " AS place, " +
+             sql_text(head_.axes[i]) + " AS axis, " + sql_name(head_.axes[i]) +
+             " AS value, COUNT(outcome) AS runs, TOTAL(outcome = 'fell') AS falls, "
+             "TOTAL(outcome = 'unsettled') AS unsettled, COUNT(error) AS errors, "
+             "TOTAL(outcome <> 'stands') / COUNT(outcome) AS failure_rate FROM cases GROUP BY " +
+             sql_name(head_.axes[i]);
+  }
+  std::string extremes;
+  for (size_t i = 0; i < head_.columns.size(); ++i) {
+    const ResultColumn& c = head_.columns[i];
+    sql += "INSERT INTO figures VALUES (" + std::to_string(i) + ", " + sql_text(c.name) + ", " +
+           sql_text(c.type) + ");";
+    if (c.type != "REAL") continue;
+    for (const char* what : {"min", "avg", "max"})
+      extremes += ", " + std::string(what) + "(" + sql_name(c.name) + ") AS " +
+                  sql_name((std::string(what) == "avg" ? "mean" : what) + ("_" + c.name));
+  }
+  bool judged = false;
+  for (const ResultColumn& c : head_.columns) judged = judged || c.name == "consistent";
+  sql +=
+      "CREATE VIEW summary AS SELECT (SELECT CAST(value AS INTEGER) FROM about WHERE key = "
+      "'cases') AS cases, COUNT(*) AS done, COUNT(error) AS errors, "
+      "CAST(TOTAL(outcome = 'stands') AS INTEGER) AS stands, "
+      "CAST(TOTAL(outcome = 'fell') AS INTEGER) AS falls, "
+      "CAST(TOTAL(outcome = 'unsettled') AS INTEGER) AS unsettled, "
+      "CAST(TOTAL(outcome <> 'stands') AS INTEGER) AS failures, "
+      "TOTAL(outcome <> 'stands') / COUNT(outcome) AS failure_rate, " +
+      std::string(judged ? "CAST(TOTAL(consistent = 0) AS INTEGER)" : "NULL") + " AS inconsistent" +
+      extremes +
+      " FROM cases;"
+      "CREATE VIEW failed AS SELECT * FROM cases WHERE error IS NOT NULL OR outcome <> 'stands';"
+      "CREATE VIEW worst AS SELECT * FROM cases WHERE severity IS NOT NULL ORDER BY severity DESC, "
+      "\"case\";";
+  if (!rates.empty()) sql += "CREATE VIEW rates AS " + rates + ";";
+  execute(sql + "COMMIT");
+}
+
+void ResultsDatabase::read_head() {
+  const auto single = [&](const std::string& sql) -> long {
+    Statement statement(database_, sql);
+    if (!statement.good() || !statement.step()) complain("the file cannot be read");
+    return statement.integer(0);
+  };
+  if (single("PRAGMA application_id") != kApplication)
+    fail(ErrorCode::bad_file,
+         file_.string() + ": this is not a file of sweep results; choose another name");
+  const long format = single("PRAGMA user_version");
+  if (format != kFormat)
+    fail(ErrorCode::bad_file, file_.string() + ": the results have version " +
+                                  std::to_string(format) + " of the format, but this program has " +
+                                  std::to_string(kFormat) + "; use the program that wrote them");
+  const auto rows = [&](const std::string& sql, const auto& take) {
+    Statement statement(database_, sql);
+    if (!statement.good()) complain("the file cannot be read");
+    while (statement.step()) take(statement);
+    if (!statement.done()) complain("the file cannot be read");
+  };
+  rows("SELECT key, value FROM about", [&](const Statement& row) {
+    const std::string key = row.text(0), value = row.text(1);
+    if (key == "name") head_.name = value;
+    if (key == "study_file") head_.study_file = value;
+    if (key == "study") head_.study_text = value;
+    if (key == "version") head_.version = value;
+    if (key == "seed") head_.seed = value;
+    if (key == "cases") head_.cases = std::atol(value.c_str());
+  });
+  rows("SELECT kind, name, sha256 FROM inputs ORDER BY place", [&](const Statement& row) {
+    head_.inputs.push_back({row.text(0), row.text(1), row.text(2)});
+  });
+  rows("SELECT name, type FROM axes ORDER BY place", [&](const Statement& row) {
+    head_.axes.push_back(row.text(0));
+    head_.axis_types.push_back(row.text(1));
+  });
+  rows("SELECT name, type FROM figures ORDER BY place", [&](const Statement& row) {
+    head_.columns.push_back({row.text(0), row.text(1)});
+  });
+}
+
+void ResultsDatabase::require_study(const SweepHead& asked) const {
+  std::string differs;
+  if (head_.version != asked.version)
+    differs = "version " + head_.version + " of Ayumi wrote them, and this is " + asked.version;
+  else if (head_.seed != asked.seed)
+    differs = "their --seed is " + head_.seed;
+  else
+    for (const SweepInput& input : asked.inputs) {
+      const bool same =
+          std::any_of(head_.inputs.begin(), head_.inputs.end(), [&](const SweepInput& theirs) {
+            return theirs.kind == input.kind && theirs.name == input.name &&
+                   theirs.sha256 == input.sha256;
+          });
+      if (!same && differs.empty())
+        differs = "the " + input.kind + (input.kind == "study" ? "" : " '" + input.name + "'") +
+                  " was another one";
+    }
+  if (differs.empty() && head_.fingerprint() != asked.fingerprint())
+    differs = "their inputs are others";
+  if (!differs.empty())
+    fail(ErrorCode::bad_file, file_.string() + ": this file holds the results of another study (" +
+                                  differs + "); choose another name");
+}
+
+std::vector<std::string> ResultsDatabase::shards() const {
+  std::vector<std::string> list;
+  for (const auto& row : query("SELECT shard FROM shards ORDER BY shard")) list.push_back(row[0]);
+  return list;
+}
+
+void ResultsDatabase::add_shards(const std::vector<std::string>& shards) {
+  for (const std::string& shard : shards)
+    execute("INSERT OR IGNORE INTO shards VALUES (" + sql_text(shard) + ")");
+}
+
+std::vector<bool> ResultsDatabase::done() const {
+  std::vector<bool> found(static_cast<size_t>(head_.cases));
+  Statement statement(database_, "SELECT \"case\" FROM cases");
+  if (!statement.good()) complain("the file cannot be read");
+  while (statement.step()) {
+    const long number = statement.integer(0);
+    if (number >= 0 && number < head_.cases) found[static_cast<size_t>(number)] = true;
+  }
+  if (!statement.done()) complain("the file cannot be read");
+  return found;
+}
+
+SweepCounts ResultsDatabase::counts() const {
+  const auto row =
+      query(
+          "SELECT cases, done, errors, stands, falls, unsettled, COALESCE(inconsistent, 0) FROM "
+          "summary")
+          .at(0);
+  const auto count = [&](size_t i) { return std::atol(row[i].c_str()); };
+  return {count(0), count(1), count(2), count(3), count(4), count(5), count(6)};
+}
+
+long ResultsDatabase::forget_errors() {
+  execute("DELETE FROM cases WHERE error IS NOT NULL");
+  return sqlite3_changes(database_);
+}
+
+void ResultsDatabase::add(const std::vector<CaseRow>& rows) {
+  if (rows.empty()) return;
+  const size_t count = 2 + head_.axes.size() + head_.columns.size();
+  std::string places = "?";
+  for (size_t i = 1; i < count; ++i) places += ",?";
+  execute("BEGIN IMMEDIATE");
+  Statement insert(database_, "INSERT INTO cases VALUES (" + places + ")");
+  if (!insert.good()) complain("the results cannot be written");
+  for (const CaseRow& row : rows) {
+    int place = 1;
+    insert.bind(place++, row.number);
+    for (const Cell& cell : row.axes) insert.bind(place++, cell);
+    insert.bind(place++, row.error.empty() ? Cell() : Cell(row.error));
+    for (const Cell& cell : row.figures) insert.bind(place++, cell);
+    insert.step();
+    if (!insert.done()) complain("the results cannot be written");
+    insert.reset();
+  }
+  execute("COMMIT");
+}
+
+long ResultsDatabase::merge(const fs::path& other) {
+  {
+    const ResultsDatabase theirs(other, Mode::read);
+    if (theirs.head().fingerprint() != head_.fingerprint()) {
+      theirs.require_study(head_);
+      fail(ErrorCode::bad_file, other.string() + ": this file holds the results of another study");
+    }
+  }
+  execute("ATTACH DATABASE " + sql_text(other.string()) + " AS theirs");
+  struct Detach {
+    sqlite3* database;
+    ~Detach() {
+      sqlite3_exec(database, "ROLLBACK", nullptr, nullptr, nullptr);
+      sqlite3_exec(database, "DETACH DATABASE theirs", nullptr, nullptr, nullptr);
+    }
+  } detach{database_};
+  execute("BEGIN IMMEDIATE");
+  const std::vector<std::string> names = all_columns(head_);
+  std::vector<std::string> unequal;
+  for (const std::string& name : names)
+    unequal.push_back("a." + sql_name(name) + " IS NOT b." + sql_name(name));
+  Statement different(database_,
+                      "SELECT a.\"case\" FROM main.cases a JOIN theirs.cases b ON "
+                      "a.\"case\" = b.\"case\" WHERE a.error IS NULL AND b.error IS "
+                      "NULL AND (" +
+                          text::join(unequal, " OR ") + ") ORDER BY 1 LIMIT 1");
+  if (!different.good()) complain("the files cannot be compared");
+  if (different.step())
+    fail(ErrorCode::bad_file, other.string() + ": case " + std::to_string(different.integer(0)) +
+                                  " has another result than in " + file_.string() +
+                                  "; nothing was merged");
+  if (!different.done()) complain("the files cannot be compared");
+  different.reset();
+  execute(
+      "DELETE FROM main.cases WHERE error IS NOT NULL AND \"case\" IN (SELECT \"case\" FROM "
+      "theirs.cases WHERE error IS NULL)");
+  const long replaced = sqlite3_changes(database_);
+  execute("INSERT OR IGNORE INTO main.cases (" + list_of(names) + ") SELECT " + list_of(names) +
+          " FROM theirs.cases");
+  const long added = sqlite3_changes(database_) - replaced;
+  execute("INSERT OR IGNORE INTO main.shards SELECT shard FROM theirs.shards");
+  execute("COMMIT");
+  return added;
+}
+
+std::string ResultsDatabase::csv() const {
+  const std::vector<std::string> names = all_columns(head_);
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) text += (i ? "," : "") + csv_cell(names[i]);
+  text += "\n";
+  Statement statement(database_, "SELECT " + list_of(names) + " FROM cases ORDER BY \"case\"");
+  if (!statement.good()) complain("the file cannot be read");
+  while (statement.step()) {
+    for (int i = 0; i < statement.columns(); ++i) {
+      if (i) text += ",";
+      text += csv_cell(statement.cell(i));
+    }
+    text += "\n";
+  }
+  if (!statement.done()) complain("the file cannot be read");
+  return text;
+}
+
+std::vector<std::vector<std::string>> ResultsDatabase::query(const std::string& sql) const {
+  Statement statement(database_, sql);
+  if (!statement.good()) fail(ErrorCode::usage, std::string(sqlite3_errmsg(database_)));
+  std::vector<std::vector<std::string>> rows;
+  while (statement.step()) {
+    std::vector<std::string> row;
+    for (int i = 0; i < statement.columns(); ++i) row.push_back(statement.cell(i));
+    rows.push_back(std::move(row));
+  }
+  if (!statement.done()) complain("the file cannot be read");
+  return rows;
+}
+
+}  // namespace ayumi::app

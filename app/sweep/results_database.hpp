@@ -1,0 +1,104 @@
+#pragma once
+// The results of a sweep in one SQLite file: a row for each case, the hash of every input, and
+// views for the usual questions. docs/formats.md, "Sweep results", is the specification. Rows that
+// were committed stay, however the program ends.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sweep/case_runner.hpp"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace ayumi::app {
+
+/// What the results in a database belong to. Two databases with the same fingerprint have the same
+/// rows for the same cases.
+struct SweepHead {
+  std::string name;        ///< of the study
+  std::string study_file;  ///< as it was given
+  std::string study_text;
+  std::string version;  ///< of Ayumi
+  std::string seed;     ///< of cases that set none
+  long cases = 0;
+  std::vector<std::string> axes;
+  std::vector<std::string> axis_types = {};  ///< "TEXT" or "REAL"
+  std::vector<ResultColumn> columns;
+  std::vector<SweepInput> inputs;
+  std::string fingerprint() const;
+};
+SweepHead head_of(const CaseRunner& runner, std::uint64_t seed);
+
+/// Counts of a database.
+struct SweepCounts {
+  long cases = 0;  ///< that the study has
+  long done = 0, errors = 0, stands = 0, falls = 0, unsettled = 0, inconsistent = 0;
+  long failures() const { return falls + unsettled; }
+};
+
+class ResultsDatabase {
+ public:
+  enum class Mode { read, write };
+  /// Opens an existing database. Throws Error(bad_file) "file: what, what to do": it is none of
+  /// Ayumi's, of another version of the format, or cannot be opened.
+  ResultsDatabase(const std::filesystem::path& file, Mode mode);
+  /// Makes a new one.
+  ResultsDatabase(const std::filesystem::path& file, const SweepHead& head);
+  ~ResultsDatabase();
+  ResultsDatabase(const ResultsDatabase&) = delete;
+  ResultsDatabase& operator=(const ResultsDatabase&) = delete;
+
+  const std::filesystem::path& file() const { return file_; }
+  const SweepHead& head() const { return head_; }
+  /// Throws Error(bad_file), naming what differs, unless the results belong to this study.
+  void require_study(const SweepHead& head) const;
+
+  /// The shards that were run into this file: "1/4"; empty: of the whole study.
+  std::vector<std::string> shards() const;
+  void add_shards(const std::vector<std::string>& shards);
+
+  /// For each case whether it has a row.
+  std::vector<bool> done() const;
+  SweepCounts counts() const;
+  /// Removes the rows of cases that could not be run; returns how many.
+  long forget_errors();
+
+  /// Adds rows; they are kept when this returns.
+  void add(const std::vector<CaseRow>& rows);
+  /// Adds the rows of another file of the same study (by attach). A case that both have must be the
+  /// same to the last bit; a result replaces an error. Returns the number of rows added. Throws
+  /// Error(bad_file), and this file is then unchanged.
+  long merge(const std::filesystem::path& other);
+
+  /// All rows by number, as a table with one head row.
+  std::string csv() const;
+  /// Rows of a query, every cell as in the CSV. Throws Error(usage) with SQLite's words where the
+  /// query is wrong.
+  std::vector<std::vector<std::string>> query(const std::string& sql) const;
+
+  /// Writes everything into the file itself and closes it.
+  void close();
+
+ private:
+  void open(int flags);
+  void execute(const std::string& sql) const;
+  [[noreturn]] void complain(const std::string& doing) const;
+  void read_head();
+  void make_tables();
+
+  std::filesystem::path file_;
+  SweepHead head_;
+  sqlite3* database_ = nullptr;
+};
+
+/// A name in double quotes for SQL.
+std::string sql_name(const std::string& name);
+/// A text in single quotes for SQL.
+std::string sql_text(const std::string& text);
+
+}  // namespace ayumi::app

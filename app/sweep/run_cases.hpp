@@ -1,0 +1,21 @@
+#pragma once
+// Runs cases of a sweep on the threads of this machine and keeps their rows.
+
+#include "sweep/results_database.hpp"
+
+namespace ayumi::app {
+
+/// What a run took.
+struct RunCost {
+  long cases = 0;
+  double seconds = 0;  ///< of all threads, rows written included
+  double useful = 0;   ///< of them simulating, checking and repairing
+};
+
+/// Runs the cases on `threads` (0: all cores). Rows are committed about twice a second, so that a
+/// killed program loses no more than that. When `progress` stops the work, all rows that are known
+/// are kept and Interrupted is thrown.
+RunCost run_cases(const CaseRunner& runner, ResultsDatabase& results,
+                  const std::vector<long>& numbers, int threads, const Progress& progress);
+
+}  // namespace ayumi::app

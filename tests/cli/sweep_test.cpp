@@ -1,0 +1,264 @@
+// ayumi sweep: one row per case, the same bytes for any number of threads, shards and stops, and
+// one clear line for bad input.
+
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Sweep {
+  Folder folder;
+  Sweep() {
+    const Output made = run({"new", "stand", "--duration", "1.2", "-o", "stand.json"});
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    write_study(R"({"product": [{"controller": ["dtad", "none"]},
+      {"latin_hypercube": {"samples": 12, "ranges": {"value.impulse": [0.1, 12]}}}]})");
+  }
+  void write_study(const std::string& cases, const std::string& more = "") const {
+    write(folder / "study.json",
+          R"({"format": "ayumi.study/1", "units": {"angle": "deg"}, "sweep": {
+      "settings": {"pattern": "stand.json", "disturbances": "push"}, "cases": )" +
+              cases + R"(,
+      "disturbances": {"push": [{"type": "impulse", "at": 0.5, "duration": 0.02, "impulse":
+        "${impulse}", "direction": [0, 1, 0]}]})" +
+              more + "}}");
+  }
+  Output run(const std::vector<std::string>& words) const {
+    return run_program(words, folder.path());
+  }
+  Output sweep(const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"sweep", "study.json", "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+  std::string csv(const std::string& database) const {
+    const Output out = sweep({"-o", database, "--csv", database + ".csv", "--force"});
+    EXPECT_EQ(out.exit_code, 0) << out.err;
+    return contents(folder / (database + ".csv"));
+  }
+};
+
+std::string read_csv(const Sweep& s, const std::string& database) {
+  fs::remove(s.folder / "read.csv");
+  const Output out = s.sweep({"-o", database, "--csv", "read.csv", "--json"});
+  EXPECT_EQ(out.exit_code, 0) << out.err;
+  if (out.exit_code == 0) {
+    EXPECT_EQ(Json::parse(out.out).at("run_now"), 0);
+  }
+  return contents(s.folder / "read.csv");
+}
+
+TEST(SweepCommand, SameBytesForThreadsAndShards) {
+  const Sweep s;
+  const Output one = s.sweep({"-o", "one.db", "--threads", "1", "--csv", "one.csv", "--page",
+                              "one.html", "--replays", "1", "--junit", "one.xml"});
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_NE(one.out.find("24 of 24 cases: "), std::string::npos) << one.out;
+  const Output two = s.sweep({"-o", "two.db", "--threads", "3", "--csv", "two.csv", "--page",
+                              "two.html", "--replays", "1", "--junit", "two.xml"});
+  ASSERT_EQ(two.exit_code, 0) << two.err;
+  for (const char* type : {".csv", ".html", ".xml"})
+    EXPECT_EQ(contents(s.folder / (std::string("one") + type)),
+              contents(s.folder / (std::string("two") + type)));
+  const std::string whole = contents(s.folder / "one.csv");
+  EXPECT_EQ(line_count(whole), 25);
+  EXPECT_NE(whole.find(",fell,"), std::string::npos);
+  EXPECT_NE(whole.find(",stands,"), std::string::npos);
+
+  ASSERT_EQ(s.sweep({"-o", "a.db", "--shard", "1/3"}).exit_code, 0);
+  ASSERT_EQ(s.sweep({"-o", "b.db", "--shard", "2/3"}).exit_code, 0);
+  const Output missing = s.run({"sweep", "merge", "b.db", "a.db", "-o", "all.db"});
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_NE(missing.err.find("case 2 is in none of the files; shard 3/3 is missing"),
+            std::string::npos)
+      << missing.err;
+  EXPECT_FALSE(fs::exists(s.folder / "all.db"));
+  ASSERT_EQ(s.sweep({"-o", "c.db", "--shard", "3/3"}).exit_code, 0);
+  const Output merged = s.run({"sweep", "merge", "b.db", "a.db", "c.db", "a.db", "-o", "all.db"});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_EQ(read_csv(s, "all.db"), whole);
+  const Output into = s.run({"sweep", "merge", "a.db", "b.db", "c.db"});
+  ASSERT_EQ(into.exit_code, 0) << into.err;
+  EXPECT_EQ(read_csv(s, "a.db"), whole);
+}
+
+// kill -9 in the middle, then the same command: nothing twice, nothing lost.
+TEST(SweepCommand, GoesOnAfterKill) {
+  const Sweep s;
+  s.write_study(R"({"seed": {"from": 1, "to": 60, "count": 60}, "value.impulse": [0.2, 0.6]})");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int nothing = ::open("/dev/null", O_WRONLY);
+    ::dup2(nothing, 1);
+    ::dup2(nothing, 2);
+    if (::chdir(s.folder.path().c_str()) != 0) ::_exit(126);
+    const std::string program = program_under_test();
+    ::execl(program.c_str(), program.c_str(), "sweep", "study.json", "-o", "k.db", "--threads", "1",
+            nullptr);
+    ::_exit(127);
+  }
+  long seen = 0;
+  for (int i = 0; i < 600 && seen == 0; ++i) {
+    ::usleep(50000);
+    const Output status = s.run({"sweep", "status", "k.db", "--json"});
+    if (status.exit_code == 0) seen = Json::parse(status.out).at("done");
+  }
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  ASSERT_GT(seen, 0);
+  ASSERT_LT(seen, 120);
+  const Output again = s.sweep({"-o", "k.db", "--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const Json found = Json::parse(again.out);
+  EXPECT_EQ(found.at("done"), 120);
+  EXPECT_LE(found.at("run_now").get<long>() + seen, 120);
+  EXPECT_EQ(read_csv(s, "k.db"), s.csv("fresh.db"));
+}
+
+TEST(SweepCommand, RecordsFailuresAndRunsThemAgain) {
+  const Sweep s;
+  write(s.folder / "study.json", R"({"format": "ayumi.study/1", "sweep": {
+    "settings": {"pattern": "stand.json", "world": "w"},
+    "cases": {"value.mu": [0.8, -1]}, "worlds": {"w": {"friction": "${mu}"}}}})");
+  const Output first = s.sweep({"-o", "r.db", "--junit", "r.xml"});
+  EXPECT_EQ(first.exit_code, 1) << first.err;
+  EXPECT_NE(first.out.find("case 1 could not be run: study.json: /sweep/worlds/w/friction"),
+            std::string::npos)
+      << first.out;
+  EXPECT_NE(contents(s.folder / "r.xml").find("<failure message=\"errors = 1\">"),
+            std::string::npos);
+  EXPECT_EQ(Json::parse(s.sweep({"-o", "r.db", "--json"}).out).at("run_now"), 0);
+  EXPECT_EQ(Json::parse(s.sweep({"-o", "r.db", "--json", "--retry"}).out).at("run_now"), 1);
+  EXPECT_EQ(s.sweep({"-o", "r.db", "--expect", "errors == 1"}).exit_code, 0);
+}
+
+TEST(SweepCommand, JudgesExpectations) {
+  const Sweep s;
+  const Output met = s.sweep(
+      {"-o", "e.db", "--expect", "falls > 0", "--expect", "max_max_cog_error_m < 10", "--json"});
+  EXPECT_EQ(met.exit_code, 0) << met.err;
+  const Json json = Json::parse(met.out);
+  EXPECT_EQ(json.at("expectations").size(), 3u);
+  EXPECT_GT(json.at("falls"), 0);
+  EXPECT_EQ(json.at("worst_cases").at(0).at("outcome"), "fell");
+  const Output not_met = s.sweep({"-o", "e.db", "--expect", "falls == 0", "--junit", "e.xml"});
+  EXPECT_EQ(not_met.exit_code, 1);
+  EXPECT_NE(not_met.out.find("not met: falls == 0 (falls = "), std::string::npos) << not_met.out;
+  const std::string junit = contents(s.folder / "e.xml");
+  EXPECT_NE(junit.find("<testsuites tests=\"2\" failures=\"1\""), std::string::npos) << junit;
+  const Output wrong = s.sweep({"-o", "e.db", "--expect", "fals == 0"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("did you mean 'falls'?"), std::string::npos) << wrong.err;
+}
+
+// A case of a sweep is the run that `simulate` makes with the same settings.
+TEST(SweepCommand, ACaseIsTheRunOfSimulate) {
+  const Sweep s;
+  s.write_study(R"({"value.impulse": [0.3], "gain.ka": [0.8], "noise": true, "seed": 5})",
+                R"(, "measure": ["verdict", "margins", "energy", "check"])");
+  ASSERT_EQ(s.sweep({"-o", "c.db", "--csv", "c.csv"}).exit_code, 0);
+  std::string text = contents(s.folder / "stand.json");
+  text = text.substr(0, text.rfind('}')) +
+         R"(, "scenario": [{"type": "impulse", "at": 0.5, "duration": 0.02, "impulse": 0.3,
+            "direction": [0, 1, 0]}]})";
+  write(s.folder / "pushed.json", text);
+  const Output alone = s.run({"simulate", "pushed.json", "--quiet", "--json", "--noise", "--seed",
+                              "5", "--gain", "ka=0.8"});
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  const Json figures = Json::parse(alone.out);
+  const std::string csv = contents(s.folder / "c.csv");
+  const auto cells_of = [](const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+    return cells;
+  };
+  const std::vector<std::string> names = cells_of(csv.substr(0, csv.find('\n')));
+  const std::vector<std::string> values = cells_of(csv.substr(csv.find('\n') + 1));
+  const auto cell = [&](const std::string& name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    EXPECT_NE(at, names.end()) << name;
+    return values.at(static_cast<size_t>(at - names.begin()));
+  };
+  EXPECT_EQ(cell("outcome"), "stands");
+  EXPECT_EQ(std::stod(cell("final_cog_error_m")), figures.at("final_cog_error_m"));
+  EXPECT_EQ(std::stod(cell("max_torque_ratio")), figures.at("max_torque_ratio"));
+  EXPECT_EQ(std::stod(cell("max_tilt_rad")), figures.at("max_tilt_rad"));
+  EXPECT_EQ(cell("consistent"), "1");
+  EXPECT_GT(std::stod(cell("positive_work_J")), 0);
+}
+
+TEST(SweepCommand, OneClearLineForBadInput) {
+  const Sweep s;
+  ASSERT_EQ(s.sweep({"-o", "good.db"}).exit_code, 0);
+  const std::string good = read_csv(s, "good.db");
+  const auto expect = [&](const Output& out, int code, const std::string& part) {
+    EXPECT_EQ(out.exit_code, code) << out.err;
+    EXPECT_NE(out.err.find(part), std::string::npos) << out.err;
+    EXPECT_EQ(out.err.find("ayumi: "), 0u) << out.err;
+  };
+  expect(s.sweep({"-o", "good.db", "--seed", "9"}), 3, "another study (their --seed is 1)");
+  expect(s.run({"sweep", "study.json"}), 2, "the option --out is missing");
+  expect(s.run({"sweep", "nothing.json", "-o", "x.db"}), 3, "nothing.json");
+  write(s.folder / "text.db", "no database");
+  expect(s.sweep({"-o", "text.db"}), 3, "text.db");
+  EXPECT_EQ(contents(s.folder / "text.db"), "no database");
+  expect(s.run({"sweep", "status", "none.db"}), 3, "there is no such file");
+  expect(s.sweep({"-o", "x.db", "--shard", "3/2"}), 2, "1/4");
+  expect(s.sweep({"-o", "no/such/folder/x.db"}), 3, "no/such/folder");
+  EXPECT_FALSE(fs::exists(s.folder / "x.db"));
+  s.write_study(R"({"value.impulse": 0.1, "set.speed": [1, 2]})");
+  expect(s.sweep({"-o", "x.db"}), 3, "no pattern of the study declares the parameter 'speed'");
+  s.write_study(R"({"value.impulse": 0.1, "gain.kx": [1, 2]})");
+  expect(s.sweep({"-o", "x.db"}), 3, "kx");
+  s.write_study(R"({"value.impulse": 0.1, "profile": "hoap9"})");
+  expect(s.sweep({"-o", "x.db"}), 3, "no robot of the study has the profile 'hoap9'");
+  EXPECT_FALSE(fs::exists(s.folder / "x.db"));
+  s.write_study(R"({"value.impulse": 0.1})");
+  expect(s.sweep({"-o", "good.db"}), 3, "another study (the study was another one)");
+  ASSERT_EQ(s.sweep({"-o", "other.db"}).exit_code, 0);
+  expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file holds");
+}
+
+// The file may not grow over a limit, as on a full disk: what was committed stays.
+TEST(SweepCommand, AFullDiskLosesNothing) {
+  const Sweep s;
+  s.write_study(R"({"seed": {"from": 1, "to": 3000, "count": 3000}, "value.impulse": 0.2})",
+                R"(, "measure": ["check"])");
+  const Output full =
+      run_program({"-c", "trap '' XFSZ; ulimit -f 250; exec '" + program_under_test() +
+                             "' sweep study.json -o f.db --quiet --threads 1"},
+                  s.folder.path(), "/bin/sh");
+  EXPECT_EQ(full.exit_code, 3) << full.out << full.err;
+  EXPECT_NE(full.err.find("f.db: the results cannot be written: the disk is full"),
+            std::string::npos)
+      << full.err;
+  const Output again = s.sweep({"-o", "f.db"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(read_csv(s, "f.db"), s.csv("g.db"));
+}
+
+TEST(SweepCommand, TwoWritersAreRefused) {
+  const Sweep s;
+  s.write_study(R"({"seed": {"from": 1, "to": 400, "count": 400}, "value.impulse": 0.2})");
+  const std::string script = "'" + program_under_test() +
+                             "' sweep study.json -o t.db --quiet >/dev/null & "
+                             "while [ ! -s t.db ]; do sleep 0.02; done; "
+                             "'" +
+                             program_under_test() +
+                             "' sweep study.json -o t.db --quiet; code=$?; "
+                             "kill %1; wait; exit $code";
+  const Output second = run_program({"-c", script}, s.folder.path(), "/bin/bash");
+  EXPECT_EQ(second.exit_code, 3) << second.err;
+  EXPECT_NE(second.err.find("t.db.lock"), std::string::npos) << second.err;
+}
+
+}  // namespace
+}  // namespace ayumi::test
