@@ -167,6 +167,11 @@ OrderedJson tracks_json(const AuthorMotion& motion) {
       if (key == "feet")
         for (const auto& [side, foot] : value.items())
           add(side + " foot", "foot", "/feet" + pointer_token(side), foot);
+      if (key == "hands")
+        for (const auto& [link, target] : value.items())
+          add(link == "left" || link == "right" ? link + " hand" : "link " + link, "hand",
+              "/hands" + pointer_token(link), target);
+      if (key == "gaze") add(key, key, "/gaze", value);
     }
   }
   return tracks.sorted();
@@ -367,24 +372,6 @@ Eigen::AlignedBox3d box_of(const RobotModel& model, int body) {
   return box;
 }
 
-// The end of a limb: the middle of the far end of its last body's box, seen from the joint.
-Vector3d far_end(const Eigen::AlignedBox3d& box) {
-  if (box.isEmpty()) return Vector3d::Zero();
-  Vector3d end = box.center();
-  int along = 0;
-  double most = -1;
-  for (int i = 0; i < 3; ++i) {
-    const double reach = std::max(std::abs(box.min()[i]), std::abs(box.max()[i]));
-    if (reach > most) {
-      most = reach;
-      along = i;
-    }
-  }
-  end[along] =
-      std::abs(box.min()[along]) > std::abs(box.max()[along]) ? box.min()[along] : box.max()[along];
-  return end;
-}
-
 // A limb whose end is this near the middle plane at rest is no arm [m]. Chosen: necks are in it.
 constexpr double kMiddle = 0.02;
 
@@ -410,7 +397,7 @@ std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
     // Three joints bring a point to a place; a neck has fewer.
     if (std::count(feet.begin(), feet.end(), b) || limb_dofs(robot, b).size() < 3) continue;
     const std::string& name = robot.bodies()[static_cast<size_t>(b)].name;
-    limbs.push_back({Kind::limb, name, words_of(name), b, far_end(box_of(robot, b)), Side::left});
+    limbs.push_back({Kind::limb, name, words_of(name), b, limb_point(robot, b), Side::left});
     const double y = data.position[static_cast<size_t>(b)].y();
     limbs.back().side = y > 0 ? Side::left : Side::right;
     if (std::abs(y) > kMiddle) ++on_side[static_cast<size_t>(limbs.back().side)];

@@ -1,5 +1,5 @@
-// Pattern surgery: bake, mirror, retime, concat, blend, ramp. The result is sampled and checked
-// before it is written.
+// Pattern surgery: bake, mirror, retime, concat, blend, ramp, loop, alternate, key. The result is
+// sampled and checked before it is written.
 
 #include "ayumi/author/edit/edit.hpp"
 
@@ -33,7 +33,16 @@ struct EditCommand {
   PatternOptions input;
   double scale = 0;
   bool to_limits = false;
+  bool as_table = false;  // of concat, blend and loop
+  int times = 1;          // of loop and alternate
+  bool open_end = false;  // of alternate
+  KeyEdit key;
+  double key_to = -1, key_by = 0;  // [s]
 };
+
+// Time for which the beginning is held at the end of a loop with a transition [s]. Chosen: the
+// shortest motion that can be sampled has a few ticks.
+constexpr double kRest = 0.02;
 
 struct ForceRange {
   double least = 0, most = 0;  // [N]
@@ -162,6 +171,47 @@ void retime(Context& context, const EditCommand& options) {
                in_json(scale, before, force, result, found));
 }
 
+// Two motions in sequence as one, sampled: as keys where these can say it and are as consistent,
+// else as a table. `reason` becomes the reason for a table.
+Pattern joined_pattern(const Context& context, const EditCommand& options, const Task& first,
+                       const MotionPart& second, double over, CommandSeries& series,
+                       std::string& reason) {
+  const MotionPart one{first.pattern, first.series};
+  const auto sampled = [&](const Pattern& pattern) {
+    return sample(first.robot, pattern, {.dt = first.series.dt}, context.progress());
+  };
+  const auto with_table = [&] {
+    Pattern pattern = joined(first.robot, one, second, over, table_beside(options.out).string());
+    series = sampled(pattern);
+    return pattern;
+  };
+  if (options.as_table) return with_table();
+  try {
+    Pattern keyed = chained(first.robot, one, second, over);
+    series = sampled(keyed);
+    const CheckOptions check = check_options(first, options.tolerances);
+    if (check_consistency(first.robot, series, check).consistent) return keyed;
+    CommandSeries of_keys = std::move(series);
+    Pattern tabled = with_table();
+    if (!check_consistency(first.robot, series, check).consistent) {
+      series = std::move(of_keys);
+      return keyed;
+    }
+    reason = "the keys in sequence are not consistent where the samples are";
+    return tabled;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_pattern) throw;
+    Pattern tabled = with_table();  // says what is wrong where samples cannot be joined either
+    reason = error.what();
+    return tabled;
+  }
+}
+
+std::string kept_words(const Pattern& pattern, const std::string& reason) {
+  if (!pattern.table) return "  keys of all parts are kept\n";
+  return reason.empty() ? "" : "  written as a table, because " + reason + "\n";
+}
+
 // Patterns one after the other; the table of what is joined so far is only in memory.
 void join(Context& context, const EditCommand& options) {
   if (options.patterns.size() < 2)
@@ -169,9 +219,9 @@ void join(Context& context, const EditCommand& options) {
          "edit concat, edit blend: give at least two patterns, in the order in which they are "
          "played");
   refuse_overwriting(context, options.out);
-  const std::string table = table_beside(options.out).string();
   Task input = load_pattern(context, options.patterns.front(), options.input);
   Json joins = Json::array();
+  std::string reason;
   for (size_t i = 1; i < options.patterns.size(); ++i) {
     const Task next = load_pattern(context, options.patterns[i], options.input);
     if (next.robot.description().sha256 != input.robot.description().sha256)
@@ -180,12 +230,125 @@ void join(Context& context, const EditCommand& options) {
                                        "' in " + options.patterns.front());
     joins.push_back(input.series.duration());
     add_caution(input.caution, next.caution);
-    input.pattern = joined(input.robot, {input.pattern, input.series}, {next.pattern, next.series},
-                           options.over, table);
-    input.series = sample(input.robot, input.pattern, {.dt = input.series.dt}, context.progress());
+    CommandSeries series;
+    Pattern both = joined_pattern(context, options, input, {next.pattern, next.series},
+                                  options.over, series, reason);
+    input.pattern = std::move(both);
+    input.series = std::move(series);
   }
   write_edited(context, options, input.pattern,
-               check_edited(context, options, input, input.pattern), "", Json{{"joins_s", joins}});
+               check_edited(context, options, input, input.pattern),
+               kept_words(input.pattern, reason),
+               Json{{"joins_s", joins}, {"keys_kept", !input.pattern.table}});
+}
+
+std::string gap_words(const LoopGap& gap) {
+  return "feet " + text::fixed(1e3 * gap.feet, 2) + " mm, base " + text::fixed(1e3 * gap.base, 2) +
+         " mm, posture " + text::fixed(gap.posture * 180 / M_PI, 2) + " deg (" + gap.joint +
+         "), rates " + text::fixed(gap.rate * 180 / M_PI, 2) + " deg/s";
+}
+
+Json gap_json(const LoopGap& gap) {
+  return {{"feet_m", gap.feet},
+          {"base_m", gap.base},
+          {"posture_rad", gap.posture},
+          {"rate_rad_per_s", gap.rate},
+          {"joint", gap.joint}};
+}
+
+// The end meets the beginning, by a transition where it does not, and the motion is repeated.
+void loop(Context& context, const EditCommand& options) {
+  Task input = load(context, options);
+  const LoopGap before = loop_gap(input.robot, {input.pattern, input.series});
+  std::string reason;
+  const Pattern once = input.pattern;
+  const CommandSeries samples = input.series;
+  if (!before.closed) {
+    if (options.over <= 0)
+      fail(ErrorCode::bad_pattern,
+           options.pattern + ": the end does not meet the beginning: " + gap_words(before) +
+               "; give --over S, the time of a transition from the end to the beginning");
+    // The beginning again, held for a moment: the first samples at rest.
+    Pattern still = once;
+    still.phases = {Phase{kRest, Support::both, {}, {}, {}}};
+    Keyframe begin;
+    begin.place = "start";
+    for (const Keyframe& key : once.keyframes) {
+      if (key.t == 0) begin = key;
+      // Tracks with keys later on begin where they are without one.
+      if (key.zmp && !begin.zmp) begin.zmp = ZmpKey{ZmpKey::Place::center, {}};
+      if (key.cog_x && !begin.cog_x) begin.cog_x = samples.samples.front().cog.x();
+      if (key.cog_y && !begin.cog_y) begin.cog_y = samples.samples.front().cog.y();
+      if (key.torso && !begin.torso) begin.torso = Eigen::Vector3d::Zero();
+    }
+    still.keyframes = {begin};
+    still.scenario.clear();
+    CommandSeries held = samples;
+    held.samples.assign(static_cast<size_t>(std::lround(kRest / samples.dt)) + 1,
+                        samples.samples.front());
+    held.viip.clear();
+    if (samples.samples.front().state.dtheta.cwiseAbs().maxCoeff() > 1e-9)
+      fail(ErrorCode::bad_pattern,
+           options.pattern +
+               ": the motion begins while joints move, so no transition leads to it; "
+               "begin it at rest (edit ramp)");
+    CommandSeries series;
+    input.pattern =
+        joined_pattern(context, options, input, {still, held}, options.over, series, reason);
+    input.series = std::move(series);
+  }
+  const LoopGap closed = loop_gap(input.robot, {input.pattern, input.series});
+  if (!closed.closed)
+    fail(ErrorCode::bad_pattern, options.pattern + ": the loop stays open: " + gap_words(closed) +
+                                     "; edit bake and edit ramp can bring both ends to rest in one "
+                                     "posture");
+  const Pattern round = input.pattern;
+  const CommandSeries round_series = input.series;
+  for (int k = 1; k < options.times; ++k) {
+    CommandSeries series;
+    Pattern more =
+        joined_pattern(context, options, input, {round, round_series}, 0, series, reason);
+    input.pattern = std::move(more);
+    input.series = std::move(series);
+  }
+  write_edited(context, options, input.pattern,
+               check_edited(context, options, input, input.pattern),
+               std::string("  the end meets the beginning") +
+                   (before.closed ? "" : " after a transition") + ": " + gap_words(closed) + "\n" +
+                   (options.times > 1 || !before.closed ? kept_words(input.pattern, reason) : ""),
+               Json{{"times", options.times},
+                    {"closed_by_transition", !before.closed},
+                    {"before", gap_json(before)},
+                    {"gap", gap_json(closed)},
+                    {"keys_kept", !input.pattern.table}});
+}
+
+void alternate(Context& context, const EditCommand& options) {
+  const Task input = load(context, options);
+  const Pattern edited = alternated(input.robot, input.pattern, options.times, !options.open_end);
+  write_edited(context, options, edited, check_edited(context, options, input, edited), "",
+               Json{{"times", options.times}});
+}
+
+void edit_key(Context& context, const EditCommand& options) {
+  KeyEdit key = options.key;
+  if (options.key_to >= 0 && options.key_by != 0)
+    fail(ErrorCode::usage, "edit key: give either --to T or --by S");
+  if (options.key_to >= 0) key.to = options.key_to;
+  if (options.key_by != 0) key.to = key.at + options.key_by;
+  if (!key.to && !key.mirror)
+    fail(ErrorCode::usage,
+         "edit key: say what happens to the keyframe: --to T or --by S moves it, with --copy it "
+         "also stays, and --mirror exchanges left and right");
+  if (key.copy && !key.to)
+    fail(ErrorCode::usage, "edit key: a copy needs its time: --to T or --by S");
+  const Task input = load(context, options);
+  const Pattern edited = with_key_edited(input.robot, input.pattern, key);
+  write_edited(context, options, edited, check_edited(context, options, input, edited), "",
+               Json{{"at_s", key.at},
+                    {"to_s", key.to ? Json(*key.to) : Json(nullptr)},
+                    {"copy", key.copy},
+                    {"mirror", key.mirror}});
 }
 
 void ramp(Context& context, const EditCommand& options) {
@@ -231,7 +394,7 @@ void add_edit(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
       "edit",
       "change a whole pattern and check the result: bake, mirror, retime, concat, blend, "
-      "ramp");
+      "ramp, loop, alternate, key");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  ayumi edit mirror walk.json -o mirrored.json\n"
@@ -240,7 +403,10 @@ void add_edit(CLI::App& app, Context& context) {
       "  ayumi edit bake walk.json -o baked.json\n"
       "  ayumi edit concat step.json walk.json -o both.json\n"
       "  ayumi edit blend squat.json sway.json --over 0.8 -o both.json\n"
-      "  ayumi edit ramp imported.json --from 1.5 --back 1.5 -o from_home.json");
+      "  ayumi edit ramp imported.json --from 1.5 --back 1.5 -o from_home.json\n"
+      "  ayumi edit loop squat.json --times 3 -o squats.json\n"
+      "  ayumi edit alternate step.json --times 6 -o walk.json\n"
+      "  ayumi edit key wave.json --at 1.5 --to 3.5 --copy --mirror -o both_arms.json");
   static EditCommand options;
   add_edit_of(*command, "bake",
               "write the motion as a dense table of joint angles, COG, ZMP, f_z and base", options)
@@ -248,8 +414,14 @@ void add_edit(CLI::App& app, Context& context) {
   add_edit_of(*command, "mirror", "exchange left and right", options).callback([&context] {
     mirror(context, options);
   });
-  add_join_of(*command, "concat", "play one pattern after the other, without a pause", options)
-      .callback([&context] { join(context, options); });
+  const auto add_table_flag = [](CLI::App& of) {
+    of.add_flag("--table", options.as_table,
+                "Write a table of samples, also where keys can be kept.");
+  };
+  CLI::App& concat_command =
+      add_join_of(*command, "concat", "play one pattern after the other, without a pause", options);
+  add_table_flag(concat_command);
+  concat_command.callback([&context] { join(context, options); });
   CLI::App& blend_command =
       add_join_of(*command, "blend",
                   "play one pattern after the other, with a transition between them", options);
@@ -257,6 +429,7 @@ void add_edit(CLI::App& app, Context& context) {
       ->required()
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
+  add_table_flag(blend_command);
   blend_command.callback([&context] { join(context, options); });
   CLI::App& ramp_command = add_edit_of(
       *command, "ramp", "move from a posture to the motion, and back at its end", options);
@@ -285,6 +458,46 @@ void add_edit(CLI::App& app, Context& context) {
   retime_command.add_flag("--to-limits", options.to_limits,
                           "Find the fastest scale that passes the check.");
   retime_command.callback([&context] { retime(context, options); });
+  CLI::App& loop_command =
+      add_edit_of(*command, "loop", "repeat a motion whose end meets its beginning", options);
+  loop_command.add_option("--times", options.times, "How often the motion is played.")
+      ->check(whole_number_within(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  loop_command
+      .add_option("--over", options.over,
+                  "Duration of a transition from the end to the beginning, where they differ [s].")
+      ->check(number_within(0.02, 60.0))
+      ->type_name("S");
+  add_table_flag(loop_command);
+  loop_command.callback([&context] { loop(context, options); });
+  CLI::App& alternate_command =
+      add_edit_of(*command, "alternate",
+                  "play a step and its mirror image in turn, so that it becomes a walk", options);
+  alternate_command.add_option("--times", options.times, "How many steps there are in all.")
+      ->required()
+      ->check(whole_number_within(2, 1000))
+      ->type_name("N");
+  alternate_command.add_flag("--open", options.open_end,
+                             "The last step is as long as the others and does not bring the feet "
+                             "beside each other.");
+  alternate_command.callback([&context] { alternate(context, options); });
+  CLI::App& key_command =
+      add_edit_of(*command, "key", "copy, move or mirror a single keyframe", options);
+  key_command.add_option("--at", options.key.at, "Time of the keyframe [s].")
+      ->required()
+      ->check(number_within(0.0, 1e6))
+      ->type_name("T");
+  key_command.add_option("--to", options.key_to, "Its new time [s].")
+      ->check(number_within(0.0, 1e6))
+      ->type_name("T");
+  key_command
+      .add_option("--by", options.key_by, "By how much it is moved [s]; below 0 is earlier.")
+      ->check(number_within(-1e6, 1e6))
+      ->type_name("S");
+  key_command.add_flag("--copy", options.key.copy, "The keyframe stays where it was, too.");
+  key_command.add_flag("--mirror", options.key.mirror, "Exchange left and right in what arrives.");
+  key_command.callback([&context] { edit_key(context, options); });
 }
 
 }  // namespace ayumi::app

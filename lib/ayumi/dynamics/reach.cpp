@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/outline.hpp"
 
 namespace ayumi {
 
@@ -68,6 +69,69 @@ std::vector<int> limb_dofs(const RobotModel& model, int body) {
     if (dof >= 0 && std::find(dofs.begin(), dofs.end(), dof) == dofs.end()) dofs.push_back(dof);
   }
   return dofs;
+}
+
+namespace {
+
+// A limb whose end is this near the middle plane at rest is no arm [m]. Chosen: necks are in it.
+constexpr double kMiddle = 0.02;
+
+// Ends of limbs that are no feet, and y of their joints at rest [m].
+std::vector<std::pair<int, Vector3d>> free_ends(const RobotModel& model) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  std::vector<std::pair<int, Vector3d>> ends;
+  for (const int body : limb_ends(model)) {
+    const bool foot = model.has_soles() &&
+                      (body == model.sole(Side::left).body || body == model.sole(Side::right).body);
+    if (!foot) ends.emplace_back(body, data.position[static_cast<size_t>(body)]);
+  }
+  return ends;
+}
+
+}  // namespace
+
+int hand_body(const RobotModel& model, Side side) {
+  int best = -1;
+  size_t most = 2;
+  for (const auto& [body, place] : free_ends(model)) {
+    const size_t joints = limb_dofs(model, body).size();
+    if ((side == Side::left ? place.y() : -place.y()) < kMiddle || joints <= most) continue;
+    best = body;
+    most = joints;
+  }
+  return best;
+}
+
+int head_body(const RobotModel& model) {
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  int best = -1;
+  double height = data.position[static_cast<size_t>(model.trunk_body())].z();
+  for (const auto& [body, place] : free_ends(model)) {
+    if (std::abs(place.y()) > kMiddle || place.z() < height) continue;
+    best = body;
+    height = place.z();
+  }
+  return best;
+}
+
+Vector3d limb_point(const RobotModel& model, int body) {
+  Eigen::AlignedBox3d box;
+  for (const Link& link : model.links()) {
+    if (link.body != body) continue;
+    for (const PlacedShape& placed : link.collisions)
+      for (const Vector3d& point : outline(placed.shape))
+        box.extend(Vector3d(link.pose * placed.pose * point));
+  }
+  if (box.isEmpty()) return 2 * model.bodies()[static_cast<size_t>(body)].inertia.com;
+  Vector3d end = box.center();
+  const Vector3d reach = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs());
+  Eigen::Index along = 0;
+  reach.maxCoeff(&along);
+  end[along] =
+      std::abs(box.min()[along]) > std::abs(box.max()[along]) ? box.min()[along] : box.max()[along];
+  return end;
 }
 
 ReachSolution reach(const RobotModel& model, const RobotState& state, int body,

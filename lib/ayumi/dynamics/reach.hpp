@@ -21,6 +21,17 @@ std::vector<int> limb_ends(const RobotModel& model);
 /// the first joint that also moves another foot, hand or head.
 std::vector<int> limb_dofs(const RobotModel& model, int body);
 
+/// The end of a limb that is no foot and has three joints of its own, on this side; that of most
+/// joints where there are several, -1 where there is none.
+int hand_body(const RobotModel& model, Side side);
+
+/// The highest end of a limb in the middle plane, above the trunk; -1: the robot has no neck.
+int head_body(const RobotModel& model);
+
+/// The far end of a body as seen from its joint: the middle of that side of the box around its
+/// collision shapes, or twice as far as its centre of mass where it has none (body frame).
+Eigen::Vector3d limb_point(const RobotModel& model, int body);
+
 /// Damped least squares from the posture of `state`: of all postures near it, one that brings
 /// `point` (frame of `body`) to `place` (world), or as near as the limits of `dofs` allow, from
 /// which they keep `room` [rad, m] where their range is wide enough.

@@ -66,6 +66,14 @@ struct ZmpKey {
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< world [m], for Place::point
 };
 
+/// Where the end of a link shall be, and which way it shall point; or what a head shall look at.
+struct LinkTarget {
+  enum class Frame { world, trunk };
+  Frame frame = Frame::world;
+  std::optional<Eigen::Vector3d> position;   ///< none: the keys of the joints lead the link again
+  std::optional<Eigen::Vector3d> direction;  ///< from the link's joint to its end, unit vector
+};
+
 /// Sets the tracks that it names at time t; it does not affect other tracks.
 struct Keyframe {
   double t = 0;                                ///< [s]
@@ -77,6 +85,8 @@ struct Keyframe {
   std::optional<double> fz;                        ///< [N]
   std::optional<Eigen::Vector3d> torso;            ///< roll, pitch, yaw in the world [rad]
   std::array<std::optional<Foothold>, 2> feet;     ///< by Side, world
+  std::map<std::string, LinkTarget> hands;         ///< by "left", "right" or the name of a link
+  std::optional<LinkTarget> gaze;                  ///< the point that the head looks at
   std::map<std::string, double> weights;           ///< diagonal of W by joint name
   std::string place;                               ///< its place in the file, for messages
   std::string pointer = {};                        ///< JSON pointer of its source; empty: of none

@@ -10,10 +10,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/quintic.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/motion/pattern_context.hpp"
 
 namespace ayumi {
 
@@ -103,10 +105,23 @@ class FlightTurn {
                           h * h / 12 * (nodes[k].acceleration - nodes[k + 1].acceleration);
   }
 
+  // Rates of the joints that hands lead in the frame of the trunk; empty: nothing does.
+  VectorXd rates_of_targets(double t) const {
+    if (!job_.links.leads(t - kDifference) || !job_.links.leads(t + kDifference)) return {};
+    RobotData data(job_.model);
+    const auto angles = [&](double at) {
+      RobotState state = sample_.state;
+      job_.links.solve(at, keyed_joints(job_, at), state, data);
+      return state.theta;
+    };
+    return (angles(t + kDifference) - angles(t - kDifference)) / (2 * kDifference);
+  }
+
   Vector3d trunk_rate(double t, const Vector3d& velocity) {
     const RobotModel& model = job_.model;
     int others = 0;
     for (int dof = 0; dof < model.dof_count(); ++dof) others += job_.ik.solves(dof) ? 0 : 1;
+    const VectorXd led_rates = rates_of_targets(t);
     MatrixXd A = MatrixXd::Zero(18 + others, model.velocity_count());
     VectorXd b = VectorXd::Zero(18 + others);
     int row = 0;
@@ -128,7 +143,9 @@ class FlightTurn {
     for (int dof = 0; dof < model.dof_count(); ++dof) {
       if (job_.ik.solves(dof)) continue;
       A(row, 6 + dof) = 1;
-      b[row++] = job_.tracks.joints[dof].at(t).rate;
+      b[row++] = led_rates.size() > 0 && job_.links.leads(dof, t)
+                     ? led_rates[dof]
+                     : job_.tracks.joints[dof].at(t).rate;
     }
     const VectorXd V = A.colPivHouseholderQr().solve(b);
     const int trunk = model.trunk_body();
@@ -180,6 +197,11 @@ TrunkTurn plan_trunk_turn(const SampleJob& job, const CogAt& cog) {
   std::vector<Flight> flights;
   for (size_t i = 0; i < phases.size(); ++i) {
     if (phases[i].support != Support::none) continue;
+    if (job.links.leads_in_world(job.feet.begin(static_cast<int>(i)), phases[i].until))
+      fail(ErrorCode::bad_pattern,
+           place_of_phase(job.pattern, i) +
+               ": in a flight a hand or the gaze follows the trunk; give their keys before, in and "
+               "after the flight with \"frame\": \"trunk\"");
     Flight flight;
     flight.begin = job.feet.begin(static_cast<int>(i));
     flight.end = phases[i].until;

@@ -19,6 +19,11 @@ namespace {
 
 constexpr std::array<Side, 2> kBothSides = {Side::left, Side::right};
 
+// Rounds for a head whose eye moves when it turns, and the change of a joint with which they end
+// [rad]. Chosen: as in a motion that the body drives.
+constexpr int kMostGazeRounds = 30;
+constexpr double kSameGaze = 1e-11;
+
 // The anchor of the first double support is the foot of the first single support.
 Side first_anchor(const FootPlan& feet) {
   for (const Phase& phase : feet.phases()) {
@@ -182,6 +187,25 @@ void fill_commands(const SampleJob& job, CommandSeries& series) {
   }
 }
 
+// The base does not depend on arms and head; the COG does.
+void follow_targets(const SampleJob& job, CommandSeries& series) {
+  RobotData data(job.model);
+  for (int k = 0; k < job.count; ++k) {
+    const double t = k * job.dt;
+    if (!job.links.leads(t)) continue;
+    CommandSample& sample = series.samples[k];
+    const Eigen::VectorXd keyed = sample.state.theta;
+    if (k > 0)
+      for (int dof = 0; dof < job.model.dof_count(); ++dof)
+        if (job.links.leads(dof, t))
+          sample.state.theta[dof] = series.samples[k - 1].state.theta[dof];
+    for (int round = 0; round < kMostGazeRounds; ++round)
+      if (job.links.solve(t, keyed, sample.state, data) < kSameGaze) break;
+    update_positions(job.model, sample.state, data);
+    sample.cog = data.cog;
+  }
+}
+
 }  // namespace
 
 CommandSeries sample_joint_driven(const SampleJob& job) {
@@ -197,6 +221,7 @@ CommandSeries sample_joint_driven(const SampleJob& job) {
     table_base(job, series);
   else
     anchor_samples(job, series);
+  follow_targets(job, series);
   fill_rates(series.samples, job.dt, job.tracks.rest_ends);
   fill_feet(job, series);
   fill_commands(job, series);

@@ -35,16 +35,13 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
   std::vector<bool> solved(model.dof_count());
   for (int dof = 0; dof < model.dof_count(); ++dof) solved[dof] = ik.solves(dof);
   const PatternTracks tracks = read_tracks(model, pattern, feet, solved);
-  const SampleJob job{model,
-                      pattern,
-                      feet,
-                      ik,
-                      tracks,
-                      options.dt,
-                      sample_count(pattern, feet.duration(), options.dt),
-                      options.threads,
-                      progress};
+  const LinkPlan links(model, pattern, solved);
+  const SampleJob job{
+      model,           pattern, feet,       ik,
+      tracks,          links,   options.dt, sample_count(pattern, feet.duration(), options.dt),
+      options.threads, progress};
   CommandSeries series = tracks.joint_driven ? sample_joint_driven(job) : sample_body_driven(job);
+  if (!links.empty()) series.origin[links.origin()] = "keys, by the joints of the limb";
   for (const auto& [t, weight] : tracks.weight)
     series.joint_weight.push_back({std::lround(t / options.dt), weight});
   return series;

@@ -9,6 +9,7 @@
 #include "ayumi/base/progress.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/motion/command_series.hpp"
+#include "ayumi/plan/link_plan.hpp"
 #include "ayumi/plan/tracks.hpp"
 
 namespace ayumi {
@@ -19,6 +20,7 @@ struct SampleJob {
   const FootPlan& feet;
   const InverseKinematics& ik;
   const PatternTracks& tracks;
+  const LinkPlan& links;
   double dt = 0.001;  ///< [s]
   int count = 0;      ///< of samples
   int threads = 0;    ///< 0: all cores
@@ -66,7 +68,8 @@ class Extrapolation {
 /// theta of every joint track at t [rad].
 Eigen::VectorXd keyed_joints(const SampleJob& job, double t);
 
-/// Fills the planned feet, the support and the joints with tracks of their own.
+/// Fills the planned feet, the support and the joints with tracks of their own; those that hands
+/// lead stay as they are, an initial guess.
 void put_plan(const SampleJob& job, double t, CommandSample& sample);
 
 /// Commanded trunk attitude: torso keys, else level with the mean heading of the planned feet.

@@ -6,6 +6,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/merge_keyframes.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 
 namespace ayumi {
@@ -62,24 +63,6 @@ CommandSample held(const RobotModel& model, const CommandSample& from) {
   s.zmp.head<2>() = s.cog.head<2>();
   s.fz = model.mass() * kGravity;
   return s;
-}
-
-// Where two keys at one time name the same track, the later key counts.
-void merge(Keyframe& key, const Keyframe& later) {
-  const auto take = [](auto& to, const auto& from) {
-    if (from) to = from;
-  };
-  take(key.interpolation, later.interpolation);
-  take(key.posture, later.posture);
-  for (const auto& [joint, angle] : later.joints) key.joints[joint] = angle;
-  take(key.zmp, later.zmp);
-  take(key.cog_x, later.cog_x);
-  take(key.cog_y, later.cog_y);
-  take(key.cog_height, later.cog_height);
-  take(key.fz, later.fz);
-  take(key.torso, later.torso);
-  for (size_t i = 0; i < 2; ++i) take(key.feet[i], later.feet[i]);
-  for (const auto& [joint, weight] : later.weights) key.weights[joint] = weight;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 // Edits of patterns: each function returns a new pattern and reads or writes no file.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,25 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
                   double factor);
 
+/// A single keyframe that is copied, moved or mirrored.
+struct KeyEdit {
+  double at = 0;             ///< time of the keyframe, within 0.5 ms [s]
+  std::optional<double> to;  ///< its new time [s]; none: it stays
+  bool copy = false;         ///< the keyframe stays where it was, too
+  bool mirror = false;       ///< left and right are exchanged in what arrives
+};
+/// A keyframe that arrives at the time of another one is merged with it, and its tracks count.
+/// Throws Error(usage) for a time without a keyframe or beyond the phases, and as mirror_map.
+Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const KeyEdit& edit);
+
+/// The pattern and its mirror image in turn, `times` in all, so that one step becomes a walk: each
+/// begins with the feet where the last one has left them. Swings become steps relative to the other
+/// foot, the last of which brings the feet beside each other when `close`. Points on the ground go
+/// with the foot that carries at the first swing. Throws Error(bad_pattern) for a pattern with a
+/// table, a correction, VIIP phases or foot keys, or without a swing, Error(usage) unless `times`
+/// is 2 to 1000, and as mirror_map.
+Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, bool close = true);
+
 /// A pattern and its samples.
 struct MotionPart {
   const Pattern& pattern;
@@ -57,6 +77,26 @@ struct MotionPart {
 /// rad) or the legs do not reach, and as baked().
 Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                double over, const std::string& table);
+
+/// Two patterns in sequence as keys, as joined() does it with samples: keys, phases and scenario of
+/// the second pattern are moved in place and time; keys at the join keep every track of either
+/// pattern at what it was. Throws as joined(), and Error(bad_pattern) with the reason where keys
+/// cannot say the same: a table, a correction, VIIP phases, legs led by joints, foot keys, and
+/// tracks of COG or ZMP that only one of the patterns has.
+Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPart& second,
+                double over);
+
+/// How well the end of a motion meets its beginning, which is moved over the ground to the feet.
+struct LoopGap {
+  double feet = 0;     ///< largest distance of a sole from its place at the beginning [m]
+  double posture = 0;  ///< largest difference of a joint [rad, m]
+  double base = 0;     ///< difference of the base's place [m]
+  double rate = 0;     ///< largest difference of a joint's rate [rad/s, m/s]
+  std::string joint;   ///< that differs most
+  bool closed = false;
+};
+/// Throws Error(bad_pattern) where a foot is in the air at an end.
+LoopGap loop_gap(const RobotModel& model, const MotionPart& motion);
 
 struct Ramps {
   double in = 1, out = 1;  ///< [s]; 0: none

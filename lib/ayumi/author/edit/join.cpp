@@ -2,9 +2,14 @@
 // first footholds are the last ones of the first motion. A transition between two postures at rest
 // keeps both soles in place: COG, trunk and the joints outside the legs follow s = 10 u^3 - 15 u^4
 // + 6 u^5, and the legs follow by inverse kinematics.
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <set>
 
 #include "ayumi/author/edit/edit.hpp"
+#include "ayumi/author/edit/move_key.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
@@ -12,7 +17,12 @@
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/merge_keyframes.hpp"
 #include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/foot_plan.hpp"
+#include "ayumi/plan/tracks.hpp"
+#include "ayumi/plan/viip_phases.hpp"
 
 namespace ayumi {
 
@@ -228,6 +238,230 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
   result.keyframes.insert(result.keyframes.end(), rest.keyframes.begin(), rest.keyframes.end());
   result.scenario.insert(result.scenario.end(), rest.scenario.begin(), rest.scenario.end());
   return result;
+}
+
+namespace {
+
+// What keys of a pattern lead, and their values over time.
+struct KeyedTracks {
+  KeyedTracks(const RobotModel& model, const Pattern& of)
+      : pattern(of),
+        feet(model, of),
+        legs(model, default_posture(model, of)),
+        tracks(read_tracks(model, of, feet, solved(model, legs))) {
+    for (const Keyframe& key : of.keyframes) {
+      for (const auto& [joint, angle] : key.joints) joints.insert(joint);
+      if (key.posture)
+        for (const auto& [joint, angle] : posture_joints(model, of, *key.posture, key.place))
+          joints.insert(joint);
+      for (const auto& [link, target] : key.hands) hands[link] = target.position.has_value();
+      if (key.gaze) gaze = key.gaze->position.has_value();
+      for (const auto& [joint, weight] : key.weights) weights.insert(joint);
+    }
+  }
+  static std::vector<bool> solved(const RobotModel& model, const InverseKinematics& legs) {
+    std::vector<bool> result;
+    for (int dof = 0; dof < model.dof_count(); ++dof) result.push_back(legs.solves(dof));
+    return result;
+  }
+  bool turns() const {
+    return std::any_of(feet.phases().begin(), feet.phases().end(), [&](const Phase& phase) {
+      return phase.swing &&
+             std::abs(std::remainder(
+                 matrix_to_rpy(feet.pose(phase.swing->foot, phase.until).linear()).z() -
+                     matrix_to_rpy(feet.pose(phase.swing->foot, 0).linear()).z(),
+                 2 * M_PI)) > kSameAngle;
+    });
+  }
+
+  const Pattern& pattern;
+  FootPlan feet;
+  InverseKinematics legs;
+  PatternTracks tracks;
+  std::set<std::string> joints, weights;
+  std::map<std::string, bool> hands;  ///< by link; true: led at the end
+  std::optional<bool> gaze;
+};
+
+// The keys that keep every track of `all` at the value that it has at time t of `of`.
+Keyframe keys_at(const RobotModel& model, const KeyedTracks& of, double t, const KeyedTracks& all) {
+  Keyframe key;
+  key.t = t;
+  const auto& tracks = of.tracks;
+  for (const KeyedTracks* const part : {&of, &all})
+    for (const std::string& joint : part->joints) {
+      const int dof = model.find_dof(joint);
+      if (dof >= 0 && !of.legs.solves(dof)) key.joints[joint] = tracks.joints[dof].at(t).value;
+    }
+  if (tracks.zmp) {
+    ZmpKey zmp;
+    zmp.point = {(*tracks.zmp)[0].at(t).value, (*tracks.zmp)[1].at(t).value};
+    // Rounding apart.
+    if ((zmp.point - of.feet.support_center(t).head<2>()).norm() < 1e-9)
+      zmp.place = ZmpKey::Place::center;
+    key.zmp = zmp;
+  }
+  if (tracks.cog[0]) key.cog_x = tracks.cog[0]->at(t).value;
+  if (tracks.cog[1]) key.cog_y = tracks.cog[1]->at(t).value;
+  if (all.tracks.cog[2] || tracks.cog[2] ||
+      default_cog_height(model, of.pattern) != default_cog_height(model, all.pattern))
+    key.cog_height = tracks.cog[2] ? tracks.cog[2]->at(t).value
+                                   : default_cog_height(model, of.pattern) + of.feet.ground(t);
+  if (all.tracks.fz || tracks.fz)
+    key.fz = tracks.fz ? tracks.fz->at(t).value : model.mass() * kGravity;
+  if (tracks.torso)
+    key.torso = Vector3d((*tracks.torso)[0].at(t).value, (*tracks.torso)[1].at(t).value,
+                         (*tracks.torso)[2].at(t).value);
+  else if (all.tracks.torso)
+    key.torso = Vector3d(0, 0, matrix_to_rpy(of.feet.pose(Side::left, t).linear()).z());
+  return key;
+}
+
+void require_keys(const KeyedTracks& part) {
+  const Pattern& pattern = part.pattern;
+  const auto stop = [&](const std::string& place, const std::string& why) {
+    fail(ErrorCode::bad_pattern,
+         in_file(pattern, place) + ": " + why + ", which keys of another motion cannot follow");
+  };
+  if (part.tracks.joint_driven) stop("keyframes", part.tracks.driver + " lead the legs");
+  for (const Keyframe& key : pattern.keyframes)
+    if (key.feet[0] || key.feet[1]) stop(key.place, "a foot has keys");
+  for (const auto& [link, led] : part.hands)
+    if (led) stop("keyframes", "the target of " + link + " holds until the end");
+  if (part.gaze.value_or(false)) stop("keyframes", "the gaze holds until the end");
+}
+
+void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
+  const auto stop = [&](const std::string& what) {
+    fail(ErrorCode::bad_pattern, in_file(b.pattern, "keyframes") +
+                                     ": only one of the motions has " + what +
+                                     ", which the other one leaves to be solved");
+  };
+  if (a.tracks.zmp.has_value() != b.tracks.zmp.has_value()) stop("keys of the ZMP");
+  for (const size_t axis : {0, 1})
+    if (a.tracks.cog[axis].has_value() != b.tracks.cog[axis].has_value())
+      stop("keys of the COG's place");
+  if (a.pattern.full_model != b.pattern.full_model) stop("the COG of a point mass");
+  if (a.tracks.torso.has_value() != b.tracks.torso.has_value() && (a.turns() || b.turns()))
+    stop("keys of the trunk, and the feet turn");
+}
+
+// Keyframes of the second pattern as they read in the first one.
+Keyframe translated(const RobotModel& model, const Pattern& from, const Pattern& to, Keyframe key) {
+  key.pointer.clear();
+  if (!key.interpolation && from.interpolation != to.interpolation)
+    key.interpolation = from.interpolation;
+  if (key.posture) {
+    const auto angles = posture_joints(model, from, *key.posture, key.place);
+    const bool known = to.postures.contains(*key.posture) || model.has_posture(*key.posture);
+    if (!known || posture_joints(model, to, *key.posture, key.place) != angles) {
+      for (const auto& [joint, angle] : angles) key.joints.emplace(joint, angle);
+      key.posture.reset();
+    }
+  }
+  return key;
+}
+
+void add_key(std::vector<Keyframe>& keys, const Keyframe& key) {
+  // Times closer than this are equal [s]. Chosen: above rounding.
+  constexpr double kSame = 1e-9;
+  if (!keys.empty() && std::abs(keys.back().t - key.t) < kSame)
+    merge(keys.back(), key);
+  else
+    keys.push_back(key);
+}
+
+}  // namespace
+
+Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPart& second,
+                double over) {
+  for (const Pattern* pattern : {&first.pattern, &second.pattern}) {
+    refuse_viip_phases(*pattern, "joined");
+    if (pattern->table || pattern->correction)
+      fail(ErrorCode::bad_pattern, in_file(*pattern, pattern->table ? "table" : "correction") +
+                                       ": it has no keys that could be kept");
+  }
+  const CommandSeries &a = first.series, &b = second.series;
+  require_stand(first.pattern, a.samples.back(), "end");
+  require_stand(second.pattern, b.samples.front(), "start");
+  const KeyedTracks one(model, first.pattern), two(model, second.pattern);
+  require_keys(one);
+  require_keys(two);
+  require_same_tracks(one, two);
+  const Feet last = soles_of(model, a.samples.back().state);
+  Isometry3d shift = stand(last) * stand(soles_of(model, b.samples.front().state)).inverse();
+  const RobotState to = moved(shift, b.samples.front().state);
+  require_same_stand(second.pattern, last, soles_of(model, to));
+  if (over <= 0) require_same_posture(model, second.pattern, a.samples.back().state, to);
+  require_moved_together(shift, second.pattern);
+
+  Pattern result = first.pattern;
+  result.repair = {};
+  result.parameters.clear();
+  for (Phase& phase : result.phases) phase.pointer.clear();
+  for (Keyframe& key : result.keyframes) key.pointer.clear();
+  const double end = first.pattern.phases.back().until, later = end + over;
+  Keyframe at_end = keys_at(model, one, end, two);
+  add_key(result.keyframes, at_end);
+  if (over > 0) result.phases.push_back(both_feet_until(later));
+  Keyframe at_start = keys_at(model, two, 0, one);
+  for (const std::string& joint : one.weights)
+    at_start.weights[joint] = model.joint_weight()[find_joint(model, joint, "weights")];
+  for (const auto& [link, led] : two.hands) at_start.hands[link] = {};
+  if (two.gaze) at_start.gaze = LinkTarget{};
+  move_key(shift, at_start);
+  at_start.t = later;
+  if (over > 0)
+    add_key(result.keyframes, at_start);
+  else
+    result.keyframes.back().hands = at_start.hands, result.keyframes.back().gaze = at_start.gaze;
+  const auto round_time = [](double t) { return 1e-9 * std::round(1e9 * t); };
+  for (Phase phase : two.feet.phases()) {
+    phase.pointer.clear();
+    phase.until = round_time(phase.until + later);
+    if (phase.swing) move_foothold(shift, phase.swing->to);
+    result.phases.push_back(phase);
+  }
+  for (const Keyframe& each : second.pattern.keyframes) {
+    Keyframe key = translated(model, second.pattern, first.pattern, each);
+    move_key(shift, key);
+    key.t = round_time(key.t + later);
+    add_key(result.keyframes, key);
+  }
+  Pattern pushes = second.pattern;
+  pushes.phases.clear();
+  pushes.keyframes.clear();
+  move_plan(shift, later, pushes);
+  result.scenario.insert(result.scenario.end(), pushes.scenario.begin(), pushes.scenario.end());
+  return result;
+}
+
+LoopGap loop_gap(const RobotModel& model, const MotionPart& motion) {
+  const CommandSample &begin = motion.series.samples.front(), &end = motion.series.samples.back();
+  require_stand(motion.pattern, begin, "start");
+  require_stand(motion.pattern, end, "end");
+  const Feet last = soles_of(model, end.state);
+  const Isometry3d shift = stand(last) * stand(soles_of(model, begin.state)).inverse();
+  const RobotState again = moved(shift, begin.state);
+  const Feet first = soles_of(model, again);
+  LoopGap gap;
+  double turn = 0;
+  for (size_t i = 0; i < 2; ++i) {
+    gap.feet = std::max(gap.feet, (last[i].translation() - first[i].translation()).norm());
+    turn = std::max(turn, angle_between(last[i].linear(), first[i].linear()));
+  }
+  int worst = 0;
+  gap.posture = (end.state.theta - again.theta).cwiseAbs().maxCoeff(&worst);
+  gap.joint = model.dofs()[worst].name;
+  gap.base = (end.state.base.position - again.base.position).norm();
+  gap.rate =
+      (end.state.velocity() - begin.state.velocity()).tail(model.dof_count()).cwiseAbs().maxCoeff();
+  // Largest difference of a joint's rate that is none [rad/s]. Chosen: as a jump of the posture by
+  // kSameJoint in a millisecond.
+  constexpr double kSameRate = 1e3 * kSameJoint;
+  gap.closed = gap.feet < kSamePlace && turn < kSameAngle && gap.posture < kSameJoint &&
+               gap.base < kSameBase && gap.rate < kSameRate;
+  return gap;
 }
 
 namespace {

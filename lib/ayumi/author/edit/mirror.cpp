@@ -164,6 +164,12 @@ class Mirror {
     return {image(foot.position), {-foot.rpy.x(), foot.rpy.y(), -foot.rpy.z()}};
   }
 
+  static LinkTarget of(LinkTarget target) {
+    if (target.position) target.position = image(*target.position);
+    if (target.direction) target.direction = image(*target.direction);
+    return target;
+  }
+
   static std::array<std::optional<Foothold>, 2> of(
       const std::array<std::optional<Foothold>, 2>& feet) {
     std::array<std::optional<Foothold>, 2> result;
@@ -207,6 +213,14 @@ class Mirror {
     if (key.cog_y) *key.cog_y *= -1;
     if (key.torso) *key.torso = {-key.torso->x(), key.torso->y(), -key.torso->z()};
     key.feet = of(key.feet);
+    std::map<std::string, LinkTarget> hands;
+    for (const auto& [link, target] : key.hands) {
+      std::string name = link == "left" ? "right" : link == "right" ? "left" : link;
+      if (name == link) mirror_link(name);
+      hands[name] = of(target);
+    }
+    key.hands = std::move(hands);
+    if (key.gaze) key.gaze = of(*key.gaze);
   }
 
   // Columns keep their order where the table has both sides; else they get the other side's name.

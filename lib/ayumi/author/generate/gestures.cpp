@@ -226,23 +226,6 @@ WaveParameters wave_defaults(const RobotModel& model) {
   return p;
 }
 
-namespace {
-
-// The hand of a side: the end of a limb of three joints or more that is no foot.
-int hand_of(const RobotModel& model, const RobotData& data, Side side) {
-  int best = -1;
-  for (const int body : limb_ends(model)) {
-    if (body == model.sole(Side::left).body || body == model.sole(Side::right).body) continue;
-    const double y = data.position[static_cast<size_t>(body)].y();
-    const auto dofs = limb_dofs(model, body);
-    if (dofs.size() < 3 || (side == Side::left ? y : -y) < 0.02) continue;
-    if (best < 0 || dofs.size() > limb_dofs(model, best).size()) best = body;
-  }
-  return best;
-}
-
-}  // namespace
-
 Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
   // Room of the arm's joints beside their soft limits [rad]. Chosen: what the lead of the servos'
   // targets needs at the ends of a wave.
@@ -253,13 +236,12 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
   RobotState state = model.rest_state();
   RobotData data(model);
   update_positions(model, state, data);
-  const int hand = hand_of(model, data, p.side);
+  const int hand = hand_body(model, p.side);
   if (hand < 0)
     fail(ErrorCode::usage,
          "wave: " + model.name() + " has no " + name_of(p.side) + " arm of three joints or more");
   const std::vector<int> arm = limb_dofs(model, hand);
-  // A body's end lies about as far beyond its centre of mass as its joint lies before it.
-  const Vector3d point = 2 * model.bodies()[static_cast<size_t>(hand)].inertia.com;
+  const Vector3d point = limb_point(model, hand);
   const Vector3d shoulder =
       data.position[static_cast<size_t>(model.dofs()[static_cast<size_t>(arm.back())].body)];
   double length = point.norm();

@@ -118,6 +118,32 @@ Eigen::Vector3d read_torso(const JsonNode& node, PatternScope& scope) {
   return rpy;
 }
 
+// [x, y, z], "free", or an object of kind `kind`.
+LinkTarget read_link_target(const JsonNode& node, const std::string& kind, PatternScope& scope) {
+  LinkTarget target;
+  if (node.value().is_string()) {
+    node.one_of({"free"});
+    return target;
+  }
+  if (node.value().is_array()) {
+    target.position = read_vector3(node, scope);
+    return target;
+  }
+  if (!node.value().is_object())
+    node.complain("expected [x, y, z], {\"position\": [x, y, z], ...} or \"free\"");
+  only_pattern_keys(node, kind);
+  target.position = read_vector3(node.at("position"), scope);
+  if (const auto frame = node.find("frame"))
+    target.frame = frame->one_of({"world", "trunk"}) == "world" ? LinkTarget::Frame::world
+                                                                : LinkTarget::Frame::trunk;
+  if (const auto direction = node.find("direction")) {
+    const Eigen::Vector3d along = read_vector3(*direction, scope);
+    if (!(along.norm() > 1e-6)) direction->complain("the vector has no direction; its length is 0");
+    target.direction = along.normalized();
+  }
+  return target;
+}
+
 }  // namespace
 
 Phase read_phase(const JsonNode& node, double before, PatternScope& scope) {
@@ -158,6 +184,13 @@ Keyframe read_keyframe(const JsonNode& node, double before, PatternScope& scope)
       if (const auto foot = feet->find(name_of(side)))
         key.feet[static_cast<size_t>(side)] = read_foothold(*foot, scope);
   }
+  if (const auto hands = node.find("hands")) {
+    if (hands->size() == 0)
+      hands->complain("the object is empty; give left, right or the name of a link");
+    for (const auto& [link, target] : hands->members())
+      key.hands[link] = read_link_target(target, "hand", scope);
+  }
+  if (const auto gaze = node.find("gaze")) key.gaze = read_link_target(*gaze, "gaze", scope);
   if (const auto weights = node.find("weights"))
     for (const auto& [joint, weight] : weights->members()) {
       key.weights[joint] = read_number(weight, scope);

@@ -170,6 +170,17 @@ class Writer {
     return Members().item(number(key.point.x())).item(number(key.point.y())).array();
   }
 
+  static std::string target(const LinkTarget& target) {
+    if (!target.position) return quoted("free");
+    const bool in_trunk = target.frame == LinkTarget::Frame::trunk;
+    if (!target.direction && !in_trunk) return vector_text(*target.position);
+    Members members;
+    members.add("position", vector_text(*target.position));
+    if (target.direction) members.add("direction", vector_text(*target.direction));
+    if (in_trunk) members.add("frame", quoted("trunk"));
+    return members.object();
+  }
+
   std::string keyframe(const Keyframe& key) const {
     Members members;
     members.add("t", number(key.t));
@@ -192,6 +203,10 @@ class Writer {
                                .object());
     const std::string poses = feet(key.feet);
     if (!poses.empty()) members.add("feet", poses);
+    Members hands;
+    for (const auto& [link, goal] : key.hands) hands.add(link, target(goal));
+    if (!hands.empty()) members.add("hands", hands.object());
+    if (key.gaze) members.add("gaze", target(*key.gaze));
     Members weights;
     for (const auto& [joint, weight] : key.weights) weights.add(joint, number(weight));
     if (!weights.empty()) members.add("weights", weights.object());

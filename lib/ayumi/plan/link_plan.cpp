@@ -1,0 +1,591 @@
+// The joints q of a limb minimize
+//   F = w_p/L^2 sum |p(q) - p*|^2 / 2 + w_d sum |d(q) - d*|^2 / 2 + |q - q_keys|^2 / 2
+// between their limits by Newton's method. With a_i the axis of a joint and r_i the way from it to
+// the end p: dp/dq_i = a_i x r_i, and for a joint i above a joint j, d2p/dq_i dq_j = a_i x dp/dq_j;
+// a direction d alike, with dd/dq_i = a_i x d.
+#include "ayumi/plan/link_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/reach.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/sample_job.hpp"
+
+namespace ayumi {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+// Weights of a place in lengths of the limb, of a direction and of a gaze, against radians from the
+// joints' keys. Chosen: a posture one radian away misses a place by a few nanometres; a direction
+// gives way to the place, which an arm of four joints needs, and is met within a hundredth of a
+// degree where it can be. Half and twice change only these figures.
+constexpr double kPlaceWeight = 1e8, kDirectionWeight = 1e4, kGazeWeight = 1e8;
+
+// A link that ends within this distance of its place is there [m]. Chosen: a tenth of a millimetre,
+// which no hand has.
+constexpr double kThere = 1e-4;
+// A direction is met within this angle [rad]. Chosen: two degrees, because four joints of an arm
+// can point a hand only nearly. Half: fewer directions are taken; twice: the eye sees the miss.
+constexpr double kAligned = 2 * M_PI / 180;
+
+// Distance ahead of the head at which it looks without a target [m]. Chosen: where a person looks
+// at something at hand; it decides only the way from there to the first target.
+constexpr double kAhead = 1;
+
+// Steps of Newton's method. Chosen: a few suffice near a solution; a start far away takes tens.
+constexpr int kMostSteps = 200;
+// Largest change of a joint in a step [rad, m]. Chosen: so that the quadratic model holds.
+constexpr double kLongestStep = 0.3;
+// A step after which the next one would only be rounding [rad, m]. Derived: Newton's method squares
+// it, below the 1e-13 to which legs are solved.
+constexpr double kLastStep = 1e-8;
+// Largest multiplier of a term over the root of its weight. Chosen: far above that of a posture a
+// few radians from its keys, and below what would outweigh the linear part of a limb that cannot
+// reach.
+constexpr double kLargestPull = 1;
+// Step off a point where nothing pulls, as a straight arm is one [rad, m]. Chosen: about a degree.
+constexpr double kNudge = 0.02;
+
+// Vectors of keys that are added up to less than this have no direction. Chosen: keys that are more
+// than about 170 degrees apart.
+constexpr double kNoDirection = 0.08;
+
+bool contains(const std::vector<int>& list, int value) {
+  return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+// A weight below this is none, and times [s] and angles [rad] closer than kSameMoment are equal.
+// Chosen: above rounding.
+constexpr double kNoWeight = 1e-12, kSameMoment = 1e-9;
+
+Vector3d value_of(const std::array<Track, 3>& tracks, double t) {
+  return {tracks[0].at(t).value, tracks[1].at(t).value, tracks[2].at(t).value};
+}
+
+std::string numbers(const Vector3d& v, int digits) {
+  return "[" + text::fixed(v.x(), digits) + ", " + text::fixed(v.y(), digits) + ", " +
+         text::fixed(v.z(), digits) + "]";
+}
+
+// The way that the head looks, in its frame: forward where all joints are 0.
+Vector3d gaze_axis(const RobotModel& model, int head) {
+  RobotState state = model.rest_state();
+  state.theta.setZero();
+  RobotData data(model);
+  update_positions(model, state, data);
+  const Vector3d forward = data.rotation[model.trunk_body()].col(0);
+  return data.rotation[head].transpose() * forward;
+}
+
+}  // namespace
+
+LinkPlan::LinkPlan(const RobotModel& model, const Pattern& pattern, const std::vector<bool>& solved)
+    : model_(&model), pattern_(&pattern) {
+  std::vector<std::string> names;
+  bool gaze = false;
+  for (const Keyframe& key : pattern.keyframes) {
+    for (const auto& [name, target] : key.hands)
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    gaze = gaze || key.gaze;
+  }
+  for (const std::string& name : names) add_target(name, false, solved);
+  if (gaze) add_target("gaze", true, solved);
+}
+
+void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<bool>& solved) {
+  const RobotModel& model = *model_;
+  Target target;
+  target.gaze = gaze;
+  target.key = gaze ? "gaze" : "hands/" + name;
+  const auto asks = [&](const Keyframe& key) -> const LinkTarget* {
+    if (gaze) return key.gaze ? &*key.gaze : nullptr;
+    const auto found = key.hands.find(name);
+    return found == key.hands.end() ? nullptr : &found->second;
+  };
+  size_t first = 0;
+  while (!asks(pattern_->keyframes[first])) ++first;
+  const auto complain = [&](const std::string& message) {
+    throw PlacedError(
+        ErrorCode::bad_pattern,
+        in_file(*pattern_, pattern_->keyframes[first].place + "/" + target.key) + ": " + message,
+        {pattern_->file, pointer_of_keyframe(*pattern_, first) + "/" + target.key});
+  };
+  if (gaze) {
+    target.name = "gaze";
+    target.body = head_body(model);
+    if (target.body < 0)
+      complain("the robot '" + model.name() +
+               "' has no neck that could turn its head; remove the key");
+    target.axis = gaze_axis(model, target.body);
+    target.point = model.bodies()[static_cast<size_t>(target.body)].inertia.com;
+  } else if (name == "left" || name == "right") {
+    target.name = name + " hand";
+    target.body = hand_body(model, name == "left" ? Side::left : Side::right);
+    if (target.body < 0)
+      complain("the robot '" + model.name() + "' has no " + name +
+               " arm of three joints or more; name the link that shall move");
+    target.point = limb_point(model, target.body);
+  } else {
+    const int link = model.find_link(name);
+    if (link < 0) {
+      std::vector<std::string> known = {"left", "right"};
+      for (const Link& each : model.links()) known.push_back(each.name);
+      complain("the robot '" + model.name() + "' has no link '" + name + "'" +
+               text::suggestion(name, known) + "; give left, right or the name of a link");
+    }
+    target.name = "link " + name;
+    target.body = model.links()[static_cast<size_t>(link)].body;
+    const bool moved = model.bodies()[static_cast<size_t>(target.body)].name == name;
+    target.point = moved ? limb_point(model, target.body)
+                         : Vector3d(model.links()[static_cast<size_t>(link)].pose.translation());
+  }
+  target.dofs = limb_dofs(model, target.body);
+  for (const int dof : target.dofs)
+    if (solved[static_cast<size_t>(dof)])
+      complain(
+          "the legs move this link, and feet, trunk and COG determine the legs; give keys of "
+          "these in its place");
+  if (target.dofs.empty())
+    complain("no joint moves this link alone; give keys of \"torso\" or of joints in its place");
+  const auto& bodies = model.bodies();
+  for (int b = target.body; b > 0; b = bodies[static_cast<size_t>(b)].parent)
+    if (contains(target.dofs, bodies[static_cast<size_t>(b)].dof) && b != target.body)
+      target.length += bodies[static_cast<size_t>(b)].placement.translation().norm();
+  target.length = std::max(0.01, target.length + target.point.norm());
+  if (!gaze && target.point.norm() > 1e-6) target.axis = target.point.normalized();
+
+  // Keys of this target, and those of its joints, which take the limb back.
+  double keyed = 0;  // last time of keys of the joints before the first target
+  for (size_t i = 0; i < pattern_->keyframes.size(); ++i) {
+    const Keyframe& key = pattern_->keyframes[i];
+    const LinkTarget* const asked = asks(key);
+    if (asked && asked->direction && target.axis.isZero())
+      complain("the link is a point, which has no direction; give its position alone");
+    bool joints = false;
+    const auto names_joint = [&](const auto& angles) {
+      for (const auto& [joint, angle] : angles)
+        joints = joints || contains(target.dofs, model.find_dof(joint));
+    };
+    if (key.posture) names_joint(posture_joints(model, *pattern_, *key.posture, key.place));
+    names_joint(key.joints);
+    if (!asked && !joints) continue;
+    const bool free = !asked || !asked->position;
+    if (free && target.anchors.empty()) {
+      keyed = key.t;
+      continue;
+    }
+    if (target.anchors.empty() && key.t > keyed) target.anchors.push_back({keyed, nullptr});
+    target.anchors.push_back(
+        {key.t, free ? nullptr : asked, key.interpolation.value_or(pattern_->interpolation), i});
+  }
+  if (target.anchors.empty()) return;  // all of them are free
+  fill_tracks(target);
+  put_in_group(std::move(target));
+}
+
+void LinkPlan::fill_tracks(Target& target) const {
+  const auto fill = [&](bool directions, Blend& blend) {
+    std::array<std::array<std::vector<TrackKey>, 4>, 2> keys;  // by frame: x, y, z and the weight
+    for (const Anchor& anchor : target.anchors) {
+      const LinkTarget* const asked = anchor.target;
+      const bool given = asked && (directions ? asked->direction.has_value() : true);
+      for (const auto frame : {LinkTarget::Frame::world, LinkTarget::Frame::trunk}) {
+        const bool here = given && asked->frame == frame;
+        auto& of_frame = keys[static_cast<size_t>(frame)];
+        for (size_t i = 0; i < 4; ++i) {
+          const auto axis = static_cast<Eigen::Index>(i);
+          const double value = !here    ? 0
+                               : i == 3 ? 1
+                                        : (directions ? *asked->direction : *asked->position)[axis];
+          of_frame[i].push_back({anchor.t, value, anchor.interpolation});
+        }
+      }
+    }
+    for (size_t i = 0; i < 3; ++i) {
+      blend.world[i] = Track(keys[0][i]);
+      blend.trunk[i] = Track(keys[1][i]);
+    }
+    blend.in_world = Track(keys[0][3]);
+    blend.in_trunk = Track(keys[1][3]);
+  };
+  fill(false, target.place);
+  fill(true, target.direction);
+}
+
+void LinkPlan::put_in_group(Target target) {
+  Group group;
+  group.targets.push_back(std::move(target));
+  group.dofs = group.targets[0].dofs;
+  for (auto it = groups_.begin(); it != groups_.end();) {
+    const bool common = std::any_of(it->dofs.begin(), it->dofs.end(),
+                                    [&](int dof) { return contains(group.dofs, dof); });
+    if (!common) {
+      ++it;
+      continue;
+    }
+    for (Target& each : it->targets) group.targets.push_back(std::move(each));
+    for (const int dof : it->dofs)
+      if (!contains(group.dofs, dof)) group.dofs.push_back(dof);
+    it = groups_.erase(it);
+  }
+  std::sort(group.dofs.begin(), group.dofs.end());
+  for (size_t b = 1; b < model_->bodies().size(); ++b) {
+    const auto at = std::find(group.dofs.begin(), group.dofs.end(), model_->bodies()[b].dof);
+    if (at == group.dofs.end()) continue;
+    group.bodies.push_back(static_cast<int>(b));
+    group.column.push_back(static_cast<int>(at - group.dofs.begin()));
+  }
+  for (const Target& each : group.targets) {
+    const auto& anchors = each.anchors;
+    for (size_t i = 0; i < anchors.size(); ++i) {
+      const bool last = i + 1 == anchors.size();
+      if (!anchors[i].target && (last || !anchors[i + 1].target)) continue;
+      group.windows.emplace_back(anchors[i].t,
+                                 last ? std::numeric_limits<double>::infinity() : anchors[i + 1].t);
+    }
+  }
+  groups_.push_back(std::move(group));
+}
+
+bool LinkPlan::Group::at(double t) const {
+  return std::any_of(windows.begin(), windows.end(),
+                     [t](const auto& w) { return t >= w.first && t <= w.second; });
+}
+
+bool LinkPlan::leads(int dof, double t) const {
+  return std::any_of(groups_.begin(), groups_.end(),
+                     [&](const Group& group) { return contains(group.dofs, dof) && group.at(t); });
+}
+
+bool LinkPlan::leads(double t) const {
+  return std::any_of(groups_.begin(), groups_.end(),
+                     [&](const Group& group) { return group.at(t); });
+}
+
+bool LinkPlan::leads_in_world(double begin, double end) const {
+  for (const Group& group : groups_)
+    for (const Target& target : group.targets)
+      for (size_t i = 0; i < target.anchors.size(); ++i) {
+        const Anchor& anchor = target.anchors[i];
+        if (!anchor.target || anchor.target->frame != LinkTarget::Frame::world) continue;
+        const double from = i > 0 ? target.anchors[i - 1].t : anchor.t;
+        const double until = i + 1 < target.anchors.size()
+                                 ? target.anchors[i + 1].t
+                                 : std::numeric_limits<double>::infinity();
+        if (from < end && until > begin) return true;
+      }
+  return false;
+}
+
+std::string LinkPlan::origin() const {
+  bool hands = false, gaze = false;
+  for (const Group& group : groups_)
+    for (const Target& target : group.targets) (target.gaze ? gaze : hands) = true;
+  return hands && gaze ? "hands and gaze" : hands ? "hands" : gaze ? "gaze" : "";
+}
+
+double LinkPlan::bound(int dof, double keyed, bool upper) const {
+  const Dof& joint = model_->dofs()[static_cast<size_t>(dof)];
+  if (!joint.limited)
+    return upper ? std::numeric_limits<double>::infinity()
+                 : -std::numeric_limits<double>::infinity();
+  const double margin = joint.prismatic ? 0
+                                        : std::min(model_->description().soft_limit_margin,
+                                                   0.5 * (joint.upper - joint.lower));
+  return upper ? std::max(joint.upper - margin, keyed) : std::min(joint.lower + margin, keyed);
+}
+
+std::vector<LinkPlan::Aim> LinkPlan::aims_at(const Group& group, double t, const VectorXd& keyed,
+                                             const RobotState& state, RobotData& data,
+                                             bool directions) const {
+  const int trunk = model_->trunk_body();
+  std::vector<Aim> aims;
+  std::vector<Vector3d> by_keys(group.targets.size()), ahead(group.targets.size());
+  RobotState led_by_keys = state;
+  for (const int dof : group.dofs) led_by_keys.theta[dof] = keyed[dof];
+  update_positions(*model_, led_by_keys, data);
+  for (size_t i = 0; i < group.targets.size(); ++i) {
+    const Target& target = group.targets[i];
+    by_keys[i] = data.pose(target.body) * target.point;
+    ahead[i] = data.rotation[target.body] * target.axis;
+  }
+  update_positions(*model_, state, data);
+  const Eigen::Isometry3d frame = data.pose(trunk);
+  for (size_t i = 0; i < group.targets.size(); ++i) {
+    const Target& target = group.targets[i];
+    if (t < target.anchors.front().t) continue;
+    const auto weight = [&](const Blend& blend) {
+      return 1 - blend.in_world.at(t).value - blend.in_trunk.at(t).value;
+    };
+    const double rest = weight(target.place);
+    Aim aim;
+    aim.target = &target;
+    aim.place = value_of(target.place.world, t) + frame.linear() * value_of(target.place.trunk, t) +
+                target.place.in_trunk.at(t).value * frame.translation();
+    const auto meet = [&](const Vector3d& sum) {
+      if (sum.norm() < kNoDirection)
+        fail(ErrorCode::bad_pattern,
+             in_file(*pattern_, "keyframes") + ": t = " + text::fixed(t, 3) + " s: the " +
+                 target.name +
+                 " would have to turn round between two keys of opposite directions; put a key "
+                 "between them");
+      return sum.normalized();
+    };
+    if (target.gaze) {
+      const Vector3d eye = data.pose(target.body) * target.point;
+      aim.place += rest * (by_keys[i] + kAhead * ahead[i]);
+      aim.direction = meet(aim.place - eye);
+      aim.direction_weight = kGazeWeight;
+    } else {
+      aim.place += rest * by_keys[i];
+      aim.place_weight = kPlaceWeight / (target.length * target.length);
+      const double without = weight(target.direction);
+      if (directions && without < 1 - kNoWeight) {
+        const Vector3d free = data.rotation[target.body] * target.axis;
+        aim.direction = meet(value_of(target.direction.world, t) +
+                             frame.linear() * value_of(target.direction.trunk, t) + without * free);
+        aim.direction_weight = kDirectionWeight;
+      }
+    }
+    aims.push_back(aim);
+  }
+  return aims;
+}
+
+double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, const VectorXd& keyed,
+                          RobotState& state, RobotData& data) const {
+  const auto n = static_cast<Eigen::Index>(group.dofs.size());
+  VectorXd q(n), ref(n), low(n), high(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int dof = group.dofs[static_cast<size_t>(i)];
+    ref[i] = keyed[dof];
+    low[i] = bound(dof, ref[i], false);
+    high[i] = bound(dof, ref[i], true);
+    q[i] = std::clamp(state.theta[dof], low[i], high[i]);
+  }
+  const VectorXd start = q;
+  const auto put = [&](const VectorXd& x) {
+    for (Eigen::Index i = 0; i < n; ++i) state.theta[group.dofs[static_cast<size_t>(i)]] = x[i];
+    update_positions(*model_, state, data);
+  };
+  // The terms of the sum: the pull of each, its derivatives, and its multiplier, the pull expected
+  // after the step. Curvature by the multiplier is right also while the term itself is far off.
+  struct Term {
+    double weight = 0;
+    Vector3d off = Vector3d::Zero();
+    Eigen::Matrix3Xd columns;
+    Vector3d multiplier = Vector3d::Zero();
+  };
+  std::vector<Term> terms(2 * aims.size());
+  VectorXd gradient(n);
+  MatrixXd linear(n, n), curved(n, n);
+  const auto derive = [&](const VectorXd& x) {
+    put(x);
+    gradient = x - ref;
+    linear.setIdentity();
+    curved.setZero();
+    for (size_t number = 0; number < aims.size(); ++number) {
+      const Aim& aim = aims[number];
+      const Target& target = *aim.target;
+      // Bodies of the limb from the root outwards that carry the target.
+      std::vector<size_t> chain;
+      for (size_t k = 0; k < group.bodies.size(); ++k)
+        for (int b = target.body; b > 0; b = model_->bodies()[static_cast<size_t>(b)].parent)
+          if (b == group.bodies[k]) chain.push_back(k);
+      const Vector3d end = data.rotation[target.body] * target.point + data.position[target.body];
+      const auto add = [&](Term& term, double weight, const Vector3d& off, const auto& derivative) {
+        term.weight = weight;
+        term.off = off;
+        term.columns = Eigen::Matrix3Xd::Zero(3, n);
+        std::vector<Vector3d> axes, columns;
+        for (const size_t k : chain) {
+          const Body& body = model_->bodies()[static_cast<size_t>(group.bodies[k])];
+          const Vector3d a = body.ratio * data.axis[group.bodies[k]];
+          columns.push_back(derivative(body.prismatic, a, group.bodies[k]));
+          axes.push_back(body.prismatic ? Vector3d::Zero() : a);
+          term.columns.col(group.column[k]) += columns.back();
+        }
+        gradient += weight * term.columns.transpose() * off;
+        linear += weight * term.columns.transpose() * term.columns;
+        for (size_t i = 0; i < chain.size(); ++i)
+          for (size_t j = 0; j < chain.size(); ++j)
+            curved(group.column[chain[i]], group.column[chain[j]]) +=
+                axes[std::min(i, j)].cross(columns[std::max(i, j)]).dot(term.multiplier);
+      };
+      if (aim.place_weight > 0)
+        add(terms[2 * number], aim.place_weight, data.base_position + end - aim.place,
+            [&](bool prismatic, const Vector3d& a, int body) -> Vector3d {
+              return prismatic ? a : Vector3d(a.cross(end - data.position[body]));
+            });
+      if (aim.direction_weight > 0) {
+        const Vector3d along = data.rotation[target.body] * target.axis;
+        add(terms[2 * number + 1], aim.direction_weight, along - aim.direction,
+            [&](bool prismatic, const Vector3d& a, int) -> Vector3d {
+              return prismatic ? Vector3d::Zero() : Vector3d(a.cross(along));
+            });
+      }
+    }
+  };
+  for (int step = 0; step < kMostSteps; ++step) {
+    derive(q);
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (!((q[i] <= low[i] && gradient[i] > 0) || (q[i] >= high[i] && gradient[i] < 0)))
+        free.push_back(i);
+    VectorXd way = VectorXd::Zero(n);
+    bool convex = true;
+    if (!free.empty()) {
+      const MatrixXd hessian = linear(free, free) + curved(free, free);
+      Eigen::LLT<MatrixXd> factor(hessian);
+      convex = factor.info() == Eigen::Success;
+      if (!convex) factor.compute(MatrixXd(linear(free, free)));
+      const VectorXd slope = gradient(free);
+      const VectorXd solved = factor.solve(slope);
+      for (size_t i = 0; i < free.size(); ++i) way[free[i]] = -solved[static_cast<Eigen::Index>(i)];
+    }
+    const double longest = way.cwiseAbs().maxCoeff();
+    if (!convex && longest < kLastStep) {
+      // Nothing pulls, but the sum has no minimum here: towards the middle of the ranges it falls.
+      for (const Eigen::Index i : free) {
+        const double middle =
+            std::isfinite(low[i]) && std::isfinite(high[i]) ? 0.5 * (low[i] + high[i]) : q[i] + 1;
+        q[i] += std::copysign(kNudge, middle - q[i]);
+      }
+      q = q.cwiseMax(low).cwiseMin(high);
+      continue;
+    }
+    if (longest > kLongestStep) way *= kLongestStep / longest;
+    const VectorXd before = q;
+    q = (q + way).cwiseMax(low).cwiseMin(high);
+    // Farther off than the limb is long, the pull is no multiplier: nothing can be reached there.
+    for (Term& term : terms)
+      if (term.weight > 0) {
+        term.multiplier = term.weight * (term.off + term.columns * (q - before));
+        const double most = kLargestPull * std::sqrt(term.weight);
+        if (term.multiplier.norm() > most) term.multiplier *= most / term.multiplier.norm();
+      }
+    if (longest < kLastStep) break;
+  }
+  put(q);
+  return (q - start).cwiseAbs().maxCoeff();
+}
+
+double LinkPlan::solve(double t, const VectorXd& keyed, RobotState& state, RobotData& data) const {
+  double change = 0;
+  for (const Group& group : groups_) {
+    if (!group.at(t)) continue;
+    const VectorXd before = state.theta;
+    std::vector<Aim> aims = aims_at(group, t, keyed, state, data, false);
+    const bool directed =
+        std::any_of(group.targets.begin(), group.targets.end(), [t](const Target& target) {
+          return !target.gaze && (target.direction.in_world.at(t).value > kNoWeight ||
+                                  target.direction.in_trunk.at(t).value > kNoWeight);
+        });
+    // A direction fades in from the one that the link has without it.
+    if (directed) {
+      RobotState without = state;
+      minimize(group, aims, keyed, without, data);
+      const std::vector<Aim> with = aims_at(group, t, keyed, without, data, true);
+      aims = with;
+    }
+    minimize(group, aims, keyed, state, data);
+    if (!reached(aims, data)) complain(group, t, aims, keyed, state, data);
+    change = std::max(change, (state.theta - before).cwiseAbs().maxCoeff());
+  }
+  return change;
+}
+
+namespace {
+
+// What a target misses: its place [m], or where this is met its direction [rad]; 0 where it is met.
+double off_place(const Vector3d& end, const Vector3d& place, double weight) {
+  const double missing = weight > 0 ? (end - place).norm() : 0;
+  return missing > kThere ? missing : 0;
+}
+
+double off_direction(const Vector3d& along, const Vector3d& direction, double weight) {
+  const double angle =
+      weight > 0 ? std::atan2(along.cross(direction).norm(), along.dot(direction)) : 0;
+  return angle > kAligned ? angle : 0;
+}
+
+}  // namespace
+
+bool LinkPlan::reached(const std::vector<Aim>& aims, const RobotData& data) const {
+  return std::all_of(aims.begin(), aims.end(), [&](const Aim& aim) {
+    const Eigen::Isometry3d pose = data.pose(aim.target->body);
+    return off_place(pose * aim.target->point, aim.place, aim.place_weight) == 0 &&
+           off_direction(pose.linear() * aim.target->axis, aim.direction, aim.direction_weight) ==
+               0;
+  });
+}
+
+void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& aims,
+                        const VectorXd& keyed, RobotState& state, RobotData& data) const {
+  const auto missed =
+      std::find_if(aims.begin(), aims.end(), [&](const Aim& aim) { return !reached({aim}, data); });
+  const Target& target = *missed->target;
+  const auto next = std::find_if(target.anchors.begin(), target.anchors.end(),
+                                 [t](const Anchor& anchor) { return anchor.t >= t - kSameMoment; });
+  const Anchor& key = next == target.anchors.end() ? target.anchors.back() : *next;
+  const bool under_way = next != target.anchors.end() && key.t > t + kSameMoment;
+  // On the way to a key the limb is at the end of its reach; what counts is how far the key is.
+  if (under_way && key.target) {
+    RobotState there = state;
+    std::vector<Aim> goal = aims_at(group, key.t, keyed, there, data, true);
+    minimize(group, goal, keyed, there, data);
+    if (!reached(goal, data)) complain(group, key.t, goal, keyed, there, data);
+    update_positions(*model_, state, data);
+  }
+  const Eigen::Isometry3d pose = data.pose(target.body), trunk = data.pose(model_->trunk_body());
+  const Vector3d end = pose * target.point, along = pose.linear() * target.axis;
+  const double missing = off_place(end, missed->place, missed->place_weight);
+  const double angle = off_direction(along, missed->direction, missed->direction_weight);
+  const auto degrees = [](double radians) { return text::fixed(radians * 180 / M_PI, 1) + " deg"; };
+  std::vector<std::string> at_limit;
+  for (const int dof : group.dofs) {
+    const Dof& joint = model_->dofs()[static_cast<size_t>(dof)];
+    const double theta = state.theta[dof];
+    if (joint.limited && (theta <= bound(dof, theta, false) + kSameMoment ||
+                          theta >= bound(dof, theta, true) - kSameMoment))
+      at_limit.push_back(joint.name);
+  }
+  const std::string limits =
+      at_limit.empty() ? ""
+                       : ", with " + text::join(at_limit, ", ") + " at " +
+                             (at_limit.size() > 1 ? "their position limits" : "its position limit");
+  const bool in_trunk = key.target && key.target->frame == LinkTarget::Frame::trunk;
+  const std::string in_frame = in_trunk ? " in the frame of the trunk" : "";
+  std::string what, remedy;
+  if (target.gaze) {
+    what = "the gaze misses its point by " + degrees(angle);
+    remedy = "give a point nearer to straight ahead, or turn the torso";
+  } else if (missing > 0) {
+    what = "the " + target.name + " is out of reach by " + millimetres(missing);
+    remedy = "it comes to " + numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) +
+             in_frame + "; move the target, or move or tilt the trunk";
+  } else {
+    what = "the " + target.name + " is at its place but points " + degrees(angle) +
+           " away from its direction (allowed " + degrees(kAligned) + ")";
+    remedy = "its " + std::to_string(target.dofs.size()) + " joints can point it along " +
+             numbers(in_trunk ? Vector3d(trunk.linear().transpose() * along) : along, 3) +
+             in_frame + " there; give this direction or leave it out";
+  }
+  throw PlacedError(
+      ErrorCode::bad_pattern,
+      in_file(*pattern_, pattern_->keyframes[key.keyframe].place + "/" + target.key) +
+          ": t = " + text::fixed(t, 3) + " s" + (under_way ? ", on the way to this key" : "") +
+          ": " + what + limits + "; " + remedy,
+      {pattern_->file, pointer_of_keyframe(*pattern_, key.keyframe) + "/" + target.key});
+}
+
+}  // namespace ayumi

@@ -1,0 +1,101 @@
+#pragma once
+// Hands, other links and the gaze of a pattern as they move over time, and the joints that follow
+// them. A link without a target is where the keys of its joints put it; between two keys it goes
+// from the one place to the other. Of all postures of the limb that put the link there, the joints
+// take the one nearest to their own keys, so that they begin and end with them.
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ayumi/dynamics/robot_data.hpp"
+#include "ayumi/math/track.hpp"
+#include "ayumi/motion/pattern.hpp"
+
+namespace ayumi {
+
+class LinkPlan {
+ public:
+  /// `solved` marks the joints of the legs. Throws Error(bad_pattern) "file: place: ..." for an
+  /// unknown link, one that no joint moves alone or that a leg moves, and for a robot without the
+  /// hand or the head that a key names.
+  LinkPlan(const RobotModel& model, const Pattern& pattern, const std::vector<bool>& solved);
+
+  bool empty() const { return groups_.empty(); }
+  /// Whether targets lead the joint at t.
+  bool leads(int dof, double t) const;
+  /// Whether targets lead any joint at t.
+  bool leads(double t) const;
+  /// Whether a place in the world leads a joint from `begin` to `end`.
+  bool leads_in_world(double begin, double end) const;
+
+  /// Moves the joints that targets lead at t; `keyed` are the angles of the joints' own keys, and
+  /// the base and all other joints stay. Returns the largest change of a joint [rad, m]. Throws
+  /// Error(bad_pattern) for a target that is out of reach, and by how much.
+  double solve(double t, const Eigen::VectorXd& keyed, RobotState& state, RobotData& data) const;
+
+  /// "hands", "gaze" or both, as what leads joints; empty: nothing does.
+  std::string origin() const;
+
+ private:
+  /// A quantity of the keys as a sum: what is given in the world, what is given in the frame of the
+  /// trunk, and the rest of the weight, which is not given.
+  struct Blend {
+    std::array<Track, 3> world, trunk;
+    Track in_world{0.0}, in_trunk{0.0};
+  };
+  struct Anchor {
+    double t = 0;
+    const LinkTarget* target = nullptr;  ///< null: the joints' keys lead
+    Interpolation interpolation = Interpolation::minimum_jerk;
+    size_t keyframe = 0;
+  };
+  struct Target {
+    std::string name;  ///< in messages
+    std::string key;   ///< its place in a keyframe, "hands/left"
+    bool gaze = false;
+    int body = -1;
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< body frame [m]
+    Eigen::Vector3d axis = Eigen::Vector3d::Zero();   ///< body frame, unit vector
+    double length = 0;                                ///< of the limb [m]
+    std::vector<int> dofs;
+    std::vector<Anchor> anchors;
+    Blend place, direction;
+  };
+  /// Targets that move a common joint.
+  struct Group {
+    std::vector<Target> targets;
+    std::vector<int> dofs;
+    std::vector<int> bodies;                         ///< that these move, root first
+    std::vector<int> column;                         ///< of these bodies among the dofs
+    std::vector<std::pair<double, double>> windows;  ///< in which targets lead [s]
+    bool at(double t) const;
+  };
+  /// What is asked for at a time.
+  struct Aim {
+    const Target* target = nullptr;
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+    double place_weight = 0, direction_weight = 0;
+  };
+
+  void add_target(const std::string& name, bool gaze, const std::vector<bool>& solved);
+  void fill_tracks(Target& target) const;
+  void put_in_group(Target target);
+  std::vector<Aim> aims_at(const Group& group, double t, const Eigen::VectorXd& keyed,
+                           const RobotState& state, RobotData& data, bool directions) const;
+  double minimize(const Group& group, const std::vector<Aim>& aims, const Eigen::VectorXd& keyed,
+                  RobotState& state, RobotData& data) const;
+  bool reached(const std::vector<Aim>& aims, const RobotData& data) const;
+  [[noreturn]] void complain(const Group& group, double t, const std::vector<Aim>& aims,
+                             const Eigen::VectorXd& keyed, RobotState& state,
+                             RobotData& data) const;
+  double bound(int dof, double keyed, bool upper) const;
+
+  const RobotModel* model_;
+  const Pattern* pattern_;
+  std::vector<Group> groups_;
+};
+
+}  // namespace ayumi

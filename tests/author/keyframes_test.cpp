@@ -1,0 +1,154 @@
+// Single keys, steps that alternate, motions in sequence that keep their keys, and loops.
+#include <gtest/gtest.h>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/plan/foot_plan.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "tests/support/error_message.hpp"
+#include "tests/support/hoap1.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Eigen::Vector3d;
+
+Keyframe key_of(double t) {
+  Keyframe key;
+  key.t = t;
+  key.place = "keyframes";
+  return key;
+}
+
+// Stands 0.8 s, puts the right foot ahead, and stands 0.8 s.
+Pattern one_step() {
+  Pattern p;
+  p.robot = "hoap1";
+  Swing swing;
+  swing.foot = Side::right;
+  swing.to.position = {0.02, -0.039, 0};
+  swing.lift = 0.015;
+  p.phases = {{0.8, Support::both, {}}, {1.2, Support::left, swing}, {2.0, Support::both, {}}};
+  for (const double t : {0.0, 0.8, 1.2, 1.6}) {
+    Keyframe key = key_of(t);
+    key.zmp = ZmpKey{t == 0.8 || t == 1.2 ? ZmpKey::Place::left : ZmpKey::Place::center};
+    if (t == 0.8) key.joints = {{"l_shoulder_pitch", 0.3}};
+    p.keyframes.push_back(key);
+  }
+  return p;
+}
+
+TEST(KeyEdit, CopiesMovesAndMirrors) {
+  const Pattern p = one_step();
+  const Pattern copied =
+      with_key_edited(hoap1(), p, {.at = 0.8, .to = 1.4, .copy = true, .mirror = true});
+  ASSERT_EQ(copied.keyframes.size(), 5u);
+  EXPECT_EQ(copied.keyframes[3].t, 1.4);
+  EXPECT_EQ(copied.keyframes[3].zmp->place, ZmpKey::Place::right);
+  EXPECT_EQ(copied.keyframes[3].joints.count("r_shoulder_pitch"), 1u);
+  EXPECT_EQ(copied.keyframes[1].joints, p.keyframes[1].joints);
+  // One that arrives at the time of another is merged with it.
+  const Pattern moved = with_key_edited(hoap1(), p, {.at = 0.8, .to = 1.2});
+  ASSERT_EQ(moved.keyframes.size(), 3u);
+  EXPECT_EQ(moved.keyframes[1].joints, p.keyframes[1].joints);
+  EXPECT_NE(
+      error_message([&] { with_key_edited(hoap1(), p, {.at = 0.5, .to = 1}); }, ErrorCode::usage)
+          .find("there is no keyframe at 0.5 s; their times are 0, 0.8, 1.2, 1.6 s"),
+      std::string::npos);
+  EXPECT_NE(
+      error_message([&] { with_key_edited(hoap1(), p, {.at = 0.8, .to = 2.5}); }, ErrorCode::usage)
+          .find("the motion lasts from 0 to 2 s"),
+      std::string::npos);
+}
+
+TEST(Alternate, OneStepBecomesAWalk) {
+  const Pattern p = one_step();
+  const Pattern walk = alternated(hoap1(), p, 4);
+  const FootPlan feet(hoap1(), walk);
+  EXPECT_DOUBLE_EQ(feet.duration(), 8);
+  const auto x = [&](Side side, double t) { return feet.pose(side, t).translation().x(); };
+  const double start = x(Side::left, 0);
+  // Each foot lands 20 mm ahead of the other one, and the last one beside it.
+  EXPECT_NEAR(x(Side::right, 2) - start, 0.02, 1e-4);
+  EXPECT_NEAR(x(Side::left, 4) - start, 0.04, 2e-4);
+  EXPECT_NEAR(x(Side::right, 6) - start, 0.06, 3e-4);
+  EXPECT_NEAR(x(Side::left, 8), x(Side::right, 8), 1e-9);
+  EXPECT_NEAR(
+      feet.pose(Side::left, 8).translation().y() - feet.pose(Side::right, 8).translation().y(),
+      feet.pose(Side::left, 0).translation().y() - feet.pose(Side::right, 0).translation().y(),
+      1e-9);
+  const CommandSeries series = sample(hoap1(), walk, {.dt = 0.005});
+  const auto arm = static_cast<Eigen::Index>(hoap1().find_dof("r_shoulder_pitch"));
+  EXPECT_GT(std::abs(series.samples[560].state.theta[arm] - series.samples[0].state.theta[arm]),
+            0.1);
+  Pattern still = p;
+  for (Phase& phase : still.phases) phase = {phase.until, Support::both, {}};
+  EXPECT_NE(error_message([&] { alternated(hoap1(), still, 4); }, ErrorCode::bad_pattern)
+                .find("no foot swings"),
+            std::string::npos);
+}
+
+TEST(Chained, KeysInSequenceEndWhereTheSamplesEnd) {
+  const RobotModel& model = hoap1();
+  const Pattern walk = walk_pattern(model, {.steps = 2, .turn = 0.1}), bow = [&] {
+    Pattern p;
+    p.robot = "hoap1";
+    p.cog_height = walk.cog_height;
+    p.phases = {{2.0, Support::both, {}}};
+    Keyframe begin = key_of(0), low = key_of(1), end = key_of(2);
+    begin.zmp = low.zmp = end.zmp = ZmpKey{ZmpKey::Place::center};
+    low.joints = {{"l_elbow", -0.6}};
+    end.posture = "home";
+    p.keyframes = {begin, low, end};
+    return p;
+  }();
+  const CommandSeries a = sample(model, walk, {.dt = 0.005}), b = sample(model, bow, {.dt = 0.005});
+  for (const double over : {0.0, 0.6}) {
+    const Pattern keyed = chained(model, {walk, a}, {bow, b}, over);
+    EXPECT_FALSE(keyed.table);
+    const CommandSeries all = sample(model, keyed, {.dt = 0.005});
+    EXPECT_NEAR(all.duration(), a.duration() + over + b.duration(), 0.011);
+    // The arm of the second motion moves in its time, and the feet stay where the first ended.
+    const auto elbow = static_cast<Eigen::Index>(model.find_dof("l_elbow"));
+    const auto at = [&](double t) {
+      return all.samples[static_cast<size_t>(std::lround(t / all.dt))].state.theta[elbow];
+    };
+    EXPECT_NEAR(at(walk.phases.back().until + over), model.rest_state().theta[elbow], 1e-9);
+    EXPECT_NEAR(at(walk.phases.back().until + over + 1), -0.6, 1e-3);
+    for (const size_t side : {0, 1})
+      EXPECT_LT(
+          (all.samples.back().feet[side].translation() - a.samples.back().feet[side].translation())
+              .norm(),
+          1e-6);
+  }
+}
+
+TEST(Loop, SaysWhetherTheEndMeetsTheBeginning) {
+  const RobotModel& model = hoap1();
+  Pattern p;
+  p.robot = "hoap1";
+  p.phases = {{2.0, Support::both, {}}};
+  Keyframe begin = key_of(0), raised = key_of(1);
+  begin.zmp = ZmpKey{ZmpKey::Place::center};
+  raised.joints = {{"l_elbow", -0.6}};
+  p.keyframes = {begin, raised};
+  const CommandSeries open = sample(model, p, {.dt = 0.005});
+  const LoopGap gap = loop_gap(model, {p, open});
+  EXPECT_FALSE(gap.closed);
+  EXPECT_EQ(gap.joint, "l_elbow");
+  EXPECT_NEAR(gap.posture, std::abs(-0.6 - model.rest_state().theta[model.find_dof("l_elbow")]),
+              1e-3);
+  Keyframe home = key_of(2);
+  home.posture = "home";
+  p.keyframes.push_back(home);
+  const CommandSeries closed = sample(model, p, {.dt = 0.005});
+  EXPECT_TRUE(loop_gap(model, {p, closed}).closed);
+  // The same posture at another rate does not close.
+  CommandSeries moving = closed;
+  moving.samples.back().state.dtheta[model.find_dof("l_elbow")] = 0.5;
+  EXPECT_FALSE(loop_gap(model, {p, moving}).closed);
+}
+
+}  // namespace
+}  // namespace ayumi::test

@@ -1,0 +1,305 @@
+// Hands, links and the gaze: they are where the keys say, legs and balance hold, and what cannot be
+// reached is said by how much.
+#include "ayumi/plan/link_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/reach.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "tests/support/error_message.hpp"
+#include "tests/support/hoap1.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using test::hoap1;
+
+const RobotModel& humanoid30() {
+  static const RobotModel model = load_robot("humanoid30", {{AYUMI_SOURCE_DIR "/robots"}});
+  return model;
+}
+
+Pattern standing(double until) {
+  Pattern pattern;
+  pattern.phases = {{until, Support::both, {}}};
+  return pattern;
+}
+
+Keyframe& at(Pattern& pattern, double t) {
+  for (Keyframe& key : pattern.keyframes)
+    if (key.t == t) return key;
+  Keyframe key;
+  key.t = t;
+  key.place = "keyframes/" + std::to_string(pattern.keyframes.size());
+  pattern.keyframes.push_back(key);
+  return pattern.keyframes.back();
+}
+
+LinkTarget place(const Vector3d& position, LinkTarget::Frame frame = LinkTarget::Frame::world) {
+  LinkTarget target;
+  target.position = position;
+  target.frame = frame;
+  return target;
+}
+
+const LinkTarget kFree;
+
+struct Hand {
+  Vector3d end, along;      // world
+  Vector3d in_trunk, aims;  // the same in the frame of the trunk
+};
+
+Hand hand_at(const RobotModel& model, const RobotState& state, int body) {
+  RobotData data(model);
+  update_positions(model, state, data);
+  const Vector3d point = limb_point(model, body);
+  const Eigen::Isometry3d trunk = data.pose(model.trunk_body());
+  Hand hand;
+  hand.end = data.pose(body) * point;
+  hand.along = (data.rotation[static_cast<size_t>(body)] * point).normalized();
+  hand.in_trunk = trunk.inverse() * hand.end;
+  hand.aims = trunk.linear().transpose() * hand.along;
+  return hand;
+}
+
+const CommandSample& sample_at(const CommandSeries& series, double t) {
+  return series.samples[static_cast<size_t>(std::lround(t / series.dt))];
+}
+
+// The hand of a posture of the arm some way from home, joints well inside their limits.
+RobotState random_arm(const RobotModel& model, int body, std::mt19937& random, double off = 0.35) {
+  RobotState state = model.rest_state();
+  std::uniform_real_distribution<double> share(0.5 - off, 0.5 + off);
+  for (const int dof : limb_dofs(model, body)) {
+    const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
+    const double low = std::max(joint.lower, state.theta[dof] - 1),
+                 high = std::min(joint.upper, state.theta[dof] + 1);
+    state.theta[dof] = low + share(random) * (high - low);
+  }
+  return state;
+}
+
+TEST(LinkPlan, AHandHeldInTheWorldStaysWhileTheBodySways) {
+  const RobotModel& model = hoap1();
+  const int body = hand_body(model, Side::left);
+  std::mt19937 random(7);
+  const Vector3d goal = hand_at(model, random_arm(model, body, random, 0.1), body).in_trunk;
+  RobotState rest = sample(model,
+                           [] {
+                             Pattern pattern = standing(1);
+                             at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+                             return pattern;
+                           }())
+                        .samples.front()
+                        .state;
+  RobotData data(model);
+  update_positions(model, rest, data);
+  const Vector3d held = data.pose(model.trunk_body()) * goal;
+
+  Pattern pattern = standing(4);
+  at(pattern, 0.5).zmp = ZmpKey{ZmpKey::Place::center};
+  at(pattern, 1.0).hands["left"] = place(held);
+  at(pattern, 1.6).zmp = ZmpKey{ZmpKey::Place::point, {data.cog.x(), 0.010}};
+  at(pattern, 2.2).zmp = ZmpKey{ZmpKey::Place::point, {data.cog.x(), -0.010}};
+  at(pattern, 2.8).zmp = ZmpKey{ZmpKey::Place::center};
+  at(pattern, 3.0).hands["left"] = place(held);
+  at(pattern, 3.6).hands["left"] = kFree;
+  const CommandSeries series = sample(model, pattern);
+  double sway = 0, off = 0, sole = 0, cog = 0, speed = 0, jump = 0;
+  const Vector3d trunk = sample_at(series, 1).state.base.position;
+  for (size_t k = 1000; k <= 3000; ++k) {
+    const RobotState& state = series.samples[k].state;
+    off = std::max(off, (hand_at(model, state, body).end - held).norm());
+    sway = std::max(sway, (state.base.position - trunk).norm());
+  }
+  EXPECT_GT(sway, 0.005) << "the test needs a trunk that moves";
+  EXPECT_LT(off, 1e-6);
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const CommandSample& now = series.samples[k];
+    update_positions(model, now.state, data);
+    cog = std::max(cog, (data.cog - now.cog).norm());
+    for (const Side side : {Side::left, Side::right})
+      sole = std::max(sole, (sole_pose(model, data, side).translation() -
+                             now.feet[static_cast<size_t>(side)].translation())
+                                .norm());
+    speed = std::max(speed, now.acceleration.tail(model.dof_count()).cwiseAbs().maxCoeff());
+    if (k > 0)
+      jump = std::max(jump, (now.acceleration - series.samples[k - 1].acceleration)
+                                .tail(model.dof_count())
+                                .cwiseAbs()
+                                .maxCoeff());
+  }
+  EXPECT_LT(sole, 1e-11);
+  EXPECT_LT(cog, 1e-11);
+  // Smooth where targets take over and let go: accelerations as of minimum jerk over half a second.
+  EXPECT_LT(speed, 80);
+  EXPECT_LT(jump, 2);
+  // Before the hand is led, and after, the joints have their own angles.
+  for (const double t : {0.0, 3.7, 4.0})
+    for (const int dof : limb_dofs(model, body))
+      EXPECT_NEAR(sample_at(series, t).state.theta[dof], model.rest_state().theta[dof], 1e-12);
+}
+
+TEST(LinkPlan, RandomPlacesAndDirectionsAreMet) {
+  const RobotModel& model = humanoid30();
+  std::mt19937 random(3);
+  for (int round = 0; round < 12; ++round) {
+    const Side side = round % 2 == 0 ? Side::left : Side::right;
+    const int body = hand_body(model, side);
+    ASSERT_GE(body, 0);
+    const Hand goal = hand_at(model, random_arm(model, body, random), body);
+    Pattern pattern = standing(1.6);
+    LinkTarget target = place(goal.in_trunk, LinkTarget::Frame::trunk);
+    target.direction = goal.aims;
+    at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+    at(pattern, 1).hands[name_of(side)] = target;
+    const CommandSeries series = sample(model, pattern, {.dt = 0.005});
+    const Hand reached = hand_at(model, sample_at(series, 1).state, body);
+    EXPECT_LT((reached.in_trunk - goal.in_trunk).norm(), 1e-6);
+    EXPECT_LT(std::acos(std::min(1.0, reached.aims.dot(goal.aims))), 1e-3);
+  }
+}
+
+// No posture near it puts the hand there and is nearer to the keys: the way to them has no part
+// along which the hand stays.
+TEST(LinkPlan, TheElbowGoesWhereTheKeysAskFor) {
+  const RobotModel& model = humanoid30();
+  const int body = hand_body(model, Side::right);
+  std::mt19937 random(11);
+  const Hand goal = hand_at(model, random_arm(model, body, random), body);
+  Pattern pattern = standing(1.6);
+  at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+  at(pattern, 1).hands["right"] = place(goal.in_trunk, LinkTarget::Frame::trunk);
+  const RobotState state = sample_at(sample(model, pattern, {.dt = 0.005}), 1).state;
+  RobotData data(model);
+  update_positions(model, state, data);
+  const Vector3d end = data.pose(body) * limb_point(model, body);
+  const std::vector<int> dofs = limb_dofs(model, body);
+  Eigen::MatrixXd jacobian(3, static_cast<Eigen::Index>(dofs.size()));
+  VectorXd way(static_cast<Eigen::Index>(dofs.size()));
+  const Eigen::MatrixXd whole = body_jacobian(model, data, body, end);
+  for (size_t i = 0; i < dofs.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    jacobian.col(column) = whole.block<3, 1>(0, 6 + dofs[i]);
+    way[column] = model.rest_state().theta[dofs[i]] - state.theta[dofs[i]];
+  }
+  const VectorXd still =
+      way - jacobian.transpose() *
+                (jacobian * jacobian.transpose()).ldlt().solve(Eigen::VectorXd(jacobian * way));
+  EXPECT_GT(way.norm(), 0.1);
+  EXPECT_LT(still.norm(), 1e-5 * way.norm());
+}
+
+TEST(LinkPlan, TheHeadLooksAtThePoint) {
+  const RobotModel& model = humanoid30();
+  const int head = head_body(model);
+  ASSERT_GE(head, 0);
+  const Vector3d seen(2, 0.6, 0.7);
+  Pattern pattern = standing(1.6);
+  at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+  at(pattern, 1).gaze = place(seen);
+  const CommandSeries series = sample(model, pattern, {.dt = 0.005});
+  RobotData data(model);
+  for (const double t : {1.0, 1.6}) {
+    update_positions(model, sample_at(series, t).state, data);
+    const Vector3d eye = data.pose(head) * model.bodies()[static_cast<size_t>(head)].inertia.com;
+    EXPECT_GT(data.rotation[static_cast<size_t>(head)].col(0).dot((seen - eye).normalized()),
+              1 - 1e-9);
+  }
+  pattern.keyframes.back().gaze = place({-2, 0.8, 0.6});
+  EXPECT_NE(test::error_message([&] { sample(model, pattern); }, ErrorCode::bad_pattern)
+                .find("the gaze misses its point by "),
+            std::string::npos);
+  pattern.keyframes.back().gaze = place(seen);
+  EXPECT_NE(test::error_message([&] { sample(hoap1(), pattern); }, ErrorCode::bad_pattern)
+                .find("has no neck"),
+            std::string::npos);
+}
+
+TEST(LinkPlan, SaysByHowMuchAHandIsOutOfReach) {
+  const RobotModel& model = hoap1();
+  const int body = hand_body(model, Side::left);
+  // Straight out of the stretched arm by 100 mm: of all places, the end is the nearest.
+  RobotState state = model.rest_state();
+  for (const int dof : limb_dofs(model, body)) state.theta[dof] = 0;
+  const Hand straight = hand_at(model, state, body);
+  RobotData data(model);
+  update_positions(model, state, data);
+  const int shoulder = model.dofs()[static_cast<size_t>(limb_dofs(model, body).back())].body;
+  const Vector3d socket = data.pose(model.trunk_body()).inverse() *
+                          (data.base_position + data.position[static_cast<size_t>(shoulder)]);
+  const Vector3d far = straight.in_trunk + 0.1 * (straight.in_trunk - socket).normalized();
+  Pattern pattern = standing(2);
+  at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+  at(pattern, 1).hands["left"] = place(far, LinkTarget::Frame::trunk);
+  const std::string message =
+      test::error_message([&] { sample(model, pattern); }, ErrorCode::bad_pattern);
+  EXPECT_NE(message.find("keyframes/1/hands/left: t = 1.000 s: the left hand is out of reach by "),
+            std::string::npos)
+      << message;
+  const size_t at_mm = message.find("reach by ") + 9;
+  const double missing = std::stod(message.substr(at_mm));
+  EXPECT_NEAR(missing, 100, 12) << message;
+  EXPECT_NE(message.find("in the frame of the trunk; move the target"), std::string::npos);
+}
+
+TEST(LinkPlan, RefusesLinksThatItCannotMove) {
+  const RobotModel& model = hoap1();
+  const auto said = [&](const std::string& link) {
+    Pattern pattern = standing(2);
+    at(pattern, 1).hands[link] = place({0.1, 0.1, 0.3});
+    return test::error_message([&] { sample(model, pattern); }, ErrorCode::bad_pattern);
+  };
+  EXPECT_NE(said("l_shank").find("the legs move this link"), std::string::npos);
+  EXPECT_NE(said("torso").find("no joint moves this link alone"), std::string::npos);
+  EXPECT_NE(said("l_forarm").find("did you mean 'l_forearm'?"), std::string::npos);
+}
+
+TEST(LinkPlan, MirroredTargetsMoveTheMirroredArm) {
+  const RobotModel& model = hoap1();
+  std::mt19937 random(5);
+  const int left = hand_body(model, Side::left), right = hand_body(model, Side::right);
+  const Vector3d goal = hand_at(model, random_arm(model, left, random), left).in_trunk;
+  Pattern pattern = standing(2);
+  at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+  at(pattern, 1).hands["l_forearm"] = place(goal, LinkTarget::Frame::trunk);
+  const CommandSeries one = sample(model, pattern, {.dt = 0.005}),
+                      other = sample(model, mirrored(model, pattern), {.dt = 0.005});
+  for (size_t k = 0; k < one.samples.size(); k += 20) {
+    const Vector3d a = hand_at(model, one.samples[k].state, left).end,
+                   b = hand_at(model, other.samples[k].state, right).end;
+    EXPECT_LT((a - Vector3d(b.x(), -b.y(), b.z())).norm(), 1e-6);
+  }
+}
+
+// Keys of the legs move the base, and the hand is held all the same.
+TEST(LinkPlan, AHandIsHeldWhileKeysMoveTheLegs) {
+  const RobotModel& model = hoap1();
+  const int body = hand_body(model, Side::right);
+  std::mt19937 random(9);
+  Pattern pattern = standing(2);
+  at(pattern, 0).joints["l_knee"] = model.rest_state().theta[model.find_dof("l_knee")];
+  const RobotState rest = sample(model, pattern).samples.front().state;
+  RobotState arm = random_arm(model, body, random);
+  arm.base = rest.base;
+  const Vector3d held = hand_at(model, arm, body).end;
+  at(pattern, 0.5).hands["right"] = place(held);
+  for (const char* const leg : {"l_", "r_"}) {
+    const std::string side = leg;
+    at(pattern, 1).joints[side + "ankle_pitch"] =
+        model.rest_state().theta[model.find_dof(side + "ankle_pitch")] + 0.03;
+  }
+  const CommandSeries series = sample(model, pattern);
+  EXPECT_GT((series.samples.back().state.base.position - rest.base.position).norm(), 1e-3);
+  for (size_t k = 500; k < series.samples.size(); k += 50)
+    EXPECT_LT((hand_at(model, series.samples[k].state, body).end - held).norm(), 1e-6);
+}
+
+}  // namespace
+}  // namespace ayumi
