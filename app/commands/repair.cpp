@@ -1,10 +1,15 @@
 // The nearest consistent pattern by Ipopt, written as the author's file with a correction track.
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/author/edit/edit.hpp"
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
@@ -238,6 +243,77 @@ int exit_code_of(const RepairResult& result) {
              : 4;
 }
 
+// What a repair works on, for a user who waits: said after some seconds, again when another program
+// begins, and when the repair is stopped. It is no progress, so that it is said with -q too.
+class StruggleTeller {
+ public:
+  // Chosen: a usual repair ends before that, and a user who waits longer wants to know why [s].
+  static constexpr double kSilence = 5;
+  // Chosen: a line of a terminal or two.
+  static constexpr size_t kMostNamed = 3;
+
+  void note(const ConsistencyReport& check) { left_ = remaining_errors(check); }
+
+  Progress around(Progress progress) {
+    return [this, progress = std::move(progress)](const ProgressEvent& event) {
+      speak_up(event.stage);
+      return progress(event);
+    };
+  }
+
+  void say_what_is_left() const { say("the repair was stopped; left to mend: " + words()); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void speak_up(const std::string& stage) {
+    const Clock::time_point now = Clock::now();
+    if (stage == told_stage_ || std::chrono::duration<double>(now - told_).count() < kSilence)
+      return;
+    told_stage_ = stage;
+    told_ = now;
+    say(stage + " takes a while, because it still has to mend: " + words() +
+        "; Ctrl-C stops the repair");
+  }
+
+  std::string words() const {
+    if (left_.empty()) return "nothing, only a smaller change is being looked for";
+    const size_t named = std::min(left_.size(), kMostNamed);
+    std::string out = text::join({left_.begin(), left_.begin() + static_cast<long>(named)}, "; ");
+    if (left_.size() > named)
+      out += "; and " + text::counted(static_cast<long>(left_.size() - named), "more error");
+    return out;
+  }
+
+  static void say(const std::string& words) {
+    const char* clear = isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "";
+    std::fprintf(stderr, "%sayumi: %s\n", clear, text::printable(words).c_str());
+  }
+
+  std::vector<std::string> left_;
+  std::string told_stage_;
+  Clock::time_point told_ = Clock::now();
+};
+
+RepairResult repair_telling(const Task& input, const RepairOptions& wishes,
+                            const Progress& progress) {
+  StruggleTeller teller;
+  RepairOptions options = wishes;
+  options.on_check = [&teller](const ConsistencyReport& check) { teller.note(check); };
+  try {
+    RepairResult result =
+        repair(input.robot, input.pattern, input.series, options, teller.around(progress));
+    if (result.partial) {
+      teller.note(result.check);
+      teller.say_what_is_left();
+    }
+    return result;
+  } catch (const Interrupted&) {
+    teller.say_what_is_left();
+    throw;
+  }
+}
+
 void repair_pattern(Context& context, RepairCommand options) {
   if (options.pattern == "-")
     fail(ErrorCode::usage,
@@ -249,8 +325,7 @@ void repair_pattern(Context& context, RepairCommand options) {
   const Task input = load(context, options);
   options.repair = repair_options(options, input);
   const auto begin = std::chrono::steady_clock::now();
-  const RepairResult result =
-      repair(input.robot, input.pattern, input.series, options.repair, context.progress());
+  const RepairResult result = repair_telling(input, options.repair, context.progress());
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   context.exit_code = exit_code_of(result);

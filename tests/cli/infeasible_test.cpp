@@ -1,6 +1,9 @@
 // What stands in the way of a repair, and what would pass: every value told has to be true.
 
+#include <chrono>
+#include <csignal>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/cli/program.hpp"
 
@@ -99,6 +102,35 @@ TEST_F(Infeasible, AFootOutOfReachNamesTheStrideThatPasses) {
   ASSERT_NE(at, std::string::npos) << failed.err;
   const std::string value = failed.err.substr(at + 14, failed.err.find(' ', at + 14) - at - 14);
   EXPECT_EQ(ayumi({"check", "step.json", "--set", "stride=" + value}).exit_code, 0) << value;
+}
+
+// A walk on ice: the repair works for a long time, says what it works on although it is quiet, and
+// on Ctrl-C says what is left.
+TEST_F(Infeasible, ALongRepairSaysWhatItStrugglesWith) {
+  ASSERT_EQ(ayumi({"new", "walk", "--steps", "30", "-o", "ice.json"}).exit_code, 0);
+  std::string text = contents(folder / "ice.json");
+  const std::string key = R"("friction": 0.8)";
+  ASSERT_NE(text.find(key), std::string::npos) << text;
+  write(folder / "ice.json", text.replace(text.find(key), key.size(), R"("friction": 0.05)"));
+  const fs::path err = folder / "err";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int file = ::open(err.c_str(), O_WRONLY | O_CREAT, 0600);
+    if (::chdir(folder.path().c_str()) != 0 || ::dup2(file, 2) < 0) ::_exit(126);
+    ::execl(AYUMI_PROGRAM, AYUMI_PROGRAM, "repair", "ice.json", "-o", "out.json", "-q", nullptr);
+    ::_exit(127);
+  }
+  for (int i = 0; i < 600 && contents(err).empty(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_NE(contents(err).find(" takes a while, because it still has to mend: "), std::string::npos)
+      << contents(err);
+  EXPECT_NE(contents(err).find(" friction"), std::string::npos) << contents(err);
+  ::kill(child, SIGINT);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_NE(contents(err).find("left to mend: "), std::string::npos) << contents(err);
+  EXPECT_FALSE(fs::exists(folder / "out.json"));
 }
 
 }  // namespace

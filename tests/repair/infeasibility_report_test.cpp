@@ -33,6 +33,31 @@ TEST(InfeasibilityReport, NamesTheTimeForWhichAFootStandsOn) {
       << found[0].text;
 }
 
+// A caller is told what is wrong with the motion at every stage, so that it can say it while the
+// work goes on and when it is stopped.
+TEST(InfeasibilityReport, TellsWhatIsLeftWhileItWorks) {
+  Pattern pattern = walk();
+  pattern.phases[2].until -= 0.060;
+  const CommandSeries series = sample(hoap1(), pattern);
+  std::vector<std::vector<std::string>> told;
+  RepairOptions options;
+  options.on_check = [&](const ConsistencyReport& check) {
+    told.push_back(remaining_errors(check));
+  };
+  int calls = 0;
+  const Progress stop = [&](const ProgressEvent&) { return ++calls < 3; };
+  EXPECT_THROW(repair(hoap1(), series, options, stop), Interrupted);
+  ASSERT_FALSE(told.empty());
+  ASSERT_FALSE(told.front().empty());
+  EXPECT_NE(told.front()[0].find(" ms after its contact has ended at "), std::string::npos)
+      << told.front()[0];
+  told.clear();
+  const RepairResult whole = repair(hoap1(), series, options);
+  ASSERT_EQ(whole.status, RepairStatus::repaired);
+  EXPECT_FALSE(told.front().empty());
+  EXPECT_TRUE(told.back().empty());
+}
+
 // Findings know the bodies, joints and feet that they speak of, apart from their words.
 TEST(InfeasibilityReport, PlacesAreTyped) {
   Finding at_joint, at_bodies;

@@ -80,6 +80,34 @@ std::string violation_text(const Finding& f, double violation) {
          f.unit + ", but the limit is " + text::brief(f.limit) + " " + f.unit;
 }
 
+std::string words_of(const InfeasibilityCause& cause) {
+  return violation_text(cause.finding, cause.violation) + " " + window_text(cause.finding);
+}
+
+// The worst of the findings of each kind and place.
+template <class Wanted>
+std::vector<InfeasibilityCause> worst_of(const ConsistencyReport& report, const Wanted& wanted) {
+  std::map<std::pair<std::string, std::string>, InfeasibilityCause> worst;
+  for (const Finding& f : report.findings) {
+    if (!wanted(f)) continue;
+    const InfeasibilityCause cause = cause_of(f);
+    const auto found = worst.try_emplace({name_of(f.kind), f.where}, cause).first;
+    if (cause.violation > found->second.violation) found->second = cause;
+  }
+  std::vector<InfeasibilityCause> result;
+  for (auto& entry : worst) result.push_back(std::move(entry.second));
+  return result;
+}
+
+bool is_error(const Finding& f) { return f.severity == Severity::error; }
+
+void most_severe_first(std::vector<InfeasibilityCause>& causes) {
+  std::stable_sort(causes.begin(), causes.end(),
+                   [](const InfeasibilityCause& a, const InfeasibilityCause& b) {
+                     return severity_of(a) > severity_of(b);
+                   });
+}
+
 }  // namespace
 
 bool is_matter_of_time(const Finding& f) {
@@ -89,15 +117,18 @@ bool is_matter_of_time(const Finding& f) {
 }
 
 double total_violation(const ConsistencyReport& report) {
-  std::map<std::pair<std::string, std::string>, double> worst;
-  for (const Finding& f : report.findings) {
-    if (f.severity != Severity::error) continue;
-    double& severity = worst[{name_of(f.kind), f.where}];
-    severity = std::max(severity, severity_of(cause_of(f)));
-  }
   double sum = 0;
-  for (const auto& entry : worst) sum += entry.second;
+  for (const InfeasibilityCause& cause : worst_of(report, is_error))
+    sum += std::max(0.0, severity_of(cause));
   return sum;
+}
+
+std::vector<std::string> remaining_errors(const ConsistencyReport& check) {
+  std::vector<InfeasibilityCause> causes = worst_of(check, is_error);
+  most_severe_first(causes);
+  std::vector<std::string> words;
+  for (const InfeasibilityCause& cause : causes) words.push_back(words_of(cause));
+  return words;
 }
 
 namespace {
@@ -148,33 +179,20 @@ std::vector<InfeasibilityCause> infeasibility_report(const RobotModel& model,
   const auto locked = [&](const Finding& f) {
     return at_locked_joint(f, options) || !time_lock(f, options).empty();
   };
-  const auto is_error = [](const Finding& f) { return f.severity == Severity::error; };
   const bool by_lock = std::any_of(report.findings.begin(), report.findings.end(),
                                    [&](const Finding& f) { return is_error(f) && locked(f); });
-  std::map<std::pair<std::string, std::string>, InfeasibilityCause> worst;
-  for (const Finding& f : report.findings) {
-    if (!is_error(f) || (by_lock && !locked(f))) continue;
-    const InfeasibilityCause cause = cause_of(f);
-    const auto found = worst.try_emplace({name_of(f.kind), f.where}, cause).first;
-    if (cause.violation > found->second.violation) found->second = cause;
-  }
-  std::vector<InfeasibilityCause> result;
-  for (auto& entry : worst) {
-    InfeasibilityCause& cause = entry.second;
+  std::vector<InfeasibilityCause> result =
+      worst_of(report, [&](const Finding& f) { return is_error(f) && (!by_lock || locked(f)); });
+  for (InfeasibilityCause& cause : result) {
     cause.time_factor = time_factor(model, series, cause.finding, options.check);
-    cause.text =
-        violation_text(cause.finding, cause.violation) + " " + window_text(cause.finding) + ": ";
+    cause.text = words_of(cause) + ": ";
     if (at_locked_joint(cause.finding, options))
       cause.text += cause.finding.where + " is locked; unlock the joint. Otherwise: ";
     else if (const std::string lock = time_lock(cause.finding, options); !lock.empty())
       cause.text += lock + "; remove the lock. Otherwise: ";
     cause.text += remedy(cause);
-    result.push_back(std::move(cause));
   }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const InfeasibilityCause& a, const InfeasibilityCause& b) {
-                     return severity_of(a) > severity_of(b);
-                   });
+  most_severe_first(result);
   return result;
 }
 

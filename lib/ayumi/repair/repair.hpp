@@ -8,6 +8,7 @@
 // repair/nlp/nlp.hpp.
 
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -42,6 +43,9 @@ struct RepairOptions {
   std::optional<double> zmp_margin;
   int max_iterations = repair_policy::rounds::kMostIterations;  ///< of Ipopt in each round
   bool mumps = false;  ///< linear systems by MUMPS, to compare
+  /// Called with the check of the motion as it is given, and of every motion found after that: what
+  /// is still wrong with it is what the repair works on. See remaining_errors().
+  std::function<void(const ConsistencyReport& check)> on_check = {};
 };
 
 enum class RepairStatus { already_consistent, repaired, infeasible, not_converged };
@@ -94,6 +98,10 @@ struct RepairResult {
 /// land a little early [m]: 0.9 of the radius of the largest circle about the centre of the smaller
 /// sole.
 double safe_margin(const RobotModel& model);
+
+/// The errors of a motion in words, with their times, the most severe first; errors of one kind at
+/// one place are named once, where they are worst. Empty where the motion passes.
+std::vector<std::string> remaining_errors(const ConsistencyReport& check);
 
 /// Throws Error(usage) for a joint, window or weight that does not exist or is out of range, and
 /// Interrupted when `progress` stops the work and no partial result is wanted.

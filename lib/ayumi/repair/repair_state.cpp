@@ -18,6 +18,7 @@ RepairState repair_state(const RobotModel& model, const CommandSeries& series,
       model, series, options, progress, CollisionModel(model), repair_spec(model, series, options)};
   state.result.series = series;
   state.result.check = state.result.before = check_consistency(model, series, options.check);
+  if (options.on_check) options.on_check(state.result.check);
   return state;
 }
 
@@ -39,6 +40,7 @@ void take(RepairState& state, const CorrectionTrack& track) {
   result.correction = kept_at(trimmed(track), state.spec.kept_times);
   result.series = apply_correction(state.model, state.series, result.correction);
   result.check = report_of(state, result.series);
+  if (state.options.on_check) state.options.on_check(result.check);
 }
 
 bool is_done(const RepairState& state) {
