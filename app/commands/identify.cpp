@@ -100,14 +100,20 @@ std::string base_name(const IdentifyCommand& options) {
   return base.empty() ? fs::absolute(options.robot).string() : base.generic_string();
 }
 
+// A zero offset that a sidecar may state [rad]. Definition: the reader of sidecars takes no more.
+constexpr double kWritableOffset = 0.5;
+
 // What a joint's servo is in the simulation: that of `source`. A stiffness that is not determined
 // is at least the lower end of its interval, which is written; where there is none, the robot keeps
 // its own. A delay that stands for the damping too is written as damping, because a servo without
-// any would let the joint oscillate. A joint's distance from its command is no error of its
-// encoder, so it is not written.
+// any would let the joint oscillate. The offset is the joint's own: where it stands, beside its
+// command, without load.
 Json servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
                  const ServoDescription& own) {
   Json group = {{"joints", {joint.joint}}};
+  if (std::abs(joint.offset.value) <= kWritableOffset)
+    group["offset"] = sidecar_number(joint.offset.value);
+  if (!source.moved) return group;
   const bool has_kp = source.kp.known || source.kp.lower > 0;
   const double kp = source.kp.known ? source.kp.value : has_kp ? source.kp.lower : own.kp;
   const double share = kp / source.kp.value;
@@ -128,6 +134,13 @@ Json servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
   return group;
 }
 
+// Whether the profile of `model` states servos of its own, which hide those of the robot.
+bool profile_has_servos(const RobotModel& model) {
+  for (const ActuatorProfile& profile : model.description().profiles)
+    if (profile.name == model.limits().name) return !profile.servos.empty();
+  return false;
+}
+
 std::string sidecar_text(const RobotModel& model, const IdentifyCommand& options,
                          const Identification& found) {
   Json groups = Json::array();
@@ -142,7 +155,6 @@ std::string sidecar_text(const RobotModel& model, const IdentifyCommand& options
   }
   for (const IdentifiedJoint& joint : found.joints) {
     const IdentifiedJoint& source = joint.moved && joint.kp.known ? joint : *of_type.at(joint.type);
-    if (!source.moved) continue;
     const auto dof = static_cast<size_t>(model.find_dof(joint.joint));
     groups.push_back(servo_group(joint, source, model.limits().servo[dof]));
   }
@@ -153,6 +165,9 @@ std::string sidecar_text(const RobotModel& model, const IdentifyCommand& options
                {"assumptions",
                 {"servos: identified from " + fs::path(options.measured).filename().string() +
                  " as the answer to " + fs::path(options.command).filename().string()}}};
+  // Servos of a profile hide those of the robot, so what was found stands there too.
+  if (profile_has_servos(model))
+    json["profiles"] = {{{"name", model.limits().name}, {"servos", groups}}};
   return json.dump(2) + "\n";
 }
 

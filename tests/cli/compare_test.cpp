@@ -69,5 +69,61 @@ TEST(CompareCommand, NumbersPictureAndReport) {
   EXPECT_NE(none.err.find("name a recording"), std::string::npos);
 }
 
+// Servos of the default profile hide those of the robot: the sidecar of `identify` has effect all
+// the same, and the zero offset that the recording shows is that of the simulated joint.
+TEST(IdentifyCommand, ItsSidecarHasEffectOverServosOfAProfile) {
+  const Folder folder;
+  const auto ayumi = [&](const std::vector<std::string>& words) {
+    return run_program(words, folder.path());
+  };
+  write(folder / "base.json", R"({
+    "format": "ayumi.robot/1", "base": "hoap1", "name": "mine",
+    "profiles": [{ "name": "hoap1", "servos": [{ "joints": ["*"], "kp": 3000, "kd": 12 }] }]
+  })");
+  const auto log_of = [&](const std::string& robot, const std::string& name) {
+    write(folder / (name + ".json"), R"({
+      "format": "ayumi.pattern/1", "name": "squat", "robot": ")" +
+                                         robot + R"(",
+      "phases": [{ "until": 2, "support": "both" }],
+      "keyframes": [{ "t": 0, "cog": { "height": 0.245 } }, { "t": 1, "cog": { "height": 0.225 } },
+                    { "t": 2, "cog": { "height": 0.245 } }]
+    })");
+    const Output run = ayumi({"run", name + ".json", "-o", name, "-q", "--no-pictures"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const Output table = ayumi({"export", name, "--format", "csv-log", "-o", name + ".csv", "-q"});
+    EXPECT_EQ(table.exit_code, 0) << table.err;
+    return contents(folder / (name + ".csv"));
+  };
+  const std::string log = log_of("base.json", "out");
+  const double offset = 0.2 * M_PI / 180;
+  write(folder / "command.csv", recording_of(log, 0, 0));
+  write(folder / "measured.csv", recording_of(log, 0, offset));
+  const Output found = ayumi({"identify", "base.json", "--command", "command.csv", "--measured",
+                              "measured.csv", "-o", "found.json", "-q"});
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  const Json sidecar = Json::parse(contents(folder / "found.json"));
+  ASSERT_EQ(sidecar.at("profiles").at(0).at("name"), "hoap1");
+  for (const Json& group : sidecar.at("profiles").at(0).at("servos"))
+    EXPECT_NEAR(group.at("offset"), group.at("joints").at(0) == "l_knee" ? offset : 0.0,
+                0.05 * offset)
+        << group;
+  // The knee of a run with this sidecar stands farther by the offset when the run begins and ends.
+  const auto knee_at_the_end = [](const std::string& text) {
+    std::istringstream lines(text);
+    std::string line, head, last, cell;
+    std::getline(lines, head);
+    while (std::getline(lines, line)) last = line;
+    std::istringstream names(head), cells(last);
+    double angle = 0, target = 0;
+    for (std::string name; std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
+      if (name.starts_with("theta.l_knee")) angle = std::stod(cell);
+      if (name.starts_with("target.l_knee")) target = std::stod(cell);
+    }
+    return angle - target;
+  };
+  EXPECT_NEAR(knee_at_the_end(log_of("found.json", "again")) - knee_at_the_end(log), offset,
+              0.3 * offset);
+}
+
 }  // namespace
 }  // namespace ayumi::test
