@@ -102,11 +102,10 @@ class KeyEdits {
         ((i > 0 && outermost(pointer_of_keyframe(pattern, i - 1)) == outermost(next)) ||
          motion_.document.contains(OrderedJson::json_pointer(next + "/after")));
     if (inside)
-      fail(ErrorCode::usage,
-           "at " + text::exact(t) +
-               " s the keyframes are those of a block that "
-               "repeats, so a new one has no place in the text; choose the time of "
-               "one of its keys, or write the block out");
+      fail(ErrorCode::usage, "at " + text::exact(t) +
+                                 " s the keyframes come from a repeated block, so no new keyframe "
+                                 "can be written there; choose the time of one of its keyframes, "
+                                 "or replace the block by the keyframes that it stands for");
     return outermost(next);
   }
 
@@ -504,9 +503,7 @@ class Drag {
     if (handle_.kind == AuthorHandle::Kind::limb)
       return ": its joints are at their limits, or the place is too far away.";
     if (handle_.kind == AuthorHandle::Kind::foot) return ": other keys move it too.";
-    return ": this is as far as the soles and the balance let it go at this time, or other keys "
-           "move "
-           "it too.";
+    return ": the soles and the balance allow no more at this time, or other keys move it too.";
   }
 
   // The arm alone moves; the balance then moves the base a little, so the arm follows it.

@@ -46,7 +46,7 @@ AuthorAnswer answered(const Work& work) {
   } catch (const Error& error) {
     return refused(error.what());
   } catch (const nlohmann::json::exception&) {
-    return {400, {{"message", "the request is not as the page makes it"}}};
+    return {400, {{"message", "the request does not have the form that the page sends"}}};
   }
 }
 
@@ -458,7 +458,8 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
       next->result = std::move(result);
       publish(std::move(next));
     } else {
-      news["error"] = "the pattern has changed meanwhile; this answer was of the old one";
+      news["error"] =
+          "the pattern has changed in the meantime; this answer belongs to the old pattern";
     }
   }
   news["progress"] = 1;

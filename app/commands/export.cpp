@@ -665,8 +665,8 @@ void add_export(CLI::App& app, Context& context) {
       ->required()
       ->type_name("FILE");
   command->add_flag("--sign-test", options->sign_test,
-                    "Write a slow, small motion of each joint of a robot, and a sheet with a "
-                    "picture of each, which shows the way the joint has to move.");
+                    "Write a slow, small motion of each joint, and a sheet with a picture of each, "
+                    "which shows the direction in which the joint has to move.");
   command
       ->add_option("--ramp", options->ramp,
                    "Shortest approach ramp before the motion (default: 2; 0 for an imported "

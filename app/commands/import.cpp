@@ -147,17 +147,18 @@ void add_import(CLI::App& app, Context& context) {
       "Move the robot up and down so that the soles that carry it are on the ground.");
   command
       ->add_option("--contact-height", options.contact.height,
-                   "Height over the lowest sole up to which a sole may carry [m].")
+                   "A sole that is higher than this above the lowest sole does not carry [m].")
       ->check(number_within(0.0, 0.2))
       ->capture_default_str();
   command
       ->add_option("--contact-speed", options.contact.speed,
-                   "Speed up to which a sole may carry [m/s].")
+                   "A sole that is faster than this does not carry [m/s].")
       ->check(number_within(0.0, 5.0))
       ->capture_default_str();
   command
-      ->add_option("--contact-load", options.contact.load,
-                   "Vertical force from which on the robot is carried, in weights.")
+      ->add_option(
+          "--contact-load", options.contact.load,
+          "Smallest vertical force with which soles carry the robot, as a multiple of its weight.")
       ->check(number_within(0.0, 2.0))
       ->capture_default_str();
   command->add_flag(

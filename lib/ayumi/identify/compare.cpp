@@ -228,7 +228,8 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
     result.shift = options.shift.value_or(0);
     if (!options.shift)
       result.notes.push_back(
-          "without joint angles the time shift is not found; both begin at 0 (--shift)");
+          "without joint angles the time shift cannot be found, so the recording is taken to begin "
+          "at 0 s of the run; --shift sets another time");
   }
   const Index sensor_rows = std::max(
       {sensors.foot_load.rows(), sensors.acceleration.rows(), sensors.gyro.rows(), Index{0}});

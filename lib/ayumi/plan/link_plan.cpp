@@ -13,6 +13,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/reach.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample_job.hpp"
 
@@ -514,7 +515,7 @@ double off_place(const Vector3d& end, const Vector3d& place, double weight) {
 
 double off_direction(const Vector3d& along, const Vector3d& direction, double weight) {
   const double angle =
-      weight > 0 ? std::atan2(along.cross(direction).norm(), along.dot(direction)) : 0;
+      weight > 0 ? elementary::atan2(along.cross(direction).norm(), along.dot(direction)) : 0;
   return angle > kAligned ? angle : 0;
 }
 

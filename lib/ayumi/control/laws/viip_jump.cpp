@@ -576,9 +576,9 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
   // Of both soles.
   const VectorXd left = J * dtheta - u;
   out.residuals = {};
-  out.residuals.foot = std::hypot(left.head<3>().norm(), left.segment<3>(6).norm());
+  out.residuals.foot = elementary::hypot(left.head<3>().norm(), left.segment<3>(6).norm());
   out.residuals.foot_turn =
-      std::hypot(left.segment<3>(3).norm(), left.tail<3>().norm()) / kFlightLength;
+      elementary::hypot(left.segment<3>(3).norm(), left.tail<3>().norm()) / kFlightLength;
   out.weight = weight_;
   VectorXd velocity(6 + n);
   velocity << base_map * dtheta + base_drift, dtheta;

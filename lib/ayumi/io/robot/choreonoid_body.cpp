@@ -16,6 +16,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/robot/mesh_place.hpp"
 #include "ayumi/io/run/sha256.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/validate.hpp"
 
 namespace ayumi {
@@ -140,7 +141,7 @@ class BodyReader {
     const std::vector<double> v = numbers(node, 4);
     const Vector3d axis(v[0], v[1], v[2]);
     if (axis.norm() < 1e-12) complain(node, "the axis of the rotation has length zero");
-    return Eigen::AngleAxisd(angle_ * v[3], axis.normalized()).toRotationMatrix();
+    return elementary::turn_matrix(angle_ * v[3], axis.normalized());
   }
 
   Isometry3d pose(const YAML::Node& node) const {
@@ -323,8 +324,7 @@ class BodyReader {
     PlacedShape placed;
     placed.pose = at;
     // Along y in the file, along z here.
-    const Isometry3d upright(
-        Eigen::AngleAxisd(-std::numbers::pi / 2, Vector3d::UnitX()).toRotationMatrix());
+    const Isometry3d upright(elementary::turn_matrix(-std::numbers::pi / 2, Vector3d::UnitX()));
     if (type == "Box") {
       placed.shape = Box{vector(geometry["size"])};
     } else if (type == "Sphere") {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "ayumi/geometry/shape.hpp"
+#include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
@@ -16,7 +17,8 @@ inline TriangleMesh ellipsoid_mesh(const Eigen::Vector3d& radii) {
     for (int sector = 0; sector < kSectors; ++sector) {
       const double a = std::numbers::pi * ring / kRings;
       const double b = 2 * std::numbers::pi * sector / kSectors;
-      const Eigen::Vector3d unit(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
+      const Eigen::Vector3d unit(elementary::sin(a) * elementary::cos(b),
+                                 elementary::sin(a) * elementary::sin(b), elementary::cos(a));
       part.vertices.push_back(radii.cwiseProduct(unit).cast<float>());
       part.normals.push_back(unit.cwiseQuotient(radii).normalized().cast<float>());
     }

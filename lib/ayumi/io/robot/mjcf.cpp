@@ -21,6 +21,7 @@
 #include "ayumi/io/robot/mesh_place.hpp"
 #include "ayumi/io/robot/mjcf_text.hpp"
 #include "ayumi/io/run/sha256.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/validate.hpp"
 
 namespace ayumi {
@@ -278,7 +279,7 @@ class MjcfReader {
       if (slides)
         joint.origin = joint.origin * Eigen::Translation3d(-reference * axis);
       else
-        joint.origin = joint.origin * Eigen::AngleAxisd(-reference, axis);
+        joint.origin = joint.origin * elementary::turn_quaternion(-reference, axis);
       joint.axis = axis;
       joint.has_limits = m_->jnt_limited[i] != 0;
       joint.lower = joint.has_limits ? m_->jnt_range[2 * i] : 0;
@@ -422,7 +423,7 @@ class MjcfReader {
         const double held = own + poly[0];
         joint->origin = joint->type == JointType::prismatic
                             ? joint->origin * Eigen::Translation3d(held * joint->axis)
-                            : joint->origin * Eigen::AngleAxisd(held, joint->axis);
+                            : joint->origin * elementary::turn_quaternion(held, joint->axis);
         joint->type = JointType::fixed;
         continue;
       }

@@ -16,6 +16,7 @@
 #include "ayumi/io/robot/mesh_place.hpp"
 #include "ayumi/io/robot/xml_text.hpp"
 #include "ayumi/io/run/sha256.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/validate.hpp"
 
@@ -186,9 +187,9 @@ class SdfReader {
     const std::vector<double> v = numbers(element, 6);
     const bool degrees = xml_attribute(element, "degrees", "false") == "true";
     const double unit = degrees ? std::numbers::pi / 180 : 1;
-    pose.linear() = (Eigen::AngleAxisd(unit * v[5], Vector3d::UnitZ()) *
-                     Eigen::AngleAxisd(unit * v[4], Vector3d::UnitY()) *
-                     Eigen::AngleAxisd(unit * v[3], Vector3d::UnitX()))
+    pose.linear() = (elementary::turn_quaternion(unit * v[5], Vector3d::UnitZ()) *
+                     elementary::turn_quaternion(unit * v[4], Vector3d::UnitY()) *
+                     elementary::turn_quaternion(unit * v[3], Vector3d::UnitX()))
                         .toRotationMatrix();
     pose.translation() = Vector3d(v[0], v[1], v[2]);
     return pose;
