@@ -79,11 +79,11 @@ std::string push_text(const Context& context) {
 
 const std::array<Job, 5> kJobs = {{
     {"walk", "a walk with a push and DTAD", walk_text,
-     "4efa347459949b014205d8df1e997a9ba6037dc0057deedd47d6c7814f1f5365"},
+     "51e28a7e3799cbccf1df0fe6839a57abd96121cb9d153351339e2ee92289d7d1"},
     {"jump", "a jump", jump_text,
-     "7f0e8932ce3376ace415a626bf5d188364f2ab347b5e71029a82db0a1a97b02c"},
+     "eb2c0d523397e26363bb3d9e6cef2e3abcd0f390902744b868c0b7ca76da2159"},
     {"viip", "a walk by VIIP", viip_text,
-     "f946bae5ce7b70b166e3196a3360c8e67a46e2fd151de2cf72e0f72e0491a004"},
+     "45ef27b221213c0bcb7815058518454858d916e0627385cecd6e7c483c136afa"},
     {"repair", "a repaired walk", repair_text,
      "115346d20a41eeea70868f26c341550e3d4e50ab586137e817e309da76da85f6"},
     {"push", "limits of pushes", push_text,

@@ -1,5 +1,7 @@
 #include "arrays.hpp"
 
+#include <type_traits>
+
 #include "ayumi/io/run/log_fields.hpp"
 
 namespace ayumi::python {
@@ -32,6 +34,10 @@ class Collector {
   }
   void operator()(const std::string& name, const char* unit, const int& x) {
     add(name, {}, {unit}, numbers(&x));
+  }
+  void operator()(const std::string& name, const char* unit, const LawStage& stage) {
+    static_assert(std::is_same_v<std::underlying_type_t<LawStage>, int>);
+    (*this)(name, unit, reinterpret_cast<const int&>(stage));
   }
   void operator()(const std::string& name, const char* unit, const bool& x) {
     add(name, {}, {unit}, numbers(&x));
