@@ -356,7 +356,7 @@ TEST_F(AuthorServer, EditsAPatternInFewWords) {
   const auto [status, answer] =
       server.post("pose", {{"time", 1.3}, {"joints", {{"l_elbow", -0.5}}}});
   EXPECT_EQ(status, 422) << answer;
-  EXPECT_NE(answer.dump().find("a block that repeats"), std::string::npos) << answer;
+  EXPECT_NE(answer.dump().find("a repeated block"), std::string::npos) << answer;
 }
 
 TEST_F(AuthorServer, WhatIsDraggedIsWhatThePatternThenIs) {
