@@ -105,8 +105,10 @@ class MeshReader {
     companions_ = 0;
     companion_bytes_ = 0;
     child_->set_time(reading_.time);
-    send_request(request, bytes);
+    // First its greeting: a program that ends or says something else is told apart from one that
+    // the file has crashed.
     if (fresh) receive_hello();
+    send_request(request, bytes);
     while (true) {
       const MeshMessageHead head = receive_head();
       switch (head.kind) {
