@@ -79,7 +79,7 @@ std::string push_text(const Context& context) {
 
 const std::array<Job, 5> kJobs = {{
     {"walk", "a walk with a push and DTAD", walk_text,
-     "51e28a7e3799cbccf1df0fe6839a57abd96121cb9d153351339e2ee92289d7d1"},
+     "82bd1b3cea30842b16bfdf1a8eec90a49b3053fed5193ffd6f86c7abaaeabbbd"},
     {"jump", "a jump", jump_text,
      "eb2c0d523397e26363bb3d9e6cef2e3abcd0f390902744b868c0b7ca76da2159"},
     {"viip", "a walk by VIIP", viip_text,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <type_traits>
 
 #include "ayumi/base/file.hpp"
@@ -132,8 +133,10 @@ std::string header_of(const SimulationLog& log, const std::string& command_line,
   OrderedJson header = {{"format", "ayumi.log/" + std::to_string(version_of_file)}};
   header.update(about_log(log));
   header["provenance"]["command_line"] = command_line;
+  // By name, the order in which they are read back: so a log that was read has the same hash.
   header["gains"] = OrderedJson::object();
-  for (const auto& [name, value] : log.gains) header["gains"][name] = value;
+  for (const auto& [name, value] : std::map(log.gains.begin(), log.gains.end()))
+    header["gains"][name] = value;
   header["world"] = OrderedJson::parse(world_text(log.world, false));
   header["scenario"] = OrderedJson::array();
   for (const Disturbance& push : log.scenario)
