@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
@@ -19,6 +21,7 @@
 #include "ayumi/io/bundled_data.hpp"
 #include "describe.hpp"
 #include "help.hpp"
+#include "libraries.hpp"
 #include "option_checks.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
@@ -82,7 +85,8 @@ void complain(const std::string& message) {
 
 void add_global_options(CLI::App& app, Context& context) {
   app.set_help_flag("-h,--help", "Print this page.");
-  app.set_version_flag("--version", std::string("ayumi ") + version() + " (" AYUMI_LIBRARIES ")",
+  app.set_version_flag("--version",
+                       std::string("ayumi ") + version() + " (" + library_versions() + ")",
                        "Print the versions of Ayumi and of its libraries.");
   app.add_flag("--json", context.json, "Print one JSON object in place of text.");
   app.add_flag("-q,--quiet", context.quiet, "Print no progress.");
@@ -210,12 +214,11 @@ int failed(const Context& context, const std::string& text, int exit_code) {
   return exit_code;
 }
 
+bool is_among(int argc, char** argv, const std::string& option) {
+  return std::find(argv + 1, argv + argc, option) != argv + argc;
+}
+
 int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
-  // What follows the option that cannot be read is not parsed, --json included.
-  const auto json = [&] {
-    return std::any_of(argv + 1, argv + argc,
-                       [](const char* word) { return std::strcmp(word, "--json") == 0; });
-  };
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -224,10 +227,11 @@ int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
     for (auto chosen = app.get_subcommands(); !chosen.empty();
          chosen = chosen.front()->get_subcommands())
       command += chosen.front()->get_name() + " ";
-    context.json = json();
+    // What follows the option that cannot be read is not parsed, --json included.
+    context.json = is_among(argc, argv, "--json");
     return failed(context, usage_message(app, error) + "\nSee ayumi " + command + "--help", 2);
   } catch (const Interrupted&) {
-    return failed(context, "stopped", 130);
+    return failed(context, "stopped", kStoppedExitCode);
   } catch (const Error& error) {
     return failed(context, error.what(), exit_code_of(error.code()));
   } catch (const std::bad_alloc&) {
@@ -237,6 +241,11 @@ int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
                   exit_code_of(ErrorCode::bad_file));
   } catch (const fs::filesystem_error& error) {
     return failed(context, error.path1().string() + ": " + error.code().message(),
+                  exit_code_of(ErrorCode::bad_file));
+  } catch (const std::system_error& error) {
+    return failed(context,
+                  std::string("the system refused a thread or another resource (") +
+                      error.code().message() + "); end other programs, or raise the limits",
                   exit_code_of(ErrorCode::bad_file));
   } catch (const std::exception& error) {
     return failed(context, std::string("internal error: ") + error.what(), 5);
@@ -281,6 +290,31 @@ RobotSearch robot_search(const Context& context) {
 
 namespace {
 
+bool is_utf8(const std::string& word) {
+  try {
+    return !nlohmann::json(word).dump().empty();
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  }
+}
+
+// Names and texts go into files of UTF-8 text. An empty name of a file is mostly a variable of a
+// script that has no value.
+void refuse_words(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const std::string place = "argument " + std::to_string(i) +
+                              (i > 1 ? ", after '" + std::string(argv[i - 1]) + "'" : "");
+    if (word.empty() || (word.starts_with("-") && word.ends_with("=")))
+      fail(ErrorCode::usage, place + ": " + (word.empty() ? "" : "'" + word + "': ") +
+                                 "an empty text was given, but a value is needed");
+    if (!is_utf8(word))
+      fail(ErrorCode::usage,
+           place + ": '" + word +
+               "' is not UTF-8 text, so no result could name it; rename the file");
+  }
+}
+
 // A file opened later would otherwise take the number of a closed standard stream, and what the
 // program prints would go into that file. Writing to a closed standard output still fails.
 void fill_closed_streams() {
@@ -299,6 +333,13 @@ int exit_code_after_printing(int exit_code) {
   return exit_code_of(ErrorCode::bad_file);
 }
 
+// Where there is no memory even for the message of an error.
+[[noreturn]] void end_without_memory() {
+  constexpr char kMessage[] = "ayumi: there is not enough memory\n";
+  static_cast<void>(!::write(STDERR_FILENO, kMessage, sizeof kMessage - 1));
+  ::_exit(exit_code_of(ErrorCode::bad_file));
+}
+
 int parse_and_run(int argc, char** argv) {
   Context context;
   context.command_line = recorded_command_line(argc, argv);
@@ -312,6 +353,12 @@ int parse_and_run(int argc, char** argv) {
     return 2;
   }
   app.require_subcommand(1);
+  try {
+    refuse_words(argc, argv);
+  } catch (const Error& error) {
+    context.json = is_among(argc, argv, "--json");
+    return failed(context, error.what(), exit_code_of(error.code()));
+  }
   return parse_and_run(app, context, argc, argv);
 }
 
@@ -320,7 +367,21 @@ int parse_and_run(int argc, char** argv) {
 int run(int argc, char** argv) {
   fill_closed_streams();
   watch_for_stop();
-  return exit_code_after_printing(parse_and_run(argc, argv));
+  // Libraries take memory also while they clean up after an error, where no exception may leave.
+  std::set_terminate([] {
+    try {
+      if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+    } catch (const std::bad_alloc&) {
+      end_without_memory();
+    } catch (...) {
+    }
+    std::abort();
+  });
+  try {
+    return exit_code_after_printing(parse_and_run(argc, argv));
+  } catch (const std::bad_alloc&) {
+    end_without_memory();
+  }
 }
 
 }  // namespace ayumi::app

@@ -118,7 +118,7 @@ void export_log(const LogExport& options, const CLI::App& command, Context& cont
   const SimulationLog log = log_of(options);
   const bool drawn = options.format == "mcap";
   const RobotModel model =
-      robot_of_run(context, options.robot, log.provenance.robot, {.meshes = drawn});
+      robot_of_log(context, options.robot, log, options.input, {.meshes = drawn});
   const LogTable table = log_table(model, log, options.input);
   Json json = {{"format", options.format},
                {"output", options.output},

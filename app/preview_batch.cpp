@@ -92,7 +92,10 @@ std::vector<Drawn> draw_all(const PreviewBatch& batch, const std::vector<fs::pat
     }
   };
   std::vector<std::thread> threads;
-  for (int w = 1; w < workers; ++w) threads.emplace_back(work);
+  try {
+    for (int w = 1; w < workers; ++w) threads.emplace_back(work);
+  } catch (const std::exception&) {  // those that are there do the work
+  }
   work();
   for (std::thread& thread : threads) thread.join();
   if (stopped) std::rethrow_exception(stopped);

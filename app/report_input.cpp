@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "ayumi/base/error.hpp"
+#include "libraries.hpp"
 
 namespace ayumi::app {
 
@@ -20,6 +21,7 @@ ReportInput report_input(const RunFolder& run, const std::string& file) {
   std::stable_partition(input.runs.begin(), input.runs.end(), [](const ReportRun& entry) {
     return entry.log->controller == ControllerKind::none;
   });
+  input.libraries = library_versions();
   input.results = read_results(run, file);
   return input;
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 
 namespace ayumi::app {
 
@@ -16,6 +17,23 @@ RobotModel robot_of_run(const Context& context, const std::string& chosen,
              ": no such file; the run names its robot by a path relative to the folder from which "
              "the run was made; start the command in that folder, or name the robot with --robot");
   return load_robot(chosen.empty() ? recorded : chosen, robot_search(context), options);
+}
+
+RobotModel robot_of_log(const Context& context, const std::string& chosen, const SimulationLog& log,
+                        const std::string& source, const LoadOptions& options) {
+  RobotModel model = robot_of_run(context, chosen, log.provenance.robot, options);
+  if (model.dof_names() != log.joints)
+    fail(ErrorCode::bad_file, source + ": the joints of the run (" + text::join(log.joints, ", ") +
+                                  ") are not those of the robot '" + model.name() + "' (" +
+                                  text::join(model.dof_names(), ", ") +
+                                  "); name the robot of the run with --robot");
+  const std::string& made_with = log.provenance.robot_sha256;
+  if (chosen.empty() && !made_with.empty() && made_with != model.description().sha256)
+    fail(ErrorCode::bad_file,
+         source + ": the robot '" + model.name() +
+             "' is not as it was when the run was made; make the run again, or name the robot "
+             "with --robot to use it as it is now");
+  return model;
 }
 
 }  // namespace ayumi::app

@@ -2,6 +2,7 @@
 // The robot of a run.
 
 #include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/sim/simulation_log.hpp"
 #include "commands.hpp"
 
 namespace ayumi::app {
@@ -10,5 +11,11 @@ namespace ayumi::app {
 /// recorded path does not lead to a robot from here, Error(bad_file) says so and names --robot.
 RobotModel robot_of_run(const Context& context, const std::string& chosen,
                         const std::string& recorded, const LoadOptions& options = {});
+
+/// The same for a log, which must fit it: Error(bad_file), beginning with `source`, says that the
+/// joints are others, or that the recorded robot is not the one any more that made the log. A robot
+/// that `chosen` names may differ in everything but its joints.
+RobotModel robot_of_log(const Context& context, const std::string& chosen, const SimulationLog& log,
+                        const std::string& source, const LoadOptions& options = {});
 
 }  // namespace ayumi::app

@@ -171,11 +171,8 @@ void compare_run(const Context& context, const CompareCommand& options) {
   if (!options.report.empty() && !is_run_folder(options.run))
     fail(ErrorCode::usage, "--report needs a folder of `ayumi run` or `ayumi simulate`");
   const SimulationLog log = read_run_log(options.run, options.log);
-  const RobotModel model = robot_of_run(context, options.robot, log.provenance.robot,
-                                        {.meshes = !options.report.empty()});
-  if (model.dof_names() != log.joints)
-    fail(ErrorCode::bad_model, options.run + ": the joints of the run are not those of '" +
-                                   model.name() + "'; name its robot with --robot");
+  const RobotModel model =
+      robot_of_log(context, options.robot, log, options.run, {.meshes = !options.report.empty()});
   const Recordings recordings = read_recordings(options, model);
   CompareOptions how;
   how.shift = options.shift;

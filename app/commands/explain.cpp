@@ -87,10 +87,7 @@ Numbers numbers_of(const Context& context, const Equation& e, const ExplainComma
   if (place.t < 0 || place.t > end + 0.5 * log.dt)
     fail(ErrorCode::usage, "explain: t = " + text::brief(place.t) + " s is outside the run (0 to " +
                                text::fixed(end, 3) + " s)");
-  const RobotModel model = robot_of_run(context, options.robot, log.provenance.robot);
-  if (model.dof_names() != log.joints)
-    fail(ErrorCode::usage, place.run + ": the joints of the run are not those of the robot '" +
-                               model.name() + "'; name the robot of the run with --robot");
+  const RobotModel model = robot_of_log(context, options.robot, log, place.run);
   const RunInstant instant{log, model.mass(), static_cast<size_t>(std::lround(place.t / log.dt))};
   Numbers result;
   if (e.numbers) result.of = e.numbers(instant);

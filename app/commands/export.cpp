@@ -233,7 +233,7 @@ Source source_of_run(const ExportOptions& options, const Context& context) {
   verify_run(options.input);
   const RunFolder run = read_run(options.input);
   const SimulationLog log = read_run_log(options.input, log_of_table(options, run));
-  const RobotModel model = robot_of_run(context, options.robot, log.provenance.robot);
+  const RobotModel model = robot_of_log(context, options.robot, log, options.input);
   const CautiousTable table = table_of_run(options, run, log, model);
   Source source = source_of_table(options, context, table.reference, table.caution);
   if (log.samples.size() == source.reference.rows.size()) source.torque = torques_of(log);

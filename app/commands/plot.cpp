@@ -70,16 +70,17 @@ std::vector<LabelledLog> logs_of(const PlotOptions& options) {
   return logs;
 }
 
-// The robot for the panel of the margin, which a plot can do without.
-std::optional<RobotModel> robot_at_hand(const std::string& recorded, const PlotOptions& options,
+// The robot for the panel of the margin, which a plot can do without where it is not there.
+std::optional<RobotModel> robot_at_hand(const LabelledLog& entry, const PlotOptions& options,
                                         const Context& context) {
   try {
-    return robot_of_run(context, options.robot, recorded);
+    static_cast<void>(robot_of_run(context, options.robot, entry.log.provenance.robot));
   } catch (const Error& error) {
     if (!options.robot.empty()) throw;
     context.print(std::string("the ZMP margin is not drawn: ") + error.what() + "\n");
     return std::nullopt;
   }
+  return robot_of_log(context, options.robot, entry.log, entry.label);
 }
 
 void plot(const PlotOptions& options, Context& context) {
@@ -88,19 +89,13 @@ void plot(const PlotOptions& options, Context& context) {
   std::vector<LociRun> runs;
   for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});
   if (runs.empty()) fail(ErrorCode::usage, "plot: the run has no simulation log to draw");
-  const std::string& recorded = logs.back().log.provenance.robot;
-  if (!options.robot.empty() &&
-      robot_of_run(context, options.robot, recorded).dof_names() != logs.back().log.joints)
-    fail(ErrorCode::usage, "--robot " + options.robot +
-                               ": the joints of this robot are not those of the run; name the "
-                               "robot of the run");
   std::vector<std::string> series;
   if (options.top) {
-    write_support_plot(robot_of_run(context, options.robot, recorded), runs, options.output,
-                       options.loci);
+    write_support_plot(robot_of_log(context, options.robot, logs.back().log, logs.back().label),
+                       runs, options.output, options.loci);
     series = {"COG x, y [m]", "ZMP x, y [m]", "footholds [m]"};
   } else {
-    const std::optional<RobotModel> model = robot_at_hand(recorded, options, context);
+    const std::optional<RobotModel> model = robot_at_hand(logs.back(), options, context);
     LociOptions loci = options.loci;
     if (model) loci.model = &*model;
     write_loci(runs, options.output, loci);

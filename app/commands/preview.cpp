@@ -128,8 +128,7 @@ ClipSummary write_glb(const RobotModel& model, const SimulationLog& log, const f
 ClipSummary draw_run(const PreviewOptions& options, const std::string& input, const fs::path& path,
                      int threads, const Context& context, const Progress& progress) {
   const SimulationLog log = log_of(context, input, options.log);
-  const RobotModel model =
-      robot_of_run(context, options.robot, log.provenance.robot, {.meshes = true});
+  const RobotModel model = robot_of_log(context, options.robot, log, input, {.meshes = true});
   PreviewOptions own = options;
   own.clip.threads = threads;
   own.clip.overwrite = context.force;
@@ -194,8 +193,7 @@ void preview_one(const PreviewOptions& options, Context& context) {
 /// A tile of the contact sheet: the instant worth showing, named after its run.
 Image sheet_tile(const PreviewOptions& options, const std::string& input, const Context& context) {
   const SimulationLog log = log_of(context, input, options.log);
-  const RobotModel model =
-      robot_of_run(context, options.robot, log.provenance.robot, {.meshes = true});
+  const RobotModel model = robot_of_log(context, options.robot, log, input, {.meshes = true});
   ClipOptions clip = options.clip;
   clip.picture.width = 480;
   clip.picture.height = 270;

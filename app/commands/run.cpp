@@ -23,6 +23,7 @@
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/table_safety.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
+#include "ayumi/render/encoder.hpp"
 #include "ayumi/render/snapshots.hpp"
 #include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/task/servo_table.hpp"
@@ -348,7 +349,8 @@ bool MainJob::run(const std::string& file) {
 }
 
 void run_patterns(Context& context, const RunCommand& options) {
-  plant_of(options.choice.plant);  // a missing plant is refused before anything is computed
+  plant_of(options.choice.plant);  // what is missing is refused before anything is computed
+  if (options.pictures) require_encoder();
   const bool several = options.patterns.size() > 1;
   std::vector<fs::path> targets;
   for (const std::string& pattern : options.patterns) {

@@ -1,7 +1,9 @@
 // Broken input of every kind: one clear complaint, exit 3, nothing written, no crash.
 
+#include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 
 #include "tests/cli/program.hpp"
 
@@ -62,6 +64,17 @@ Broken sidecar(const std::string& name, const std::string& from, const std::stri
           complaint};
 }
 
+/// A round outline as JSON.
+std::string outline_of(int corners) {
+  std::string text;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corners;
+    text += (i == 0 ? "[[" : "], [") + std::to_string(0.04 * std::cos(angle)) + ", " +
+            std::to_string(0.04 * std::sin(angle));
+  }
+  return text + "]]";
+}
+
 /// `inspect` of a file with the given bytes.
 Broken robot_file(const std::string& name, const std::string& file, const std::string& bytes,
                   const std::string& complaint) {
@@ -117,6 +130,9 @@ std::vector<Broken> broken_robots() {
       urdf("link_named_twice", "</robot>", "<link name='arm'>" + inertia + "</link></robot>",
            "arm"),
       sidecar("urdf_missing", "robot.urdf", "gone.urdf", "gone.urdf"),
+      sidecar("sole_of_33_corners",
+              "[[-0.042, -0.0315], [0.056, -0.0315], [0.056, 0.0315], [-0.042, 0.0315]]",
+              outline_of(33), "33 corners, more than the 32"),
       sidecar("unknown_key", "\"joint_order\"", "\"joint_ordr\"", "did you mean 'joint_order'?"),
       sidecar("wrong_foot_name", "\"l_foot\"", "\"l_foott\"", "did you mean 'l_foot'?"),
       sidecar("unknown_joint", "\"r_hip_pitch\": -17.258", "\"r_hip_ptch\": -17.258",

@@ -181,7 +181,7 @@ TEST_F(LogExport, BadInputGetsOneLine) {
   expect_refused({"run", "--format", "npz", "--log", "open", "-o", "x.npz"}, 3,
                  "no log 'open' in this run");
   expect_refused({"run", "--format", "npz", "--robot", "humanoid30", "-o", "x.npz"}, 3,
-                 "the log has the joints");
+                 "are not those of the robot 'humanoid30'");
   expect_refused({"run/log_open_loop.bin", "--format", "hoap", "-o", "x.csv"}, 3,
                  "this is a single log, but a joint table is made from the whole run");
   expect_refused({"run", "--format", "npz", "-o", "x.csv"}, 2,

@@ -56,6 +56,23 @@ TEST_F(Usage, PlantMujocoIsThereOrHowToGetItIsSaid) {
   }
 }
 
+// Both are found before any work: an empty name is mostly a variable without a value.
+TEST_F(Usage, EmptyNamesAndNamesThatAreNotTextAreRefusedAtOnce) {
+  for (const char* command : {"run", "simulate", "check", "repair", "push"}) {
+    const Output empty = ayumi({command, kWalk, "-o", ""});
+    EXPECT_EQ(empty.exit_code, 2);
+    EXPECT_EQ(line_count(empty.err), 1) << empty.err;
+    EXPECT_NE(empty.err.find("argument 4, after '-o': an empty text was given"), std::string::npos)
+        << empty.err;
+  }
+  EXPECT_EQ(ayumi({"run", kWalk, "--out="}).exit_code, 2);
+  EXPECT_EQ(ayumi({"check", ""}).exit_code, 2);
+  const Output latin = ayumi({"run", kWalk, "-o", "caf\xe9", "--json"});
+  EXPECT_EQ(latin.exit_code, 2);
+  EXPECT_EQ(nlohmann::json::parse(latin.out).at("exit_code"), 2);
+  EXPECT_NE(latin.err.find("'caf\\xe9' is not UTF-8 text"), std::string::npos) << latin.err;
+}
+
 TEST_F(Usage, VersionNamesTheLibraries) {
   const Output version = ayumi({"--version"});
   EXPECT_EQ(version.exit_code, 0);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
+
 #include "tests/support/error_message.hpp"
 
 namespace ayumi {
@@ -34,6 +36,24 @@ TEST(JsonReader, RefusesTextThatNestsTooDeeply) {
   EXPECT_EQ(
       parse_error(nested(300'000)),
       "f.json:1:201: more than 200 arrays and objects inside each other; Ayumi's files need few");
+}
+
+// 100,000 members took minutes, because each of them was visited again after every other.
+TEST(JsonReader, TakesTimeThatIsLinearInTheNumberOfMembers) {
+  std::string text = "{\"p0\": {\"a\": 1}";
+  for (int i = 1; i < 100'000; ++i) text += ", \"p" + std::to_string(i) + "\": {\"a\": [1, 2]}";
+  const std::clock_t begin = std::clock();
+  const Json document = parse_json(text + "}", "f.json", ErrorCode::bad_pattern);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 10.0);
+  EXPECT_EQ(document.size(), 100'000u);
+  EXPECT_EQ(document["p99999"]["a"][1], 2);
+}
+
+TEST(JsonReader, KeepsEveryKindOfValue) {
+  const std::string text =
+      R"({"a":[null,true,-3,18446744073709551615,0.1,"x",[],{}],"b":{"c":{"d":[[1]]}}})";
+  EXPECT_EQ(parse_json(text, "f.json", ErrorCode::bad_pattern).dump(), text);
+  EXPECT_EQ(parse_json(" 7 ", "f.json", ErrorCode::bad_pattern), 7);
 }
 
 TEST(JsonReader, AllowsComments) {

@@ -1,6 +1,8 @@
 #include "ayumi/io/run/run_output.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <optional>
 
@@ -36,6 +38,27 @@ class RunOutputTest : public testing::Test {
   }
   using Names = std::vector<std::string>;
 
+  /// A process that is killed while it delivers a run of the files a.csv and c.csv: it has moved
+  /// `away` what was there, and `in` what is new.
+  void killed_delivery(const Names& away, const Names& in) const {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const RunOutput output(target, true);
+      RunFolder run;
+      run.files = {"a.csv", "c.csv"};
+      for (const std::string& name : run.files) write_file(output.file(name), "of the next run");
+      write_run(output.folder(), run);
+      fs::create_directory(target / ".ayumi_replaced");
+      for (const std::string& name : away)
+        fs::rename(target / name, target / ".ayumi_replaced" / name);
+      for (const std::string& name : in) fs::rename(output.file(name), target / name);
+      ::_exit(0);
+    }
+    int status = 1;
+    ::waitpid(child, &status, 0);
+    ASSERT_EQ(status, 0);
+  }
+
   test::TemporaryFolder folder;
   fs::path target = folder.path() / "out";
 };
@@ -64,6 +87,28 @@ TEST_F(RunOutputTest, TakesOverWhatAnInterruptedProcessLeft) {
   folder.write("out/.ayumi_lock", "");
   deliver({"a.csv"});
   EXPECT_EQ(names(), (Names{"a.csv", "run.json"}));
+}
+
+TEST_F(RunOutputTest, AKilledDeliveryIsUndoneByTheNextStart) {
+  for (const bool replaces : {true, false}) {
+    fs::remove_all(target);
+    if (replaces) deliver({"a.csv", "b.csv"});
+    killed_delivery(replaces ? Names{"run.json", "b.csv", "a.csv"} : Names{}, {"a.csv", "c.csv"});
+    EXPECT_FALSE(is_run_folder(target));
+    folder.write("out/d.csv", "mine");
+    EXPECT_NE(refusal({"d.csv"}, true).find("d.csv: this already exists"), std::string::npos);
+    EXPECT_EQ(names(), replaces ? (Names{"a.csv", "b.csv", "d.csv", "run.json"}) : Names{"d.csv"});
+    if (replaces) verify_run(target);
+    EXPECT_EQ(read_file(target / "d.csv"), "mine");
+  }
+}
+
+// What was moved to its place and changed afterwards is a file of the user.
+TEST_F(RunOutputTest, AKilledDeliveryLeavesFilesThatHaveChangedSince) {
+  killed_delivery({}, {"a.csv"});
+  folder.write("out/a.csv", "mine");
+  EXPECT_NE(refusal({"a.csv"}).find("a.csv: this already exists"), std::string::npos);
+  EXPECT_EQ(read_file(target / "a.csv"), "mine");
 }
 
 TEST_F(RunOutputTest, ReplacesTheFilesOfTheRunBeforeAndNoOthers) {

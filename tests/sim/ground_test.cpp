@@ -8,9 +8,11 @@
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/ground.hpp"
 #include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/schedule.hpp"
 #include "tests/support/block.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/walk.hpp"
 
 namespace ayumi {
@@ -53,6 +55,34 @@ TEST(Ground, BlocksRestOnStepsAndOnThePlaneBelow) {
   beside.run(0.5);
   EXPECT_NEAR(above.position().z(), 0.07, 1e-6);
   EXPECT_NEAR(beside.position().z(), 0.01, 1e-6);
+}
+
+// Tiles under tiles are ground on which nothing stands, and too many edges under a sole are refused
+// instead of taking hours.
+TEST(Ground, WhatAHigherBlockCoversIsNoContactAndTooManyEdgesAreRefused) {
+  const std::vector<Vector3d> sole = {
+      {-0.05, -0.03, 0.0205}, {0.05, -0.03, 0.0205}, {0.05, 0.03, 0.0205}, {-0.05, 0.03, 0.0205}};
+  const auto inner = [&](const World& world) {
+    std::vector<InnerPoint> points;
+    Ground(world).inner_points(sole, 0.003, points);
+    return points.size();
+  };
+  World world;
+  world.blocks.push_back(step_at({-0.02, -0.01}, {0.02, 0.01}, 0.02));
+  EXPECT_EQ(inner(world), 4u);
+  for (int i = 1; i < 60; ++i)
+    world.blocks.push_back(step_at({-0.02 + 1e-4 * i, -0.01 + 1e-4 * i},
+                                   {0.02 - 1e-4 * i, 0.01 - 1e-4 * i}, 0.02 - 1e-5 * i));
+  EXPECT_EQ(inner(world), 4u);
+  World tiles;
+  for (int i = 0; i < 100; ++i) {
+    const Vector2d low(-0.048 + 0.009 * (i % 10), -0.028 + 0.005 * (i / 10));
+    tiles.blocks.push_back(step_at(low, low + Vector2d(0.004, 0.002), 0.02));
+  }
+  const std::string refusal = test::error_message([&] { inner(tiles); }, ErrorCode::bad_pattern);
+  EXPECT_NE(refusal.find("more than 128 corners and edges of the ground lie under one sole"),
+            std::string::npos)
+      << refusal;
 }
 
 TEST(Ground, TheSideOfAStepStopsASlidingBlock) {

@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,35 +26,35 @@ using std::chrono::steady_clock;
 // Chosen: a process that ends by itself does so within milliseconds.
 constexpr std::chrono::milliseconds kGrace(1000), kPause(1);
 
-// What posix_spawn does in the child, and how the child starts.
-class SpawnPlan {
- public:
-  SpawnPlan(int connection, bool errors) {
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, connection, STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    if (!errors)
-      posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-    posix_spawnattr_init(&attributes);
-    sigset_t none, all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setsigdefault(&attributes, &all);
-    posix_spawnattr_setflags(
-        &attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  }
-  ~SpawnPlan() {
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-  }
-  SpawnPlan(const SpawnPlan&) = delete;
-  SpawnPlan& operator=(const SpawnPlan&) = delete;
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
 
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-};
+// Runs in the child, which still uses the memory of this process: it may only make system calls.
+// Returns the reason why the program was not started.
+int become(const char* program, char* const* words, char* const* variables, int input, int nowhere,
+           int errors, pid_t parent) {
+  for (int signal = 1; signal < NSIG; ++signal) {
+    struct sigaction usual {};
+    usual.sa_handler = SIG_DFL;
+    sigaction(signal, &usual, nullptr);  // fails for those that have their usual effect anyway
+  }
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) return ECHILD;  // this process had ended before the line above
+  setpgid(0, 0);
+  if (dup2(input, STDIN_FILENO) < 0 || dup2(nowhere, STDOUT_FILENO) < 0 ||
+      dup2(errors, STDERR_FILENO) < 0)
+    return errno;
+  close_range(STDERR_FILENO + 1, ~0U, 0);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  execvpe(program, words, variables);
+  return errno;
+}
 
 }  // namespace
 
@@ -65,19 +65,49 @@ std::string ChildEnding::words() const {
   return exit_code < 0 ? "for an unknown reason" : "exit code " + std::to_string(exit_code);
 }
 
+pid_t start_child(const ChildStart& start) {
+  std::vector<std::string> words = {start.program}, variables = start.environment;
+  words.insert(words.end(), start.arguments.begin(), start.arguments.end());
+  const std::vector<char*> argv = pointers_to(words), envp = pointers_to(variables);
+  // Above the standard streams, also where one of these is closed.
+  const int opened = open("/dev/null", O_RDWR | O_CLOEXEC);
+  const int nowhere = opened < 0 ? -1 : fcntl(opened, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  int reason = errno;
+  if (opened >= 0) close(opened);
+  if (nowhere < 0) {
+    errno = reason;
+    return -1;
+  }
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // no handler of this process runs in the child
+  volatile int failed = 0;
+  const pid_t parent = getpid();
+  const pid_t child = vfork();  // a copy of the memory could be refused where this process is large
+  if (child == 0) {
+    failed = become(argv[0], argv.data(), envp.data(), start.input, nowhere,
+                    start.errors < 0 ? nowhere : start.errors, parent);
+    _exit(127);
+  }
+  reason = child < 0 ? errno : failed;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  close(nowhere);
+  if (child > 0 && reason != 0)
+    while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  errno = reason;
+  return reason == 0 ? child : -1;
+}
+
 ChildProcess::ChildProcess(const std::filesystem::path& program,
                            const std::vector<std::string>& environment, bool errors) {
-  std::vector<std::string> variables;
-  for (const std::string& name : environment)
-    if (const char* value = std::getenv(name.c_str())) variables.push_back(name + "=" + value);
-  std::vector<char*> kept;
-  for (std::string& variable : variables) kept.push_back(variable.data());
-  kept.push_back(nullptr);
-  std::string name = program.string();
-  char* words[] = {name.data(), nullptr};
-
+  ChildStart start{.program = program.string()};
+  for (const std::string& variable : environment)
+    if (const char* value = std::getenv(variable.c_str()))
+      start.environment.push_back(variable + "=" + value);
   const auto refuse = [&](int reason) {
-    fail(ErrorCode::bad_file, name + ": cannot be started (" + std::strerror(reason) + ")");
+    fail(ErrorCode::bad_file,
+         start.program + ": cannot be started (" + std::strerror(reason) + ")");
   };
   int ends[2] = {-1, -1};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) refuse(errno);
@@ -91,11 +121,13 @@ ChildProcess::ChildProcess(const std::filesystem::path& program,
     refuse(no_copy);
   }
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  const SpawnPlan plan(connection, errors);
-  const int reason =
-      posix_spawn(&process_, name.c_str(), &plan.actions, &plan.attributes, words, kept.data());
+  start.input = connection;
+  if (errors) start.errors = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  process_ = start_child(start);
+  const int reason = errno;
   close(connection);
-  if (reason != 0) {
+  if (start.errors >= 0) close(start.errors);
+  if (process_ < 0) {
     close(ends[0]);
     refuse(reason);
   }

@@ -12,6 +12,22 @@
 
 namespace ayumi {
 
+/// What a child process is started with.
+struct ChildStart {
+  std::string program;                        ///< a path, or a name that is looked up in PATH
+  std::vector<std::string> arguments = {};    ///< after the name of the program
+  std::vector<std::string> environment = {};  ///< "NAME=value"
+  int input = -1;                             ///< becomes its standard input; above 2
+  int errors = -1;                            ///< becomes its standard error; above 2, -1: nowhere
+};
+
+/// Starts the program and returns its process id, or -1 and the reason in errno. Its standard
+/// output leads nowhere, and no other file of this process is open in it. It is in a process group
+/// of its own, so Ctrl-C on a terminal does not reach it, and the kernel ends it when the thread
+/// that has started it ends, however that happens. Signals that this process blocks or ignores have
+/// their usual effect in it.
+pid_t start_child(const ChildStart& start);
+
 /// How a child process ended.
 struct ChildEnding {
   int exit_code = -1;         ///< -1: a signal ended it, or it was ended by us

@@ -178,10 +178,9 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(folder), file_(folder /
 }
 
 FolderLock::~FolderLock() {
-  std::error_code ignored;
-  fs::remove(file_, ignored);
+  ::unlink(file_.c_str());
   ::close(descriptor_);
-  if (made_) fs::remove(folder_, ignored);  // succeeds on an empty folder only
+  if (made_) ::rmdir(folder_.c_str());  // succeeds on an empty folder only
 }
 
 }  // namespace ayumi

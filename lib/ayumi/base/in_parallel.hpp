@@ -12,7 +12,8 @@ namespace ayumi {
 
 /// Runs job(0..count-1) on threads. An exception keeps jobs from being started. Of the exceptions,
 /// that of the first job is thrown again, so it is the same for any number of threads: the jobs
-/// before it were all started.
+/// before it were all started. Where the system grants no further thread, those that are there do
+/// the work.
 template <typename Job>
 void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
   std::atomic<size_t> next = 0;
@@ -36,7 +37,10 @@ void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& 
   const size_t all = threads > 0 ? static_cast<size_t>(threads)
                                  : std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::thread> pool;
-  for (size_t i = 1; i < std::min(all, count); ++i) pool.emplace_back(work);
+  try {
+    for (size_t i = 1; i < std::min(all, count); ++i) pool.emplace_back(work);
+  } catch (const std::exception&) {  // too many threads, or no memory for one
+  }
   work();
   for (std::thread& thread : pool) thread.join();
   if (error) std::rethrow_exception(error);

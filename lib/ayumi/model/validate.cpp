@@ -231,6 +231,11 @@ void positive(const RobotDescription& robot, const std::string& what,
           robot, what + " of '" + name + "' is " + text::exact(value) + "; it must be above 0");
 }
 
+// Corners of a sole. Each is a contact of the simulation, whose time grows with the third power of
+// their number. Chosen: on a round sole of 0.1 m, 32 corners leave out 0.5 mm. At half of it, this
+// is 2 mm; at twice, a step of the simulation takes eight times as long.
+constexpr size_t kMostSoleCorners = 32;
+
 void validate_sole(const RobotDescription& robot, const std::string& side,
                    const SoleDescription& sole) {
   const std::string pointer = "/soles/" + side;
@@ -242,6 +247,11 @@ void validate_sole(const RobotDescription& robot, const std::string& side,
       "; give at least three corners of a convex polygon, counter-clockwise "
       "seen from above";
   if (corners.size() < 3) complain_sidecar(robot, pointer + "/polygon: too few corners" + remedy);
+  if (corners.size() > kMostSoleCorners)
+    complain_sidecar(robot, pointer + "/polygon: " + std::to_string(corners.size()) +
+                                " corners, more than the " + std::to_string(kMostSoleCorners) +
+                                " that a sole may have; leave out corners between which the "
+                                "outline is almost straight");
   for (size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d along = corners[(i + 1) % corners.size()] - corners[i];
     const Eigen::Vector2d next = corners[(i + 2) % corners.size()] - corners[i];

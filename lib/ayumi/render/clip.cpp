@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <functional>
@@ -108,50 +109,58 @@ std::string verdict_text(const SimulationResult& result) {
 /// Name without folder and extension.
 std::string plain_name(const std::string& file) { return fs::path(file).stem().string(); }
 
+/// How long a frame is waited for before the caller may stop the work. Chosen: Ctrl-C is answered
+/// at once, and the wait costs nothing.
+constexpr std::chrono::milliseconds kFrameWait(50);
+
+/// Threads that draw a clip. Chosen: one encoder takes the frames of about that many, and each
+/// takes 40 MB; at half, a machine of 16 cores draws half as fast, at twice a clip takes 1.3 GB.
+constexpr int kMostClipThreads = 16;
+
 /// Frames 0..count-1 in order from `threads` workers that each own a renderer. At most two finished
 /// frames wait per worker, so memory does not grow with the clip.
 class FrameQueue {
  public:
   using MakeRenderer = std::function<std::unique_ptr<ClipRenderer>()>;
   FrameQueue(int threads, int count, MakeRenderer make, std::function<double(int)> time) {
-    const int workers = std::clamp(threads, 1, std::max(1, count));
+    const int workers = std::clamp(std::min(threads, kMostClipThreads), 1, std::max(1, count));
     slots_ = std::vector<Slot>(static_cast<size_t>(workers));
-    for (int w = 0; w < workers; ++w)
-      threads_.emplace_back([this, w, workers, count, make, time] {
-        Slot& slot = slots_[size_t(w)];
-        try {
-          const std::unique_ptr<ClipRenderer> renderer = make();
-          if (w == 0) {
-            const std::lock_guard lock(mutex_);
-            notes_ = renderer->notes();
-          }
-          for (int k = w; k < count; k += workers)
-            if (!put(slot, renderer->frame(time(k)))) return;
-        } catch (...) {
+    const auto work = [this, workers, count, make, time](int w) {
+      Slot& slot = slots_[size_t(w)];
+      try {
+        const std::unique_ptr<ClipRenderer> renderer = make();
+        if (w == 0) {
           const std::lock_guard lock(mutex_);
-          slot.error = std::current_exception();
-          changed_.notify_all();
+          notes_ = renderer->notes();
         }
-      });
-  }
-  ~FrameQueue() {
-    {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
+        for (int k = w; k < count; k += workers)
+          if (!put(slot, renderer->frame(time(k)))) return;
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        slot.error = std::current_exception();
+        changed_.notify_all();
+      }
+    };
+    try {
+      for (int w = 0; w < workers; ++w) threads_.emplace_back(work, w);
+    } catch (...) {  // no further thread, or no memory for one
+      end();
+      throw;
     }
-    changed_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
   }
+  ~FrameQueue() { end(); }
   FrameQueue(const FrameQueue&) = delete;
   FrameQueue& operator=(const FrameQueue&) = delete;
 
   /// What the renderers draw otherwise than asked; known once a frame was taken.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  Image take(int k) {
+  /// While it waits, `alive` is called several times per second; what it throws ends the wait.
+  Image take(int k, const std::function<void()>& alive) {
     Slot& slot = slots_[size_t(k) % slots_.size()];
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return !slot.ready.empty() || slot.error; });
+    const auto there = [&] { return !slot.ready.empty() || slot.error; };
+    while (!changed_.wait_for(lock, kFrameWait, there)) alive();
     if (slot.ready.empty()) std::rethrow_exception(slot.error);
     Image image = std::move(slot.ready.front());
     slot.ready.erase(slot.ready.begin());
@@ -160,6 +169,15 @@ class FrameQueue {
   }
 
  private:
+  void end() {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+    }
+    changed_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
   struct Slot {
     std::vector<Image> ready;
     std::exception_ptr error;
@@ -397,8 +415,11 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
   const auto frames = [&](const std::function<void(int, const Image&)>& use) {
     FrameQueue queue(options.threads, count, make, time);
     for (int k = 0; k < count; ++k) {
-      report(progress, {"preview", double(k) / count, "frame " + std::to_string(k)});
-      use(k, queue.take(k));
+      const auto alive = [&] {
+        report(progress, {"preview", double(k) / count, "frame " + std::to_string(k)});
+      };
+      alive();
+      use(k, queue.take(k, alive));
       if (k == 0) notes = queue.notes();
     }
   };
@@ -409,8 +430,14 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
   } else {
     write_file_with(path, [&](const fs::path& temporary) {
       try {
-        ClipEncoder encoder(temporary, picture.width, picture.height, options.fps, options.encoder);
-        frames([&](int, const Image& image) { encoder.add(image); });
+        double done = 0;
+        const auto alive = [&] { report(progress, {"preview", done, ""}); };
+        ClipEncoder encoder(temporary, picture.width, picture.height, options.fps, options.encoder,
+                            alive);
+        frames([&](int k, const Image& image) {
+          done = double(k) / count;
+          encoder.add(image);
+        });
         encoder.finish();
       } catch (const Error& error) {
         fail(error.code(), with_name(error.what(), temporary.string(), path.string()));

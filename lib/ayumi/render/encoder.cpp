@@ -1,8 +1,8 @@
 #include "ayumi/render/encoder.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -10,8 +10,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cstdlib>
 #include <cstring>
+#include <thread>
 
+#include "ayumi/base/child_process.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/render/planar_yuv.hpp"
@@ -22,6 +26,10 @@ namespace ayumi {
 namespace {
 
 using Arguments = std::vector<std::string>;
+
+// How often the end of ffmpeg is asked for, and how long a wait for it lasts before `alive` is
+// called. Chosen: a clip is delayed by less than a frame takes, and Ctrl-C is answered at once.
+constexpr std::chrono::milliseconds kPause(2), kPatience(50);
 
 /// What to_yuv420 makes; players assume it for video of this size.
 const Arguments kVideoColor = {"-pix_fmt",         "yuv420p", "-colorspace", "bt709",
@@ -65,10 +73,8 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
   return arguments;
 }
 
-Arguments all_arguments(const std::string& program, const std::filesystem::path& path, int width,
-                        int height, double fps) {
-  Arguments all = {program,
-                   "-nostdin",
+Arguments all_arguments(const std::filesystem::path& path, int width, int height, double fps) {
+  Arguments all = {"-nostdin",
                    "-hide_banner",
                    "-loglevel",
                    "error",
@@ -97,57 +103,80 @@ Arguments all_arguments(const std::string& program, const std::filesystem::path&
 
 }  // namespace
 
+void require_encoder(const std::string& program) {
+  const char* const path = std::getenv("PATH");
+  std::string folders = path ? path : "/usr/bin:/bin";  // as execvp, without PATH
+  for (size_t begin = 0; begin <= folders.size();) {
+    const size_t end = std::min(folders.find(':', begin), folders.size());
+    const std::string folder = folders.substr(begin, end - begin);
+    std::error_code ignored;
+    const std::string file = (folder.empty() ? "." : folder) + "/" + program;
+    if (access(file.c_str(), X_OK) == 0 && !std::filesystem::is_directory(file, ignored)) return;
+    begin = end + 1;
+  }
+  fail(ErrorCode::bad_file, "the program '" + program +
+                                "', which makes the clip, is in no folder of PATH; install ffmpeg, "
+                                "or leave the pictures out");
+}
+
 ClipEncoder::ClipEncoder(const std::filesystem::path& path, int width, int height, double fps,
-                         const std::string& program)
-    : path_(path), program_(program), width_(width), height_(height) {
-  const Arguments arguments = all_arguments(program, path, width, height, fps);
-  std::vector<char*> words;
-  for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
-  words.push_back(nullptr);
+                         const std::string& program, std::function<void()> alive)
+    : path_(path), program_(program), width_(width), height_(height), alive_(std::move(alive)) {
+  ChildStart start{.program = program, .arguments = all_arguments(path, width, height, fps)};
+  for (char** variable = environ; *variable; ++variable) start.environment.emplace_back(*variable);
   // A socket instead of a pipe: a write to a dead process then reports instead of raising a signal.
   int ends[2] = {-1, -1};
-  require(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0,
-          "a pipe to the video encoder could not be opened");
-  log_ = memfd_create("encoder", MFD_CLOEXEC);
+  const bool paired = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0;
+  const int made = paired ? memfd_create("encoder", MFD_CLOEXEC) : -1;
+  const int reserved = STDERR_FILENO + 1;  // above the standard streams, which may be closed
+  start.input = fcntl(ends[1], F_DUPFD_CLOEXEC, reserved);
+  log_ = start.errors = fcntl(made, F_DUPFD_CLOEXEC, reserved);
   pipe_ = ends[0];
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, log_, STDERR_FILENO);
-  // Its own process group: Ctrl-C reaches us alone, and we end it.
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  const int error =
-      posix_spawnp(&process_, program.c_str(), &actions, &attributes, words.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  close(ends[1]);
-  if (error == 0) return;
-  process_ = -1;
-  close(pipe_);
-  close(log_);
+  if (start.input >= 0 && log_ >= 0) process_ = start_child(start);
+  const int reason = errno;
+  for (const int file : {ends[1], made, start.input})
+    if (file >= 0) close(file);
+  if (process_ > 0) {
+    fcntl(pipe_, F_SETFL, O_NONBLOCK);
+    return;
+  }
+  for (const int file : {pipe_, log_})
+    if (file >= 0) close(file);
   fail(ErrorCode::bad_file, path.string() + ": the program '" + program + "' cannot be started (" +
-                                std::strerror(error) +
+                                std::strerror(reason) +
                                 "); install ffmpeg, or write PNG frames into a folder instead");
 }
 
 ClipEncoder::~ClipEncoder() {
-  if (process_ > 0) kill(process_, SIGKILL);
-  wait();
+  if (process_ > 0) {
+    kill(-process_, SIGKILL);
+    alive_ = {};
+    wait();
+  }
+  if (pipe_ >= 0) close(pipe_);
   if (log_ >= 0) close(log_);
 }
 
+// Closes the connection and returns how the process has ended.
 int ClipEncoder::wait() {
   if (pipe_ >= 0) close(pipe_);
   pipe_ = -1;
   int status = 0;
-  if (process_ > 0)
-    while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
-    }
+  while (process_ > 0) {
+    const pid_t ended = waitpid(process_, &status, alive_ ? WNOHANG : 0);
+    if (ended == process_ || (ended < 0 && errno != EINTR)) break;
+    if (!alive_) continue;
+    alive_();
+    std::this_thread::sleep_for(kPause);
+  }
   process_ = -1;
   return status;
+}
+
+void ClipEncoder::wait_until_ready() {
+  pollfd waiting = {pipe_, POLLOUT, 0};
+  while (poll(&waiting, 1, static_cast<int>(kPatience.count())) == 0 || (waiting.revents == 0))
+    if (alive_) alive_();
 }
 
 void ClipEncoder::fail_with_log() {
@@ -173,6 +202,10 @@ void ClipEncoder::add(const Image& frame) {
   while (left > 0) {
     const ssize_t sent = send(pipe_, data, left, MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0 && errno == EAGAIN) {
+      wait_until_ready();
+      continue;
+    }
     if (sent <= 0) fail_with_log();
     data += sent;
     left -= static_cast<size_t>(sent);

@@ -2,6 +2,7 @@
 // Clips by the `ffmpeg` program, run as a child process and fed frames through a pipe.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,14 +10,18 @@
 
 namespace ayumi {
 
+/// Throws Error(bad_file) when there is no such program in the folders of PATH.
+void require_encoder(const std::string& program = "ffmpeg");
+
 /// Feeds frames to one ffmpeg process. A process that is not finished is ended by the destructor.
 class ClipEncoder {
  public:
   /// Format by the extension of `path`: .mp4 (H.264), .webm (VP9), .gif, .apng. Throws Error(usage)
   /// for another, or for an odd size where the format needs an even one; Error(bad_file) when
-  /// ffmpeg cannot be started. The same frames give the same bytes.
+  /// ffmpeg cannot be started. The same frames give the same bytes. While ffmpeg is waited for,
+  /// `alive` is called several times per second; what it throws ends the wait.
   ClipEncoder(const std::filesystem::path& path, int width, int height, double fps,
-              const std::string& program = "ffmpeg");
+              const std::string& program = "ffmpeg", std::function<void()> alive = {});
   ~ClipEncoder();
   ClipEncoder(const ClipEncoder&) = delete;
   ClipEncoder& operator=(const ClipEncoder&) = delete;
@@ -34,6 +39,9 @@ class ClipEncoder {
   int process_ = -1;
   std::vector<std::uint8_t> planes_;  ///< of the frame last added
 
+  std::function<void()> alive_;
+
+  void wait_until_ready();
   int wait();
   [[noreturn]] void fail_with_log();
 };

@@ -25,6 +25,7 @@ struct ReportInput {
   RunResults results;
   std::vector<PushThreshold> thresholds;   ///< empty: no study
   const Comparison* comparison = nullptr;  ///< with a recording; must outlive the call
+  std::string libraries = {};              ///< of the program, with their versions; may be empty
 };
 
 struct ReportOptions {

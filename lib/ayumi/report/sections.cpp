@@ -230,6 +230,7 @@ std::string provenance_section(const ReportInput& input, const std::vector<std::
   const Provenance& p = input.runs.back().log->provenance;
   const auto code = [](const std::string& text) { return "<code>" + escaped(text) + "</code>"; };
   Table rows = {"", {}, {{"tool", escaped(std::string("ayumi ") + version())}}};
+  if (!input.libraries.empty()) rows.rows.push_back({"libraries", escaped(input.libraries)});
   rows.rows.push_back({"robot", escaped(p.robot) + " " + code(p.robot_sha256)});
   rows.rows.push_back({"pattern", escaped(p.pattern) + " " + code(p.pattern_sha256)});
   rows.rows.push_back({"actuators", escaped(p.profile)});

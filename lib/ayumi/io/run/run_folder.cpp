@@ -163,6 +163,12 @@ std::vector<std::string> run_file_names(const fs::path& folder) {
   return names;
 }
 
+bool is_file_of_run(const fs::path& folder, const fs::path& file) {
+  const RunFile run(folder);
+  const auto recorded = run.root().at("files").find(file.filename().string());
+  return recorded && recorded->string() == sha256(read_file(file, kLargestFile));
+}
+
 void verify_run(const fs::path& folder) {
   const RunFile file(folder);
   const JsonNode root = file.root();

@@ -40,6 +40,10 @@ void write_run(const std::filesystem::path& folder, const RunFolder& run);
 /// Error(bad_file) when its run.json cannot be read as one.
 std::vector<std::string> run_file_names(const std::filesystem::path& folder);
 
+/// Whether the run in `folder` lists a file of the name of `file` and with its bytes. Throws as
+/// run_file_names(), and where `file` cannot be read.
+bool is_file_of_run(const std::filesystem::path& folder, const std::filesystem::path& file);
+
 /// Throws Error(bad_file) naming the file unless the run is as it was written: run.json by the
 /// SHA-256 of its own text, every file that it lists by that file's.
 void verify_run(const std::filesystem::path& folder);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/run/run_folder.hpp"
@@ -11,6 +12,12 @@ namespace ayumi {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Hidden folders in the target: the run in the making, and the run that it replaces, which is there
+// only while a delivery is under way.
+constexpr const char* kStaging = ".ayumi_part";
+constexpr const char* kReplaced = ".ayumi_replaced";
+constexpr const char* kRunJson = "run.json";
 
 bool is_there(const fs::path& path) {
   std::error_code ignored;
@@ -28,6 +35,50 @@ std::set<std::string> files_of_run_in(const fs::path& folder) {
   return {names.begin(), names.end()};
 }
 
+// The names of the files in a folder, run.json last.
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
+    return std::pair(a == kRunJson, a) < std::pair(b == kRunJson, b);
+  });
+  return names;
+}
+
+// The files of the run in the making that a delivery has already moved to their place: those that
+// the run.json in the staging folder lists and that are as it says. A file of the user under such a
+// name is another one.
+std::vector<fs::path> delivered_files(const fs::path& target) {
+  std::vector<fs::path> files;
+  const fs::path staging = target / kStaging;
+  if (!is_there(target / kReplaced) || !is_there(staging / kRunJson)) return files;
+  for (const std::string& name : run_file_names(staging)) {
+    if (name == kRunJson || is_there(staging / name)) continue;
+    try {
+      if (is_file_of_run(staging, target / name)) files.push_back(target / name);
+    } catch (const Error&) {  // it is not there, or no file
+    }
+  }
+  return files;
+}
+
+// Where a delivery was not completed, what was there before it is there again. Where it was, what
+// it has replaced is removed.
+void undo_delivery(const fs::path& target) {
+  if (!is_there(target / kReplaced)) return;
+  std::error_code ignored;
+  if (is_there(target / kStaging / kRunJson) || !is_there(target / kRunJson)) {
+    for (const fs::path& file : delivered_files(target)) fs::remove(file, ignored);
+    for (const std::string& name : names_in(target / kReplaced))
+      if (!is_there(target / name)) fs::rename(target / kReplaced / name, target / name, ignored);
+    fs::remove(target / kReplaced, ignored);  // stays where a file of it could not go back
+  } else {
+    fs::remove_all(target / kReplaced, ignored);
+  }
+}
+
 }  // namespace
 
 void require_run_target(const fs::path& folder, bool replace,
@@ -39,8 +90,13 @@ void require_run_target(const fs::path& folder, bool replace,
   if (!replace && is_there(folder / "run.json")) refuse_existing(folder);
   const std::set<std::string> previous = files_of_run_in(folder);
   for (const std::string& name : previous) require_own_file(folder / name);
+  const std::vector<fs::path> delivered = delivered_files(folder);
+  const auto may_go = [&](const std::string& name) {
+    return previous.contains(name) ||
+           std::find(delivered.begin(), delivered.end(), folder / name) != delivered.end();
+  };
   for (const std::string& name : names)
-    if (is_there(folder / name) && !previous.contains(name))
+    if (is_there(folder / name) && !may_go(name))
       fail(ErrorCode::bad_file, (folder / name).string() +
                                     ": this already exists and is not a file of a run, so no run "
                                     "replaces it; move it away or choose another folder");
@@ -48,9 +104,11 @@ void require_run_target(const fs::path& folder, bool replace,
 
 RunOutput::RunOutput(const fs::path& folder, bool replace)
     : target_((folder / "").parent_path()),
-      staging_(target_ / ".ayumi_part"),
+      staging_(target_ / kStaging),
+      replaced_(target_ / kReplaced),
       replace_(replace),
       lock_(target_) {
+  undo_delivery(target_);
   require_run_target(target_, replace_, {});
   std::error_code error;
   fs::remove_all(staging_, error);  // of a process that ended before its run was complete
@@ -60,27 +118,31 @@ RunOutput::RunOutput(const fs::path& folder, bool replace)
 }
 
 RunOutput::~RunOutput() {
-  std::error_code ignored;
-  fs::remove_all(staging_, ignored);
+  try {
+    std::error_code ignored;
+    fs::remove_all(staging_, ignored);
+  } catch (const std::exception&) {  // no memory; the next run removes it
+  }
 }
 
 void RunOutput::deliver() const {
+  const std::vector<std::string> names = names_in(staging_);
+  require_run_target(target_, replace_, names);
+  const std::set<std::string> previous = files_of_run_in(target_);
   try {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(staging_))
-      names.push_back(entry.path().filename().string());
-    std::stable_sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
-      return (a == "run.json") < (b == "run.json");
-    });
-    require_run_target(target_, replace_, names);
-    const std::set<std::string> previous = files_of_run_in(target_);
-    fs::remove(target_ / "run.json");  // from here on there is no complete run in the folder
-    for (const std::string& name : previous) fs::remove(target_ / name);
+    fs::create_directory(replaced_);
+    // From here until run.json is moved there is no complete run in the folder.
+    if (previous.contains(kRunJson)) fs::rename(target_ / kRunJson, replaced_ / kRunJson);
+    for (const std::string& name : previous)
+      if (is_there(target_ / name)) fs::rename(target_ / name, replaced_ / name);
     for (const std::string& name : names) fs::rename(staging_ / name, target_ / name);
   } catch (const fs::filesystem_error& error) {
+    undo_delivery(target_);
     fail(ErrorCode::bad_file,
          target_.string() + ": cannot be written (" + error.code().message() + ")");
   }
+  std::error_code ignored;
+  fs::remove_all(replaced_, ignored);
 }
 
 }  // namespace ayumi

@@ -29,12 +29,14 @@ class RunOutput {
   const std::filesystem::path& folder() const { return staging_; }
   std::filesystem::path file(const std::string& name) const { return staging_ / name; }
 
-  /// Removes the files of the run that was there and moves those of this run to their place,
-  /// run.json last. Throws as require_run_target(); nothing has then changed.
+  /// Moves the files of the run that was there out of the way and those of this run to their place,
+  /// run.json last. Throws as require_run_target(), or when a file cannot be moved; what was there
+  /// is then there again. A process that is killed in between leaves a folder without run.json, in
+  /// which the next RunOutput first brings back what was there.
   void deliver() const;
 
  private:
-  std::filesystem::path target_, staging_;
+  std::filesystem::path target_, staging_, replaced_;
   bool replace_;
   FolderLock lock_;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <type_traits>
 
@@ -153,6 +154,7 @@ std::string header_of(const SimulationLog& log, const std::string& command_line,
 
 void read_header(const JsonNode& header, SimulationLog& log) {
   log.dt = header.at("dt").number();
+  if (!(log.dt > 0)) header.at("dt").complain("the tick must be above 0 s");
   const JsonNode controller = header.at("controller");
   if (!controller.string().empty())
     log.controller = controller_type(controller.one_of(controller_names()));
@@ -172,6 +174,18 @@ void read_header(const JsonNode& header, SimulationLog& log) {
         {node.at("t").number(), node.at("kind").string(), node.at("text").string()});
   log.result = result_of(header.at("result"));
   log.joints = header.at("joints").strings();
+}
+
+// Whatever reads a log may trust its numbers.
+void require_finite(std::string_view values, const std::vector<std::string>& columns,
+                    const std::function<void(const std::string&)>& stop) {
+  for (size_t i = 0; i < values.size() / sizeof(double); ++i) {
+    double value = 0;
+    std::memcpy(&value, values.data() + i * sizeof value, sizeof value);
+    if (!std::isfinite(value))
+      stop("damaged: row " + std::to_string(i / columns.size()) + ", column '" +
+           columns[i % columns.size()] + "' is not a finite number");
+  }
 }
 
 std::uint32_t word_at(const std::string& bytes, size_t at) {
@@ -259,6 +273,7 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
     stop((rows * row_bytes > values.size() ? "truncated: " : "damaged: ") +
          std::to_string(values.size()) + " bytes of samples, but the header announces " +
          std::to_string(rows) + " rows of " + std::to_string(row_bytes) + " bytes");
+  require_finite(values, columns, stop);
   const char* at = values.data();
   log.samples.resize(rows);
   for (SimulationSample& sample : log.samples)

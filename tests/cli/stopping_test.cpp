@@ -1,0 +1,142 @@
+// Ctrl-C, and programs that Ayumi starts and that are missing or hang.
+
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <thread>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// PATH is this folder alone until the end of the test.
+class OnlyPath {
+ public:
+  explicit OnlyPath(const fs::path& folder) : before_(std::getenv("PATH")) {
+    ::setenv("PATH", folder.c_str(), 1);
+  }
+  ~OnlyPath() { ::setenv("PATH", before_.c_str(), 1); }
+
+ private:
+  std::string before_;
+};
+
+pid_t start(const std::vector<std::string>& arguments, const fs::path& folder) {
+  std::vector<std::string> words = {program_under_test()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int nothing = ::open("/dev/null", O_RDWR);
+    if (::chdir(folder.c_str()) != 0 || ::dup2(nothing, 1) < 0 || ::dup2(nothing, 2) < 0)
+      ::_exit(126);
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  return child;
+}
+
+/// Whether the condition holds within `seconds`.
+bool holds_within(double seconds, const std::function<bool()>& condition) {
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (!condition()) {
+    if (Clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+/// An `ffmpeg` that writes its process id to the file `started` and then does nothing, ever.
+void write_hanging_ffmpeg(const Folder& folder) {
+  write(folder / "bin/ffmpeg", "#!/bin/sh\necho $$ > " + (folder / "pid").string() + "\nmv " +
+                                   (folder / "pid").string() + " " + (folder / "started").string() +
+                                   "\nexec /bin/sleep 600\n");
+  fs::permissions(folder / "bin/ffmpeg", fs::perms::owner_all);
+  fs::create_symlink("/bin/mv", folder / "bin/mv");
+}
+
+bool is_running(pid_t process) {
+  const std::string state = contents("/proc/" + std::to_string(process) + "/stat");
+  const size_t name = state.rfind(')');
+  return name != std::string::npos && state.substr(name + 2, 1) != "Z";
+}
+
+// The second round has a second Ctrl-C, which ends the program at once.
+TEST(Stopping, CtrlCEndsARunAndTheFfmpegThatHangs) {
+  for (const bool twice : {false, true}) {
+    const Folder folder;
+    write_hanging_ffmpeg(folder);
+    const OnlyPath path(folder / "bin");
+    const pid_t run = start({"run", kWalk, "-o", "out"}, folder.path());
+    ASSERT_TRUE(holds_within(240, [&] { return fs::exists(folder / "started"); }));
+    const pid_t encoder = std::stoi(contents(folder / "started"));
+    EXPECT_TRUE(is_running(encoder));
+    const auto begin = Clock::now();
+    ::kill(run, SIGINT);
+    if (twice) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      ::kill(run, SIGINT);
+    }
+    int status = 0;
+    ::waitpid(run, &status, 0);
+    // A loaded machine may take longer to start threads, but not several times.
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 3.0);
+    EXPECT_TRUE((WIFEXITED(status) && WEXITSTATUS(status) == 130) ||
+                (twice && WIFSIGNALED(status) && WTERMSIG(status) == SIGINT))
+        << status;
+    EXPECT_TRUE(holds_within(5, [&] { return !is_running(encoder); }));
+    EXPECT_FALSE(fs::exists(folder / "out/run.json"));
+  }
+}
+
+TEST(Stopping, AMissingFfmpegIsFoundBeforeTheWork) {
+  const Folder folder;
+  fs::create_directories(folder / "bin");
+  const OnlyPath path(folder / "bin");
+  const Output run = run_program({"run", kWalk, "-o", "out"}, folder.path());
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_EQ(run.err,
+            "ayumi: the program 'ffmpeg', which makes the clip, is in no folder of PATH; install "
+            "ffmpeg, or leave the pictures out\n");
+  EXPECT_EQ(run.out, "");
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(Stopping, ALogIsDrawnOnlyWithItsOwnRobot) {
+  const Folder folder;
+  fs::copy(fs::path(AYUMI_SOURCE_DIR) / "robots/hoap1", folder / "mine",
+           fs::copy_options::recursive);
+  std::string pattern = contents(kWalk);
+  const std::string named = R"("robot": "hoap1")";
+  pattern.replace(pattern.find(named), named.size(), R"("robot": "mine/robot.json")");
+  write(folder / "w.json", pattern);
+  ASSERT_EQ(run_program({"simulate", "w.json", "-o", "run", "-q"}, folder.path()).exit_code, 0);
+  const std::vector<std::vector<std::string>> commands = {
+      {"preview", "run", "-o", "a.png"},
+      {"plot", "run", "-o", "a.svg"},
+      {"report", "run", "-o", "a.html"},
+      {"export", "run", "--format", "npz", "-o", "a.npz"}};
+  for (std::vector<std::string> command : commands) {
+    command.insert(command.end(), {"--robot", "humanoid30"});
+    const Output other = run_program(command, folder.path());
+    EXPECT_EQ(other.exit_code, 3) << command[0];
+    EXPECT_NE(other.err.find("are not those of the robot 'humanoid30'"), std::string::npos)
+        << command[0] << other.err;
+  }
+  write(folder / "mine/robot.json", contents(folder / "mine/robot.json") + " ");
+  for (const std::vector<std::string>& command : commands) {
+    const Output changed = run_program(command, folder.path());
+    EXPECT_EQ(changed.exit_code, 3) << command[0];
+    EXPECT_NE(changed.err.find("is not as it was when the run was made"), std::string::npos)
+        << command[0] << changed.err;
+  }
+  for (const std::string& file : folder.files()) EXPECT_FALSE(file.starts_with("a.")) << file;
+}
+
+}  // namespace
+}  // namespace ayumi::test

@@ -1,0 +1,277 @@
+#!/usr/bin/env python3
+"""Faults of the machine: calls that fail, a disk that is full, and signals at random moments.
+
+    faults.py PROGRAM LIBRARY [--kind calls|disk|signals|all] [--count N] [--seed S]
+
+PROGRAM is ayumi and LIBRARY the library of failing_calls.c. Each trial works in a folder of its own.
+What holds after each of them:
+  - the program has ended by itself or by our signal: never by SIGSEGV, SIGABRT and the like;
+  - exit code 0 or 1 means that every output is there and whole; another code comes with a message;
+  - what is there under the name of an output is whole: a file that was there before is unchanged
+    or replaced, and a run folder that has a run.json passes its own hashes;
+  - the same command, started again without a fault, does its work.
+The exit code is 1 when something does not hold, and the trial is printed so that it can be repeated.
+"""
+import argparse
+import hashlib
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+WALK = os.path.join(SOURCE, "patterns", "hoap1_walk.json")
+STAND = """{"format": "ayumi.pattern/1", "name": "stand", "robot": "hoap1", "units": {"angle": "deg"},
+"defaults": {"posture": "home"}, "phases": [{"duration": 0.3, "support": "both"}],
+"keyframes": [{"t": 0}, {"t": 0.3, "joints": {"l_elbow": -20}}]}
+"""
+TOO_LONG = 300  # [s] for one command; a loaded machine is slow
+STOPS_WITHIN = 1.0  # [s] from Ctrl-C to the end, on a quiet machine
+
+
+class Trial:
+    """A command in a folder of its own, and what must hold after it."""
+
+    def __init__(self, program, words, outputs, before=()):
+        self.program, self.words, self.outputs = program, words, outputs
+        self.folder = tempfile.mkdtemp(prefix="ayumi_faults_")
+        with open(os.path.join(self.folder, "stand.json"), "w") as file:
+            file.write(STAND)
+        for name in before:
+            with open(os.path.join(self.folder, name), "w") as file:
+                file.write("before\n")
+
+    def start(self, **environment):
+        return subprocess.Popen(
+            [self.program] + self.words, cwd=self.folder, stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **environment})
+
+    def complaints(self, process, out, err, signals=()):
+        """What does not hold, as a list of sentences."""
+        code, wrong = process.returncode, []
+        if code < 0 and -code not in signals:
+            wrong.append(f"ended by signal {-code}: {err[-300:]!r}")
+        elif code > 1 and not err.strip():
+            wrong.append(f"exit code {code} without a message")
+        elif code == 5:
+            wrong.append(f"an internal error: {err[-300:]!r}")
+        done = code in (0, 1)
+        for name in self.outputs:
+            wrong += self.complaints_about(name, done)
+        return wrong
+
+    def complaints_about(self, name, done):
+        path = os.path.join(self.folder, name)
+        if not os.path.exists(path):
+            return [f"{name} is missing after success"] if done else []
+        if os.path.isdir(path):
+            return complaints_about_run(path, done)
+        with open(path, "rb") as file:
+            text = file.read()
+        if text == b"before\n":
+            return [f"{name} is unchanged after success"] if done else []
+        if name.endswith(".json") and text.count(b"{") != text.count(b"}"):
+            return [f"{name} is not whole"]  # a pattern may have comments, so it is no plain JSON
+        if not text.endswith(b"\n"):
+            return [f"{name} is cut off"]
+        return []
+
+    def works_now(self):
+        """The same command without a fault."""
+        words = self.words if "--force" in self.words else self.words + ["--force"]
+        again = subprocess.run([self.program] + words, cwd=self.folder, capture_output=True,
+                               timeout=TOO_LONG)
+        if again.returncode not in (0, 1):
+            return [f"started again: exit code {again.returncode}: {again.stderr[-300:]!r}"]
+        wrong = []
+        for name in self.outputs:
+            wrong += self.complaints_about(name, True)
+        return wrong
+
+    def end(self):
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def complaints_about_run(folder, done):
+    """A folder with a run.json is a whole run; hashes are those that run.json states."""
+    path = os.path.join(folder, "run.json")
+    if not os.path.exists(path):
+        return [f"{folder}: no run.json after success"] if done else []
+    try:
+        with open(path) as file:
+            run = json.load(file)
+    except ValueError as error:
+        return [f"{path} is not whole: {error}"]
+    wrong = []
+    for name, recorded in run["files"].items():
+        try:
+            with open(os.path.join(folder, name), "rb") as file:
+                found = hashlib.sha256(file.read()).hexdigest()
+        except OSError as error:
+            found = str(error)
+        if found != recorded:
+            wrong.append(f"{name} of a run with run.json: {found}")
+    return wrong
+
+
+def commands(program, pattern):
+    """The commands that are tried: a function that makes a fresh trial of each."""
+    return {
+        "check": lambda: Trial(program, ["check", pattern, "--json", "--threads", "2"], []),
+        "repair": lambda: Trial(program, ["repair", pattern, "-o", "fixed.json", "--force"],
+                                ["fixed.json"], ["fixed.json"]),
+        "simulate": lambda: Trial(program, ["simulate", pattern, "-o", "run"], ["run"]),
+        "run": lambda: Trial(program, ["run", pattern, "-o", "run", "--no-pictures"], ["run"]),
+        "export": lambda: Trial(program, ["export", pattern, "--format", "csv", "-o", "table.csv",
+                                          "--force"], ["table.csv"], ["table.csv"]),
+    }
+
+
+def slow_commands(program):
+    """What runs long enough to be stopped at a random moment."""
+    return {
+        **commands(program, WALK),
+        "pictures": lambda: Trial(program, ["run", WALK, "-o", "run"], ["run"]),
+        "push": lambda: Trial(program, ["push", WALK, "-o", "push.json", "--directions", "2"],
+                              ["push.json"]),
+        "certify": lambda: Trial(program, ["certify", WALK, "-o", "cases.json"],
+                                 ["cases.json"]),
+        "author": lambda: Trial(program, ["author", "stand.json"], []),
+    }
+
+
+class Report:
+    def __init__(self):
+        self.trials, self.failures, self.slowest = 0, 0, 0.0
+
+    def add(self, what, wrong):
+        self.trials += 1
+        if wrong:
+            self.failures += 1
+            print(f"FAILED {what}")
+            for sentence in wrong:
+                print(f"    {sentence}")
+            sys.stdout.flush()
+
+
+def finished(process):
+    try:
+        return process.communicate(timeout=TOO_LONG)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        return b"", b"hangs"
+
+
+def one_fault(make, library, fault, report, name, again):
+    trial = make()
+    process = trial.start(LD_PRELOAD=library, AYUMI_FAULT=fault)
+    out, err = finished(process)
+    wrong = ["it hangs"] if err == b"hangs" else trial.complaints(process, out, err)
+    if again and not wrong:
+        wrong = trial.works_now()
+    report.add(f"{name} {fault}", wrong)
+    trial.end()
+
+
+def counts_of(make, library):
+    trial = make()
+    file = os.path.join(trial.folder, "counts")
+    finished(trial.start(LD_PRELOAD=library, AYUMI_FAULT_COUNT=file))
+    with open(file) as lines:
+        counts = {kind: int(n) for kind, n in (line.split() for line in lines)}
+    size = sum(os.path.getsize(os.path.join(root, name)) for root, _, names in
+               os.walk(trial.folder) for name in names) + 4096
+    trial.end()
+    return counts, size
+
+
+def try_calls(program, library, count, rng, report):
+    """Every n-th call fails, or `count` random ones of a kind where there are more."""
+    for name, make in commands(program, "stand.json").items():
+        counts, _ = counts_of(make, library)
+        for kind, calls in counts.items():
+            chosen = (range(1, calls + 1) if calls <= count
+                      else sorted(rng.sample(range(1, calls + 1), count)))
+            for n in chosen:
+                suffix = "+" if rng.random() < 0.3 else ""
+                one_fault(make, library, f"{kind}:{n}{suffix}", report, name, kind != "alloc")
+
+
+def try_disk(program, library, count, rng, report):
+    """The disk is full after every number of bytes, or after `count` random ones."""
+    for name, make in commands(program, "stand.json").items():
+        _, size = counts_of(make, library)
+        chosen = range(size) if size <= count else sorted(rng.sample(range(size), count))
+        for n in chosen:
+            one_fault(make, library, f"bytes:{n}", report, name, n % 10 == 0)
+
+
+def try_signals(program, count, rng, report):
+    """SIGKILL and Ctrl-C at random moments of long commands."""
+    makers = slow_commands(program)
+    lasts = {}
+    for trial_number in range(count):
+        name = sorted(makers)[trial_number % len(makers)]
+        if name not in lasts:
+            trial = makers[name]()
+            begin = time.monotonic()
+            process = trial.start()
+            if name == "author":
+                time.sleep(2)
+                process.terminate()
+            finished(process)
+            lasts[name] = time.monotonic() - begin
+            trial.end()
+        kind = rng.choice([signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+        trial, moment = makers[name](), rng.uniform(0, lasts[name])
+        process = trial.start()
+        time.sleep(moment)
+        process.send_signal(kind)
+        begin = time.monotonic()
+        out, err = finished(process)
+        took = time.monotonic() - begin
+        if kind != signal.SIGKILL:
+            report.slowest = max(report.slowest, took)
+        # Before the program has set its handlers, a signal ends it as it ends every program.
+        wrong = trial.complaints(process, out, err, signals=(kind,))
+        if kind != signal.SIGKILL and took > STOPS_WITHIN * ALLOWANCE:
+            wrong.append(f"it took {took:.2f} s to stop")
+        if not wrong and name != "author" and trial_number % 5 == 0:
+            wrong = trial.works_now()
+        report.add(f"{name} {kind.name} at {moment:.3f} s", wrong)
+        trial.end()
+
+
+# How much longer than on a quiet machine Ctrl-C may take, where other work shares the processors.
+ALLOWANCE = float(os.environ.get("AYUMI_FAULTS_ALLOWANCE", "1"))
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("library")
+    parser.add_argument("--kind", choices=["calls", "disk", "signals", "all"], default="all")
+    parser.add_argument("--count", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    program, library = os.path.abspath(options.program), os.path.abspath(options.library)
+    rng, report = random.Random(options.seed), Report()
+    if options.kind in ("calls", "all"):
+        try_calls(program, library, options.count, rng, report)
+    if options.kind in ("disk", "all"):
+        try_disk(program, library, options.count, rng, report)
+    if options.kind in ("signals", "all"):
+        try_signals(program, options.count, rng, report)
+    print(f"{report.trials} trials, {report.failures} failed; seed {options.seed}; "
+          f"the slowest stop took {report.slowest:.2f} s")
+    sys.exit(1 if report.failures else 0)
+
+
+if __name__ == "__main__":
+    main()
