@@ -8,6 +8,7 @@
 
 option(AYUMI_PRECOMPILE "Precompile the headers that most sources include" ON)
 option(AYUMI_UNITY "Compile several sources as one: quick from nothing, slower after a change" ON)
+set(AYUMI_UNITY_SIZE 8 CACHE STRING "How many sources are compiled as one")
 
 # ayumi_compile_quickly(target headers...): headers in angle brackets, beyond the standard library.
 function(ayumi_compile_quickly target)
@@ -16,6 +17,6 @@ function(ayumi_compile_quickly target)
                               <memory> <optional> <string> <utility> <vector> ${ARGN})
   endif()
   if(AYUMI_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${AYUMI_UNITY_SIZE})
   endif()
 endfunction()
