@@ -48,5 +48,13 @@ TEST(Rotation, SkewIsTheCrossProduct) {
   EXPECT_EQ(skew(a) * b, a.cross(b));
 }
 
+TEST(Rotation, TakesOneDirectionToAnother) {
+  const Eigen::Vector3d from(1, 2, -2), to(0, 3, 4);
+  const Eigen::Quaterniond q = rotation_between(from, to);
+  EXPECT_LT((q * from.normalized() - to.normalized()).norm(), 1e-12);
+  EXPECT_NEAR(log_rotation(q).norm(), std::acos(from.normalized().dot(to.normalized())), 1e-12);
+  EXPECT_LT((rotation_between(from, -from) * from + from).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace ayumi

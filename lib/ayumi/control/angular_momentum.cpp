@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/math/linear_solve.hpp"
+
 namespace ayumi {
 
 using Eigen::Matrix3d;
@@ -182,7 +184,7 @@ void AngularMomentumTask::accelerate(const Vector3d& moment) {
         gram += matrix_.col(i) * matrix_.col(i).transpose() / weight_[i];
     if (!(gram.trace() > 0)) break;
     gram.diagonal().array() += kMomentumDamping * gram.trace();
-    const Vector3d y = gram.ldlt().solve(left);
+    const Vector3d y = solve_symmetric(gram, left);
     for (Eigen::Index i = 0; i < n; ++i) {
       if (held_[static_cast<size_t>(i)]) continue;
       const double asked = matrix_.col(i).dot(y) / weight_[i];

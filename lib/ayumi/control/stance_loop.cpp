@@ -13,6 +13,7 @@
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/math/linear_solve.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
 
@@ -160,7 +161,7 @@ struct Stance {
     const MatrixXd JW = J * weight.asDiagonal();
     MatrixXd A = JW * J.transpose();
     A.diagonal().array() += kRidge * A.trace();
-    return (JW.transpose() * A.ldlt().solve(u)).tail(model.dof_count());
+    return (JW.transpose() * solve_symmetric(A, u)).tail(model.dof_count());
   }
 };
 
@@ -168,8 +169,8 @@ struct Stance {
 // this damps an oscillation of w [rad/s] by w^2 tick / 2 [1/s], 3 /s at 12 Hz and 1 ms.
 void discretize(const MatrixXd& motion, const MatrixX2d& input, LoopModel& loop) {
   const Index n = motion.rows();
-  const Eigen::PartialPivLU<MatrixXd> implicit(MatrixXd::Identity(n, n) - loop.tick * motion);
-  loop.body = implicit.inverse();
+  const MatrixXd one = MatrixXd::Identity(n, n);
+  loop.body = solve_general(MatrixXd(one - loop.tick * motion), one);
   loop.reference = loop.body * (loop.tick * input);
 }
 
@@ -178,11 +179,11 @@ LoopModel stance_loop(Stance& stance, int axis, const LoopModel& like) {
   const Index n = model.velocity_count();
   LoopModel loop = like;
   const MatrixXd K = stance.stiffness(), D = stance.damping();
-  const Eigen::LDLT<MatrixXd> M(stance.mass());
+  const MatrixXd M = stance.mass();
   MatrixXd motion = MatrixXd::Zero(2 * n, 2 * n);
   motion.topRightCorner(n, n).setIdentity();
-  motion.bottomLeftCorner(n, n) = -M.solve(K);
-  motion.bottomRightCorner(n, n) = -M.solve(D);
+  motion.bottomLeftCorner(n, n) = -solve_symmetric(M, K);
+  motion.bottomRightCorner(n, n) = -solve_symmetric(M, D);
   const VectorXd P = stance.joints_per_cog(axis), lead = velocity_lead(stance.actuators);
   MatrixX2d torque = MatrixX2d::Zero(n, 2), input = MatrixX2d::Zero(2 * n, 2);
   for (int j = 0; j < model.dof_count(); ++j) {

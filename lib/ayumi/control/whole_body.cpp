@@ -16,6 +16,7 @@
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/kernels/tree_kernels.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/linear_solve.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/weighted_solve.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -395,7 +396,7 @@ void ReferenceBody::fly(const Vector3d& tilt, const CommandSample& command,
     for (int i = 0; i < std::min<int>(3, static_cast<int>(leg.size())); ++i)
       axes.col(i) = data_.axis[model_->dofs()[leg[i]].body];
     const Matrix3d damped = axes * axes.transpose() + kHipDamping * Matrix3d::Identity();
-    const Vector3d turn = -axes.transpose() * damped.ldlt().solve(tilt);
+    const Vector3d turn = -axes.transpose() * solve_symmetric(damped, tilt);
     for (int i = 0; i < std::min<int>(3, static_cast<int>(leg.size())); ++i)
       work_.bias[leg[i]] += turn[i];
   }

@@ -11,6 +11,7 @@
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/math/linear_solve.hpp"
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -461,7 +462,7 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     }
     MatrixXd H = J.transpose() * J;
     H.diagonal().array() += lambda * (lacking_ ? kRollWeight * kRollWeight : 1.0);
-    VectorXd d = H.ldlt().solve(J.transpose() * r);
+    VectorXd d = solve_symmetric(H, VectorXd(J.transpose() * r));
     const double longest = d.tail(base + n - 3).cwiseAbs().maxCoeff();
     if (longest > kLargestJointStep) d *= kLargestJointStep / longest;
     RobotState trial = state;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/linear_solve.hpp"
 #include "ayumi/model/outline.hpp"
 
 namespace ayumi {
@@ -154,7 +155,7 @@ ReachSolution reach(const RobotModel& model, const RobotState& state, int body,
       if (!held[i]) jacobian.col(static_cast<Eigen::Index>(i)) = whole.col(6 + dofs[i]);
     const Eigen::Matrix3d normal =
         jacobian * jacobian.transpose() + damping * Eigen::Matrix3d::Identity();
-    VectorXd step = jacobian.transpose() * normal.ldlt().solve(place - at);
+    VectorXd step = jacobian.transpose() * solve_symmetric(normal, place - at);
     const double longest = step.size() ? step.cwiseAbs().maxCoeff() : 0;
     if (longest > kLongestStep) step *= kLongestStep / longest;
     now.theta = best.theta;

@@ -23,6 +23,10 @@ Eigen::Vector3d log_rotation(const Eigen::Quaterniond& q) {
   return 2.0 * elementary::atan2(sine, w) / sine * v;
 }
 
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 Eigen::Matrix3d rpy_to_matrix(const Eigen::Vector3d& rpy) {
   using elementary::turn_quaternion;
   return (turn_quaternion(rpy.z(), Eigen::Vector3d::UnitZ()) *

@@ -18,6 +18,10 @@ Eigen::Quaterniond exp_rotation(const Eigen::Vector3d& r);
 /// Rotation vector of q, |r| <= pi [rad]. exp_rotation(log_rotation(q)) = +-q.
 Eigen::Vector3d log_rotation(const Eigen::Quaterniond& q);
 
+/// The smallest rotation that takes the direction of `from` to that of `to` (lengths do not count,
+/// neither is zero). Between opposite directions it is one of the many half turns.
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 /// R = Rz(yaw) Ry(pitch) Rx(roll), rpy = (roll, pitch, yaw) [rad].
 Eigen::Matrix3d rpy_to_matrix(const Eigen::Vector3d& rpy);
 

@@ -1,5 +1,7 @@
 #include "ayumi/math/weighted_solve.hpp"
 
+#include "ayumi/math/linear_solve.hpp"
+
 namespace ayumi {
 
 Eigen::VectorXd weighted_least_norm(const Eigen::MatrixXd& J, const Eigen::VectorXd& u,
@@ -9,7 +11,7 @@ Eigen::VectorXd weighted_least_norm(const Eigen::MatrixXd& J, const Eigen::Vecto
   // With few tasks and joints the plain product is faster than the blocked one.
   Eigen::MatrixXd A = JW.lazyProduct(J.transpose());
   if (damping > 0) A.diagonal().array() += damping * A.trace() / static_cast<double>(A.rows());
-  return x0 + JW.transpose() * A.ldlt().solve(u - J * x0);
+  return x0 + JW.transpose() * solve_symmetric(A, Eigen::VectorXd(u - J * x0));
 }
 
 }  // namespace ayumi

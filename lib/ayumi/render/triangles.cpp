@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
 namespace {
@@ -113,7 +114,7 @@ Triangles cylinder(double radius, double length, const Vector4f& color) {
 Eigen::Isometry3d frame_along(const Vector3d& origin, const Vector3d& direction) {
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
   frame.translation() = origin;
-  frame.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), direction).matrix();
+  frame.linear() = rotation_between(Vector3d::UnitZ(), direction).matrix();
   return frame;
 }
 

@@ -81,7 +81,7 @@ Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
     ++count;
   }
   Isometry3d turn = Isometry3d::Identity();
-  turn.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal).toRotationMatrix() *
+  turn.linear() = rotation_between(Vector3d::UnitZ(), normal).toRotationMatrix() *
                   elementary::turn_matrix(elementary::atan2(sine, cosine), Vector3d::UnitZ());
   turn.translation() = real / count - turn.linear() * plan / count;
   return turn;
@@ -207,12 +207,14 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
 void FallMonitor::judge_zmp() {
   const auto count = static_cast<Eigen::Index>(last_zmp_.size());
   if (static_cast<double>(count) * tick_ < 0.999 * kRestTime) return;
-  Eigen::MatrixX2d zmp(count, 2), line(count, 2);
-  for (Eigen::Index k = 0; k < count; ++k) {
+  Eigen::MatrixX2d zmp(count, 2);
+  for (Eigen::Index k = 0; k < count; ++k)
     zmp.row(k) = last_zmp_[(next_zmp_ + static_cast<size_t>(k)) % last_zmp_.size()].transpose();
-    line.row(k) << 1, 2 * static_cast<double>(k) / static_cast<double>(count) - 1;
-  }
-  zmp -= line * line.colPivHouseholderQr().solve(zmp);
+  zmp.rowwise() -= Eigen::RowVector2d(zmp.colwise().mean());
+  const double half = 0.5 * static_cast<double>(count - 1);
+  const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(count, -half, half);
+  const Eigen::RowVector2d slope = time.transpose() * zmp / std::max(1.0, time.squaredNorm());
+  for (Eigen::Index k = 0; k < count; ++k) zmp.row(k) -= time[k] * slope;
   Eigen::Index axis = 0;
   const double rms =
       std::sqrt(zmp.colwise().squaredNorm().maxCoeff(&axis) / static_cast<double>(count));

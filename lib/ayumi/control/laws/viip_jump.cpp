@@ -24,6 +24,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/math/linear_solve.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/weighted_solve.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -540,9 +541,9 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
   Eigen::Matrix<double, 6, 1> momentum;  // about the base origin
   momentum << model_->mass() * dcog_,
       flight_.momentum + data_.cog_offset.cross(model_->mass() * dcog_);
-  const Eigen::PartialPivLU<MatrixXd> base_inertia(MatrixXd(M.topLeftCorner<6, 6>()));
-  const MatrixXd base_map = -base_inertia.solve(M.topRightCorner(6, n));
-  const VectorXd base_drift = base_inertia.solve(momentum);
+  const MatrixXd base_inertia = M.topLeftCorner<6, 6>();
+  const MatrixXd base_map = -solve_general(base_inertia, MatrixXd(M.topRightCorner(6, n)));
+  const VectorXd base_drift = solve_general(base_inertia, VectorXd(momentum));
 
   MatrixXd J(12, n);
   VectorXd u(12);

@@ -11,6 +11,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/formats/mcap_writer.hpp"
 #include "ayumi/io/run/log_about.hpp"
+#include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
 
@@ -154,7 +155,7 @@ OrderedJson arrow(const std::string& id, const Vector3d& at, const Vector3d& vec
   const double length = vector.norm();
   if (finite(at) && std::isfinite(length) && length > thickness)
     made["arrows"].push_back(
-        {{"pose", json_pose(at, Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitX(), vector))},
+        {{"pose", json_pose(at, rotation_between(Vector3d::UnitX(), vector))},
          {"shaft_length", length - 2 * thickness > 0 ? length - 2 * thickness : 0},
          {"shaft_diameter", thickness},
          {"head_length", 2 * thickness},

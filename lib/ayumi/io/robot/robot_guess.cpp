@@ -14,6 +14,7 @@
 #include "ayumi/io/robot/facing.hpp"
 #include "ayumi/io/robot/mesh.hpp"
 #include "ayumi/math/polygon.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/model/body_poses.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/model/outline.hpp"
@@ -320,7 +321,7 @@ Eigen::Matrix3d levelled(const Points& points) {
     if (solver.rank() < 3) return Eigen::Matrix3d::Identity();
     const Vector3d plane = solver.solve(right);
     const Vector3d normal = Vector3d(-plane.x(), -plane.y(), 1).normalized();
-    turn = Eigen::Quaterniond::FromTwoVectors(normal, Vector3d::UnitZ()).toRotationMatrix() * turn;
+    turn = rotation_between(normal, Vector3d::UnitZ()).toRotationMatrix() * turn;
   }
   return turn;
 }

@@ -347,8 +347,7 @@ void set_bump(const RisingDisc* bump, int i, mjModel* m) {
     const double half = 0.5 * (b - a).norm() - kBall;
     place_geom(id, {middle.x(), middle.y(), block.height - kBall}, {kBall, half, 0}, half + kBall,
                m);
-    const Quaterniond q =
-        Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d(along.x(), along.y(), 0));
+    const Quaterniond q = rotation_between(Vector3d::UnitZ(), Vector3d(along.x(), along.y(), 0));
     mjtNum* to = m->geom_quat + 4 * id;
     to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
   }

@@ -1,0 +1,19 @@
+#pragma once
+// Systems of linear equations. The factorizations are compiled here alone, because each of them
+// takes a compiler seconds in every source that uses it.
+
+#include <Eigen/Core>
+
+namespace ayumi {
+
+/// x with A x = b by L D L'. A: n x n, symmetric and semidefinite (its lower triangle is read);
+/// b: n, or n x m. Where A is singular, directions of its kernel stay 0.
+Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& A, const Eigen::Vector3d& b);
+Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b);
+
+/// x with A x = b by L U with partial pivoting. A: n x n, not singular; b: n, or n x m.
+Eigen::VectorXd solve_general(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+Eigen::MatrixXd solve_general(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b);
+
+}  // namespace ayumi

@@ -1,0 +1,40 @@
+#include "ayumi/math/linear_solve.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/random_robot.hpp"
+
+namespace ayumi {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixXd random_matrix(test::Random& random, int rows, int columns) {
+  MatrixXd m(rows, columns);
+  for (int i = 0; i < rows; ++i) m.row(i) = random.vector(columns, 1.0).transpose();
+  return m;
+}
+
+TEST(LinearSolve, MeetsTheEquations) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    test::Random random(seed);
+    const int n = 1 + static_cast<int>(seed);
+    const MatrixXd root = random_matrix(random, n, n);
+    const MatrixXd A = root * root.transpose() + MatrixXd::Identity(n, n);
+    const MatrixXd B = random_matrix(random, n, 4);
+    const VectorXd b = B.col(0);
+    EXPECT_LT((A * solve_symmetric(A, b) - b).norm(), 1e-10);
+    EXPECT_LT((A * solve_symmetric(A, B) - B).norm(), 1e-10);
+    const MatrixXd general = root + 10 * MatrixXd::Identity(n, n);
+    EXPECT_LT((general * solve_general(general, b) - b).norm(), 1e-10);
+    EXPECT_LT((general * solve_general(general, B) - B).norm(), 1e-10);
+    const Eigen::Matrix3d small = A(0, 0) * Eigen::Matrix3d::Identity() +
+                                  Eigen::Vector3d(1, 2, 3) * Eigen::RowVector3d(1, 2, 3);
+    const Eigen::Vector3d right(4, -5, 6);
+    EXPECT_LT((small * solve_symmetric(small, right) - right).norm(), 1e-10);
+  }
+}
+
+}  // namespace
+}  // namespace ayumi
