@@ -351,8 +351,9 @@ void add_certify(CLI::App& app, Context& context) {
       ->type_name("P")
       ->capture_default_str();
   command
-      ->add_option("--runs", certify.most,
-                   "Largest number of runs (default: ten times those without a failure).")
+      ->add_option(
+          "--runs", certify.most,
+          "Largest number of runs (default: ten times the number that is enough if no run fails).")
       ->check(whole_number_within(1, 100000000).description(""))
       ->type_name("N");
   command->add_flag("--all", certify.all,

@@ -212,8 +212,9 @@ void add_compare(CLI::App& app, Context& context) {
           "Recordings: joint angles (HOAP counts, or columns by name), load cells and IMU.")
       ->type_name("F");
   command
-      ->add_option("--loads", options.loads,
-                   "A recording of load cells and IMU, where the file itself does not show it.")
+      ->add_option(
+          "--loads", options.loads,
+          "Recording of load cells and IMU; needed where the file does not show that it is one.")
       ->type_name("F");
   command
       ->add_option("--log", options.log,

@@ -126,15 +126,14 @@ void add_diff(CLI::App& app, Context& context) {
   command->add_option("--plot", options.plot, "Draw both over time, .svg or .png.")->type_name("F");
   command
       ->add_option("--weight", options.weights,
-                   "Factor on the cost of moving this joint, as for repair (default: the "
-                   "pattern's, 1).")
+                   "Factor on the cost of moving this joint, as for repair (default: that of the "
+                   "pattern, otherwise 1).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
-      ->add_option(
-          "--safety", options.safety,
-          "Weight of safety against staying close to the original, as for repair (default: "
-          "the pattern's, 1).")
+      ->add_option("--safety", options.safety,
+                   "Weight of safety compared with staying close to the original, as for repair "
+                   "(default: that of the pattern, otherwise 1).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   add_pattern_options(*command, options.input);

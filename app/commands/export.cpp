@@ -674,7 +674,8 @@ void add_export(CLI::App& app, Context& context) {
       ->check(number_within(0.0, 60.0));
   command
       ->add_option("--hold", options->hold,
-                   "How long the last posture is held (default: 0.5; 0 as with --ramp) [s].")
+                   "How long the last posture is held (default: 0.5; 0 for an imported sequence "
+                   "whose motion is unchanged) [s].")
       ->check(number_within(0.0, 60.0));
   CLI::Option* interval =
       command
@@ -688,7 +689,8 @@ void add_export(CLI::App& app, Context& context) {
       ->type_name("HZ")
       ->excludes(interval);
   command->add_option("--layout", options->layout,
-                      "Layout of the sidecar for --format hoap (default: the first one).");
+                      "Name of the column layout for --format hoap, one of \"layouts\" in the "
+                      "sidecar (default: the first one).");
   command
       ->add_option(
           "--from", options->safety.from,

@@ -209,7 +209,7 @@ void new_sway(const Context& context, NewOptions options) {
       context, model, sway_pattern(model, p), options,
       {"The COG sways " + std::to_string(p.cycles) + " times, " + text::brief(p.side) +
            " m to either side and " + text::brief(p.forward) + " m ahead and back, over both feet.",
-       "Every key is a rest of the COG; the ZMP of the whole robot follows from it."});
+       "The COG is at rest at every key; the ZMP is computed from the motion of the whole robot."});
 }
 
 void new_squat(const Context& context, NewOptions options) {
@@ -236,7 +236,8 @@ void new_squat(const Context& context, NewOptions options) {
   write_new(context, model, squat_pattern(model, p), options,
             {"Squats " + std::to_string(p.cycles) + " times by " + text::brief(p.depth) +
                  " m: COG height keys.",
-             "Where the COG is over the ground is solved: the ZMP stays in the middle."});
+             "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
+             "the feet."});
 }
 
 void new_seat(const Context& context, NewOptions options, bool down) {
@@ -286,7 +287,8 @@ void new_bow(const Context& context, NewOptions options) {
             {"Bows by " + text::brief(p.angle / degree) +
                  " deg: keys of the trunk and of the COG "
                  "height.",
-             "Where the COG is over the ground is solved: the ZMP stays in the middle."});
+             "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
+             "the feet."});
 }
 
 void new_wave(const Context& context, NewOptions options) {
@@ -459,12 +461,12 @@ void new_viip(const Context& context, const NewOptions& options) {
     const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
     phase(stepping_time(viip_params(model, pattern.controller), omega, goal.steps) + 0.05, goal);
     comments = {std::to_string(goal.steps) + " steps, the last one closing; VIIP places the feet.",
-                "The time is what the steps take from standing to standing."};
+                "The duration of the phase is the time of all steps, from standing to standing."};
   } else {
     const Eigen::Vector3d displacement(options.cog[0], options.cog[1], options.cog[2]);
     phase(kDisplaced, CogGoal{displacement});
     phase(kDisplaced, CogGoal{});
-    comments = {"The COG goes to a displacement over both feet, and back."};
+    comments = {"The robot stands on both feet; the COG moves by a displacement, and back."};
   }
   const CommandSeries series = sample_at_servo_period(model, pattern);
   require_reachable_goals(model, series, pattern.controller);
@@ -495,8 +497,8 @@ void new_excite(const Context& context, const NewOptions& options) {
     scale *= 0.8;
   }
   write_new(context, model, excite_pattern(model, scale), options,
-            {"Slow sweeps, chirps and steps of every joint, of the legs on one foot: for `ayumi "
-             "identify`.",
+            {"Slow sweeps, chirps and steps of every joint, for `ayumi identify`. Joints of a leg "
+             "are moved while the robot stands on one foot.",
              "Amplitudes are " + text::brief(100 * scale, 3) + " % of the generator's own."});
 }
 
@@ -512,9 +514,9 @@ void add_scaled(CLI::App& command, const char* name, std::optional<double>& valu
 
 void add_height(CLI::App& command, double& height) {
   command
-      .add_option(
-          "--cog-height", height,
-          "COG height [m]; 0 = that of the home posture, lower where the legs are straight.")
+      .add_option("--cog-height", height,
+                  "COG height [m]; 0 = the height in the home posture, or a lower one if its legs "
+                  "are straight.")
       ->capture_default_str()
       ->type_name("M");
 }

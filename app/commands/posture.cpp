@@ -335,11 +335,11 @@ void add_library(CLI::App& command, const Options& options) {
       ->type_name("NAME");
   command
       .add_option("-o,--out", options->out,
-                  "Posture library to write; one that exists gets one posture more.")
+                  "Posture library to write; if the file exists, the posture is added to it.")
       ->required()
       ->type_name("F");
   command.add_flag("--rad", options->radians,
-                   "Angles in radians: those of --joint, and those of a new library.");
+                   "Use radians in place of degrees for --joint and in a new library.");
 }
 
 }  // namespace

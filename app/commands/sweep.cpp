@@ -253,10 +253,11 @@ void add_sweep(CLI::App& app, Context& context) {
   auto merging = std::make_shared<MergeCommand>();
   merge->add_option("FILES", merging->files, "Results of the same study.")->required();
   merge
-      ->add_option("-o,--out", merging->out,
-                   "A new file (default: the first one takes the others).")
+      ->add_option(
+          "-o,--out", merging->out,
+          "New file for the merged results (default: the others are merged into the first file).")
       ->type_name("F.db");
-  merge->add_flag("--partial", merging->partial, "Also where cases are missing.");
+  merge->add_flag("--partial", merging->partial, "Merge even if cases are missing.");
   merge->callback([merging, &context] { merge_results(context, *merging); });
 
   CLI::App* status = command->add_subcommand("status", "say how far a sweep is");

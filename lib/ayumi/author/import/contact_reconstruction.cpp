@@ -101,11 +101,11 @@ class Grounding {
     const size_t more = flights.size() > kMost ? flights.size() - kMost : 0;
     flights.resize(flights.size() - more);
     if (flight > 0)
-      result.push_back(
-          "nothing rests on the ground for " + text::brief(flight, 3) + " s (" +
-          text::join(flights, ", ") +
-          (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
-          "): this is flight (--contact-height and --contact-speed change what rests)");
+      result.push_back("nothing rests on the ground for " + text::brief(flight, 3) + " s (" +
+                       text::join(flights, ", ") +
+                       (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
+                       "): this is taken as flight (--contact-height and --contact-speed set when "
+                       "a sole counts as resting)");
     return result;
   }
 
@@ -240,7 +240,9 @@ class Grounding {
 
 void require_motion(const RobotModel& model, const RawMotion& motion) {
   if (!model.has_soles())
-    fail(ErrorCode::bad_model, model.name() + ": the robot has no soles; name both in its sidecar");
+    fail(ErrorCode::bad_model, model.name() +
+                                   ": the robot has no soles; add the left and the right sole to "
+                                   "\"soles\" in its sidecar");
   if (motion.theta.rows() < 6)
     fail(ErrorCode::bad_pattern,
          "a motion of " + std::to_string(motion.theta.rows()) + " rows; at least 6 are needed");

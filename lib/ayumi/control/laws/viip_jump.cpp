@@ -458,7 +458,8 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
       if (last || behind || unloaded_ > kNoForceTime) {
         release();
       } else if (elapsed_ > 3 * figures.push) {
-        out.notes.push_back("no lift-off: the push does not reach its height");
+        out.notes.push_back(
+            "no lift-off: the COG does not reach the lift-off height in the push phase");
         left_ = 0;
         enter(Stage::settle);
       }

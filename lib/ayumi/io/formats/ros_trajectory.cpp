@@ -118,7 +118,7 @@ MotionFile joined(const MotionInput& source, std::vector<Trajectory> all) {
   }
   if (all.size() > 1)
     motion.notes.push_back(text::counted(all.size(), "trajectory", "trajectories") +
-                           "; those of the same joints follow each other");
+                           "; trajectories of the same joints are played one after the other");
   size_t width = 0;
   for (const Trajectory& group : groups) {
     motion.times.insert(motion.times.end(), group.times.begin(), group.times.end());

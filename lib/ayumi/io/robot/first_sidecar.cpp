@@ -118,8 +118,8 @@ std::string home_text(const RobotModel& model, const RobotGuess& guess) {
   const Eigen::VectorXd home = model.posture();
   std::string text = guessed("Home posture [deg]: every motion starts here.", guess.home_reason) +
                      remark(
-                         "Behind each joint stands what a positive angle does. Check it on the "
-                         "robot, one joint at a time.") +
+                         "The comment after each joint says what a positive angle does. Check this "
+                         "on the robot, one joint at a time.") +
                      "  \"postures_deg\": {\n    \"home\": {\n";
   std::string sliders;
   std::vector<int> turning;

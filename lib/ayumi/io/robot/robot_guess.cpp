@@ -294,7 +294,8 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
     guess.facing =
         nearest_facing(ahead.x() < 0 || (ahead.x() == 0 && ahead.y() < 0) ? -ahead : ahead);
     guess.facing_reason.why =
-        "the feet are across this axis; names and shapes of the feet do not tell front from back";
+        "the line between the feet is perpendicular to this axis; names and shapes of the feet do "
+        "not tell front from back";
   }
   guess.facing_reason.check = "that the robot looks along the red arrow in the picture";
 }
@@ -412,7 +413,8 @@ void find_soles(RobotGuess& guess) {
     robot.assumptions.push_back(
         side + " sole: link " + sole.link + ", hull of " + std::to_string(sole.polygon.size()) +
         " corners, " + text::fixed(1000 * extent(sole).x(), 0) + " x " +
-        text::fixed(1000 * extent(sole).y(), 0) + " mm, of what touches the ground within 1 mm");
+        text::fixed(1000 * extent(sole).y(), 0) +
+        " mm, around the points of the foot that are at most 1 mm above the ground");
   robot.soles = soles;
   const bool collisions = std::any_of(
       model.links().begin(), model.links().end(),
