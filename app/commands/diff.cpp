@@ -123,7 +123,8 @@ void add_diff(CLI::App& app, Context& context) {
   static DiffCommand options;
   command->add_option("A", options.a, "Pattern file.")->required();
   command->add_option("B", options.b, "Pattern file that is compared with A.")->required();
-  command->add_option("--plot", options.plot, "Draw both over time, .svg or .png.")->type_name("F");
+  command->add_option("--plot", options.plot, "Draw both patterns over time, .svg or .png.")
+      ->type_name("F");
   command
       ->add_option("--weight", options.weights,
                    "Factor on the cost of moving this joint, as for repair (default: that of the "

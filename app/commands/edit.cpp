@@ -495,7 +495,7 @@ void add_edit(CLI::App& app, Context& context) {
       .add_option("--by", options.key_by, "By how much it is moved [s]; below 0 is earlier.")
       ->check(number_within(-1e6, 1e6))
       ->type_name("S");
-  key_command.add_flag("--copy", options.key.copy, "The keyframe stays where it was, too.");
+  key_command.add_flag("--copy", options.key.copy, "Also keep the keyframe at its old time.");
   key_command.add_flag("--mirror", options.key.mirror,
                        "Exchange left and right in the keyframe at its new time.");
   key_command.callback([&context] { edit_key(context, options); });

@@ -207,15 +207,15 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   }
   if (advice)
     words += "  `ayumi new excite --robot " + options.robot +
-             " -o excite.json` writes motions that tell these constants apart\n";
+             " -o excite.json` writes motions with which these constants can be distinguished\n";
   if (!options.out.empty()) {
     write_file(options.out, sidecar_text(model, options, found));
     words += options.out + ": written\n";
     if (std::any_of(found.joints.begin(), found.joints.end(),
                     [](const IdentifiedJoint& joint) { return joint.delay_is_lag; }))
       words +=
-          "  where delay and damping cannot be told apart, the whole delay is written as damping: "
-          "kd = kp times delay\n";
+          "  where delay and damping cannot be distinguished, the whole delay is written as "
+          "damping: kd = kp times delay\n";
   }
   context.print(words);
   context.print_json(Json{

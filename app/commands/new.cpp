@@ -260,7 +260,7 @@ void new_seat(const Context& context, NewOptions options, bool down) {
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
   write_new(context, model, pattern, options,
             {std::string(down ? "Goes down by " : "Comes up by ") + text::brief(p.depth) +
-                 " m, with the trunk ahead half-way.",
+                 " m, with the trunk leaning forward in the middle of the motion.",
              "There is no seat in the world of the pattern: the feet alone carry the robot."});
 }
 
@@ -308,7 +308,7 @@ void new_wave(const Context& context, NewOptions options) {
   write_new(context, model, pattern, options,
             {"Waves the " + options.which + " hand " + std::to_string(p.cycles) +
                  " times: keys of the joints of the arm.",
-             "The COG is solved: the ZMP stays in the middle of the feet."});
+             "The COG is solved so that the ZMP stays in the middle of the feet."});
 }
 
 void new_kick(const Context& context, NewOptions options) {
@@ -460,8 +460,10 @@ void new_viip(const Context& context, const NewOptions& options) {
     pattern.phases.pop_back();
     const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
     phase(stepping_time(viip_params(model, pattern.controller), omega, goal.steps) + 0.05, goal);
-    comments = {std::to_string(goal.steps) + " steps, the last one closing; VIIP places the feet.",
-                "The duration of the phase is the time of all steps, from standing to standing."};
+    comments = {
+        std::to_string(goal.steps) +
+            " steps, the last of which brings the feet together; VIIP chooses the footholds.",
+        "The duration of the phase is the time of all steps, from standing to standing."};
   } else {
     const Eigen::Vector3d displacement(options.cog[0], options.cog[1], options.cog[2]);
     phase(kDisplaced, CogGoal{displacement});
@@ -655,7 +657,8 @@ void add_seat(CLI::App& command, NewOptions& options) {
   add_scaled(command, "--depth", options.depth, "Height between standing and sitting [m]",
              SeatParameters().depth, "M");
   command
-      .add_option("--lean", options.angle_deg, "Lean of the trunk half-way [deg] (default: 20).")
+      .add_option("--lean", options.angle_deg,
+                  "Lean of the trunk in the middle of the motion [deg] (default: 20).")
       ->type_name("DEG");
   add_scaled(command, "--period", options.period, "Time of the motion [s]", SeatParameters().period,
              "S");
@@ -739,7 +742,7 @@ void add_new(CLI::App& app, Context& context) {
             list_kinds(context, *command);
             throw CLI::Success();
           },
-          "One line for each kind of motion.")
+          "Print one line for each kind of motion.")
       ->trigger_on_parse();
   command->footer(
       "Examples:\n  ayumi new walk -o walk.json\n"
@@ -810,7 +813,7 @@ void add_new(CLI::App& app, Context& context) {
       "excite", "slow sweeps, chirps and steps of every joint, for identify");
   excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
   add_common(*excite, options);
-  excite->add_option("ROBOT", options.robot, "The robot, as --robot.");
+  excite->add_option("ROBOT", options.robot, "Robot, the same as --robot.");
   excite->add_option("--scale", options.scale, "Factor on all amplitudes.")
       ->check(number_within(0.05, 2.0))
       ->capture_default_str();

@@ -372,7 +372,8 @@ void add_posture(CLI::App& app, Context& context) {
   CLI::App& adjusted = add_kind(*command, "adjust", "change single joints", options);
   add_name(adjusted, options);
   adjusted
-      .add_option("--joint", options->joints, "Angle of a joint [deg, sliders m]; may be repeated.")
+      .add_option("--joint", options->joints,
+                  "Angle of a joint [deg], or place of a sliding joint [m]; may be repeated.")
       ->required()
       ->type_name("JOINT=ANGLE")
       ->allow_extra_args(false);

@@ -261,7 +261,7 @@ class StruggleTeller {
     };
   }
 
-  void say_what_is_left() const { say("the repair was stopped; left to mend: " + words()); }
+  void say_what_is_left() const { say("the repair was stopped; errors that are left: " + words()); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -272,7 +272,7 @@ class StruggleTeller {
       return;
     told_stage_ = stage;
     told_ = now;
-    say(stage + " takes a while, because it still has to mend: " + words() +
+    say(stage + " takes a while, because it still has to remove: " + words() +
         "; Ctrl-C stops the repair");
   }
 

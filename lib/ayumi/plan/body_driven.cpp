@@ -318,7 +318,7 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
         "a leg has " + std::to_string(joints) +
         (job.ik.coupled().empty() ? " joints, not six,"
                                   : " joints of its own and one that moves both legs, not six,") +
-        " and cannot place a level sole anywhere: the trunk leans by up to " +
+        " so there are places at which it cannot put the sole level: the trunk leans by up to " +
         text::fixed(worst.lean * 180 / std::numbers::pi, 1) +
         " deg, and soles miss their places by up to " + millimetres(worst.miss) + " (allowed " +
         millimetres(kLackingTolerance) + ")";

@@ -92,16 +92,16 @@ class Grounding {
     }
     std::vector<std::string> result;
     if (floats > kSaid || sinks > kSaid)
-      result.push_back("while they carry, soles float by up to " + millimetres(floats) +
+      result.push_back("while they carry the robot, soles float by up to " + millimetres(floats) +
                        " and sink by up to " + millimetres(sinks) +
                        " (--ground moves the robot up and down so that they do not)");
     if (slides > kSaid)
-      result.push_back("while they carry, soles slide by up to " + millimetres(slides));
+      result.push_back("while they carry the robot, soles slide by up to " + millimetres(slides));
     constexpr size_t kMost = 6;  // Chosen: a line that a person still reads
     const size_t more = flights.size() > kMost ? flights.size() - kMost : 0;
     flights.resize(flights.size() - more);
     if (flight > 0)
-      result.push_back("nothing rests on the ground for " + text::brief(flight, 3) + " s (" +
+      result.push_back("no sole rests on the ground for " + text::brief(flight, 3) + " s (" +
                        text::join(flights, ", ") +
                        (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
                        "): this is taken as flight (--contact-height and --contact-speed set when "

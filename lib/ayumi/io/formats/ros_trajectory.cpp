@@ -54,13 +54,13 @@ void add_key(const MotionInput& source, size_t line, double time, std::vector<do
 Trajectory trajectory_of(const MotionInput& source, const YamlNode& names, const YamlNode& points) {
   Trajectory result;
   result.joints = names_in(source, names);
-  if (!points.is_list()) source.refuse(yaml_line(points), "`points` is no list");
+  if (!points.is_list()) source.refuse(yaml_line(points), "`points` is not a list");
   for (const YamlNode& point : points.items) {
     const YamlNode *positions = point.find("positions"), *time = point.find("time_from_start");
     if (!positions || !time)
       source.refuse(yaml_line(point), "a point needs positions and time_from_start");
     if (!positions->items.empty())
-      source.refuse(yaml_line(*positions), "the positions are no finite numbers");
+      source.refuse(yaml_line(*positions), "the positions are not finite numbers");
     add_key(source, yaml_line(point), duration_of(source, *time), positions->numbers, result);
   }
   if (result.times.empty()) source.refuse(yaml_line(points), "there is no point");

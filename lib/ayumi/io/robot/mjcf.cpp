@@ -185,7 +185,7 @@ class MjcfReader {
     for (const std::string& name : text_.weighed_meshes) {
       const auto mesh = text_.meshes.find(name);
       if (mesh == text_.meshes.end()) continue;
-      const std::string file = places_.find("that weighs by it", mesh->second.file);
+      const std::string file = places_.find("whose mass follows from it", mesh->second.file);
       if (file.empty()) {
         missing.push_back(mesh->second.file);
         continue;

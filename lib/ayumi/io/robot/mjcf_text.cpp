@@ -155,7 +155,7 @@ class Cleaner {
                      "<" + element->ValueStr() + " " + each->Name() + "=\"" + text + "\">: '" +
                          word + "' is not a finite number" +
                          (word.find(',') != std::string::npos
-                              ? "; mjcf_numbers have a decimal point, and blanks between them"
+                              ? "; numbers have a decimal point, and blanks between them"
                               : ""));
       }
     }
@@ -318,7 +318,7 @@ class Cleaner {
     if (others > 0)
       text_.notes.push_back(
           text::counted(others, "actuator") +
-          " of tendons, sites or bodies left out: servos of joints are simulated");
+          " of tendons, sites or bodies left out, because only servos of joints are simulated");
   }
 
   static bool carries_bodies(const TiXmlElement* element) {

@@ -295,7 +295,7 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
         nearest_facing(ahead.x() < 0 || (ahead.x() == 0 && ahead.y() < 0) ? -ahead : ahead);
     guess.facing_reason.why =
         "the line between the feet is perpendicular to this axis; names and shapes of the feet do "
-        "not tell front from back";
+        "not show which end is the front";
   }
   guess.facing_reason.check = "that the robot looks along the red arrow in the picture";
 }
@@ -514,7 +514,7 @@ bool find_home(RobotGuess& guess) {
           "found by balancing: level soles, legs of " + text::fixed(100 * share, 1) +
               " % of their straight length, COG " + text::fixed(1e3 * target.cog.z(), 0) +
               " mm high over the middle of the soles, every joint inside its limits" +
-              (human ? ", knees in front as a human's"
+              (human ? ", knees that bend forward like a human's"
                      : "; the limits leave the knees no room to come forward, so they go back"),
           "that the robot stands like this, and that the arms are clear of the body"};
       return true;
