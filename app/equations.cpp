@@ -146,13 +146,13 @@ EquationNumbers pendulum_numbers(const RunInstant& i) {
            ") = " + acceleration(w2 * (x - real)));
     if (literal(i)) {
       w.part("law.motion", "m/s^2", law.motion, a, w2 * (x - wanted));
-      w.line("   the required one is integrated as it is");
+      w.line("   the required acceleration is integrated without a correction");
       continue;
     }
     const double offset = w.part("law.offset", "m", law.offset, a);
     const double ka = own_gains(i) ? i.gain("ka") : 0;
     if (law.short_term.head<2>().isZero(0)) {
-      w.line("   short term: none, because no foot bears or its gain is 0");
+      w.line("   short term: none, because no foot carries the robot or the gain ka is 0");
     } else if (ka > 0) {
       // DTAD moves its offset after it has used it: the gap is that of the term itself.
       const double gap = law.short_term[a] / (ka * w2);
@@ -198,7 +198,7 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
   const S& s = w.now();
   const LawTerms& law = s.law;
   if (!on_ground(law.stage)) {
-    w.line("(18)(19) rest; ref ZMP is that of the plan");
+    w.line("(18)(19) are not used in flight; the reference ZMP is that of the plan");
     return w.take();
   }
   const double K = w.scalar("law.K", "1", law.K), D = w.scalar("law.D", "s", law.D);

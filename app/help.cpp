@@ -16,7 +16,9 @@ std::string overview(const CLI::App& app) {
   }
   text += "\nOptions of every command:\n";
   for (const CLI::Option* option : app.get_options()) {
-    std::string line = "  " + option->get_name(false, true);
+    // CLI11 has no name for an option that the pages of commands do not list.
+    const std::string name = option->get_name(false, true);
+    std::string line = "  " + (name.empty() ? "--" + option->get_lnames().front() : name);
     if (option->get_type_size() > 0) line += " " + option->get_type_name();
     line.resize(std::max<size_t>(line.size() + 1, 26), ' ');
     text += line + option->get_description() + "\n";

@@ -126,7 +126,9 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
       refuse("this file holds the results of a study with other settings");
     for (const Json& entry : json.at("cases")) {
       if (entry.at("limits").size() != study.at("controllers").size())
-        refuse("a push has another number of results than the study has controllers");
+        refuse(
+            "the number of results of a push is not the number of controllers of the study; choose "
+            "another name, or replace the file with --force");
       known.at(entry.at("index")) = case_from(entry);
     }
   } catch (const Json::exception&) {

@@ -201,13 +201,18 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
                  const Progress& progress) {
   std::array<int, 2> out{}, err{};
   if (::pipe(out.data()) != 0 || ::pipe(err.data()) != 0)
-    fail(ErrorCode::bad_file, "the export cannot be started: no pipe is left");
+    fail(ErrorCode::bad_file,
+         "the export cannot be started, because the system allows no more pipes; close other "
+         "programs, then try again");
   std::vector<char*> words;
   for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   const std::string where = folder.string();
   const pid_t child = ::fork();
-  if (child < 0) fail(ErrorCode::bad_file, "the export cannot be started: no process is left");
+  if (child < 0)
+    fail(ErrorCode::bad_file,
+         "the export cannot be started, because the system allows no more processes; close other "
+         "programs, then try again");
   if (child == 0) {
     ::dup2(out[1], STDOUT_FILENO);
     ::dup2(err[1], STDERR_FILENO);

@@ -121,8 +121,8 @@ void print_influences(const Context& context, std::vector<ValueInfluence> influe
                      return std::abs(a.correlation) > std::abs(b.correlation);
                    });
   context.print(
-      "  what matters: rank correlation with the severity, failures in the lower and "
-      "the upper half of the values\n");
+      "  which values matter: rank correlation with the severity, failures in the lower and the "
+      "upper half of the values\n");
   for (size_t i = 0; i < std::min(influences.size(), kShownInfluences); ++i) {
     const ValueInfluence& each = influences[i];
     context.print("    " + text::fixed(each.correlation, 2) + "  " + each.name + ": " +
@@ -351,19 +351,22 @@ void add_certify(CLI::App& app, Context& context) {
       ->type_name("P")
       ->capture_default_str();
   command
-      ->add_option("--runs", certify.most,
-                   "Largest number of runs (default: ten times those without a failure).")
+      ->add_option(
+          "--runs", certify.most,
+          "Largest number of runs (default: ten times the number that is enough if no run fails).")
       ->check(whole_number_within(1, 100000000).description(""))
       ->type_name("N");
-  command->add_flag("--all", certify.all,
-                    "Do all --runs, also after the verdict, to see what matters.");
+  command->add_flag(
+      "--all", certify.all,
+      "Make all --runs, even after the verdict is known, to see which values matter.");
   command
       ->add_option("-o,--out", options->out,
                    "Results as JSON; run again with the same file to go on.")
       ->type_name("F");
   command->add_option("--table", options->table, "Cases with all values that were drawn, as CSV.")
       ->type_name("F");
-  command->add_option("--map", options->map, "Draw what matters, .svg or .png.")->type_name("F");
+  command->add_option("--map", options->map, "Draw which values matter, .svg or .png.")
+      ->type_name("F");
   command
       ->add_option("--against", options->against, "Compare with another pattern in the same cases.")
       ->type_name("F");

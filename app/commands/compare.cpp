@@ -199,7 +199,7 @@ void compare_run(const Context& context, const CompareCommand& options) {
 
 void add_compare(CLI::App& app, Context& context) {
   CLI::App* command =
-      app.add_subcommand("compare", "lay recordings of the robot over a simulated run");
+      app.add_subcommand("compare", "compare recordings of the robot with a simulated run");
   command->footer(
       "Examples:\n  ayumi compare out/ encoders.csv\n"
       "  ayumi compare out/ encoders.csv sensors.csv --window 9,17 --plot both.svg --json");
@@ -212,8 +212,9 @@ void add_compare(CLI::App& app, Context& context) {
           "Recordings: joint angles (HOAP counts, or columns by name), load cells and IMU.")
       ->type_name("F");
   command
-      ->add_option("--loads", options.loads,
-                   "A recording of load cells and IMU, where the file itself does not show it.")
+      ->add_option(
+          "--loads", options.loads,
+          "Recording of load cells and IMU; needed where the file does not show that it is one.")
       ->type_name("F");
   command
       ->add_option("--log", options.log,
@@ -229,7 +230,8 @@ void add_compare(CLI::App& app, Context& context) {
   command->add_option("--window", options.window, "Compare only from T1 to T2 of the run [s].")
       ->delimiter(',')
       ->type_name("T1,T2");
-  command->add_option("--plot", options.plot, "Draw both over time, .svg or .png.")->type_name("F");
+  command->add_option("--plot", options.plot, "Draw run and recordings over time, .svg or .png.")
+      ->type_name("F");
   command
       ->add_option("--report", options.report,
                    "Report of the run with this comparison and the recording as a ghost, .html.")

@@ -197,7 +197,7 @@ Pattern joined_pattern(const Context& context, const EditCommand& options, const
       series = std::move(of_keys);
       return keyed;
     }
-    reason = "the keys in sequence are not consistent where the samples are";
+    reason = "the joined samples pass the check, but the joined keys do not";
     return tabled;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_pattern) throw;
@@ -416,7 +416,7 @@ void add_edit(CLI::App& app, Context& context) {
   });
   const auto add_table_flag = [](CLI::App& of) {
     of.add_flag("--table", options.as_table,
-                "Write a table of samples, also where keys can be kept.");
+                "Write a table of samples even if the keys could be kept.");
   };
   CLI::App& concat_command =
       add_join_of(*command, "concat", "play one pattern after the other, without a pause", options);
@@ -495,8 +495,9 @@ void add_edit(CLI::App& app, Context& context) {
       .add_option("--by", options.key_by, "By how much it is moved [s]; below 0 is earlier.")
       ->check(number_within(-1e6, 1e6))
       ->type_name("S");
-  key_command.add_flag("--copy", options.key.copy, "The keyframe stays where it was, too.");
-  key_command.add_flag("--mirror", options.key.mirror, "Exchange left and right in what arrives.");
+  key_command.add_flag("--copy", options.key.copy, "Also keep the keyframe at its old time.");
+  key_command.add_flag("--mirror", options.key.mirror,
+                       "Exchange left and right in the keyframe at its new time.");
   key_command.callback([&context] { edit_key(context, options); });
 }
 

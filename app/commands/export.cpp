@@ -385,11 +385,10 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal") return "the plain posture (--servo ideal)";
   const bool one = servo.lag.find(' ') == std::string::npos;
-  return std::string(
-             servo.content == "lead"
-                 ? "the targets are ahead of the posture by the time that the servos lag"
-                 : "the targets are ahead of the posture by the time that the servos lag, and they "
-                   "correct the sag") +
+  return std::string(servo.content == "lead"
+                         ? "the targets are ahead of the posture by the time that the servos lag"
+                         : "the targets are ahead of the posture by the time that the servos lag, "
+                           "and they compensate for the sag") +
          (one ? ", " + servo.lag + " s" : "");
 }
 
@@ -674,7 +673,8 @@ void add_export(CLI::App& app, Context& context) {
       ->check(number_within(0.0, 60.0));
   command
       ->add_option("--hold", options->hold,
-                   "How long the last posture is held (default: 0.5; 0 as with --ramp) [s].")
+                   "How long the last posture is held (default: 0.5; 0 for an imported sequence "
+                   "whose motion is unchanged) [s].")
       ->check(number_within(0.0, 60.0));
   CLI::Option* interval =
       command
@@ -683,12 +683,13 @@ void add_export(CLI::App& app, Context& context) {
                        "servo period of the robot). HOAP robots take 1, 2 or 10 [ms].")
           ->check(number_within(0.1, 1000.0))
           ->type_name("MS");
-  command->add_option("--rate", options->rate, "The same as rows per second [1/s].")
+  command->add_option("--rate", options->rate, "Rows per second, in place of --interval [1/s].")
       ->check(number_within(1.0, 10000.0))
       ->type_name("HZ")
       ->excludes(interval);
   command->add_option("--layout", options->layout,
-                      "Layout of the sidecar for --format hoap (default: the first one).");
+                      "Name of the column layout for --format hoap, one of \"layouts\" in the "
+                      "sidecar (default: the first one).");
   command
       ->add_option(
           "--from", options->safety.from,
@@ -709,10 +710,10 @@ void add_export(CLI::App& app, Context& context) {
                     "Write the table although it is unsafe or unfit. Its head and its name, for "
                     "example walk.UNSAFE.csv, say so.");
   command
-      ->add_option("--servo", options->servo,
-                   "Servo for which the targets are made: ideal (the plain posture), lead (ahead "
-                   "by the lag of the profile's servos, default) or lead+sag (and against the sag "
-                   "under load).")
+      ->add_option(
+          "--servo", options->servo,
+          "What the targets are: ideal (the plain posture), lead (ahead of it by the lag of the "
+          "profile's servos; default) or lead+sag (which also compensates for the sag under load).")
       ->check(one_of({"ideal", "lead", "lead+sag"}));
   command->footer(
       "Examples:\n"

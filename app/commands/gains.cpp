@@ -85,7 +85,8 @@ std::string report(const RobotModel& model, const GainStudy& d) {
                            : ", a constant ZMP offset is never accepted as normal\n";
   const LoopModel& weakest = d.loops[d.weakest.index];
   out += "the whole loop, with sensors and servos " + text::brief(1e3 * weakest.delay) +
-         " ms late, is stable on both feet, and on one foot for a step; it stays stable " +
+         " ms late, is stable while the robot stands on both feet, and on one foot for the time of "
+         "a step; it stays stable " +
          (d.largest_ka >= GainStudy::kMostKa ? "beyond ka = " + text::brief(GainStudy::kMostKa)
                                              : "up to ka = " + text::fixed(d.largest_ka, 2)) +
          "; slowest modes (" + weakest.name + "):\n";

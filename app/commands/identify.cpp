@@ -207,14 +207,15 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   }
   if (advice)
     words += "  `ayumi new excite --robot " + options.robot +
-             " -o excite.json` writes motions that tell these constants apart\n";
+             " -o excite.json` writes motions with which these constants can be distinguished\n";
   if (!options.out.empty()) {
     write_file(options.out, sidecar_text(model, options, found));
     words += options.out + ": written\n";
     if (std::any_of(found.joints.begin(), found.joints.end(),
                     [](const IdentifiedJoint& joint) { return joint.delay_is_lag; }))
       words +=
-          "  a delay that stands for the damping too is written as damping: kd = kp times delay\n";
+          "  where delay and damping cannot be distinguished, the whole delay is written as "
+          "damping: kd = kp times delay\n";
   }
   context.print(words);
   context.print_json(Json{
@@ -269,7 +270,8 @@ void add_identify(CLI::App& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--rate", options.reading.rate,
-                   "Rate of rows without time [1/s] (default: 1000; that of the command).")
+                   "Rate of rows without a time column [1/s] (default: 1000 for the command; for "
+                   "the measured angles, the rate of the command).")
       ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
   command->callback([&context] {

@@ -88,9 +88,9 @@ void import_motion(const Context& context, const ImportCommand& options) {
   motion.pattern.file = "imported";  // relative names hold from the working folder
   if (!imported.sequence.empty()) {
     motion.pattern.table->interval_ms = static_cast<int>(std::lround(1000 * imported.motion.dt));
-    imported.filled.push_back("a copy of the sequence is kept in " +
-                              sequence_beside(options.out).filename().string() +
-                              "; export writes its rows as long as the motion is unchanged");
+    imported.filled.push_back(
+        "a copy of the sequence is kept in " + sequence_beside(options.out).filename().string() +
+        "; as long as the motion is unchanged, `ayumi export` writes the rows of this copy");
   }
   write_pattern_and_table(options.out, motion.pattern, imported.filled, imported.caution,
                           imported.sequence);
@@ -131,8 +131,8 @@ void add_import(CLI::App& app, Context& context) {
       ->type_name("HZ");
   command
       ->add_option("--signs", signs,
-                   "Signs of rows of radians in device order: those of the robot's encoders, or "
-                   "those of the joints.")
+                   "For rows of radians in device order: whether the signs of the angles are those "
+                   "of the robot's encoders or those of the joints.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_flag("--order", options.import.by_order,
@@ -146,13 +146,14 @@ void add_import(CLI::App& app, Context& context) {
       "--ground", options.ground,
       "Move the robot up and down so that the soles that carry it are on the ground.");
   command
-      ->add_option("--contact-height", options.contact.height,
-                   "A sole that is higher than this above the lowest sole does not carry [m].")
+      ->add_option(
+          "--contact-height", options.contact.height,
+          "Height above the lowest sole [m]; a sole that is higher does not carry the robot.")
       ->check(number_within(0.0, 0.2))
       ->capture_default_str();
   command
       ->add_option("--contact-speed", options.contact.speed,
-                   "A sole that is faster than this does not carry [m/s].")
+                   "Speed of a sole [m/s]; a sole that is faster does not carry the robot.")
       ->check(number_within(0.0, 5.0))
       ->capture_default_str();
   command

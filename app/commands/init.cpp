@@ -21,7 +21,7 @@ struct InitOptions {
 
 std::string to_do_text(const std::string& robot, const std::vector<std::string>& items) {
   std::string text =
-      "# " + robot + ": what to check\n\nThe reason of each guess stands in robot.json.\n\n";
+      "# " + robot + ": what to check\n\nrobot.json gives the reason for each guess.\n\n";
   for (size_t i = 0; i < items.size(); ++i)
     text += std::to_string(i + 1) + ". [ ] " + items[i] + "\n";
   return text;
@@ -118,7 +118,7 @@ void add_init(CLI::App& app, Context& context) {
                    "URDF, MJCF, SDF or Choreonoid body, or a folder with one such file.")
       ->required()
       ->type_name("FILE");
-  command->add_option("-o,--out", options->out, "Folder of the robot; it is made where needed.")
+  command->add_option("-o,--out", options->out, "Folder of the robot; it is created if needed.")
       ->required()
       ->type_name("DIR");
   command->callback([&context, options] { init(context, *options); });

@@ -293,7 +293,7 @@ std::string coupling_lines(const RobotModel& model) {
   const std::vector<std::string> shared = joints_of_both_legs(model);
   if (!shared.empty())
     text += "  both legs move with " + text::join(shared, ", ") +
-            ": they cannot turn against each other, so the trunk turns and leans instead\n";
+            ": the legs cannot turn relative to each other, so the trunk turns and leans instead\n";
   return text.empty() ? "" : "Coupled joints [rad, sliders m]\n" + text + "\n";
 }
 

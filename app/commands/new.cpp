@@ -209,7 +209,7 @@ void new_sway(const Context& context, NewOptions options) {
       context, model, sway_pattern(model, p), options,
       {"The COG sways " + std::to_string(p.cycles) + " times, " + text::brief(p.side) +
            " m to either side and " + text::brief(p.forward) + " m ahead and back, over both feet.",
-       "Every key is a rest of the COG; the ZMP of the whole robot follows from it."});
+       "The COG is at rest at every key; the ZMP is computed from the motion of the whole robot."});
 }
 
 void new_squat(const Context& context, NewOptions options) {
@@ -236,7 +236,8 @@ void new_squat(const Context& context, NewOptions options) {
   write_new(context, model, squat_pattern(model, p), options,
             {"Squats " + std::to_string(p.cycles) + " times by " + text::brief(p.depth) +
                  " m: COG height keys.",
-             "Where the COG is over the ground is solved: the ZMP stays in the middle."});
+             "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
+             "the feet."});
 }
 
 void new_seat(const Context& context, NewOptions options, bool down) {
@@ -259,7 +260,7 @@ void new_seat(const Context& context, NewOptions options, bool down) {
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
   write_new(context, model, pattern, options,
             {std::string(down ? "Goes down by " : "Comes up by ") + text::brief(p.depth) +
-                 " m, with the trunk ahead half-way.",
+                 " m, with the trunk leaning forward in the middle of the motion.",
              "There is no seat in the world of the pattern: the feet alone carry the robot."});
 }
 
@@ -286,7 +287,8 @@ void new_bow(const Context& context, NewOptions options) {
             {"Bows by " + text::brief(p.angle / degree) +
                  " deg: keys of the trunk and of the COG "
                  "height.",
-             "Where the COG is over the ground is solved: the ZMP stays in the middle."});
+             "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
+             "the feet."});
 }
 
 void new_wave(const Context& context, NewOptions options) {
@@ -306,7 +308,7 @@ void new_wave(const Context& context, NewOptions options) {
   write_new(context, model, pattern, options,
             {"Waves the " + options.which + " hand " + std::to_string(p.cycles) +
                  " times: keys of the joints of the arm.",
-             "The COG is solved: the ZMP stays in the middle of the feet."});
+             "The COG is solved so that the ZMP stays in the middle of the feet."});
 }
 
 void new_kick(const Context& context, NewOptions options) {
@@ -458,13 +460,15 @@ void new_viip(const Context& context, const NewOptions& options) {
     pattern.phases.pop_back();
     const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
     phase(stepping_time(viip_params(model, pattern.controller), omega, goal.steps) + 0.05, goal);
-    comments = {std::to_string(goal.steps) + " steps, the last one closing; VIIP places the feet.",
-                "The time is what the steps take from standing to standing."};
+    comments = {
+        std::to_string(goal.steps) +
+            " steps, the last of which brings the feet together; VIIP chooses the footholds.",
+        "The duration of the phase is the time of all steps, from standing to standing."};
   } else {
     const Eigen::Vector3d displacement(options.cog[0], options.cog[1], options.cog[2]);
     phase(kDisplaced, CogGoal{displacement});
     phase(kDisplaced, CogGoal{});
-    comments = {"The COG goes to a displacement over both feet, and back."};
+    comments = {"The robot stands on both feet; the COG moves by a displacement, and back."};
   }
   const CommandSeries series = sample_at_servo_period(model, pattern);
   require_reachable_goals(model, series, pattern.controller);
@@ -495,8 +499,8 @@ void new_excite(const Context& context, const NewOptions& options) {
     scale *= 0.8;
   }
   write_new(context, model, excite_pattern(model, scale), options,
-            {"Slow sweeps, chirps and steps of every joint, of the legs on one foot: for `ayumi "
-             "identify`.",
+            {"Slow sweeps, chirps and steps of every joint, for `ayumi identify`. Joints of a leg "
+             "are moved while the robot stands on one foot.",
              "Amplitudes are " + text::brief(100 * scale, 3) + " % of the generator's own."});
 }
 
@@ -512,9 +516,9 @@ void add_scaled(CLI::App& command, const char* name, std::optional<double>& valu
 
 void add_height(CLI::App& command, double& height) {
   command
-      .add_option(
-          "--cog-height", height,
-          "COG height [m]; 0 = that of the home posture, lower where the legs are straight.")
+      .add_option("--cog-height", height,
+                  "COG height [m]; 0 = the height in the home posture, or a lower one if its legs "
+                  "are straight.")
       ->capture_default_str()
       ->type_name("M");
 }
@@ -653,7 +657,8 @@ void add_seat(CLI::App& command, NewOptions& options) {
   add_scaled(command, "--depth", options.depth, "Height between standing and sitting [m]",
              SeatParameters().depth, "M");
   command
-      .add_option("--lean", options.angle_deg, "Lean of the trunk half-way [deg] (default: 20).")
+      .add_option("--lean", options.angle_deg,
+                  "Lean of the trunk in the middle of the motion [deg] (default: 20).")
       ->type_name("DEG");
   add_scaled(command, "--period", options.period, "Time of the motion [s]", SeatParameters().period,
              "S");
@@ -737,7 +742,7 @@ void add_new(CLI::App& app, Context& context) {
             list_kinds(context, *command);
             throw CLI::Success();
           },
-          "One line for each kind of motion.")
+          "Print one line for each kind of motion.")
       ->trigger_on_parse();
   command->footer(
       "Examples:\n  ayumi new walk -o walk.json\n"
@@ -808,7 +813,7 @@ void add_new(CLI::App& app, Context& context) {
       "excite", "slow sweeps, chirps and steps of every joint, for identify");
   excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
   add_common(*excite, options);
-  excite->add_option("ROBOT", options.robot, "The robot, as --robot.");
+  excite->add_option("ROBOT", options.robot, "Robot, the same as --robot.");
   excite->add_option("--scale", options.scale, "Factor on all amplitudes.")
       ->check(number_within(0.05, 2.0))
       ->capture_default_str();

@@ -97,9 +97,8 @@ std::vector<std::string> comments_of(const JumpParameters& p) {
               ": the COG rises " + text::brief(p.height) + " m above " + text::brief(p.cog_height) +
               " m and stoops " + text::brief(p.stoop) + " m before and after.",
           "Keys: stand, stoop, lift-off, touchdown, stoop, stand. In the flight (support none) the "
-          "COG is the",
-          "parabola through the keys at both its ends: a longer flight is a higher jump. Feet and "
-          "trunk follow."};
+          "COG follows the",
+          "parabola through the keys at its two ends; a longer flight is a higher jump."};
 }
 
 void new_jump(Context& context, JumpOptions options) {

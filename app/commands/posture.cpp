@@ -335,11 +335,11 @@ void add_library(CLI::App& command, const Options& options) {
       ->type_name("NAME");
   command
       .add_option("-o,--out", options->out,
-                  "Posture library to write; one that exists gets one posture more.")
+                  "Posture library to write; if the file exists, the posture is added to it.")
       ->required()
       ->type_name("F");
   command.add_flag("--rad", options->radians,
-                   "Angles in radians: those of --joint, and those of a new library.");
+                   "Use radians in place of degrees for --joint and in a new library.");
 }
 
 }  // namespace
@@ -372,7 +372,8 @@ void add_posture(CLI::App& app, Context& context) {
   CLI::App& adjusted = add_kind(*command, "adjust", "change single joints", options);
   add_name(adjusted, options);
   adjusted
-      .add_option("--joint", options->joints, "Angle of a joint [deg, sliders m]; may be repeated.")
+      .add_option("--joint", options->joints,
+                  "Angle of a joint [deg], or place of a sliding joint [m]; may be repeated.")
       ->required()
       ->type_name("JOINT=ANGLE")
       ->allow_extra_args(false);

@@ -214,12 +214,11 @@ void add_push(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
       "push", "find the largest push that the robot survives, by gait phase and direction");
   command->footer(
-      "Examples:\n  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n"
-      "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
-      "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
-      "Run again with the same -o to resume a study. The pattern's own scenario is ignored. This "
-      "holds "
-      "for its lasting disturbances (payload, friction, latency, ...) too.");
+      "Examples:\n  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n  "
+      "ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n  "
+      "ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\nRun again with the same "
+      "-o to resume a study. The pattern's own scenario is ignored, also its lasting disturbances "
+      "(payload, friction, latency, ...).");
   auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();

@@ -261,7 +261,7 @@ class StruggleTeller {
     };
   }
 
-  void say_what_is_left() const { say("the repair was stopped; left to mend: " + words()); }
+  void say_what_is_left() const { say("the repair was stopped; errors that are left: " + words()); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -272,12 +272,13 @@ class StruggleTeller {
       return;
     told_stage_ = stage;
     told_ = now;
-    say(stage + " takes a while, because it still has to mend: " + words() +
+    say(stage + " takes a while, because it still has to remove: " + words() +
         "; Ctrl-C stops the repair");
   }
 
   std::string words() const {
-    if (left_.empty()) return "nothing, only a smaller change is being looked for";
+    if (left_.empty())
+      return "nothing; the motion passes the check already, and the search is for a smaller change";
     const size_t named = std::min(left_.size(), kMostNamed);
     std::string out = text::join({left_.begin(), left_.begin() + static_cast<long>(named)}, "; ");
     if (left_.size() > named)
@@ -384,15 +385,15 @@ void add_repair(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--weight", options.weights,
-                   "Factor on the cost of moving this joint; 10 avoids moving it (default: the "
-                   "pattern's, 1).")
+                   "Factor on the cost of moving this joint; 10 avoids moving it (default: that of "
+                   "the pattern, otherwise 1).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
       ->add_option(
           "--trust", options.trust,
-          "Quantity that the others follow where they disagree: posture, cog or zmp (default: the "
-          "pattern's, posture).")
+          "Where posture, COG and ZMP disagree: the quantity that is kept, and that the other two "
+          "are adapted to: posture, cog or zmp (default: that of the pattern, otherwise posture).")
       ->check(one_of({"posture", "cog", "zmp"}))
       ->type_name("QUANTITY");
   command->add_flag("--baked", options.baked, "Write a dense table in place of a correction.");

@@ -271,11 +271,12 @@ void add_replay(CLI::App& app, Context& context) {
       ->type_name("ROBOT");
   command
       ->add_option("--profile", options->profile,
-                   "Actuator profile, and thus servos (default: the robot's first).")
+                   "Actuator profile, which also sets the servos (default: the robot's first).")
       ->type_name("NAME");
   command
       ->add_option("--plant", options->plant,
-                   "Simulator: ayumi, mujoco, or both (those of this program).")
+                   "Simulator: ayumi, mujoco, or both (ayumi alone if this program was built "
+                   "without MuJoCo).")
       ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--rate", options->rate, "Rate of a table without a time column [1/s].")

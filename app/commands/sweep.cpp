@@ -136,9 +136,10 @@ void run_sweep(Context& context, const SweepCommand& options) {
   const RunCost cost = run_cases(runner, *results, missing, context.threads, context.progress());
   if (cost.cases > 0)
     context.print("  " + text::counted(cost.cases, "case") + " run, " +
-                  text::brief(cost.seconds / double(cost.cases), 3) + " s of one thread each, " +
+                  text::brief(cost.seconds / double(cost.cases), 3) +
+                  " s of one thread for each case, " +
                   text::fixed(100 * (1 - cost.useful / std::max(1e-9, cost.seconds)), 2) +
-                  " % of it beside the simulation\n");
+                  " % of it outside the simulation\n");
   conclude(context, *results, options.outputs, &runner,
            {{"run_now", cost.cases}, {"seconds", cost.seconds}, {"useful_seconds", cost.useful}});
   results->close();
@@ -236,15 +237,16 @@ void add_sweep(CLI::App& app, Context& context) {
   command->add_flag("--retry", options->retry, "Run the cases again that could not be run before.");
   SweepOutputs& outputs = options->outputs;
   command
-      ->add_option("--expect", outputs.expect,
-                   "What must hold of the results, for example 'falls == 0'; may be repeated.")
+      ->add_option(
+          "--expect", outputs.expect,
+          "Condition that the results must meet, for example 'falls == 0'; may be repeated.")
       ->type_name("TEXT")
       ->allow_extra_args(false);
   command->add_option("--csv", outputs.csv, "All cases as CSV.")->type_name("F");
   command->add_option("--junit", outputs.junit, "The expectations as JUnit XML.")->type_name("F");
   command->add_option("--page", outputs.page, "Page with rates, maps and replays, .html.")
       ->type_name("F");
-  command->add_option("--replays", outputs.replays, "Worst cases that the page replays.")
+  command->add_option("--replays", outputs.replays, "Number of worst cases that the page replays.")
       ->check(whole_number_within(0, 20).description(""))
       ->type_name("N")
       ->capture_default_str();
@@ -253,13 +255,14 @@ void add_sweep(CLI::App& app, Context& context) {
   auto merging = std::make_shared<MergeCommand>();
   merge->add_option("FILES", merging->files, "Results of the same study.")->required();
   merge
-      ->add_option("-o,--out", merging->out,
-                   "A new file (default: the first one takes the others).")
+      ->add_option(
+          "-o,--out", merging->out,
+          "New file for the merged results (default: the others are merged into the first file).")
       ->type_name("F.db");
-  merge->add_flag("--partial", merging->partial, "Also where cases are missing.");
+  merge->add_flag("--partial", merging->partial, "Merge even if cases are missing.");
   merge->callback([merging, &context] { merge_results(context, *merging); });
 
-  CLI::App* status = command->add_subcommand("status", "say how far a sweep is");
+  CLI::App* status = command->add_subcommand("status", "say how many cases of a sweep are done");
   auto file = std::make_shared<std::string>();
   status->add_option("FILE", *file, "Results.")->required();
   status->callback([file, &context] { show_status(context, *file); });

@@ -132,7 +132,7 @@ class ColladaCheck {
     const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || last != word.data() + word.size() || value > most_)
       throw Refusal("'" + std::string(word.substr(0, 40)) +
-                    "' is no count or index of this file; export it again");
+                    "' is not a valid count or index; export the mesh again");
     return value;
   }
 

@@ -133,8 +133,8 @@ void bind_pattern(py::module_& m) {
         "Reads a pattern file. `set` gives values to parameters that the pattern declares.");
   m.def("parse_pattern", &pattern_of_text, py::arg("text"), py::arg("path") = "pattern.json",
         py::arg("set") = std::map<std::string, double>(),
-        "The pattern of the text of a file; `path` names it in messages, and what it names is "
-        "looked for beside it.");
+        "Reads a pattern from the text of a file. Messages call this file `path`, and files that "
+        "the text names are looked for beside `path`.");
   bind_generators(m);
 }
 

@@ -81,8 +81,8 @@ void bind_picture(py::module_& m) {
       py::arg("robot"), py::arg("log"), py::kw_only(), py::arg("times") = std::vector<double>(),
       py::arg("count") = 8, py::arg("columns") = 4, py::arg("width") = 640, py::arg("height") = 480,
       py::arg("view") = "iso", py::arg("zoom") = 1.0, py::arg("title") = "",
-      "Snapshots side by side as the bytes of a PNG file, at `times` [s] or at `count` telling "
-      "instants.");
+      "Snapshots side by side as the bytes of a PNG file, at `times` [s] or at `count` instants "
+      "that Ayumi chooses.");
   m.def(
       "loci",
       [](const RobotModel& robot, const Logs& logs, const std::string& title, double scale) {

@@ -75,7 +75,7 @@ void bind_robot(py::module_& m) {
       .def_readonly("peak_torque", &ActuatorLimits::peak_torque,
                     "Largest torques [N m, N], shape (dof,).")
       .def_readonly("continuous_torque", &ActuatorLimits::continuous_torque,
-                    "Torques that may last [N m, N], shape (dof,).");
+                    "Torques without a time limit [N m, N], shape (dof,).");
 
   py::class_<RobotModel, std::shared_ptr<RobotModel>>(
       m, "Robot", "A robot: a tree of links with soles, motors and named postures.")

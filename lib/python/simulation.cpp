@@ -157,7 +157,8 @@ void bind_step(py::module_& m) {
       .def(py::init<>())
       .def_readonly("wrenches", &StepInput::wrenches, "Forces and couples.")
       .def_readonly("friction", &StepInput::friction,
-                    "Coefficient of the whole ground in place of the world's; None: the world's.");
+                    "Friction coefficient of the whole ground in place of that of the world; None: "
+                    "that of the world.");
   py::class_<SoleForce>(m, "SoleForce", "Ground force at one vertex of a sole.")
       .def(py::init([](const Eigen::Vector3d& position, const Eigen::Vector3d& force, double gap) {
              return SoleForce{position, force, gap};
@@ -207,7 +208,7 @@ void bind_step(py::module_& m) {
 
 void bind_controller(py::module_& m) {
   py::class_<Estimate>(m, "Estimate",
-                       "What the sensors tell a controller, in the frame of the plan.")
+                       "What a controller receives from the sensors, in the frame of the plan.")
       .def_readonly("state", &Estimate::state, "Estimated state of the robot.")
       .def_readonly("cog", &Estimate::cog, "COG [m], shape (3,).")
       .def_readonly("dcog", &Estimate::dcog, "Its velocity [m/s], shape (3,).")
@@ -348,7 +349,7 @@ void bind_simulation(py::module_& m) {
       py::arg("allow_unstable") = false, py::arg("progress") = py::none(),
       "The closed loop of plant, sensors and controller. `controller` is a name of controllers(), "
       "None the pattern's; `gains` by name. `scenario`: False for no disturbances, or a pattern "
-      "file whose scenario takes the place of the pattern's. `noise`: sensors with noise, bias and "
+      "file whose scenario replaces that of the pattern. `noise`: sensors with noise, bias and "
       "latency. `true_state`: the controller gets the true state. `substeps` of the integrator per "
       "tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an "
       "object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. "

@@ -237,7 +237,7 @@ void bind_gains(py::module_& m) {
       py::arg("level") = TuneOptions().level, py::arg("gains") = py::none(),
       py::arg("rounds") = TuneOptions().rounds, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("progress") = py::none(),
-      "Searches better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; "
+      "Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; "
       "`level` of a push in capture bounds; `gains`: names of those that are changed.");
 }
 

@@ -65,7 +65,8 @@ void bind_table(py::module_& m) {
           [](const Table& t, double dt) {
             return as_table(resampled(t.data(), dt), t.data().caution, {});
           },
-          py::arg("dt"), "The table at another rate, straight between its rows; `dt` in s.")
+          py::arg("dt"),
+          "The table at another rate, interpolated linearly between its rows; `dt` in s.")
       .def_property_readonly(
           "unfit", [](const Table& t) { return t.data().caution.unfit; },
           "Why no robot should receive the table; '' where nothing is known against it.")
@@ -135,8 +136,9 @@ void bind_table(py::module_& m) {
       py::arg("task"), py::arg("table"), py::arg("log") = py::none(), py::kw_only(),
       py::arg("ramp") = SafetyOptions().ramp, py::arg("hold") = SafetyOptions().hold,
       py::arg("start") = SafetyOptions().from,
-      "Lays an approach of `ramp` s from the posture `start` and a hold of `hold` s around a table "
-      "and judges what the servos would receive; with a log the torques of that run too.");
+      "Adds an approach of `ramp` s from the posture `start` before a table and a hold of `hold` s "
+      "after it, and judges what the servos would receive; with a log, also the torques of that "
+      "run.");
 }
 
 }  // namespace ayumi::python

@@ -152,8 +152,9 @@ TEST(Documentation, TheMapOfEquationsLeadsToTheFunctionsThatRun) {
 }
 
 const std::vector<std::string>& pages() {
-  static const std::vector<std::string> names = {"theory.md", "theory_plant.md", "theory_repair.md",
-                                                 "notation.md", "architecture.md"};
+  static const std::vector<std::string> names = {"theory.md",       "theory_flight.md",
+                                                 "theory_plant.md", "theory_repair.md",
+                                                 "notation.md",     "architecture.md"};
   return names;
 }
 

@@ -126,7 +126,7 @@ TEST(LikelyMistakes, AMissingSwing) {
 
 TEST(LikelyMistakes, AKeyOfALegJoint) {
   expect_called(mistakes_after([](Pattern& pattern) { pattern.keyframes[1].joints["l_knee"] = 1; }),
-                "/keyframes/1: l_knee is a joint of a leg", "no leg is solved");
+                "/keyframes/1: l_knee is a joint of a leg", "the legs are not solved");
 }
 
 TEST(LikelyMistakes, AFootKeyThatLiftsTheCog) {

@@ -40,7 +40,7 @@ TEST(Init, FiveJointLegsShuffle) {
     ASSERT_EQ(made.exit_code, 0) << made.err;
     EXPECT_EQ(ayumi(folder, {"check", kind + ".json"}).exit_code, 0) << kind << made.out;
     const std::string cannot =
-        "a leg has 5 joints, not six, and cannot place a level sole anywhere";
+        "a leg has 5 joints, not six, so there are places at which it cannot put the sole level";
     const size_t said = made.out.find(cannot);
     EXPECT_EQ(said != std::string::npos, kind == "walk") << made.out;
     EXPECT_EQ(made.out.rfind(cannot), said);  // once

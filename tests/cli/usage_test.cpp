@@ -20,7 +20,8 @@ TEST_F(Usage, HelpIsOneScreen) {
   const Output help = ayumi({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_LE(line_count(help.out), 50);
-  for (const char* word : {"inspect", "robots", "--json", "--force", "130 stopped by Ctrl-C"})
+  for (const char* word :
+       {"inspect", "robots", "--json", "--force", "--describe KIND", "130 stopped by Ctrl-C"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   EXPECT_EQ(help.err, "");
 }

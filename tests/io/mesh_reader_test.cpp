@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
     Files, HostileMesh,
     testing::Values(
         Hostile{"far_offset.dae", collada("stride=\"3\" offset=\"100000\"", "", kInstance),
-                "'100000' is no count or index of this file"},
+                "'100000' is not a valid count or index"},
         Hostile{"near_offset.dae", collada("stride=\"3\" offset=\"1\"", "", kInstance),
                 "an accessor reaches number 13 of '#pa', which has 12"},
         Hostile{"single_quotes.dae", collada("stride='3' offset='9'", "", kInstance),
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"stride.dae", collada("stride=\"5\"", "", kInstance),
                 "an accessor reaches number 18 of '#pa', which has 12"},
         Hostile{"negative_offset.dae", collada("stride=\"3\" offset=\"-5\"", "", kInstance),
-                "'-5' is no count or index of this file"},
+                "'-5' is not a valid count or index"},
         Hostile{"cycle.dae",
                 collada("stride=\"3\"",
                         "<library_nodes><node id=\"a\"><instance_node url=\"#b\"/></node>"
@@ -331,9 +331,9 @@ TEST(EncodedMesh, IsNotBelieved) {
   EXPECT_EQ(complaint([&](MeshPart& part) { part.vertices[2].y() = nan; }),
             "part 1: vertex 2 is not finite");
   EXPECT_EQ(complaint([&](MeshPart& part) { part.normals[3].x() = nan; }),
-            "part 1: normal 3 is no unit vector");
+            "part 1: normal 3 is not a unit vector");
   EXPECT_EQ(complaint([](MeshPart& part) { part.normals[0] *= 2; }),
-            "part 1: normal 0 is no unit vector");
+            "part 1: normal 0 is not a unit vector");
   EXPECT_EQ(complaint([&](MeshPart& part) { part.uvs[0].x() = nan; }),
             "part 1: a place in the texture is not finite");
   EXPECT_EQ(complaint([](MeshPart& part) { part.uvs.pop_back(); }),

@@ -147,7 +147,7 @@ TEST(Mesh, AppliesColladaUnitsAndIgnoresItsUpAxis) {
     load_mesh(folder.write("u.dae", wrong));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("u.dae: '-1' is no count or index of this file"),
+    EXPECT_NE(std::string(error.what()).find("u.dae: '-1' is not a valid count or index"),
               std::string::npos);
   }
 }

@@ -138,7 +138,7 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   EXPECT_NE(refusal_of("0 0.1 0,2\n0.1 0.1 0.2\n0.2 0 0\n", "m.pos").find("not "),
             std::string::npos);
   EXPECT_NE(refusal_of("type: CompositeSeq\ncontent: BodyMotion\ncomponents:\n  - [ 1, 2\n")
-                .find("no valid YAML"),
+                .find("not valid YAML"),
             std::string::npos);
   EXPECT_NE(
       refusal_of("type: CompositeSeq\ncontent: BodyMotion\nformat_version: 7\ncomponents: []\n")

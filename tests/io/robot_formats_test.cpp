@@ -240,7 +240,7 @@ TEST(Mjcf, IncludedFilesStandInTheirPlace) {
     return std::string("no error");
   };
   folder.write("m.xml", text("<include file='legs.xml'/>"));
-  EXPECT_NE(error("m.xml").find("included a second time"), std::string::npos) << error("m.xml");
+  EXPECT_NE(error("m.xml").find("is included twice"), std::string::npos) << error("m.xml");
   folder.write("m.xml", text("<include file='arms.xml'/>"));
   EXPECT_NE(error("m.xml").find("m.xml:1: the included file"), std::string::npos) << error("m.xml");
 }

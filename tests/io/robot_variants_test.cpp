@@ -84,7 +84,7 @@ TEST(RobotVariants, WhatIsNotReadIsNamed) {
     EXPECT_NE(words.find(part), std::string::npos) << words;
   };
   const std::string biped = test::UrdfBiped{}.text();
-  has(error("a.xml", "<COLLADA version=\"1\"/>"), "<COLLADA> is no robot");
+  has(error("a.xml", "<COLLADA version=\"1\"/>"), "<COLLADA> is not a robot");
   has(error("a.wrl", "#VRML V2.0 utf8\n"), "VRML");
   has(error("a.urdf", std::string("\xff\xfe<\0r\0", 6)), "UTF-16; save it as UTF-8");
   has(error("a.stl", std::string("solid\0\0\0\0", 9)), "binary data");
@@ -105,7 +105,7 @@ TEST(RobotVariants, MisspeltElementsAreCounted) {
        at = biped.find("<inertial>", at + 1))
     ++links;
   EXPECT_NE(error("inertial>", "intertial>")
-                .find("<intertial> is no element of a link; did you mean <inertial>? (" +
+                .find("<intertial> is not an element of a link; did you mean <inertial>? (" +
                       std::to_string(links) + " links)"),
             std::string::npos);
   EXPECT_NE(error("<limit ", "<limits ").find("did you mean <limit>?"), std::string::npos);

@@ -104,8 +104,8 @@ TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
   const Drawing drawing = draw_loci(runs.both(), {});
   EXPECT_TRUE(
       has(drawing,
-          "The axes fit the command and the runs that stand; curves of a fall are cut off at their "
-          "edge. A cross marks the fall."));
+          "The axes fit the command and the runs that stand; the curves of a fall end at the edge of "
+          "the axes. A cross marks the fall."));
   for (const auto& item : drawing.items)
     if (const auto* path = std::get_if<DrawnPath>(&item)) {
       for (const Eigen::Vector2d& p : path->points)
@@ -114,7 +114,7 @@ TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
     }
   const Drawing alone = draw_loci({{"DTAD", &runs.standing}}, {});
   for (const std::string& text : texts(alone))
-    EXPECT_EQ(text.find("cut off"), std::string::npos) << "nothing is cut off";
+    EXPECT_EQ(text.find("edge of the axes"), std::string::npos) << "no curve ends there";
 }
 
 // Nothing stands and the margin has no command: its range is what it was before the fall, and not
@@ -140,8 +140,8 @@ TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   EXPECT_LT(most, 0.2);
   EXPECT_TRUE(
       has(drawing,
-          "The axes fit the command and the time before the fall; curves of a fall are cut off at "
-          "their edge. A cross marks the fall."));
+          "The axes fit the command and the time before the fall; the curves of a fall end at the "
+          "edge of the axes. A cross marks the fall."));
 }
 
 TEST(Loci, TheLineGoesThroughTheSamples) {

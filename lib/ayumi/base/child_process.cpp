@@ -59,7 +59,7 @@ int become(const char* program, char* const* words, char* const* variables, int 
 }  // namespace
 
 std::string ChildEnding::words() const {
-  if (by_us) return "it closed its connection and did not end";
+  if (by_us) return "the process closed its connection but kept running";
   if (signal != 0)
     return "signal " + std::to_string(signal) + ", " + std::string(strsignal(signal));
   return exit_code < 0 ? "for an unknown reason" : "exit code " + std::to_string(exit_code);

@@ -174,7 +174,9 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(folder), file_(folder /
     if (is_file_of(descriptor_, file_)) return;
     ::close(descriptor_);
   }
-  stop("cannot be locked, other processes lock it again and again");
+  stop(
+      "cannot be locked, because other processes lock it again and again; wait for their end or "
+      "choose another folder");
 }
 
 FolderLock::~FolderLock() {

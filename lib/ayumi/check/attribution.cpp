@@ -292,13 +292,13 @@ Interval held_around(const Scene& scene, const FindingWindow& w, int dof) {
 const Condition kAlways = {"always", [](Scene&, int, int, const Interval&) { return true; }};
 
 const Condition kNotAskedFor = {
-    "the effect is not a ZMP that the command itself puts outside the support",
+    "the effect is not a ZMP outside the support that the command itself asks for",
     [](Scene& scene, int, int j, const Interval&) {
       return !is_asked_for(scene.motion, scene.of(j));
     }};
 
 const Condition kLargerOfOneFoot = {
-    "the foot is the same, and the cause is its largest displacement",
+    "cause and effect are displacements of the same foot, and the cause is the larger one",
     [](Scene& scene, int i, int j, const Interval&) {
       const double cause = std::abs(scene.of(i).value), effect = std::abs(scene.of(j).value);
       return same_item(scene, i, j) && (cause != effect ? cause > effect : i < j);
@@ -311,8 +311,8 @@ const Condition kJointOfLeg = {"the joint is one of a leg",
 
 const Condition kTouchesByAngle = {
     "the bodies overlap by at most 15 mm, and they would not overlap if all joints kept their "
-    "limits; or the bodies overlap only in the excursion of the joint, the joint is between "
-    "them, and they are not an arm and the trunk",
+    "limits; or the joint is between the two bodies, they overlap only while this joint has a "
+    "wrong angle, and they are not an arm and the trunk",
     [](Scene& scene, int i, int j, const Interval&) {
       return touches_by_limits(scene.motion, scene.of(j)) ||
              (hangs_on(scene.motion, scene.of(j), scene.of(i).item) &&
@@ -320,7 +320,8 @@ const Condition kTouchesByAngle = {
     }};
 
 const Condition kRateOfAngle = {
-    "the joint is the same; a jump counts only if another jump undoes it",
+    "cause and effect are of the same joint; if the effect is a jump, another jump must undo this "
+    "jump",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& v = scene.of(j);
       if (!same_item(scene, i, j)) return false;
@@ -340,8 +341,9 @@ const Condition kInsideInterval = {"the effect begins and ends there",
                                    }};
 
 const Condition kJumpThereAndBack = {
-    "the joint jumps there, and it jumps back at the other end; or the joint jumps there and "
-    "is one of that leg, and the foot is in its place before and after the cause",
+    "the joint jumps where the cause begins or ends, and jumps back at the other end; or the joint "
+    "jumps there and belongs to the leg of the cause, and the foot is in its place before and "
+    "after the cause",
     [](Scene& scene, int i, int j, const Interval& interval) {
       const FindingWindow& w = scene.window(i);
       const Violation& v = scene.of(j);
@@ -414,8 +416,8 @@ const Condition kUncountedFoot = {
     }};
 
 const Condition kSlowerPace = {
-    "one slower pace removes both; or a jump spoils the differences from which the effect is "
-    "computed, and the effect is not one of the rates",
+    "the same slower pace removes cause and effect; or the effect is computed from differences of "
+    "samples across a jump, and it is not a rate of a joint",
     [](Scene& scene, int i, int j, const Interval&) {
       return slower_pace_removes(scene.motion, scene.of(i), scene.of(j));
     }};

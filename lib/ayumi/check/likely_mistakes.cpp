@@ -264,11 +264,11 @@ class Suspicions {
         if (!foot || supports(feet_->support(key.t), side)) continue;
         const double lift = foot->position.z() - feet_->pose(other(side), key.t).translation().z();
         if (lift > kLiftedKey)
-          found.push_back(key_place(i) + ": the " + name_of(side) + " foot is " +
-                          text::fixed(1000 * lift, 0) +
-                          " mm up, and the COG rises by half of it, because without keys its "
-                          "height is above the mean of both soles; keep the COG down with keys "
-                          "of \"cog\": {\"height\": ...}, or lower /defaults/cog_height");
+          found.push_back(
+              key_place(i) + ": the " + name_of(side) + " foot is " + text::fixed(1000 * lift, 0) +
+              " mm up, and the COG rises by half of this height, because the COG height without "
+              "keys is measured from the mean height of both soles; keep the COG down with keys of "
+              "\"cog\": {\"height\": ...}, or lower /defaults/cog_height");
       }
     }
     say(found);
@@ -284,10 +284,11 @@ class Suspicions {
           return std::find(leg.begin(), leg.end(), dof) != leg.end();
         };
         if (dof < 0 || !model_.has_soles() || (!in(Side::left) && !in(Side::right))) continue;
-        found.push_back(key_place(i) + ": " + joint +
-                        " is a joint of a leg; with such a key, every leg joint follows its keys "
-                        "alone, and no leg is solved from the feet and the COG; leave it out, and "
-                        "give the COG, the feet or the torso instead");
+        found.push_back(
+            key_place(i) + ": " + joint +
+            " is a joint of a leg; as soon as one leg joint has a key, all leg joints follow only "
+            "their keys, and the legs are not solved from the feet and the COG; remove this key, "
+            "and give keys of the COG, the feet or the torso instead");
         break;
       }
     say(found);

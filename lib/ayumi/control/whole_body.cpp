@@ -292,7 +292,7 @@ std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& 
   if (resolution.scale < 1)
     effect += std::string(effect.empty() ? "" : ", and ") + "the whole motion becomes slower";
   else if (effect.empty())
-    effect = "the other joints follow the plan nevertheless";
+    effect = "the other joints compensate, so the plan is still followed";
   std::vector<std::string> notes;
   if (resolution.limiting_dof >= 0)
     notes.push_back(model.dofs()[resolution.limiting_dof].name +

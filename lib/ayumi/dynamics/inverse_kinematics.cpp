@@ -127,8 +127,9 @@ InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& re
     for (const int dof : model.leg(side))
       if (!contains(model.leg(other(side)), dof)) leg.push_back(dof);
     if (leg.empty())
-      fail(ErrorCode::bad_model, model.name() + ": no joint moves the " + name_of(side) +
-                                     " sole against the other; legs cannot be solved");
+      fail(ErrorCode::bad_model,
+           model.name() + ": no joint moves the " + name_of(side) +
+               " sole relative to the other one, so the legs cannot be solved");
     for (const int dof : leg) solved_[dof] = true;
   }
   square_ = legs_[0].size() == 6 && legs_[1].size() == 6;

@@ -238,9 +238,8 @@ class Advice {
       return;
     }
     if (type.delay_takes_damping)
-      say("delay and damping are confounded, and the delay stands for both: record quick steps or "
-          "a "
-          "chirp");
+      say("delay and damping are confounded, so the delay contains the effect of both: record "
+          "quick steps or a chirp");
     const bool kp = joint.kp.known;
     if (!kp && tied(Constant::compliance, Constant::dry))
       say("kp and friction are confounded: record a slow sweep");

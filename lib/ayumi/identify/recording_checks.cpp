@@ -256,7 +256,8 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
     else if (wrong.empty() && r.away > kAway &&
              std::abs(r.away - kCounterRange * measured.resolution[j]) < kAway)
       wrong = "is " + text::brief(r.away / kDegree, 3) +
-              " deg away from its command, which is 65536 counts: its counter wrapped";
+              " deg away from its command, which is 65536 counts: the 16-bit counter of its "
+              "encoder has overflowed; add or subtract 65536 counts in these rows, or record again";
     else if (wrong.empty() && r.away > kAway)
       wrong = "is " + text::brief(r.away / kDegree, 3) +
               " deg away from its command in the mean; is this the recording of another robot?";
@@ -279,7 +280,8 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   if (lasts - asked > kLengthShare * asked + kLengthTime || asked - lasts > kShorter)
     complain("lasts " + text::fixed(lasts, 3) + " s, but its command lasts " +
              text::fixed(asked, 3) +
-             " s; it is cut, of another rate (--rate), or the answer to another command");
+             " s; the recording is incomplete, has another rate (give --rate), or belongs to "
+             "another command");
   for (const Index j : dofs) {
     const std::string wrong =
         wrong_sign_or_unit(relation(command, measured, j, 0, 0, command.duration()));

@@ -35,7 +35,7 @@ const std::vector<const FindingSpec*>& finding_specs() {
       for (const FindingSpec& spec : limit->findings)
         by_kind[static_cast<size_t>(spec.kind)] = &spec;
     require(std::count(by_kind.begin(), by_kind.end(), nullptr) == 0,
-            "a kind of finding is not defined by its limit");
+            "a kind of finding is not defined by any limit");
     return by_kind;
   }();
   return table;

@@ -150,7 +150,8 @@ class Doctor {
     const Eigen::Vector3d principal =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia.about_com).eigenvalues();
     if (principal.maxCoeff() <= 0)
-      warn("link", link.name, "its inertia tensor is zero; give the one of its shape");
+      warn("link", link.name,
+           "its inertia tensor is zero; give the tensor that follows from its shape and mass");
     else if (principal[2] > 1.01 * (principal[0] + principal[1]))
       warn("link", link.name,
            "its largest principal moment exceeds the sum of the other two, which no body can have; "
@@ -331,8 +332,9 @@ class Doctor {
     warn("joints", text::join(conform >= against ? same : opposite, ", "),
          "one of the two encoder signs may be wrong: on the " +
              std::to_string(std::max(conform, against)) +
-             " other pairs of joints, the left and the right sign are related in the opposite "
-             "manner; test these joints alone before you replay a table");
+             " other pairs of joints, the left and the right sign are equal if they are opposite "
+             "here, and opposite if they are equal here; test each of these joints alone before "
+             "you replay a table");
   }
 
   void compare_links(const Link& left, const Link& right) {

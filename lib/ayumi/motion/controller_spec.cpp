@@ -28,7 +28,7 @@ const std::vector<NamedController>& named_controllers() {
 const std::string& name_of(const ControllerType& type) {
   for (const NamedController& each : named_controllers())
     if (each.type == type) return each.name;
-  fail(ErrorCode::internal, "a controller and a demonstration that do not belong together");
+  fail(ErrorCode::internal, "this controller does not have this demonstration");
 }
 
 const std::vector<std::string>& controller_names() {

@@ -60,12 +60,12 @@ namespace {
   const std::string where = place_of_phase(job.pattern, job.feet.phase(t)) +
                             ": t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
   if (job.ik.lacks_joints() && !solution.knee_flipped)
-    throw in_phase(
-        where + " foot is out of reach by " + millimetres(solution.missing) + ", of which " +
-        millimetres(kLackingTolerance) +
-        " are allowed because a leg has fewer than six joints; such legs cannot carry the COG "
-        "farther aside over level soles: let the COG sway less, by shorter steps in time or a "
-        "ZMP nearer to the other foot (new walk --zmp-inwards), or lower the COG height");
+    throw in_phase(where + " foot is out of reach by " + millimetres(solution.missing) +
+                   ", of which " + millimetres(kLackingTolerance) +
+                   " are allowed because a leg has fewer than six joints; with level soles, such "
+                   "legs cannot move the COG farther to the side. Make the COG sway less (shorten "
+                   "the step period, or move the ZMP towards the other foot with new walk "
+                   "--zmp-inwards), or lower the COG height");
   const std::string remedy = "; lower the COG height (here " +
                              text::fixed(sample.cog.z() - ground, 4) + " m above the soles)" +
                              (job.tracks.torso ? ", tilt the torso less," : "") +
@@ -318,7 +318,7 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
         "a leg has " + std::to_string(joints) +
         (job.ik.coupled().empty() ? " joints, not six,"
                                   : " joints of its own and one that moves both legs, not six,") +
-        " and cannot place a level sole anywhere: the trunk leans by up to " +
+        " so there are places at which it cannot put the sole level: the trunk leans by up to " +
         text::fixed(worst.lean * 180 / std::numbers::pi, 1) +
         " deg, and soles miss their places by up to " + millimetres(worst.miss) + " (allowed " +
         millimetres(kLackingTolerance) + ")";

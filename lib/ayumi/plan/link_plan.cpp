@@ -133,7 +133,7 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
     target.body = hand_body(model, name == "left" ? Side::left : Side::right);
     if (target.body < 0)
       complain("the robot '" + model.name() + "' has no " + name +
-               " arm of three joints or more; name the link that shall move");
+               " arm of three joints or more; name the link that should move");
     target.point = limb_point(model, target.body);
   } else {
     const int link = model.find_link(name);

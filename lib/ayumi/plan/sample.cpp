@@ -52,7 +52,9 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
 CommandSeries sample(const RobotModel& model, const Pattern& pattern, const SampleOptions& options,
                      const Progress& progress) {
   if (!model.has_soles())
-    fail(ErrorCode::bad_model, model.name() + ": the robot has no soles; name both in its sidecar");
+    fail(ErrorCode::bad_model, model.name() +
+                                   ": the robot has no soles; add the left and the right sole to "
+                                   "\"soles\" in its sidecar");
   require_repair_preferences(model, pattern);
   CommandSeries series;
   if (has_viip_phases(pattern)) {

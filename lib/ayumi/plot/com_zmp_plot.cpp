@@ -236,7 +236,7 @@ std::string range_note(const std::vector<LociRun>& runs) {
   return std::string("The axes fit the command and ") +
          (std::all_of(runs.begin(), runs.end(), fell) ? "the time before the fall"
                                                       : "the runs that stand") +
-         "; curves of a fall are cut off at their edge. A cross marks the fall.";
+         "; the curves of a fall end at the edge of the axes. A cross marks the fall.";
 }
 
 void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,

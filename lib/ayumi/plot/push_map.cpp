@@ -153,7 +153,7 @@ void check(const PushMap& map) {
       refuse(phase.name + ": a curve is missing");
     for (const PushMapCurve& curve : phase.curves)
       if (curve.impulse.size() != phase.direction.size())
-        refuse(phase.name + ": a curve has not one value per direction");
+        refuse(phase.name + ": the number of values of a curve is not the number of directions");
   }
 }
 

@@ -25,7 +25,7 @@ class Actuators:
 
     @property
     def continuous_torque(self) -> numpy.ndarray:
-        """Torques that may last [N m, N], shape (dof,)."""
+        """Torques without a time limit [N m, N], shape (dof,)."""
 
 class Command:
     """The plan of one tick."""
@@ -62,7 +62,7 @@ class Error(Exception):
     place: str
 
 class Estimate:
-    """What the sensors tell a controller, in the frame of the plan."""
+    """What a controller receives from the sensors, in the frame of the plan."""
 
     @property
     def state(self) -> RobotState:
@@ -622,7 +622,7 @@ class StepInput:
 
     @property
     def friction(self) -> Optional[float]:
-        """Coefficient of the whole ground in place of the world's; None: the world's."""
+        """Friction coefficient of the whole ground in place of that of the world; None: that of the world."""
 
 class StepReport:
     """Forces of a step, means over its duration."""
@@ -690,7 +690,7 @@ class Table:
         """Writes CSV, or JSON where the name ends in .json; whole or not at all."""
 
     def resampled(self, dt: float) -> Table:
-        """The table at another rate, straight between its rows; `dt` in s."""
+        """The table at another rate, interpolated linearly between its rows; `dt` in s."""
 
     @property
     def unfit(self) -> str:
@@ -865,13 +865,13 @@ def loci_svg(robot: Robot, logs: dict[str, Log], *, title: str = '') -> str:
     """The same as the text of an SVG file."""
 
 def make_safe(task: Task, table: Table, log: Log = None, *, ramp: float = 2.0, hold: float = 0.5, start: str = 'home') -> SafeTable:
-    """Lays an approach of `ramp` s from the posture `start` and a hold of `hold` s around a table and judges what the servos would receive; with a log the torques of that run too."""
+    """Adds an approach of `ramp` s from the posture `start` before a table and a hold of `hold` s after it, and judges what the servos would receive; with a log, also the torques of that run."""
 
 def mirrored(robot: Robot, pattern: Pattern) -> Pattern:
     """The pattern with left and right exchanged."""
 
 def parse_pattern(text: str, path: Union[str, PathLike[str]] = 'pattern.json', set: dict[str, float] = {}) -> Pattern:
-    """The pattern of the text of a file; `path` names it in messages, and what it names is looked for beside it."""
+    """Reads a pattern from the text of a file. Messages call this file `path`, and files that the text names are looked for beside `path`."""
 
 def picture(robot: Robot, log: Log, *, at: float = 0.0, width: int = 1280, height: int = 720, view: str = 'iso', zoom: float = 1.0, title: str = '') -> bytes:
     """The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', 'back' or 'top'; `width` and `height` in pixels."""
@@ -901,7 +901,7 @@ def sample(pattern: Pattern, robot: Robot, *, profile: str = '', progress: Optio
     """Samples a pattern for a robot that was loaded."""
 
 def simulate(task: Task, *, controller: Optional[str] = None, gains: dict[str, float] = {}, scenario: Optional[Union[bool, Union[str, PathLike[str]]]] = None, noise: bool = False, true_state: bool = False, substeps: int = 1, seed: int = 1, plant: Union[str, Callable[..., Any]] = 'ayumi', targets: Optional[Callable[..., Any]] = None, allow_unstable: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> Log:
-    """The closed loop of plant, sensors and controller. `controller` is a name of controllers(), None the pattern's; `gains` by name. `scenario`: False for no disturbances, or a pattern file whose scenario takes the place of the pattern's. `noise`: sensors with noise, bias and latency. `true_state`: the controller gets the true state. `substeps` of the integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. `targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], shape (dof,), in place of those of the controller; with controller='none' it is the whole controller. A plant or a controller in Python is called in every tick and slows the run several times. `progress`: a function (stage, fraction, detail); the run stops when it returns False."""
+    """The closed loop of plant, sensors and controller. `controller` is a name of controllers(), None the pattern's; `gains` by name. `scenario`: False for no disturbances, or a pattern file whose scenario replaces that of the pattern. `noise`: sensors with noise, bias and latency. `true_state`: the controller gets the true state. `substeps` of the integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. `targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], shape (dof,), in place of those of the controller; with controller='none' it is the whole controller. A plant or a controller in Python is called in every tick and slows the run several times. `progress`: a function (stage, fraction, detail); the run stops when it returns False."""
 
 def squat_pattern(robot: Robot, *, depth: Optional[float] = None, period: Optional[float] = None, hold: Optional[float] = None, cycles: Optional[int] = None) -> Pattern:
     """The COG moves down by `depth` m and up again; `hold` s at the lowest point."""
@@ -910,7 +910,7 @@ def stand_pattern(robot: Robot, duration: float) -> Pattern:
     """Standing in the home posture for `duration` s."""
 
 def strip(robot: Robot, log: Log, *, times: list[float] = [], count: int = 8, columns: int = 4, width: int = 640, height: int = 480, view: str = 'iso', zoom: float = 1.0, title: str = '') -> bytes:
-    """Snapshots side by side as the bytes of a PNG file, at `times` [s] or at `count` telling instants."""
+    """Snapshots side by side as the bytes of a PNG file, at `times` [s] or at `count` instants that Ayumi chooses."""
 
 def support_plot(robot: Robot, logs: dict[str, Log], *, title: str = '', scale: float = 1.5) -> bytes:
     """The ground from above, with soles, COG and ZMP, as the bytes of a PNG file."""
@@ -922,7 +922,7 @@ def table(task: Task, log: Log = None, *, content: str = 'lead') -> Table:
     """The table of a run, or without a log of the pattern itself. `content`: 'ideal' (the posture), 'lead' (ahead by the lag of the servos) or 'lead+sag'."""
 
 def tune(task: Task, *, start: dict[str, float] = {}, times: list[float] = [], directions: int = 4, level: float = 0.9, gains: Optional[list[str]] = None, rounds: int = 3, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Tuning:
-    """Searches better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; `level` of a push in capture bounds; `gains`: names of those that are changed."""
+    """Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; `level` of a push in capture bounds; `gains`: names of those that are changed."""
 
 def walk_pattern(robot: Robot, *, steps: Optional[int] = None, stride: Optional[float] = None, period: Optional[float] = None, double_support: Optional[float] = None, lift: Optional[float] = None, cog_height: Optional[float] = None, turn: Optional[float] = None, side: Optional[float] = None, rise: Optional[float] = None) -> Pattern:
     """A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) in m, period in s, double_support as a share of the period, turn in rad per step, left positive. What is not given follows from the size of the robot."""

@@ -320,8 +320,8 @@ Keyframe keys_at(const RobotModel& model, const KeyedTracks& of, double t, const
 void require_keys(const KeyedTracks& part) {
   const Pattern& pattern = part.pattern;
   const auto stop = [&](const std::string& place, const std::string& why) {
-    fail(ErrorCode::bad_pattern,
-         in_file(pattern, place) + ": " + why + ", which keys of another motion cannot follow");
+    fail(ErrorCode::bad_pattern, in_file(pattern, place) + ": " + why +
+                                     "; such a motion cannot be joined to another motion by keys");
   };
   if (part.tracks.joint_driven) stop("keyframes", part.tracks.driver + " lead the legs");
   for (const Keyframe& key : pattern.keyframes)
@@ -335,7 +335,7 @@ void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
   const auto stop = [&](const std::string& what) {
     fail(ErrorCode::bad_pattern, in_file(b.pattern, "keyframes") +
                                      ": only one of the motions has " + what +
-                                     ", which the other one leaves to be solved");
+                                     "; in the other motion they are solved");
   };
   if (a.tracks.zmp.has_value() != b.tracks.zmp.has_value()) stop("keys of the ZMP");
   for (const size_t axis : {0, 1})

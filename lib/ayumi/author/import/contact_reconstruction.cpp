@@ -92,20 +92,20 @@ class Grounding {
     }
     std::vector<std::string> result;
     if (floats > kSaid || sinks > kSaid)
-      result.push_back("while they carry, soles float by up to " + millimetres(floats) +
+      result.push_back("while they carry the robot, soles float by up to " + millimetres(floats) +
                        " and sink by up to " + millimetres(sinks) +
                        " (--ground moves the robot up and down so that they do not)");
     if (slides > kSaid)
-      result.push_back("while they carry, soles slide by up to " + millimetres(slides));
+      result.push_back("while they carry the robot, soles slide by up to " + millimetres(slides));
     constexpr size_t kMost = 6;  // Chosen: a line that a person still reads
     const size_t more = flights.size() > kMost ? flights.size() - kMost : 0;
     flights.resize(flights.size() - more);
     if (flight > 0)
-      result.push_back(
-          "nothing rests on the ground for " + text::brief(flight, 3) + " s (" +
-          text::join(flights, ", ") +
-          (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
-          "): this is flight (--contact-height and --contact-speed change what rests)");
+      result.push_back("no sole rests on the ground for " + text::brief(flight, 3) + " s (" +
+                       text::join(flights, ", ") +
+                       (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
+                       "): this is taken as flight (--contact-height and --contact-speed set when "
+                       "a sole counts as resting)");
     return result;
   }
 
@@ -240,7 +240,9 @@ class Grounding {
 
 void require_motion(const RobotModel& model, const RawMotion& motion) {
   if (!model.has_soles())
-    fail(ErrorCode::bad_model, model.name() + ": the robot has no soles; name both in its sidecar");
+    fail(ErrorCode::bad_model, model.name() +
+                                   ": the robot has no soles; add the left and the right sole to "
+                                   "\"soles\" in its sidecar");
   if (motion.theta.rows() < 6)
     fail(ErrorCode::bad_pattern,
          "a motion of " + std::to_string(motion.theta.rows()) + " rows; at least 6 are needed");

@@ -49,8 +49,8 @@ constexpr double kStoopTime = 5;
 // changes from half to twice (constants.md).
 constexpr double kStoopReached = 0.01;
 
-// Lean of the trunk when stooped, times z_d / ref z_G [rad]. Derivation: docs/theory.md, "Lean".
-// Measured with version 0.1: 0 leaves the apex of springs 8 to 10 % low.
+// Lean of the trunk when stooped, times z_d / ref z_G [rad]. Derivation: docs/theory_flight.md,
+// "Lean". Measured with version 0.1: 0 leaves the apex of springs 8 to 10 % low.
 constexpr double kStoopLean = 1.2;
 
 // sqrt(K_Pz / m) after the landing, times omega. Chosen: back at ref z_G within the 0.6 s that the
@@ -71,8 +71,8 @@ constexpr double kTargetRate = 3;
 // long against the lag of servos, up to 20 ms. Figures change by less than 5 % from half to twice.
 constexpr double kTorqueFadeTime = 0.3;
 
-// The legs run on after release with this time constant [s]. Source: docs/theory.md, "Flight":
-// stopping them at once asks for tens of newton metres. The prototype had 20 ms.
+// The legs run on after release with this time constant [s]. Source: docs/theory_flight.md,
+// "Flight": stopping them at once asks for tens of newton metres. The prototype had 20 ms.
 constexpr double kRunOnTime = 0.030;
 
 // Before touchdown the legs give way to the ground for this time [s], up to this share of the
@@ -459,7 +459,8 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
       if (last || behind || unloaded_ > kNoForceTime) {
         release();
       } else if (elapsed_ > 3 * figures.push) {
-        out.notes.push_back("no lift-off: the push does not reach its height");
+        out.notes.push_back(
+            "no lift-off: the COG does not reach the lift-off height in the push phase");
         left_ = 0;
         enter(Stage::settle);
       }

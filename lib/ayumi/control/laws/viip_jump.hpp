@@ -1,6 +1,6 @@
 #pragma once
 // The jump of VIIP, section 4.1 of the paper: stoop, (24)(25); push, (26); flight; absorb, (27);
-// settle, (24)(25). Law and closed forms: docs/theory.md.
+// settle, (24)(25). Law and closed forms: docs/theory_flight.md.
 
 #include "ayumi/control/laws/viip.hpp"
 

@@ -177,8 +177,8 @@ class Reader {
     if (!found)
       fail(ErrorCode::bad_file,
            file_ + (fraction_ ? ": the values are not whole numbers" : ": the values are counts") +
-               ", but no layout of this robot without an interval has " + std::to_string(columns) +
-               " columns in " + (fraction_ ? "radians" : "counts"));
+               ", but among the layouts of this robot that have no interval column, none has " +
+               std::to_string(columns) + " columns in " + (fraction_ ? "radians" : "counts"));
     result_.layout = *found;
     const int interval = given_ > 0                    ? given_
                          : found->intervals_ms.empty() ? 1

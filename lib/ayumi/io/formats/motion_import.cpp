@@ -315,8 +315,8 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
           ErrorCode::bad_file,
           file +
               ": the format does not hold the rate of its rows; give --rate HZ (LAFAN1 for Unitree "
-              "G1 has 30 rows per second), because a wrong rate changes all speeds with it and all "
-              "accelerations with its square");
+              "G1 has 30 rows per second), because with a rate that is too high by a factor, all "
+              "speeds are too high by this factor, and all accelerations by its square");
     for (size_t k = 0; k < rows; ++k) times.push_back(static_cast<double>(k) / rate);
     return times;
   }

@@ -98,7 +98,7 @@ NpyArray array_of(const std::string& bytes, const std::string& place) {
   const auto refuse = [&](const std::string& reason) {
     fail(ErrorCode::bad_file, place + ": " + reason);
   };
-  if (bytes.size() < 12 || bytes.compare(0, 6, kNpyMagic, 6) != 0) refuse("is no NumPy array");
+  if (bytes.size() < 12 || bytes.compare(0, 6, kNpyMagic, 6) != 0) refuse("is not a NumPy array");
   const bool long_head = bytes[6] != 1;
   const auto byte = [&](size_t i) {
     return static_cast<size_t>(static_cast<unsigned char>(bytes[i]));

@@ -61,7 +61,7 @@ class ArrayReader {
     for (const char* name : {"fps", "frame_rate", "framerate", "mocap_frame_rate"})
       if (const NpyArray* fps = find(name)) {
         if (fps->numbers.size() != 1 || !(fps->numbers[0] > 0))
-          source_.refuse(0, std::string(name) + " is no number of rows per second");
+          source_.refuse(0, std::string(name) + " is not a number of rows per second");
         return fps->numbers[0];
       }
     return 0;

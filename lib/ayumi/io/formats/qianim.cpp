@@ -72,9 +72,9 @@ MotionFile read_qianim(const MotionInput& source) {
   TiXmlDocument document;
   document.Parse(source.bytes.c_str());
   if (document.Error() || !document.RootElement())
-    source.refuse(
-        static_cast<size_t>(std::max(document.ErrorRow(), 0)),
-        std::string("no valid XML: ") + document.ErrorDesc() + "; the file may be truncated");
+    source.refuse(static_cast<size_t>(std::max(document.ErrorRow(), 0)),
+                  std::string("this is not valid XML: ") + document.ErrorDesc() +
+                      "; the file may be truncated");
   double rate = kUsualFrames;
   std::vector<Curve> curves;
   find_curves(source, *document.RootElement(), rate, curves);

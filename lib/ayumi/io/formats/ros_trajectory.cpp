@@ -54,13 +54,13 @@ void add_key(const MotionInput& source, size_t line, double time, std::vector<do
 Trajectory trajectory_of(const MotionInput& source, const YamlNode& names, const YamlNode& points) {
   Trajectory result;
   result.joints = names_in(source, names);
-  if (!points.is_list()) source.refuse(yaml_line(points), "`points` is no list");
+  if (!points.is_list()) source.refuse(yaml_line(points), "`points` is not a list");
   for (const YamlNode& point : points.items) {
     const YamlNode *positions = point.find("positions"), *time = point.find("time_from_start");
     if (!positions || !time)
       source.refuse(yaml_line(point), "a point needs positions and time_from_start");
     if (!positions->items.empty())
-      source.refuse(yaml_line(*positions), "the positions are no finite numbers");
+      source.refuse(yaml_line(*positions), "the positions are not finite numbers");
     add_key(source, yaml_line(point), duration_of(source, *time), positions->numbers, result);
   }
   if (result.times.empty()) source.refuse(yaml_line(points), "there is no point");
@@ -118,7 +118,7 @@ MotionFile joined(const MotionInput& source, std::vector<Trajectory> all) {
   }
   if (all.size() > 1)
     motion.notes.push_back(text::counted(all.size(), "trajectory", "trajectories") +
-                           "; those of the same joints follow each other");
+                           "; trajectories of the same joints are played one after the other");
   size_t width = 0;
   for (const Trajectory& group : groups) {
     motion.times.insert(motion.times.end(), group.times.begin(), group.times.end());

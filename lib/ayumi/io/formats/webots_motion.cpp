@@ -28,7 +28,8 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
 double time_of(const MotionInput& source, std::string_view cell, size_t line) {
   const std::vector<std::string_view> parts = split(cell, ':');
   if (parts.size() > 3)
-    source.refuse(line, "'" + std::string(cell.substr(0, 24)) + "' is no time MM:SS:mmm");
+    source.refuse(line,
+                  "'" + std::string(cell.substr(0, 24)) + "' is not a time of the form MM:SS:mmm");
   constexpr double units[] = {kMillisecond, 1, 60};
   double time = 0;
   for (size_t i = 0; i < parts.size(); ++i)

@@ -118,8 +118,8 @@ std::string home_text(const RobotModel& model, const RobotGuess& guess) {
   const Eigen::VectorXd home = model.posture();
   std::string text = guessed("Home posture [deg]: every motion starts here.", guess.home_reason) +
                      remark(
-                         "Behind each joint stands what a positive angle does. Check it on the "
-                         "robot, one joint at a time.") +
+                         "The comment after each joint says what a positive angle does. Check this "
+                         "on the robot, one joint at a time.") +
                      "  \"postures_deg\": {\n    \"home\": {\n";
   std::string sliders;
   std::vector<int> turning;
@@ -135,7 +135,7 @@ std::string home_text(const RobotModel& model, const RobotGuess& guess) {
             (i == turning.back() ? "" : ",") + "  // " + direction_in_words(model, i) + "\n";
   text += "    }\n  },\n";
   if (!sliders.empty())
-    text += remark("Sliding joints would stand here in metres, in \"postures\": " + sliders);
+    text += remark("Sliding joints are given in metres, under \"postures\": " + sliders);
   return text;
 }
 
@@ -231,10 +231,10 @@ std::string profiles_text(const RobotModel& model, const RobotGuess& guess) {
       "\"continuous_torque\" to each group.");
   for (const PlaceholderLimits& each : guess.placeholders)
     text +=
-        remark("Placeholder: the " + each.what + " of " + each.value + " on " +
+        remark("Placeholder: the URDF states the " + each.what + " of " + each.value + " on " +
                text::counted(each.joints.size(), "joint") +
                (each.joints.size() <= 3 ? " (" + text::join(each.joints, ", ") + ")" : "") +
-               " stand in the URDF because the format wants a number. " +
+               " only because the format requires a number. " +
                (each.what == "position limits" ? "State the true ones in \"position_limits_deg\"."
                                                : "Replace them by those of the motor."));
   if (groups.empty()) return text;
@@ -310,9 +310,9 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
     const InverseKinematics ik(model, model.posture());
     if (ik.lacks_joints())
       items.push_back(
-          "Know what the legs can do: a leg has fewer than six joints of its own, so the robot "
-          "stands, squats and shuffles with a trunk that leans; it cannot place a flat sole "
-          "anywhere.");
+          "Know what the legs can do: a leg has fewer than six joints of its own, so there are "
+          "places at which it cannot put the sole flat. The robot stands, squats and shuffles, and "
+          "its trunk leans.");
     items.push_back("Measure how soft the soles are (stiffness).");
   }
   items.push_back(

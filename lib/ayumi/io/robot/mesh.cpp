@@ -124,7 +124,8 @@ class MeshReader {
                            " bytes takes more memory than the " +
                            mebibytes(reading_.base_memory +
                                      reading_.memory_per_byte * (bytes.size() + companion_bytes_)) +
-                           " that a file of its size may take; it is broken, or simplify it"};
+                           " that a file of its size may take; the file may be broken; if it is "
+                           "not, simplify the mesh"};
         default:
           throw ReaderLost{"the mesh reader's answer is not valid (message " +
                            std::to_string(static_cast<std::uint32_t>(head.kind)) + ")" + kRemedy};
@@ -199,13 +200,14 @@ class MeshReader {
     if (exchange == Exchange::done) return;
     if (exchange == Exchange::too_late)
       throw ReaderLost{"reading this mesh takes longer than " + text::brief(reading_.time) +
-                           " s; simplify the mesh, or give the machine less other work",
+                           " s; simplify the mesh, or close other programs that load the machine",
                        false};
     const ChildEnding ending = child_->end();
     if (ending.signal == SIGXCPU)
-      throw ReaderLost{"reading this mesh takes more than " + std::to_string(reading_.cpu_time) +
-                           " s of the processor; it is broken, or simplify it",
-                       false};
+      throw ReaderLost{
+          "reading this mesh takes more than " + std::to_string(reading_.cpu_time) +
+              " s of processor time; the file may be broken; if it is not, simplify the mesh",
+          false};
     throw ReaderLost{"the mesh reader crashed on this file (" + ending.words() +
                      "), which is broken or hostile" + kRemedy};
   }

@@ -88,7 +88,7 @@ class MeshDecoder {
     for (size_t i = 0; i < part.vertices.size(); ++i) {
       if (!part.vertices[i].allFinite()) complain("vertex " + std::to_string(i) + " is not finite");
       if (!(std::abs(part.normals[i].norm() - 1) < kUnitTolerance))
-        complain("normal " + std::to_string(i) + " is no unit vector");
+        complain("normal " + std::to_string(i) + " is not a unit vector");
     }
     for (const Eigen::Vector2f& uv : part.uvs)
       if (!uv.allFinite()) complain("a place in the texture is not finite");

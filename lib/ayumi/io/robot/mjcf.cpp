@@ -185,7 +185,7 @@ class MjcfReader {
     for (const std::string& name : text_.weighed_meshes) {
       const auto mesh = text_.meshes.find(name);
       if (mesh == text_.meshes.end()) continue;
-      const std::string file = places_.find("that weighs by it", mesh->second.file);
+      const std::string file = places_.find("whose mass follows from it", mesh->second.file);
       if (file.empty()) {
         missing.push_back(mesh->second.file);
         continue;
@@ -524,8 +524,8 @@ class MjcfReader {
     if (!pose.linear().isIdentity(1e-6))
       robot_.assumptions.push_back(
           "the site " + text_.imu_site +
-          " is turned against its body; Ayumi's inertial unit has the axes "
-          "of the body");
+          " is rotated relative to its body; this rotation is ignored, and the axes of the "
+          "inertial unit are taken as those of the body");
   }
 
   const fs::path& path_;

@@ -109,7 +109,8 @@ class Cleaner {
         const fs::path included = path_.parent_path() / name;
         if (depth >= kDeepestMjcfInclude || !included_.insert(included.lexically_normal()).second)
           complain_xml(file.string(), child,
-                       "'" + std::string(name) + "' is included a second time, or by itself");
+                       "'" + std::string(name) +
+                           "' is included twice, or it includes itself; remove this include");
         std::error_code ignored;
         if (!fs::is_regular_file(included, ignored))
           complain_xml(file.string(), child,
@@ -154,7 +155,7 @@ class Cleaner {
                      "<" + element->ValueStr() + " " + each->Name() + "=\"" + text + "\">: '" +
                          word + "' is not a finite number" +
                          (word.find(',') != std::string::npos
-                              ? "; mjcf_numbers have a decimal point, and blanks between them"
+                              ? "; numbers have a decimal point, and blanks between them"
                               : ""));
       }
     }
@@ -317,7 +318,7 @@ class Cleaner {
     if (others > 0)
       text_.notes.push_back(
           text::counted(others, "actuator") +
-          " of tendons, sites or bodies left out: servos of joints are simulated");
+          " of tendons, sites or bodies left out, because only servos of joints are simulated");
   }
 
   static bool carries_bodies(const TiXmlElement* element) {
@@ -345,9 +346,10 @@ class Cleaner {
         keep_known(child);
       } else {
         if (carries_bodies(child))
-          complain_xml(path_.string(), child,
-                       "this MuJoCo does not know <" + child->ValueStr() +
-                           ">, which carries parts of the robot; write them without it");
+          complain_xml(
+              path_.string(), child,
+              "this MuJoCo does not know <" + child->ValueStr() +
+                  ">, which contains bodies of the robot; move these bodies out of this element");
         ++unknown_["<" + child->ValueStr() + ">"];
         element->RemoveChild(child);
       }

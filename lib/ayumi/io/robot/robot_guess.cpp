@@ -295,7 +295,8 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
     guess.facing =
         nearest_facing(ahead.x() < 0 || (ahead.x() == 0 && ahead.y() < 0) ? -ahead : ahead);
     guess.facing_reason.why =
-        "the feet are across this axis; names and shapes of the feet do not tell front from back";
+        "the line between the feet is perpendicular to this axis; names and shapes of the feet do "
+        "not show which end is the front";
   }
   guess.facing_reason.check = "that the robot looks along the red arrow in the picture";
 }
@@ -413,7 +414,8 @@ void find_soles(RobotGuess& guess) {
     robot.assumptions.push_back(
         side + " sole: link " + sole.link + ", hull of " + std::to_string(sole.polygon.size()) +
         " corners, " + text::fixed(1000 * extent(sole).x(), 0) + " x " +
-        text::fixed(1000 * extent(sole).y(), 0) + " mm, of what touches the ground within 1 mm");
+        text::fixed(1000 * extent(sole).y(), 0) +
+        " mm, around the points of the foot that are at most 1 mm above the ground");
   robot.soles = soles;
   const bool collisions = std::any_of(
       model.links().begin(), model.links().end(),
@@ -513,7 +515,7 @@ bool find_home(RobotGuess& guess) {
           "found by balancing: level soles, legs of " + text::fixed(100 * share, 1) +
               " % of their straight length, COG " + text::fixed(1e3 * target.cog.z(), 0) +
               " mm high over the middle of the soles, every joint inside its limits" +
-              (human ? ", knees in front as a human's"
+              (human ? ", knees that bend forward like a human's"
                      : "; the limits leave the knees no room to come forward, so they go back"),
           "that the robot stands like this, and that the arms are clear of the body"};
       return true;

@@ -84,7 +84,7 @@ RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
     if (name == "mujocoinclude")
       refuse_robot(path, "this is a part of an MJCF model; name the file that includes it");
     refuse_robot(path, name.empty() ? "this XML has no complete element"
-                                    : "this is XML, but <" + name + "> is no robot");
+                                    : "this is XML, but <" + name + "> is not a robot");
   }
   if (extension == ".urdf" || extension == ".xacro") return RobotFormat::urdf;
   if (text.starts_with("{") || text.starts_with("//") || text.starts_with("/*"))
@@ -93,7 +93,7 @@ RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
   if (extension == ".body" || text.substr(0, 4096).find("ChoreonoidBody") != std::string_view::npos)
     return RobotFormat::body;
   if (text.starts_with("#VRML")) refuse_robot(path, "this is a VRML model; convert it to URDF");
-  refuse_robot(path, text.empty() ? "the file is empty" : "this is no robot");
+  refuse_robot(path, text.empty() ? "the file is empty" : "this is not a robot");
 }
 
 RobotDescription parse_robot(const std::string& bytes, const fs::path& path,

@@ -147,7 +147,7 @@ class Checker {
     if (found.empty()) return;
     std::vector<std::string> words;
     for (const auto& [name, each] : found)
-      words.push_back("<" + name + "> is no element of a " + each.parent + "; did you mean <" +
+      words.push_back("<" + name + "> is not an element of a " + each.parent + "; did you mean <" +
                       each.meant + ">? (" + text::counted(each.count, each.parent) + ")");
     complain(found.front().second.first, text::join(words, "; "));
   }

@@ -141,7 +141,8 @@ YamlNode parse_yaml(const std::string& text, const std::string& file, const std:
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder)) refuse(1, "there is no YAML document");
   } catch (const YAML::Exception& error) {
-    refuse(error.mark.line + 1, "no valid YAML: " + error.msg + "; the file may be truncated");
+    refuse(error.mark.line + 1,
+           "this is not valid YAML: " + error.msg + "; the file may be truncated");
   }
   if (!builder.refused.empty()) refuse(builder.refused_line, builder.refused);
   return std::move(builder.root);
