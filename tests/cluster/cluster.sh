@@ -16,24 +16,27 @@ host=$(hostname -s)
 
 complain() { echo "cluster.sh: $*" >&2; exit 1; }
 
+# A process that has ended may stay as a zombie where nothing waits for it.
+lives() { grep -q '^State:[[:space:]]*[^ZX]' "/proc/$1/status" 2> /dev/null; }
+
 # Ends the process whose number is in a file, and waits for it.
 end() {
   local file=$1 signal=${2:-TERM} pid
   [ -s "$file" ] || return 0
   pid=$(cat "$file")
-  kill "-$signal" "$pid" 2>/dev/null
-  for _ in $(seq 100); do kill -0 "$pid" 2>/dev/null || break; sleep 0.1; done
-  kill -KILL "$pid" 2>/dev/null
+  kill "-$signal" "$pid" 2> /dev/null
+  for _ in $(seq 100); do lives "$pid" || break; sleep 0.1; done
+  lives "$pid" && kill -KILL "$pid" 2> /dev/null
   rm -f "$file"
 }
 
-# The processes of the steps on a node: each carries the name of its node and of this folder.
+# The processes of the steps on nodes ("n2", or "n." for all): each carries the name of its node and
+# of this folder.
 steps_of() {
-  local process words
-  for process in /proc/[0-9]*; do
-    words=$({ tr '\0' '\n' < "$process/environ"; } 2>/dev/null) || continue
-    grep -qx "SLURMD_NODENAME=$1" <<< "$words" && grep -qx "SLURM_CONF=$dir/slurm.conf" <<< "$words" &&
-      echo "${process#/proc/}"
+  local file
+  for file in /proc/[0-9]*/environ; do
+    grep -qszx "SLURMD_NODENAME=$1" "$file" && grep -qszx "SLURM_CONF=$dir/slurm.conf" "$file" &&
+      basename "$(dirname "$file")"
   done
 }
 
@@ -116,11 +119,11 @@ stop)
     SLURM_CONF=$dir/slurm.conf scancel --me 2> /dev/null
     sleep 1
   fi
-  end "$dir/ctld.pid"
-  for n in n1 n2 n3 n4; do
-    end "$dir/slurmd.$n.pid"
-    for pid in $(steps_of $n); do kill -KILL "$pid" 2>/dev/null; done
+  for file in "$dir"/ctld.pid "$dir"/slurmd.*.pid; do
+    [ -s "$file" ] && kill "$(cat "$file")" 2> /dev/null
   done
+  for file in "$dir"/ctld.pid "$dir"/slurmd.*.pid; do end "$file"; done
+  for pid in $(steps_of 'n.'); do kill -KILL "$pid" 2> /dev/null; done
   end "$dir/munge/pid"
   ;;
 *) complain "unknown action '$action'" ;;

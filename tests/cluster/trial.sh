@@ -29,12 +29,16 @@ export SLURM_CONF=$dir/cluster/slurm.conf
 cat > study.json << JSON
 { "format": "ayumi.study/1", "name": "trial", "sweep": {
   "settings": { "pattern": "stand.json", "disturbances": "push", "noise": true },
-  "cases": { "seed": { "from": 1, "to": $cases, "count": $cases }, "value.impulse": 0.2 },
+  "cases": { "latin_hypercube": { "samples": $cases, "seed": 1,
+    "ranges": { "value.impulse": [0.1, 6] } } },
   "disturbances": { "push": [{ "type": "impulse", "at": 0.1, "duration": 0.02,
     "impulse": "\${impulse}", "direction": [0, 1, 0] }] } } }
 JSON
 SECONDS=0
-"$program" sweep study.json -o local.db --csv local.csv --quiet || complain "the local sweep failed"
+"$program" sweep study.json -o local.db --csv local.csv --quiet &
+sweep_pid=$!
+wait "$sweep_pid" || complain "the local sweep failed"
+sweep_pid=
 echo "local: $SECONDS s"
 
 # Starts the sweep on Slurm in the background.
@@ -67,8 +71,7 @@ sleep 1
 "$cluster" start-controller "$dir/cluster" || complain "the controller did not start again"
 echo "the controller was restarted at $(status 'done') cases"
 wait_for 'done' $((cases / 3))
-kill -KILL "$sweep_pid"
-wait "$sweep_pid" 2> /dev/null
+{ kill -KILL "$sweep_pid"; wait "$sweep_pid"; } 2> /dev/null
 echo "the sweep was killed at $(status 'done') cases"
 rm -f slurm.csv
 "$cluster" start-node "$dir/cluster" n2
