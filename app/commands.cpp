@@ -186,7 +186,7 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
              text::join(kinds_of(level), ", ") + text::suggestion(word, kinds_of(level));
     return "unexpected argument '" + word + "'";
   }
-  if (!kinds_of(level).empty())
+  if (!kinds_of(level).empty() && level.get_require_subcommand_min() > 0)
     return level.get_name() + ": choose one of " + text::join(kinds_of(level), ", ");
   return option_message(app, error);
 }

@@ -18,6 +18,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Time between two plain lines of one stage. Chosen: the log of an hour has some hundred lines.
+constexpr std::chrono::seconds kBetweenLines(10);
+
 struct ProgressLine {
   std::mutex mutex;
   bool terminal = isatty(STDERR_FILENO) != 0;
@@ -37,10 +40,12 @@ struct ProgressLine {
     }
     if (terminal)
       draw(event, now);
-    else if (fresh || event.detail.starts_with("iteration "))
+    else if (fresh || event.detail.starts_with("iteration ") || now - last > kBetweenLines) {
+      last = now;
       std::fprintf(
           stderr, "%s\n",
           text::printable(event.stage + (event.detail.empty() ? "" : ": ") + event.detail).c_str());
+    }
     if (event.fraction >= 1) finish();
   }
 

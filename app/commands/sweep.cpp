@@ -12,6 +12,7 @@
 #include "shard.hpp"
 #include "sweep/expectations.hpp"
 #include "sweep/run_cases.hpp"
+#include "sweep/slurm.hpp"
 #include "sweep/study_page.hpp"
 
 namespace ayumi::app {
@@ -29,8 +30,10 @@ struct SweepOutputs {
 };
 
 struct SweepCommand {
-  std::string study, out, shard;
+  std::string study, out, shard, cases, engine = "local";
   bool retry = false;
+  double case_limit = 0;  ///< [s]; 0: none
+  SlurmOptions slurm;
   SweepOutputs outputs;
 };
 
@@ -65,7 +68,8 @@ std::string first_errors(const ResultsDatabase& results) {
 void conclude(Context& context, const ResultsDatabase& results, const SweepOutputs& outputs,
               const CaseRunner* runner, Json json = Json::object()) {
   const std::vector<Expectation> expectations = judge_expectations(results, outputs.expect);
-  if (!outputs.csv.empty()) write_file(outputs.csv, results.csv());
+  if (!outputs.csv.empty())
+    write_file_with(outputs.csv, [&](const fs::path& file) { results.write_csv(file); });
   if (!outputs.junit.empty()) write_file(outputs.junit, junit_text(results, expectations));
   if (!outputs.page.empty())
     write_file(outputs.page,
@@ -106,6 +110,17 @@ void create_results(const fs::path& file, const SweepHead& head) {
   });
 }
 
+/// The cases of the shard and of the list.
+std::vector<bool> asked_cases(const SweepCommand& options, const Shard& shard, long count) {
+  std::vector<bool> asked(static_cast<size_t>(count), options.cases.empty());
+  if (!options.cases.empty())
+    for (const auto& [first, last] : read_case_ranges(options.cases, count))
+      std::fill(asked.begin() + first, asked.begin() + last + 1, true);
+  for (long i = 0; i < count && !shard.whole(); ++i)
+    if (!shard.has(i)) asked[static_cast<size_t>(i)] = false;
+  return asked;
+}
+
 void run_sweep(Context& context, const SweepCommand& options) {
   if (options.study.empty())
     fail(ErrorCode::usage, "the argument STUDY is missing: a study file, merge or status");
@@ -117,7 +132,9 @@ void run_sweep(Context& context, const SweepCommand& options) {
   refuse_bad_names(context, options.outputs);
   require_file_target(options.out);
   const SweepStudy study(read_file(options.study), options.study);
-  const CaseRunner runner(context, study);
+  CaseRunner runner(context, study);
+  runner.limit_case(options.case_limit);
+  const std::vector<bool> asked = asked_cases(options, shard, study.size());
   const SweepHead head = head_of(runner, context.seed);
   const FolderLock lock(options.out + ".lock");
   if (context.force) remove_results(options.out);
@@ -129,11 +146,13 @@ void run_sweep(Context& context, const SweepCommand& options) {
   if (options.retry)
     context.print("  " + text::counted(results->forget_errors(), "case") +
                   " that could not be run will be run again\n");
-  const std::vector<bool> done = results->done();
-  std::vector<long> missing;
-  for (long i = 0; i < study.size(); ++i)
-    if (shard.has(i) && !done[static_cast<size_t>(i)]) missing.push_back(i);
-  const RunCost cost = run_cases(runner, *results, missing, context.threads, context.progress());
+  std::vector<bool> missing = results->done();
+  for (size_t i = 0; i < missing.size(); ++i) missing[i] = asked[i] && !missing[i];
+  const RunCost cost =
+      options.engine == "slurm"
+          ? run_on_slurm(context, runner, *results, missing, options.slurm, context.progress())
+          : run_cases(runner, *results, missing, context.threads, context.progress());
+  results->add_work({cost.seconds, cost.useful});
   if (cost.cases > 0)
     context.print("  " + text::counted(cost.cases, "case") + " run, " +
                   text::brief(cost.seconds / double(cost.cases), 3) +
@@ -197,24 +216,41 @@ void merge_results(Context& context, const MergeCommand& options) {
   conclude(context, results, {}, nullptr);
 }
 
+std::string slurm_words(const SlurmStatus& slurm) {
+  if (!slurm.exists) return "";
+  const std::string name = "  Slurm, jobs " + slurm.name + ": ";
+  if (!slurm.trouble.empty()) return name + slurm.trouble + "\n";
+  std::string words = name + text::counted(slurm.running, "task") + " running, " +
+                      std::to_string(slurm.waiting) + " waiting" +
+                      (slurm.waiting > 0 && slurm.running == 0 ? " (" + slurm.reason + ")" : "");
+  if (slurm.arrived > 0)
+    words += ", " + std::to_string(slurm.arrived) + " ended whose rows are not collected";
+  return words + "\n";
+}
+
 void show_status(Context& context, const std::string& file) {
   const ResultsDatabase results(file, ResultsDatabase::Mode::read);
   const SweepCounts counts = results.counts();
   const std::vector<std::string> shards = results.shards();
+  const SlurmStatus slurm = slurm_status(file);
   context.print(file + ": " + results.head().name + ", " + counts_words(counts) + "; " +
                 std::to_string(counts.cases - counts.done) + " are missing" +
                 (shards.empty() ? "" : "; shards " + text::join(shards, ", ")) + "\n" +
-                first_errors(results));
-  context.print_json(Json({{"study", results.head().name},
-                           {"cases", counts.cases},
-                           {"done", counts.done},
-                           {"missing", counts.cases - counts.done},
-                           {"errors", counts.errors},
-                           {"stands", counts.stands},
-                           {"falls", counts.falls},
-                           {"unsettled", counts.unsettled},
-                           {"shards", shards}})
-                         .dump(2));
+                first_errors(results) + slurm_words(slurm));
+  Json json = Json({{"study", results.head().name},
+                    {"cases", counts.cases},
+                    {"done", counts.done},
+                    {"missing", counts.cases - counts.done},
+                    {"errors", counts.errors},
+                    {"stands", counts.stands},
+                    {"falls", counts.falls},
+                    {"unsettled", counts.unsettled},
+                    {"shards", shards}});
+  if (slurm.exists)
+    json["slurm"] = {{"job_name", slurm.name},   {"running", slurm.running},
+                     {"waiting", slurm.waiting}, {"reason", slurm.reason},
+                     {"arrived", slurm.arrived}, {"trouble", slurm.trouble}};
+  context.print_json(json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace
@@ -234,6 +270,56 @@ void add_sweep(CLI::App& app, Context& context) {
   command->add_option("-o,--out", options->out, "Results, an SQLite file.")->type_name("F.db");
   command->add_option("--shard", options->shard, "Run only one part of the cases, for example 1/4.")
       ->type_name("I/N");
+  command->add_option("--cases", options->cases, "Run only these cases, for example 0-99,120.")
+      ->type_name("LIST");
+  command
+      ->add_option("--case-limit", options->case_limit,
+                   "Most processor time of one case [s]; one that takes more is recorded as one "
+                   "that could not be run.")
+      ->check(number_within(0.01, 1e6).description(""))
+      ->type_name("S");
+  command->add_option("--engine", options->engine, "What runs the cases: local or slurm.")
+      ->check(CLI::IsMember({"local", "slurm"}).description(""))
+      ->type_name("NAME")
+      ->capture_default_str();
+  std::vector<CLI::Option*> slurm_options;
+  const auto for_slurm = [&](CLI::Option* option, const std::string& type) {
+    slurm_options.push_back(option->type_name(type)->group("With --engine slurm"));
+  };
+  SlurmOptions& slurm = options->slurm;
+  for_slurm(command->add_option("--partition", slurm.partition, "Passed on to sbatch."), "NAME");
+  for_slurm(command->add_option("--time", slurm.time,
+                                "Limit of the time of a task, passed on to sbatch; a task is made "
+                                "to take half of it at most."),
+            "TIME");
+  for_slurm(command->add_option("--memory", slurm.memory, "Passed on to sbatch as --mem."), "SIZE");
+  for_slurm(command
+                ->add_option("--sbatch", slurm.further,
+                             "One more option for sbatch, for example --sbatch=--account=lab; may "
+                             "be repeated.")
+                ->allow_extra_args(false),
+            "OPTION");
+  for_slurm(command
+                ->add_option("--chunk", slurm.chunk,
+                             "Cases of a task (default: as many as take --task-seconds in a "
+                             "pilot run).")
+                ->check(whole_number_within(1, 1000000).description("")),
+            "N");
+  for_slurm(
+      command->add_option("--task-seconds", slurm.task_seconds, "How long a task should take.")
+          ->check(number_within(0.1, 1e6).description(""))
+          ->capture_default_str(),
+      "S");
+  for_slurm(command->add_option("--pilot", slurm.pilot, "Cases of the pilot run.")
+                ->check(whole_number_within(1, 1000).description(""))
+                ->capture_default_str(),
+            "N");
+  for_slurm(command
+                ->add_option("--attempts", slurm.attempts,
+                             "How often a case is submitted whose task was lost.")
+                ->check(whole_number_within(1, 100).description(""))
+                ->capture_default_str(),
+            "N");
   command->add_flag("--retry", options->retry, "Run the cases again that could not be run before.");
   SweepOutputs& outputs = options->outputs;
   command
@@ -267,8 +353,12 @@ void add_sweep(CLI::App& app, Context& context) {
   status->add_option("FILE", *file, "Results.")->required();
   status->callback([file, &context] { show_status(context, *file); });
 
-  command->callback([command, options, &context] {
-    if (command->get_subcommands().empty()) run_sweep(context, *options);
+  command->callback([command, options, slurm_options, &context] {
+    if (!command->get_subcommands().empty()) return;
+    for (const CLI::Option* option : slurm_options)
+      if (option->count() > 0 && options->engine != "slurm")
+        fail(ErrorCode::usage, option->get_name() + " is for --engine slurm");
+    run_sweep(context, *options);
   });
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <set>
 
 #include "ayumi/base/error.hpp"
@@ -43,6 +44,16 @@ struct TimeSpent {
     counter += std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
   }
 };
+
+/// Processor time of this thread [s].
+double thread_seconds() {
+  timespec now = {};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+/// Ticks between two questions whether a simulation may go on. Chosen: some milliseconds of work.
+constexpr long kTicksBetweenReports = 100;
 
 Cell cell(double value) {
   if (!std::isfinite(value)) return {};
@@ -113,6 +124,26 @@ std::vector<ResultColumn> result_columns(const SweepMeasures& m) {
   return columns;
 }
 
+/// Stops a case when the user stops the work, or when the case has used its processor time.
+struct CaseRunner::Watch {
+  const Progress& progress;
+  double limit;  ///< [s]; 0: none
+  double begin = thread_seconds();
+  std::string exceeded = {};  ///< what was being done when the time was used up
+
+  bool go_on(const ProgressEvent& event) {
+    if (limit > 0 && thread_seconds() - begin > limit) {
+      exceeded = event.stage;
+      return false;
+    }
+    return !progress || progress(event);
+  }
+  std::string reason() const {
+    return exceeded + ": not finished within " + text::brief(limit) +
+           " s of processor time (--case-limit)";
+  }
+};
+
 /// What cases of one law share.
 struct CaseRunner::Law {
   SimulateOptions options;  ///< with ground and disturbances of the pattern
@@ -154,6 +185,7 @@ struct CaseRunner::Prepared {
   }
   std::once_flag judged, repaired;
   std::vector<Cell> check, repair;
+  std::optional<Error> repair_error;
 };
 
 CaseRunner::~CaseRunner() = default;
@@ -313,12 +345,13 @@ std::uint64_t seed_of(const Context& context, const Settings& settings) {
 
 /// Figures of one simulation, in the order of result_columns().
 std::vector<Cell> run_figures(const Task& task, const SimulateOptions& options,
-                              const SweepMeasures& measures) {
+                              const SweepMeasures& measures, const Progress& progress) {
   Simulator run(task.robot, task.series, options);
   run.keep_samples(false);
   double positive = 0, first = 0;
   Eigen::Vector2d start = Eigen::Vector2d::Zero();
   while (run.advance(1) && !run.fell()) {
+    if (run.tick() % kTicksBetweenReports == 0) report(progress, {"simulate", -1, "simulation"});
     if (!measures.energy) continue;
     const SimulationSample& s = run.last_sample();
     if (run.tick() == 1) start = s.cog.head<2>();
@@ -368,16 +401,16 @@ std::vector<Cell> check_figures(const Task& task) {
   return cells;
 }
 
-std::vector<Cell> repair_figures(const Task& task) {
+std::vector<Cell> repair_figures(const Task& task, const Progress& progress) {
   RepairOptions options = preferred_options(task.pattern);
   options.check = check_options(task);
-  const RepairResult r = repair(task.robot, task.pattern, task.series, options);
+  const RepairResult r = repair(task.robot, task.pattern, task.series, options, progress);
   return {std::string(name_of(r.status)), cell(r.max_joint_change), cell(r.max_cog_change),
           cell(r.check.summary[FindingKind::support_margin])};
 }
 
 std::vector<Cell> threshold_figures(const Task& task, const SimulateOptions& simulate,
-                                    const SweepThresholds& asked) {
+                                    const SweepThresholds& asked, const Progress& progress) {
   PushOptions push;
   push.directions = asked.directions;
   push.replicas = asked.replicas;
@@ -392,7 +425,7 @@ std::vector<Cell> threshold_figures(const Task& task, const SimulateOptions& sim
     push.phases.push_back({"t = " + text::fixed(t, 3) + " s", t, false});
   double worst_impulse = 0, worst = 0, sum = 0;
   size_t count = 0;
-  for (const PushCase& each : push_limits(task.robot, task.series, push)) {
+  for (const PushCase& each : push_limits(task.robot, task.series, push, {}, {}, progress)) {
     const double impulse =
         each.limits.empty() ? each.open_loop.impulse : each.limits.front().impulse;
     const double share = each.bound > 0 ? impulse / each.bound : 0;
@@ -452,7 +485,8 @@ void CaseRunner::make_case(long number, const Settings& settings, OneCase& made)
   made.options.prepared = &made.law->controller;
 }
 
-std::vector<Cell> CaseRunner::figures(long number, const Settings& settings) const {
+std::vector<Cell> CaseRunner::figures(long number, const Settings& settings, Watch& watch) const {
+  const Progress progress = [&](const ProgressEvent& event) { return watch.go_on(event); };
   const SweepMeasures& measures = study_->measures();
   std::vector<Cell> cells(columns_.size());
   const auto place = [&](const std::string& first, const std::vector<Cell>& more) {
@@ -467,10 +501,11 @@ std::vector<Cell> CaseRunner::figures(long number, const Settings& settings) con
     make_case(number, settings, made);
     motion = made.motion;
     const TimeSpent useful{useful_};
-    if (runs) place("outcome", run_figures(*motion->task, made.options, measures));
+    if (runs) place("outcome", run_figures(*motion->task, made.options, measures, progress));
     if (measures.thresholds) {
       made.options.prepared = nullptr;  // open loop is another law
-      place("push_worst_Ns", threshold_figures(*motion->task, made.options, study_->thresholds()));
+      place("push_worst_Ns",
+            threshold_figures(*motion->task, made.options, study_->thresholds(), progress));
     }
   } else {
     motion = prepared(settings);
@@ -481,14 +516,25 @@ std::vector<Cell> CaseRunner::figures(long number, const Settings& settings) con
     place("consistent", motion->check);
   }
   if (measures.repair) {
-    std::call_once(motion->repaired, [&] { motion->repair = repair_figures(*motion->task); });
+    std::call_once(motion->repaired, [&] {
+      try {
+        motion->repair = repair_figures(*motion->task, progress);
+      } catch (const Error& error) {  // also for the other cases of this motion
+        motion->repair_error = error;
+      } catch (const Interrupted&) {
+        if (watch.exceeded.empty()) throw;
+        motion->repair_error = Error(ErrorCode::bad_pattern, watch.reason());
+      }
+    });
+    if (motion->repair_error) throw Error(*motion->repair_error);
     place("repair", motion->repair);
   }
   return cells;
 }
 
-CaseRow CaseRunner::run(long number) const {
+CaseRow CaseRunner::run(long number, const Progress& progress) const {
   const TimeSpent all{nanoseconds_};
+  Watch watch{progress, case_seconds_};
   const Settings settings = study_->settings(number);
   CaseRow row;
   row.number = number;
@@ -502,10 +548,13 @@ CaseRow CaseRunner::run(long number) const {
       row.axes.push_back(cell(std::get<double>(found->second)));
   }
   try {
-    row.figures = figures(number, settings);
+    row.figures = figures(number, settings, watch);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::internal) throw;
     row.error = error.what();
+  } catch (const Interrupted&) {
+    if (watch.exceeded.empty()) throw;
+    row.error = watch.reason();
   } catch (const std::bad_alloc&) {
     row.error = "there was not enough memory";
   }

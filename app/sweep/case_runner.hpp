@@ -53,8 +53,14 @@ class CaseRunner {
   const std::vector<SweepInput>& inputs() const { return inputs_; }
 
   /// Bad input of a single case (a step that the legs cannot make) is a row with an error. Any
-  /// number of threads may call it; the row depends on the number alone.
-  CaseRow run(long number) const;
+  /// number of threads may call it; the row depends on the number alone. `progress` is asked again
+  /// and again in the midst of a case whether it may go on; when it stops the work, Interrupted is
+  /// thrown. A case that takes more than case_seconds() of processor time is such a row as well.
+  CaseRow run(long number, const Progress& progress = {}) const;
+
+  /// Most processor time of one case [s]; 0: no limit.
+  double case_seconds() const { return case_seconds_; }
+  void limit_case(double seconds) { case_seconds_ = seconds; }
 
   /// The same simulation with its log, for a replay. `task` is what it was made of.
   SimulationLog simulate(long number, std::shared_ptr<const Task>& task) const;
@@ -78,13 +84,14 @@ class CaseRunner {
   std::filesystem::path pattern_file(const std::string& word) const;
   std::string robot_name(const std::string& word) const;
   void refuse_unused() const;
-  std::vector<Cell> figures(long number, const Settings& settings) const;
+  struct Watch;
+  std::vector<Cell> figures(long number, const Settings& settings, Watch& watch) const;
 
   const Context* context_;
   const SweepStudy* study_;
   std::vector<ResultColumn> columns_;
   std::vector<SweepInput> inputs_;
-  double setup_seconds_ = 0;
+  double setup_seconds_ = 0, case_seconds_ = 0;
   std::map<std::string, Pattern> patterns_;  ///< by the word of the study, default parameters
   std::map<std::string, RobotModel> robots_;
   mutable std::mutex mutex_;

@@ -4,7 +4,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/io/run/sha256_stream.hpp"
 #include "ayumi/math/statistics.hpp"
 #include "ayumi/plot/drawing.hpp"
 
@@ -171,7 +171,9 @@ Json results_json(const ResultsDatabase& results, const std::vector<Expectation>
     json["rates"] = rates;
   }
   json["worst_cases"] = worst_cases(results, kListed);
-  json["csv_sha256"] = sha256(results.csv());
+  Sha256Stream csv;
+  results.csv([&](const std::string& line) { csv.add(line); });
+  json["csv_sha256"] = csv.digits();
   return json;
 }
 

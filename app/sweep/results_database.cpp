@@ -3,6 +3,9 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/counted.hpp"
@@ -342,14 +345,32 @@ void ResultsDatabase::add_shards(const std::vector<std::string>& shards) {
 
 std::vector<bool> ResultsDatabase::done() const {
   std::vector<bool> found(static_cast<size_t>(head_.cases));
+  mark_done(found);
+  return found;
+}
+
+void ResultsDatabase::mark_done(std::vector<bool>& cases) const {
   Statement statement(database_, "SELECT \"case\" FROM cases");
   if (!statement.good()) complain("the file cannot be read");
   while (statement.step()) {
     const long number = statement.integer(0);
-    if (number >= 0 && number < head_.cases) found[static_cast<size_t>(number)] = true;
+    if (number >= 0 && number < head_.cases) cases[static_cast<size_t>(number)] = true;
   }
   if (!statement.done()) complain("the file cannot be read");
-  return found;
+}
+
+SweepWork ResultsDatabase::work() const {
+  SweepWork sum;
+  for (const auto& row : query("SELECT key, value FROM about WHERE key LIKE '%seconds'"))
+    (row[0] == "seconds" ? sum.seconds : sum.useful) = std::atof(row[1].c_str());
+  return sum;
+}
+
+void ResultsDatabase::add_work(const SweepWork& more) {
+  const SweepWork before = work();
+  execute("INSERT OR REPLACE INTO about VALUES ('seconds', " +
+          sql_text(text::exact(before.seconds + more.seconds)) + "), ('useful_seconds', " +
+          sql_text(text::exact(before.useful + more.useful)) + ")");
 }
 
 SweepCounts ResultsDatabase::counts() const {
@@ -433,22 +454,35 @@ long ResultsDatabase::merge(const fs::path& other) {
   return added;
 }
 
-std::string ResultsDatabase::csv() const {
+void ResultsDatabase::csv(const std::function<void(const std::string& line)>& take) const {
   const std::vector<std::string> names = all_columns(head_);
-  std::string text;
-  for (size_t i = 0; i < names.size(); ++i) text += (i ? "," : "") + csv_cell(names[i]);
-  text += "\n";
+  std::string line;
+  for (size_t i = 0; i < names.size(); ++i) line += (i ? "," : "") + csv_cell(names[i]);
+  take(line + "\n");
   Statement statement(database_, "SELECT " + list_of(names) + " FROM cases ORDER BY \"case\"");
   if (!statement.good()) complain("the file cannot be read");
   while (statement.step()) {
-    for (int i = 0; i < statement.columns(); ++i) {
-      if (i) text += ",";
-      text += csv_cell(statement.cell(i));
-    }
-    text += "\n";
+    line.clear();
+    for (int i = 0; i < statement.columns(); ++i)
+      line += (i ? "," : "") + csv_cell(statement.cell(i));
+    take(line + "\n");
   }
   if (!statement.done()) complain("the file cannot be read");
-  return text;
+}
+
+void ResultsDatabase::write_csv(const fs::path& file) const {
+  std::ofstream stream(file, std::ios::binary);
+  const auto require_written = [&] {
+    if (!stream)
+      fail(ErrorCode::bad_file, file.string() + ": the table cannot be written: " +
+                                    std::strerror(errno) + "; make room and try again");
+  };
+  csv([&](const std::string& line) {
+    stream << line;
+    require_written();
+  });
+  stream.close();
+  require_written();
 }
 
 std::vector<std::vector<std::string>> ResultsDatabase::query(const std::string& sql) const {

@@ -41,6 +41,12 @@ struct SweepCounts {
   long failures() const { return falls + unsettled; }
 };
 
+/// Processor time behind rows.
+struct SweepWork {
+  double seconds = 0;  ///< of all threads, reading of inputs and writing of rows included
+  double useful = 0;   ///< of them simulating, checking and repairing
+};
+
 class ResultsDatabase {
  public:
   enum class Mode { read, write };
@@ -61,9 +67,14 @@ class ResultsDatabase {
   /// The shards that were run into this file: "1/4"; empty: of the whole study.
   std::vector<std::string> shards() const;
   void add_shards(const std::vector<std::string>& shards);
+  /// What its rows took, over all runs that noted it.
+  SweepWork work() const;
+  void add_work(const SweepWork& more);
 
   /// For each case whether it has a row.
   std::vector<bool> done() const;
+  /// Marks the cases that have a row.
+  void mark_done(std::vector<bool>& cases) const;
   SweepCounts counts() const;
   /// Removes the rows of cases that could not be run; returns how many.
   long forget_errors();
@@ -75,8 +86,9 @@ class ResultsDatabase {
   /// Error(bad_file), and this file is then unchanged.
   long merge(const std::filesystem::path& other);
 
-  /// All rows by number, as a table with one head row.
-  std::string csv() const;
+  /// All rows by number, as a table with one head row: `take` gets line after line.
+  void csv(const std::function<void(const std::string& line)>& take) const;
+  void write_csv(const std::filesystem::path& file) const;
   /// Rows of a query, every cell as in the CSV. Throws Error(usage) with SQLite's words where the
   /// query is wrong.
   std::vector<std::vector<std::string>> query(const std::string& sql) const;

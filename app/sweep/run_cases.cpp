@@ -1,8 +1,10 @@
 #include "sweep/run_cases.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/in_parallel.hpp"
 
@@ -19,14 +21,15 @@ constexpr size_t kMostWaiting = 5000;
 }  // namespace
 
 RunCost run_cases(const CaseRunner& runner, ResultsDatabase& results,
-                  const std::vector<long>& numbers, int threads, const Progress& progress) {
+                  const std::vector<bool>& cases, int threads, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   std::atomic<bool> stop = false;
   std::mutex mutex;
   std::vector<CaseRow> waiting;
   Clock::time_point committed = Clock::now();
   double writing = 0;
-  size_t finished = 0;
+  const auto count = static_cast<size_t>(std::count(cases.begin(), cases.end(), true));
+  size_t finished = 0, next = 0;
   bool broken = false;  // the file takes no more
   const double before = runner.seconds(), useful = runner.useful_seconds();
   const auto commit = [&] {
@@ -39,17 +42,30 @@ RunCost run_cases(const CaseRunner& runner, ResultsDatabase& results,
     committed = Clock::now();
     writing += std::chrono::duration<double>(committed - begin).count();
   };
+  const auto state = [&](const std::string& more) {
+    return ProgressEvent{
+        "sweep", double(finished) / double(count),
+        std::to_string(finished) + " of " + text::counted(static_cast<long>(count), "case") + more};
+  };
   std::exception_ptr error;
   try {
-    in_parallel(numbers.size(), threads, stop, [&](size_t i) {
-      CaseRow row = runner.run(numbers[i]);
+    in_parallel(count, threads, stop, [&](size_t) {
+      long number = 0;
+      {
+        const std::lock_guard lock(mutex);
+        while (!cases[next]) ++next;
+        number = static_cast<long>(next++);
+      }
+      CaseRow row = runner.run(number, [&](const ProgressEvent& event) {
+        const std::lock_guard lock(mutex);
+        return !progress || progress(state(", case " + std::to_string(number) + ": " + event.stage +
+                                           " " + event.detail));
+      });
       const std::lock_guard lock(mutex);
       waiting.push_back(std::move(row));
       ++finished;
       if (Clock::now() - committed > kBetweenCommits || waiting.size() >= kMostWaiting) commit();
-      report(progress,
-             {"sweep", double(finished) / double(numbers.size()),
-              std::to_string(finished) + " of " + std::to_string(numbers.size()) + " cases"});
+      report(progress, state(""));
     });
   } catch (...) {
     error = std::current_exception();

@@ -12,10 +12,10 @@ struct RunCost {
   double useful = 0;   ///< of them simulating, checking and repairing
 };
 
-/// Runs the cases on `threads` (0: all cores). Rows are committed about twice a second, so that a
-/// killed program loses no more than that. When `progress` stops the work, all rows that are known
-/// are kept and Interrupted is thrown.
+/// Runs those `cases` (by number) on `threads` (0: all cores). Rows are committed about twice a
+/// second, so that a killed program loses no more than that. When `progress` stops the work, all
+/// rows that are known are kept and Interrupted is thrown.
 RunCost run_cases(const CaseRunner& runner, ResultsDatabase& results,
-                  const std::vector<long>& numbers, int threads, const Progress& progress);
+                  const std::vector<bool>& cases, int threads, const Progress& progress);
 
 }  // namespace ayumi::app

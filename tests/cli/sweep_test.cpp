@@ -55,6 +55,30 @@ std::string read_csv(const Sweep& s, const std::string& database) {
   return contents(s.folder / "read.csv");
 }
 
+/// The cells of a CSV without quotes.
+class Table {
+ public:
+  explicit Table(const std::string& csv) {
+    std::istringstream lines(csv);
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream stream(line);
+      cells_.emplace_back();
+      for (std::string cell; std::getline(stream, cell, ',');) cells_.back().push_back(cell);
+    }
+  }
+  int rows() const { return static_cast<int>(cells_.size()) - 1; }
+  std::string cell(size_t row, const std::string& name) const {
+    const std::vector<std::string>& names = cells_.at(0);
+    const auto at = std::find(names.begin(), names.end(), name);
+    EXPECT_NE(at, names.end()) << name;
+    return cells_.at(row + 1).at(static_cast<size_t>(at - names.begin()));
+  }
+  double number(size_t row, const std::string& name) const { return std::stod(cell(row, name)); }
+
+ private:
+  std::vector<std::vector<std::string>> cells_;
+};
+
 TEST(SweepCommand, SameBytesForThreadsAndShards) {
   const Sweep s;
   const Output one = s.sweep({"-o", "one.db", "--threads", "1", "--csv", "one.csv", "--page",
@@ -173,20 +197,8 @@ TEST(SweepCommand, ACaseIsTheRunOfSimulate) {
                               "5", "--gain", "ka=0.8"});
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
   const Json figures = Json::parse(alone.out);
-  const std::string csv = contents(s.folder / "c.csv");
-  const auto cells_of = [](const std::string& line) {
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-    return cells;
-  };
-  const std::vector<std::string> names = cells_of(csv.substr(0, csv.find('\n')));
-  const std::vector<std::string> values = cells_of(csv.substr(csv.find('\n') + 1));
-  const auto cell = [&](const std::string& name) {
-    const auto at = std::find(names.begin(), names.end(), name);
-    EXPECT_NE(at, names.end()) << name;
-    return values.at(static_cast<size_t>(at - names.begin()));
-  };
+  const Table table(contents(s.folder / "c.csv"));
+  const auto cell = [&](const std::string& name) { return table.cell(0, name); };
   EXPECT_EQ(cell("outcome"), "stands");
   EXPECT_EQ(std::stod(cell("final_cog_error_m")), figures.at("final_cog_error_m"));
   EXPECT_EQ(std::stod(cell("max_torque_ratio")), figures.at("max_torque_ratio"));
@@ -258,6 +270,140 @@ TEST(SweepCommand, TwoWritersAreRefused) {
   const Output second = run_program({"-c", script}, s.folder.path(), "/bin/bash");
   EXPECT_EQ(second.exit_code, 3) << second.err;
   EXPECT_NE(second.err.find("t.db.lock"), std::string::npos) << second.err;
+}
+
+// A draw is the case of `certify` and `simulate --case`, and each measure belongs to the robot of
+// its case.
+TEST(SweepCommand, DrawsProfilesRobotsAndParameters) {
+  const Sweep s;
+  std::string text = contents(s.folder / "stand.json");
+  const size_t begin = text.find('{') + 1;
+  text.insert(begin, R"("parameters": {"seconds": 0.4},)");
+  const size_t duration = text.find("1.2", begin);
+  ASSERT_NE(duration, std::string::npos) << text;
+  text.replace(duration, 3, "\"${seconds}\"");
+  write(s.folder / "quick.json", text);
+  write(s.folder / "study.json", R"({"format": "ayumi.study/1", "sweep": {
+    "settings": {"pattern": "quick.json"},
+    "cases": {"list": [{"draw": [0, 7]}, {"profile": "hoap1"},
+                       {"robot": ["humanoid30", "hoap1"]}, {"set.seconds": [0.3, -1]}]},
+    "thresholds": {"times": [0.1], "directions": 2, "cap": 1.2, "step": 0.4},
+    "measure": ["verdict", "repair", "thresholds", "energy"]}})");
+  const Output out = s.sweep({"-o", "d.db", "--csv", "d.csv", "--json"});
+  EXPECT_EQ(out.exit_code, 1) << out.err;
+  const Table table(contents(s.folder / "d.csv"));
+  ASSERT_EQ(table.rows(), 7);
+  const Output alone = s.run({"simulate", "quick.json", "--case", "7", "--json", "--quiet"});
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  EXPECT_EQ(table.number(1, "final_cog_error_m"), Json::parse(alone.out).at("final_cog_error_m"));
+  EXPECT_NE(table.number(0, "final_cog_error_m"), table.number(1, "final_cog_error_m"));
+  EXPECT_EQ(table.number(2, "push_worst_Ns"), table.number(4, "push_worst_Ns"));
+  // The other robot has about eight times the mass and twice the height of its COG.
+  EXPECT_GT(table.number(3, "push_worst_Ns"), 4 * table.number(4, "push_worst_Ns"));
+  EXPECT_EQ(table.cell(3, "repair"), "already_consistent");
+  EXPECT_LT(table.number(5, "duration_s"), table.number(4, "duration_s"));
+  EXPECT_NE(table.cell(6, "error"), "");
+}
+
+// A case that takes too long is recorded, and the others are run.
+TEST(SweepCommand, ALimitOfTimeOfOneCase) {
+  const Sweep s;
+  ASSERT_EQ(s.run({"new", "stand", "--duration", "90", "-o", "long.json"}).exit_code, 0);
+  s.write_study(R"({"value.impulse": 0.1, "pattern": ["stand.json", "long.json"]})");
+  const Output limited = s.sweep({"-o", "l.db", "--case-limit", "0.4", "--threads", "1"});
+  EXPECT_EQ(limited.exit_code, 1) << limited.err;
+  EXPECT_NE(limited.out.find("1 stand"), std::string::npos) << limited.out;
+  EXPECT_NE(limited.out.find("case 1 could not be run: simulate: not finished within 0.4 s of "
+                             "processor time (--case-limit)"),
+            std::string::npos)
+      << limited.out;
+}
+
+// A stand-in for Slurm: sbatch runs every task at once, and drops the tasks that `drop` names (as a
+// node that dies). The real one is tried by tests/cluster.
+struct StandIn {
+  Sweep s;
+  StandIn() {
+    write(s.folder / "bin/sbatch", R"sh(#!/bin/sh
+[ "$1" = --version ] && exit 0
+echo "$*" >> sbatch.log
+[ -e refuse ] && { echo 'sbatch: error: invalid partition specified: nowhere' >&2; exit 1; }
+for script in "$@"; do :; done
+for option in "$@"; do case $option in --output=*) out=${option#--output=};; esac; done
+job=$(grep -c . sbatch.log)
+last=$(sed -n 's/#SBATCH --array=1-//p' "$script")
+for task in $(seq "$last"); do
+  grep -qx "$job $task" drop 2> /dev/null && continue
+  SLURM_ARRAY_TASK_ID=$task sh "$script" > "$(echo "$out" | sed "s/%a/$task/")" 2>&1
+done
+echo "$job"
+)sh");
+    write(s.folder / "bin/squeue", "#!/bin/sh\nexit 0\n");
+    for (const char* name : {"scontrol", "scancel"})
+      write(s.folder / "bin" / name, "#!/bin/sh\nexit 0\n");
+    for (const auto& entry : fs::directory_iterator(s.folder / "bin"))
+      fs::permissions(entry.path(), fs::perms::owner_all);
+  }
+  Output slurm(const std::string& more) const {
+    return run_program({"-c", "PATH=\"$PWD/bin:$PATH\" exec '" + program_under_test() +
+                                  "' sweep study.json --quiet --engine slurm " + more},
+                       s.folder.path(), "/bin/sh");
+  }
+};
+
+TEST(SweepOnSlurm, LostTasksAreSubmittedAgainUpToALimit) {
+  const StandIn slurm;
+  const std::string whole = slurm.s.csv("local.db");
+  write(slurm.s.folder / "drop", "1 2\n1 4\n2 1\n");
+  const Output out = slurm.slurm(
+      "-o a.db --chunk 5 --csv a.csv --partition p --time 30 "
+      "--memory 2G --sbatch=--account=lab");
+  ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
+  EXPECT_EQ(contents(slurm.s.folder / "a.csv"), whole);
+  // Five tasks; those of 5 and 5 cases that were lost; and one of these two once more.
+  EXPECT_NE(out.out.find("10 cases of lost tasks"), std::string::npos) << out.out;
+  EXPECT_NE(out.out.find("5 cases of lost tasks"), std::string::npos) << out.out;
+  const std::string log = contents(slurm.s.folder / "sbatch.log");
+  EXPECT_EQ(line_count(log), 3) << log;
+  EXPECT_NE(log.find("--partition=p --time=30 --mem=2G --account=lab "), std::string::npos) << log;
+  EXPECT_FALSE(fs::exists(slurm.s.folder / "a.db.slurm"));
+
+  fs::remove(slurm.s.folder / "sbatch.log");
+  write(slurm.s.folder / "drop", "1 2\n2 1\n");
+  const Output lost = slurm.slurm("-o b.db --chunk 5 --attempts 2");
+  EXPECT_EQ(lost.exit_code, 3) << lost.out;
+  EXPECT_NE(lost.err.find("5 cases (the first is 5) were lost 2 times"), std::string::npos)
+      << lost.err;
+  EXPECT_EQ(lost.err.find('\n'), lost.err.size() - 1) << lost.err;
+  const Output status = slurm.s.run({"sweep", "status", "b.db", "--json"});
+  EXPECT_EQ(Json::parse(status.out).at("missing"), 5);
+  EXPECT_EQ(slurm.slurm("-o b.db --csv b.csv").exit_code, 0);
+  EXPECT_EQ(contents(slurm.s.folder / "b.csv"), whole);
+}
+
+TEST(SweepOnSlurm, AbsentOrRefusing) {
+  const StandIn slurm;
+  const auto expect = [&](const Output& out, int code, const std::string& part) {
+    EXPECT_EQ(out.exit_code, code) << out.err;
+    EXPECT_NE(out.err.find(part), std::string::npos) << out.err;
+    EXPECT_EQ(out.err.find('\n'), std::min(out.err.find("\nSee "), out.err.size() - 1)) << out.err;
+  };
+  expect(run_program({"-c", "PATH=/nowhere exec '" + program_under_test() +
+                                "' sweep study.json --quiet --engine slurm -o n.db"},
+                     slurm.s.folder.path(), "/bin/sh"),
+         3, "--engine slurm: the program sbatch cannot be started (No such file or directory)");
+  write(slurm.s.folder / "refuse", "");
+  expect(slurm.slurm("-o r.db --pilot 3"), 3,
+         "sbatch refused the job: sbatch: error: invalid partition specified: nowhere; rows that "
+         "are done are kept in r.db");
+  const Output status = slurm.s.run({"sweep", "status", "r.db", "--json"});
+  EXPECT_EQ(Json::parse(status.out).at("done"), 3);
+  expect(slurm.s.sweep({"-o", "r.db", "--partition", "p"}), 2, "--partition is for --engine slurm");
+  expect(slurm.s.sweep({"-o", "r.db", "--engine", "pbs"}), 2, "pbs");
+  expect(slurm.s.sweep({"-o", "r.db", "--cases", "5-2"}), 2, "'5-2' is no list of cases");
+  expect(slurm.s.sweep({"-o", "r.db", "--cases", "24"}), 2, "numbers from 0 to 23");
+  ASSERT_EQ(slurm.s.sweep({"-o", "c.db", "--cases", "2,5-7"}).exit_code, 0);
+  EXPECT_EQ(Json::parse(slurm.s.run({"sweep", "status", "c.db", "--json"}).out).at("done"), 4);
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+#pragma once
+// Runs cases of a sweep as job arrays of Slurm: a pilot run here sizes the tasks, each task leaves
+// its rows in a file of its own, and these are merged as they arrive. What became of a task is read
+// from its file and from the queue; no accounting is needed. docs/slurm.md describes the engine.
+
+#include "sweep/run_cases.hpp"
+
+namespace ayumi::app {
+
+struct SlurmOptions {
+  std::string partition, time, memory;  ///< passed on to sbatch; "": its defaults
+  std::vector<std::string> further;     ///< more options for sbatch, as words
+  int attempts = 3;                     ///< how often a case is submitted before it is given up
+  int pilot = 8;                        ///< cases of the pilot run
+  long chunk = 0;                       ///< cases of a task; 0: from the pilot run
+  double task_seconds = 300;            ///< how long a task should take
+};
+
+/// Where the state of the engine is kept: "results.db.slurm".
+std::filesystem::path slurm_folder(const std::filesystem::path& results);
+
+/// Numbers of cases in rising order, as ranges [first, last].
+using CaseRanges = std::vector<std::pair<long, long>>;
+/// "0-99,120" as ranges, and ranges as such a text. Throws Error(usage) for numbers that are not
+/// from 0 to `count` - 1 in rising order.
+CaseRanges read_case_ranges(const std::string& text, long count);
+std::string text_of(const CaseRanges& ranges);
+
+/// Number of cases of a task. `seconds`: of one case; `setup`: of a task before its first case.
+long chunk_size(double seconds, double setup, long cases, double task_seconds);
+
+/// A limit of time as sbatch reads it ("30", "2:00:00", "1-12") [s]; 0 where there is none.
+double slurm_seconds(const std::string& time);
+
+/// Submits, waits and merges until every case has a row. Tasks of an earlier call that are still
+/// queued are waited for. Throws Error(bad_file) with one line: Slurm is not there, refuses, does
+/// not answer any more, or lost a case too often. Rows that arrived are kept in every case. When
+/// `progress` stops the work, Interrupted is thrown and the tasks go on.
+RunCost run_on_slurm(const Context& context, const CaseRunner& runner, ResultsDatabase& results,
+                     const std::vector<bool>& missing, const SlurmOptions& options,
+                     const Progress& progress);
+
+/// What is known of the tasks that were submitted for these results.
+struct SlurmStatus {
+  bool exists = false;  ///< tasks were submitted and not all were collected
+  long waiting = 0, running = 0, arrived = 0;
+  std::string name;     ///< of the jobs
+  std::string reason;   ///< why tasks wait, in Slurm's word
+  std::string trouble;  ///< why the queue is not known; "" where it is
+};
+SlurmStatus slurm_status(const std::filesystem::path& results);
+
+}  // namespace ayumi::app
