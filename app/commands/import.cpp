@@ -27,6 +27,7 @@ constexpr size_t kMostBytes = 64'000'000;
 struct ImportCommand {
   std::string file, robot, out;
   bool ground = false;        ///< --ground
+  double ramp = 0;            ///< --ramp [s]; 0: none
   ContactThresholds contact;  ///< as given
   ImportOptions import;
 };
@@ -66,6 +67,27 @@ void print_import(const Context& context, const ImportCommand& options,
        imported.filled}}.dump(2));
 }
 
+void add_ramps(const ImportCommand& options, const RobotModel& model, ImportedMotion& imported) {
+  const CutEnds cut = cut_ends(model, imported.motion);
+  if (options.ramp <= 0) {
+    imported.filled.insert(imported.filled.end(), cut.words.begin(), cut.words.end());
+    return;
+  }
+  const std::string ends = cut.begin && cut.end ? "begins and ends" : cut.begin ? "begins" : "ends";
+  if (!cut.begin && !cut.end) {
+    imported.filled.push_back("--ramp is not used, because the motion begins and ends at rest");
+    return;
+  }
+  if (!imported.motion.zmp.empty() || !imported.motion.fz.empty())
+    imported.filled.push_back(
+        "ZMP and vertical force of the file are left out, because a ramp "
+        "changes them");
+  imported.motion = with_ramps(model, std::move(imported.motion), options.ramp);
+  imported.sequence.clear();  // its rows are no longer those of the motion
+  imported.filled.push_back("the motion " + ends + " slowly: in " + text::brief(options.ramp) +
+                            " s from rest to its own speed, along its own path (--ramp)");
+}
+
 void import_motion(const Context& context, const ImportCommand& options) {
   refuse_overwriting(context, options.out);
   refuse_overwriting(context, table_beside(options.out));
@@ -79,6 +101,7 @@ void import_motion(const Context& context, const ImportCommand& options) {
              text::join(read_format_names(), ", "));
   ImportedMotion imported = read_motion(bytes, name, model, options.import);
   imported.motion.contact = options.contact;
+  add_ramps(options, model, imported);
   if (options.ground) imported.motion = put_on_ground(model, std::move(imported.motion));
   GroundedMotion motion =
       grounded(model, imported.motion, table_beside(options.out).filename().string());
@@ -142,9 +165,19 @@ void add_import(CLI::App& app, Context& context) {
                    "Names of the joint columns, in the order of the file.")
       ->delimiter(',')
       ->type_name("A,B,...");
+  command
+      ->add_option("--motion", options.import.motion,
+                   "Name or number of the motion, of a file with several (default: the first).")
+      ->type_name("NAME");
   command->add_flag(
       "--ground", options.ground,
       "Move the robot up and down so that the soles that carry it are on the ground.");
+  command
+      ->add_option("--ramp", options.ramp,
+                   "Time from rest to the speed of the recording, where it was cut while the robot "
+                   "moved [s].")
+      ->check(number_within(0.02, 10.0))
+      ->type_name("S");
   command
       ->add_option(
           "--contact-height", options.contact.height,

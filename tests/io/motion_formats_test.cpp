@@ -11,6 +11,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "tests/io/moving_motion.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -19,25 +20,6 @@ namespace ayumi::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Every joint and the root move; numbers have all their digits.
-MotionFile moving(const RobotModel& model, int rows = 40, double rate = 50) {
-  MotionFile motion;
-  motion.rate = rate;
-  motion.joints = model.dof_names();
-  motion.values.resize(rows, model.dof_count());
-  for (int k = 0; k < rows; ++k) {
-    motion.times.push_back(k / rate);
-    for (int j = 0; j < model.dof_count(); ++j) motion.values(k, j) = 0.1 * std::sin(0.1 * k + j);
-    const double yaw = 0.3 * std::sin(0.05 * k);
-    BasePose base;
-    base.position = {0.01 * k, -0.002 * k, 0.25 + 0.001 * std::cos(0.2 * k)};
-    base.attitude = Eigen::Quaterniond(std::cos(yaw / 2), 0, 0, std::sin(yaw / 2));
-    motion.base.push_back(base);
-    motion.zmp.emplace_back(0.01 * k, 0.001 * k, 0);
-  }
-  return motion;
-}
 
 struct RoundTrip {
   std::string format;
@@ -83,8 +65,9 @@ TEST_P(MotionFormats, ReadsWhatItWrites) {
 INSTANTIATE_TEST_SUITE_P(
     Formats, MotionFormats,
     testing::Values(
-        RoundTrip{"webots", 0, 0, true, false}, RoundTrip{"choreonoid", 0, 0, true, true},
-        RoundTrip{"tracking-npz", 0, 0, true, true}, RoundTrip{"gmr-npz", 0, 0, true, true},
+        RoundTrip{"webots", 0, 0, true, false}, RoundTrip{"webots-1.1", 0, 0, true, false},
+        RoundTrip{"choreonoid", 0, 0, true, true}, RoundTrip{"tracking-npz", 0, 0, true, true},
+        RoundTrip{"gmr-npz", 0, 0, true, true},
         // Half a count of 4096 a turn; servos of 8 ms.
         RoundTrip{"op3-action", 0.5 * EIGEN_PI / 2048 + 1e-12, 0, true, false, 62.5},
         RoundTrip{"ros-trajectory", 0, 0, true, false},
@@ -96,7 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
         RoundTrip{"motion-csv", 0, 0, false, true}, RoundTrip{"hrpsys", 0, 1e-15, false, true}),
     [](const auto& info) {
       std::string name = info.param.format;
-      std::replace(name.begin(), name.end(), '-', '_');
+      std::replace_if(
+          name.begin(), name.end(), [](char c) { return c == '-' || c == '.'; }, '_');
       return name;
     });
 
@@ -121,20 +105,36 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
     EXPECT_NE(refusal_of("???").find(name), std::string::npos) << name;
 }
 
+// The end of the message of a file that was recognized.
+std::string told(const std::string& message) {
+  const size_t at = message.find("; import reads tracking-npz, ");
+  EXPECT_NE(at, std::string::npos) << message;
+  return message.substr(0, at);
+}
+
 TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   const std::string head = "#WEBOTS_MOTION,V1.0,l_knee,r_knee\n";
-  EXPECT_EQ(
-      refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0\n"),
-      "m.dat:3: 3 cells in the row, but the head needs 4 (2 joints) (read as Webots .motion)");
-  EXPECT_EQ(refusal_of(head + "00:00:000,a,0,nan\n"),
-            "m.dat:2: column r_knee: 'nan' is not a finite number (read as Webots .motion)");
-  EXPECT_EQ(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n"),
-            "m.dat:1: version 'V3.0'; V1.0 and V1.1 are read (read as Webots .motion)");
-  EXPECT_EQ(refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n"),
+  const std::string webots =
+      " (read as Webots .motion, because its first line begins with #WEBOTS_MOTION";
+  EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0\n")),
+            "m.dat:3: 3 cells in the row, but the head needs 4 (2 joints)" + webots);
+  EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0")),
+            "m.dat:3: 3 cells in the row, but the head needs 4 (2 joints); the file may be "
+            "truncated" +
+                webots);
+  EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,nan\n")),
+            "m.dat:2: column r_knee: 'nan' is not a finite number" + webots);
+  EXPECT_EQ(told(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n")),
+            "m.dat:1: version 'V3.0'; V1.0 and V1.1 are read" + webots);
+  EXPECT_EQ(told(refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n")),
             "m.dat:3: 1 value of 'r_knee', but the first row has 2 times (read as CSV with a row "
-            "for each joint)");
-  EXPECT_EQ(refusal_of("0.02 3 ( 1 2 )\n"),
-            "m.dat:1: 2 values in the brackets, but n is 3 (read as mi-lib .zvs)");
+            "for each joint, because its first row is times, so each further row is a joint");
+  EXPECT_EQ(told(refusal_of("0.02 3 ( 1 2 )\n")),
+            "m.dat:1: 2 values in the brackets, but n is 3 (read as mi-lib .zvs, because its rows "
+            "have the form `dt n ( values )`");
+  const ImportOptions stated{.format = "webots"};
+  EXPECT_EQ(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),
+            "m.dat:1: version 'V3.0'; V1.0 and V1.1 are read (read as Webots .motion)");
   EXPECT_NE(refusal_of("0 0.1 0,2\n0.1 0.1 0.2\n0.2 0 0\n", "m.pos").find("not "),
             std::string::npos);
   EXPECT_NE(refusal_of("type: CompositeSeq\ncontent: BodyMotion\ncomponents:\n  - [ 1, 2\n")
@@ -263,6 +263,120 @@ TEST(MotionFormats, SolesThatHoverCarryAndSolesThatFallDoNot) {
   EXPECT_NE(found.notes[0].find("soles float by up to 9 mm"), std::string::npos) << found.notes[0];
   const RawMotion low = put_on_ground(hoap1(), hovering);
   EXPECT_TRUE(grounded(hoap1(), low, "t.csv").notes.empty());
+}
+
+// A recording that is cut at both ends: a knee turns at 1 rad/s all the time, the root goes
+// forward.
+TEST(MotionFormats, RampsLetARecordingBeginAndEndAtRest) {
+  RawMotion motion = standing(std::vector<double>(60, 0), 0.02);
+  const int knee = hoap1().find_dof("l_knee");
+  for (int k = 0; k < 60; ++k) {
+    motion.theta(k, knee) = 0.02 * k;
+    motion.base[static_cast<size_t>(k)].position.x() = 0.004 * k;
+    motion.zmp.emplace_back(0.004 * k, 0, 0);
+  }
+  motion.support.assign(60, Support::both);
+  const CutEnds cut = cut_ends(hoap1(), motion);
+  EXPECT_TRUE(cut.begin && cut.end);
+  ASSERT_EQ(cut.words.size(), 2u);
+  EXPECT_NE(cut.words[0].find("begins while the robot moves (l_knee at 1 rad/s)"),
+            std::string::npos)
+      << cut.words[0];
+  EXPECT_NE(cut.words[0].find("--ramp"), std::string::npos);
+  const RawMotion ramped = with_ramps(hoap1(), motion, 0.4);
+  ASSERT_EQ(ramped.theta.rows(), 80);
+  ASSERT_EQ(ramped.support.size(), 80u);
+  EXPECT_TRUE(ramped.zmp.empty());
+  EXPECT_EQ(ramped.theta.middleRows(20, 40), motion.theta.middleRows(10, 40));
+  EXPECT_EQ(ramped.theta.row(0), motion.theta.row(0));
+  EXPECT_EQ(ramped.theta.row(79), motion.theta.row(59));
+  double jump = 0;  // of the rate, from rest at both ends [rad/s]
+  for (int k = 0; k <= 79; ++k) {
+    const double before = k > 0 ? ramped.theta(k, knee) - ramped.theta(k - 1, knee) : 0;
+    const double after = k < 79 ? ramped.theta(k + 1, knee) - ramped.theta(k, knee) : 0;
+    EXPECT_GE(after, -1e-12);
+    EXPECT_NEAR(ramped.base[static_cast<size_t>(k)].position.x(), 0.2 * ramped.theta(k, knee),
+                1e-12);
+    jump = std::max(jump, std::abs(after - before) / 0.02);
+  }
+  // Minimum jerk from 0 to 1 rad/s in 20 rows: 1.875 / 20 at most; without a ramp it is 1.
+  EXPECT_LT(jump, 0.1);
+  EXPECT_TRUE(cut_ends(hoap1(), ramped).words.empty());
+  EXPECT_NE(error_message([&] { with_ramps(hoap1(), motion, 2); }).find("too long for a motion"),
+            std::string::npos);
+  const RawMotion still = standing(std::vector<double>(60, 0), 0.02);
+  EXPECT_EQ(with_ramps(hoap1(), still, 0.4).theta.rows(), 60);
+}
+
+// The right foot twitches for a moment, while the COG is between the feet, far from either.
+TEST(MotionFormats, AFootThatTheCogIsFarFromDoesNotCarryAlone) {
+  RawMotion motion = standing(std::vector<double>(100, 0), 0.01);
+  const RobotModel& model = hoap1();
+  const auto turn = [&](const char* joint, double angle, int first, int count) {
+    motion.theta.col(model.find_dof(joint)).segment(first, count).array() += angle;
+  };
+  for (const auto& [joint, angle] : {std::pair{"l_hip_roll", 0.25},
+                                     {"l_ankle_roll", -0.25},
+                                     {"r_hip_roll", -0.25},
+                                     {"r_ankle_roll", 0.25}})
+    turn(joint, angle, 0, 100);
+  const auto twitch = [&](int first, int count) {
+    turn("r_knee", 0.3, first, count);
+    turn("r_hip_pitch", -0.15, first, count);
+    turn("r_ankle_pitch", -0.15, first, count);
+  };
+  for (BasePose& base : motion.base) base.position.z() -= 0.01;  // about; the lowest sole is found
+  twitch(50, 3);
+  const std::vector<Support> brief = detect_supports(model, motion);
+  EXPECT_EQ(std::count(brief.begin(), brief.end(), Support::both), 100);
+  twitch(20, 25);  // a quarter of a second is no moment
+  const std::vector<Support> longer = detect_supports(model, motion);
+  EXPECT_EQ(longer[32], Support::left);
+  EXPECT_EQ(longer[51], Support::both);
+}
+
+TEST(MotionFormats, OneOfSeveralMotionsIsChosen) {
+  const auto motion_text = [](const std::string& name, double to) {
+    return "      " + name + ":\n        joints: [l_knee]\n        positions: [0, " +
+           std::to_string(to) + "]\n        times_from_start: [0, 0.5]\n";
+  };
+  const std::string text = "/play_motion2:\n  ros__parameters:\n    motions:\n" +
+                           motion_text("wave", 1) + motion_text("bow", 0.5);
+  const auto last = [&](const std::string& motion) {
+    ImportOptions options;
+    options.motion = motion;
+    const ImportedMotion read = read_motion_rows(text, "p.yaml", hoap1(), options);
+    return read.motion.theta(read.motion.theta.rows() - 1, hoap1().find_dof("l_knee"));
+  };
+  EXPECT_EQ(last(""), 1);
+  EXPECT_EQ(last("wave"), 1);
+  EXPECT_EQ(last("bow"), 0.5);
+  EXPECT_EQ(last("2"), 0.5);
+  ImportOptions options;
+  options.motion = "jump";
+  EXPECT_NE(refusal_of(text, "p.yaml", options)
+                .find("there is no motion 'jump'; the file has 1 'wave', 2 'bow'"),
+            std::string::npos);
+
+  // Two pages of an action file that do not follow each other.
+  MotionFile short_motion = moving(hoap1(), 7, 62.5);
+  short_motion.name = "nod";
+  std::string bytes = find_motion_format("op3-action")->write(hoap1(), short_motion)[0].bytes;
+  constexpr size_t kPage = 512, kSum = 31;
+  std::string page = bytes.substr(kPage, kPage);
+  page.replace(0, 3, "sit");
+  page[kSum] = 0;
+  unsigned sum = 0;
+  for (const char c : page) sum += static_cast<unsigned char>(c);
+  page[kSum] = static_cast<char>(0xff - sum);
+  bytes.replace(9 * kPage, kPage, page);
+  options.motion = "9";
+  std::string said;
+  for (const std::string& line : read_motion_rows(bytes, "a.bin", hoap1(), options).filled)
+    said += line + "\n";
+  EXPECT_NE(said.find("the motion 9 'sit' is read; the file has 1 'nod', 9 'sit'"),
+            std::string::npos)
+      << said;
 }
 
 TEST(MotionFormats, AChangeInTheLastRowMakesNoPhase) {

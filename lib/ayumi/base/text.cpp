@@ -4,6 +4,8 @@
 #include <charconv>
 #include <numeric>
 
+#include "ayumi/base/utf8.hpp"
+
 namespace ayumi::text {
 
 namespace {
@@ -24,8 +26,21 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// The bytes of the UTF-8 character that `text` begins with, its number in `code`; 0 when the bytes
-// are not UTF-8 (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
+bool controls_a_terminal(char32_t code) {
+  if (code == '\n' || code == '\t') return false;
+  return code < 0x20 || (code >= 0x7f && code <= 0x9f) || code == 0x200e || code == 0x200f ||
+         (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+}
+
+std::string escaped(const char* mark, unsigned code, int digits) {
+  static const char* const kHex = "0123456789abcdef";
+  std::string text = mark;
+  for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) text += kHex[code >> shift & 0xf];
+  return text;
+}
+
+}  // namespace
+
 size_t utf8_character(std::string_view text, char32_t& code) {
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -46,20 +61,15 @@ size_t utf8_character(std::string_view text, char32_t& code) {
   return length;
 }
 
-bool controls_a_terminal(char32_t code) {
-  if (code == '\n' || code == '\t') return false;
-  return code < 0x20 || (code >= 0x7f && code <= 0x9f) || code == 0x200e || code == 0x200f ||
-         (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+size_t not_utf8_at(std::string_view text) {
+  char32_t code = 0;
+  for (size_t at = 0; at < text.size();) {
+    const size_t length = utf8_character(text.substr(at), code);
+    if (length == 0) return at;
+    at += length;
+  }
+  return std::string_view::npos;
 }
-
-std::string escaped(const char* mark, unsigned code, int digits) {
-  static const char* const kHex = "0123456789abcdef";
-  std::string text = mark;
-  for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) text += kHex[code >> shift & 0xf];
-  return text;
-}
-
-}  // namespace
 
 std::string exact(double value) {
   char buffer[40];

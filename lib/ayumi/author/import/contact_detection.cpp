@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/polygon.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -226,6 +227,50 @@ std::vector<Support> without_blinks(std::vector<Support> supports, double dt) {
   }
 }
 
+// How far the COG lies outside a sole in row k, as seen from above the sole; below 0: inside.
+double cog_outside(const RobotModel& model, const RawMotion& motion, const Soles& soles, int foot,
+                   int k) {
+  RobotState state = model.rest_state();
+  state.theta = motion.theta.row(k).transpose();
+  if (!motion.base.empty()) state.base = motion.base[static_cast<size_t>(k)];
+  RobotData data(model);
+  update_positions(model, state, data);
+  const Vector3d cog = soles[foot][k].inverse() * data.cog;
+  return -ConvexPolygon(model.sole(static_cast<Side>(foot)).polygon).margin(cog.head<2>());
+}
+
+// One foot alone carries the robot for a moment only where the COG is near it: else the ZMP would
+// be far outside of the sole. Such a moment joins the double support beside it, or its longer
+// neighbour.
+std::vector<Support> without_doubtful_moments(const RobotModel& model, const RawMotion& motion,
+                                              const Soles& soles, std::vector<Support> supports) {
+  // Time with one foot that is doubtful [s]. Chosen: a quarter of the single support of the
+  // generated walk (0.45 s), and longer than what a landing with one foot first takes.
+  constexpr double kMoment = 0.1;
+  const std::vector<Stretch> all = stretches(supports);
+  for (size_t i = 0; i < all.size() && all.size() > 1; ++i) {
+    const Stretch& run = all[i];
+    const int rows = run.last - run.first + 1;
+    if (run.support == Support::both || run.support == Support::none || rows * motion.dt > kMoment)
+      continue;
+    const int foot = run.support == Support::left ? 0 : 1;
+    // Distance at which the COG cannot be carried [m]. Chosen: half the width of the sole.
+    Eigen::AlignedBox2d sole;
+    for (const Eigen::Vector2d& corner : model.sole(static_cast<Side>(foot)).polygon)
+      sole.extend(corner);
+    const double aside = 0.5 * sole.sizes().minCoeff();
+    if (cog_outside(model, motion, soles, foot, (run.first + run.last) / 2) < aside) continue;
+    const auto length = [&](size_t n) { return all[n].last - all[n].first; };
+    const bool before = i > 0, after = i + 1 < all.size();
+    const bool back =
+        before && (!after || all[i - 1].support == Support::both ||
+                   (all[i + 1].support != Support::both && length(i - 1) >= length(i + 1)));
+    std::fill(supports.begin() + run.first, supports.begin() + run.last + 1,
+              all[back ? i - 1 : i + 1].support);
+  }
+  return supports;
+}
+
 // Height of a sole's centre over the other sole, over the ground where the motion has a base.
 double height_of(const RobotModel& model, const RawMotion& motion, const Soles& soles, int foot,
                  int k) {
@@ -303,6 +348,7 @@ std::vector<Support> supports_from(const RobotModel& model, const RawMotion& mot
     std::vector<Support> result = supports_with_base(model, soles, motion.dt);
     carry_loaded_rows(model, motion, soles, result);
     result = without_blinks(std::move(result), motion.dt);
+    result = without_doubtful_moments(model, motion, soles, std::move(result));
     end_swings(model, motion, soles, result);
     return result;
   }
@@ -313,6 +359,7 @@ std::vector<Support> supports_from(const RobotModel& model, const RawMotion& mot
   for (const int label : labels)
     result.push_back(label == 1 ? Support::left : label == -1 ? Support::right : Support::both);
   result = without_blinks(std::move(result), motion.dt);
+  result = without_doubtful_moments(model, motion, soles, std::move(result));
   end_swings(model, motion, soles, result);
   return result;
 }

@@ -248,6 +248,64 @@ void require_motion(const RobotModel& model, const RawMotion& motion) {
          "a motion of " + std::to_string(motion.theta.rows()) + " rows; at least 6 are needed");
 }
 
+// ---- Ends that were cut
+
+/// Speeds that count as rest [rad/s, m/s]. Chosen: what a table for a robot may begin with
+/// (limits/table_safety.hpp), and half of what a sole that carries may slide with.
+constexpr double kRestRate = 0.1, kRestSlide = 0.05;
+
+// Speed over the row pair that begins at `k`, and which joint has it; empty: at rest.
+std::string movement_at(const RobotModel& model, const RawMotion& motion, Eigen::Index k) {
+  Eigen::Index joint = 0;
+  const double rate =
+      (motion.theta.row(k + 1) - motion.theta.row(k)).cwiseAbs().maxCoeff(&joint) / motion.dt;
+  const bool slides = model.dofs()[static_cast<size_t>(joint)].prismatic;
+  if (rate > kRestRate)
+    return model.dof_names()[static_cast<size_t>(joint)] + " at " + text::brief(rate, 3) +
+           (slides ? " m/s" : " rad/s");
+  if (motion.base.empty()) return "";
+  const auto at = static_cast<size_t>(k);
+  const double speed = (motion.base[at + 1].position - motion.base[at].position).norm() / motion.dt;
+  return speed > kRestSlide ? "the root at " + text::brief(speed, 3) + " m/s" : "";
+}
+
+// Rows between rows, and the rows of the slow ends.
+class Slowed {
+ public:
+  Slowed(int rows, const CutEnds& cut, int ramp)
+      : rows_(rows), ramp_(ramp), begin_(cut.begin ? ramp : 0), end_(cut.end ? ramp : 0) {}
+
+  int count() const { return rows_ + (begin_ + end_) / 2; }
+  // The place in the rows of the motion at row k of the slowed one; whole between the ends.
+  double at(int k) const {
+    if (k < begin_) return ramp_ * advance(static_cast<double>(k) / ramp_);
+    const int left = count() - 1 - k;
+    if (left < end_) return rows_ - 1 - ramp_ * advance(static_cast<double>(left) / ramp_);
+    return k - begin_ / 2;
+  }
+
+ private:
+  // Integral of minimum jerk from 0 to 1: a half at u = 1.
+  static double advance(double u) { return u * u * u * u * (2.5 - 3 * u + u * u); }
+
+  int rows_, ramp_, begin_, end_;
+};
+
+// Cubic through the rows around place x (Catmull and Rom).
+template <typename ValueAt>
+auto between_rows(double x, int rows, const ValueAt& value_at) {
+  const int i = std::clamp(static_cast<int>(x), 0, rows - 2);
+  const double u = x - i;
+  const auto p1 = value_at(i), p2 = value_at(i + 1);
+  decltype(value_at(i)) p0 = 2 * p1 - p2, p3 = 2 * p2 - p1;  // straight on beyond the ends
+  if (i > 0) p0 = value_at(i - 1);
+  if (i + 2 < rows) p3 = value_at(i + 2);
+  return (p1 +
+          0.5 * u *
+              ((p2 - p0) + u * ((2 * p0 - 5 * p1 + 4 * p2 - p3) + u * (3 * (p1 - p2) + p3 - p0))))
+      .eval();
+}
+
 }  // namespace
 
 std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion) {
@@ -295,6 +353,75 @@ RawMotion put_on_ground(const RobotModel& model, RawMotion motion) {
     if (!motion.cog.empty()) motion.cog[static_cast<size_t>(k)].z() -= shift;
   }
   return motion;
+}
+
+CutEnds cut_ends(const RobotModel& model, const RawMotion& motion) {
+  CutEnds cut;
+  const Eigen::Index rows = motion.theta.rows();
+  if (rows < 2) return cut;
+  const std::string first = movement_at(model, motion, 0),
+                    last = movement_at(model, motion, rows - 2);
+  cut.begin = !first.empty();
+  cut.end = !last.empty();
+  const std::string remedy =
+      " there, and its torques have a peak; --ramp S, such as 0.5, lets the motion ";
+  if (cut.begin)
+    cut.words.push_back("the recording begins while the robot moves (" + first +
+                        "), but a robot is at rest" + remedy + "begin slowly");
+  if (cut.end)
+    cut.words.push_back("the recording ends while the robot moves (" + last +
+                        "), but a robot stops" + remedy + "end slowly");
+  return cut;
+}
+
+RawMotion with_ramps(const RobotModel& model, RawMotion motion, double seconds) {
+  require_motion(model, motion);
+  const CutEnds cut = cut_ends(model, motion);
+  if (!cut.begin && !cut.end) return motion;
+  const int rows = static_cast<int>(motion.theta.rows());
+  const int ramp = 2 * std::max(1, static_cast<int>(std::lround(seconds / (2 * motion.dt))));
+  if (ramp / 2 * (cut.begin + cut.end) >= rows)
+    fail(ErrorCode::bad_pattern, "a ramp of " + text::brief(seconds) +
+                                     " s is too long for a motion of " +
+                                     text::brief((rows - 1) * motion.dt) + " s; choose less than " +
+                                     text::brief((rows - 1) * motion.dt) + " s");
+  // Slow soles look as if they carried, so the contacts are those of the motion as it was.
+  if (motion.support.empty()) motion.support = detect_supports(model, motion);
+  for (size_t k = 1; k < motion.base.size(); ++k)
+    if (motion.base[k].attitude.dot(motion.base[k - 1].attitude) < 0)
+      motion.base[k].attitude.coeffs() *= -1;
+  const Slowed slowed(rows, cut, ramp);
+  RawMotion result;
+  result.dt = motion.dt;
+  result.contact = motion.contact;
+  result.theta.resize(slowed.count(), motion.theta.cols());
+  for (int k = 0; k < slowed.count(); ++k) {
+    const double x = slowed.at(k);
+    const auto nearest = static_cast<size_t>(std::lround(x));
+    const bool whole = x == std::floor(x);
+    result.support.push_back(motion.support[nearest]);
+    result.theta.row(k) =
+        whole
+            ? Eigen::RowVectorXd(motion.theta.row(static_cast<Eigen::Index>(nearest)))
+            : between_rows(x, rows, [&](int i) { return Eigen::RowVectorXd(motion.theta.row(i)); });
+    if (!motion.base.empty()) {
+      BasePose base = motion.base[nearest];
+      if (!whole) {
+        base.position = between_rows(
+            x, rows, [&](int i) { return motion.base[static_cast<size_t>(i)].position; });
+        const Eigen::Vector4d q = between_rows(x, rows, [&](int i) {
+          return Eigen::Vector4d(motion.base[static_cast<size_t>(i)].attitude.coeffs());
+        });
+        base.attitude.coeffs() = q.normalized();
+      }
+      result.base.push_back(base);
+    }
+    if (!motion.cog.empty())
+      result.cog.push_back(whole ? motion.cog[nearest] : Vector3d(between_rows(x, rows, [&](int i) {
+        return motion.cog[static_cast<size_t>(i)];
+      })));
+  }
+  return result;
 }
 
 }  // namespace ayumi

@@ -67,4 +67,18 @@ GroundedMotion grounded(const RobotModel& model, const RawMotion& motion, const 
 /// evenly between contacts. Without a base, the motion as it is.
 RawMotion put_on_ground(const RobotModel& model, RawMotion motion);
 
+/// Ends at which the motion was cut while the robot moved.
+struct CutEnds {
+  bool begin = false, end = false;
+  std::vector<std::string> words = {};  ///< one line for each, with the fastest joint
+};
+CutEnds cut_ends(const RobotModel& model, const RawMotion& motion);
+
+/// The motion from rest to rest: where it was cut while the robot moved, it is played slowly at
+/// first and reaches its own speed (by minimum jerk) after `seconds`, or slows down likewise at its
+/// end. Its path over the ground stays, so that no foot slides; every end takes seconds/2 longer.
+/// All other rows keep their bits. ZMP and vertical force are dropped, for they change. Throws
+/// Error(bad_pattern) when the motion is too short.
+RawMotion with_ramps(const RobotModel& model, RawMotion motion, double seconds);
+
 }  // namespace ayumi

@@ -16,7 +16,7 @@ constexpr int kNewestVersion = 4;
 class BodyMotionReader {
  public:
   explicit BodyMotionReader(const MotionInput& source)
-      : source_(source), root_(parse_yaml(source.bytes, source.file, source.words)) {}
+      : source_(source), root_(parse_yaml(source.bytes, source.file)) {}
 
   MotionFile whole() {
     version_ = 1;

@@ -23,7 +23,7 @@ std::optional<NumberRows> rows_beside(const MotionInput& source, const std::stri
   const std::optional<std::string> bytes = source.beside(extension);
   if (!bytes) return {};
   const std::string name = fs::path(source.file).replace_extension(extension).string();
-  const MotionInput other{*bytes, name, source.model, source.options, source.words};
+  const MotionInput other{*bytes, name, source.model, source.options};
   NumberRows table = number_rows(other, other.bytes, blanks());
   if (table.rows.size() != rows)
     other.refuse(0, std::to_string(table.rows.size()) + " rows, but the file of angles has " +
@@ -37,7 +37,7 @@ void require_width(const MotionInput& source, const NumberRows& table, const std
   for (const size_t one : allowed)
     if (width == one) return;
   const std::string name = fs::path(source.file).replace_extension(extension).string();
-  MotionInput{"", name, source.model, source.options, source.words}.refuse(
+  MotionInput{"", name, source.model, source.options}.refuse(
       table.lines.front(), std::to_string(width) + " values after the time; " +
                                std::to_string(allowed.front()) + " are needed");
 }

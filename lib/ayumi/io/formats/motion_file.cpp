@@ -8,6 +8,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 
 namespace ayumi {
@@ -22,8 +23,7 @@ std::optional<std::string> MotionInput::beside(const std::string& extension) con
 }
 
 void MotionInput::refuse(size_t line, const std::string& reason) const {
-  fail(ErrorCode::bad_file, file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + reason +
-                                (words.empty() ? "" : " (read as " + words + ")"));
+  fail(ErrorCode::bad_file, file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + reason);
 }
 
 double MotionInput::number(std::string_view cell, size_t line, const std::string& where) const {
@@ -39,6 +39,28 @@ double MotionInput::number(std::string_view cell, size_t line, const std::string
                      (shown.find(',') != std::string::npos ? "; write a decimal point" : ""));
   if (!std::isfinite(value)) refuse(line, place + "'" + shown + "' is not a finite number");
   return value;
+}
+
+size_t MotionInput::chosen_motion(const std::vector<std::string>& names,
+                                  const std::vector<size_t>& numbers, MotionFile& motion) const {
+  std::vector<std::string> shown;
+  size_t chosen = options.motion.empty() ? 0 : names.size();
+  for (size_t i = names.size(); i-- > 0;) {
+    const std::string number = std::to_string(numbers.empty() ? i + 1 : numbers[i]);
+    if (options.motion == number && chosen == names.size()) chosen = i;
+    shown.insert(shown.begin(), number + (names[i].empty() ? "" : " '" + names[i] + "'"));
+  }
+  for (size_t i = names.size(); i-- > 0;)
+    if (!options.motion.empty() && options.motion == names[i]) chosen = i;
+  if (chosen == names.size())
+    refuse(0,
+           "there is no motion '" + options.motion + "'; the file has " + text::join(shown, ", "));
+  motion.name = names[chosen];
+  motion.chosen = true;
+  if (names.size() > 1)
+    motion.notes.push_back("the motion " + shown[chosen] + " is read; the file has " +
+                           text::join(shown, ", ") + " (--motion chooses one)");
+  return chosen;
 }
 
 int find_joint(const RobotModel& model, const std::string& name) {

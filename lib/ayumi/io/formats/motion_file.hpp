@@ -38,6 +38,7 @@ struct MotionFile {
   TableCaution caution = {};            ///< of the run that the table is from
   std::string sequence = {};            ///< bytes of a HOAP sequence, kept to be exported unchanged
   std::string name = {};                ///< of the motion, where the format has one
+  bool chosen = false;                  ///< ImportOptions::motion was used
   std::vector<std::string> notes = {};  ///< what was assumed or left out, in words
 
   Eigen::Index rows() const { return values.rows(); }
@@ -49,12 +50,16 @@ struct MotionInput {
   std::string file;   ///< for messages and for files beside it
   const RobotModel& model;
   const ImportOptions& options;
-  std::string words = {};  ///< of the recognized format, for messages
 
   /// The file of the same name with another extension (".zmp"); none where there is no such file.
   std::optional<std::string> beside(const std::string& extension) const;
-  /// Throws Error(bad_file) "file:line: reason (read as words)"; line 0 is left out.
+  /// Throws Error(bad_file) "file:line: reason"; line 0 is left out.
   [[noreturn]] void refuse(size_t line, const std::string& reason) const;
+  /// Index of the motion that the options ask for among those of the file; the first where they ask
+  /// for none. Numbers are `numbers`, from 1 where they are empty. Says in `motion` which one it is
+  /// and which ones there are. Throws as refuse() where there is none of that name or number.
+  size_t chosen_motion(const std::vector<std::string>& names, const std::vector<size_t>& numbers,
+                       MotionFile& motion) const;
   /// A finite number; `where` names the place in the line. Throws as refuse().
   double number(std::string_view cell, size_t line, const std::string& where = "") const;
 };

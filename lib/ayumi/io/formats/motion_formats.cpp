@@ -114,6 +114,8 @@ const std::vector<MotionFormat>& motion_formats() {
        read_op3_action, write_op3_action},
       {"webots", "Webots .motion", kJointNames | kRate, false, false, recognize_webots_motion,
        read_webots_motion, write_webots_motion},
+      {"webots-1.1", "Webots .motion V1.1 with durations", kJointNames | kRate, false, false,
+       recognize_webots_durations, read_webots_motion, write_webots_durations},
       {"choreonoid", "Choreonoid BodyMotion",
        kJointNames | kRate | kRoot | kZmp | kCog | kVerticalForce, false, false,
        recognize_body_motion, read_body_motion, write_body_motion},

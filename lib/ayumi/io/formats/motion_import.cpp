@@ -1,12 +1,13 @@
 // From the content of a motion file to evenly spaced postures of a robot.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <filesystem>
-#include <set>
+#include <cstring>
 
 #include "ayumi/base/counted.hpp"
-#include "ayumi/base/error.hpp"
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/base/utf8.hpp"
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/math/smoothing.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
@@ -31,31 +32,135 @@ std::string shortened(const std::vector<std::string>& names) {
 }
 
 // Text as the readers take it: no mark, lines end with a line feed.
-std::string plain_text(const std::string& bytes, const std::string& file) {
-  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
-    fail(ErrorCode::bad_file, file + ": is UTF-16 text; save it as UTF-8");
+std::string plain_text(const std::string& bytes) {
   std::string text = bytes.starts_with("\xEF\xBB\xBF") ? bytes.substr(3) : bytes;
   if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
   return text;
 }
 
-void refuse_too_long(const MotionInput& source, size_t rows) {
-  if (rows > kMostRows)
-    source.refuse(0, std::to_string(rows) + " rows; at most " + std::to_string(kMostRows) +
-                         " are read, so cut the file or leave out rows");
+size_t line_at(const std::string& bytes, size_t at) {
+  const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(std::min(at, bytes.size()));
+  const auto line_feeds = std::count(bytes.begin(), end, '\n');
+  return static_cast<size_t>(line_feeds > 0 ? line_feeds : std::count(bytes.begin(), end, '\r')) +
+         1;
+}
+
+// Two bytes for each character, of which one is 0 in plain letters and digits.
+bool is_utf16(std::string_view bytes) {
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) return true;
+  const std::string_view head = bytes.substr(0, 200);
+  std::array<size_t, 2> zeros = {}, letters = {};
+  for (size_t i = 0; i < head.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(head[i]);
+    zeros[i % 2] += byte == 0;
+    letters[i % 2] += (byte >= ' ' && byte < 127) || byte == '\n' || byte == '\r' || byte == '\t';
+  }
+  const size_t half = head.size() / 2;
+  return half > 1 &&
+         ((zeros[0] >= half && letters[1] >= half) || (zeros[1] >= half && letters[0] >= half));
+}
+
+void refuse_other_encodings(const MotionInput& source) {
+  const std::string& text = source.bytes;
+  const size_t at = text::not_utf8_at(text);
+  if (at == std::string::npos) return;
+  char byte[8];
+  std::snprintf(byte, sizeof byte, "0x%02x", static_cast<unsigned char>(text[at]));
+  source.refuse(line_at(text, at), "the byte " + std::string(byte) +
+                                       " is no UTF-8 text (perhaps Latin-1); save the file as "
+                                       "UTF-8");
+}
+
+// ---- Size, before a reader takes memory for it
+
+/// Values of one row, and characters of one value. Chosen: no robot comes near; tables whose rows
+/// are joints have as many values in a row as there may be rows.
+constexpr size_t kMostInRow = kMostRows, kLongestValue = 100'000;
+/// Lists of numbers and elements in text that is not one row a line. Chosen: 500 s of 20 joints at
+/// 50 rows per second in the format with the most (a list for each joint); a parser takes about 0.4
+/// kB and 1 us for each.
+constexpr size_t kMostLists = 500'000;
+/// Elements inside each other. Chosen: motions need five; parsers descend by recursion.
+constexpr int kDeepestElement = 200;
+
+void refuse_too_many(const MotionInput& source, const std::string& text) {
+  const size_t lines = static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
+  if (lines > kMostRows)
+    source.refuse(0, std::to_string(lines) + " lines; at most " + std::to_string(kMostRows) +
+                         " rows are read; cut the file or leave out rows");
+  const bool xml = text.find_first_not_of(" \t\r\n") == text.find('<');
+  size_t values = 0, lists = 0, begin = 0;
+  int depth = 0;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n' || c == '[' || c == '{' || c == '<') values = 0;
+    if (c == '[' || c == '{' || c == '<') ++lists;
+    if (xml && c == '<' && i + 1 < text.size())
+      depth += text[i + 1] == '/' ? -1 : text[i + 1] == '?' || text[i + 1] == '!' ? 0 : 1;
+    if (xml && c == '>' && i > 0 && text[i - 1] == '/') --depth;
+    if (std::isspace(static_cast<unsigned char>(c)) || std::strchr(",;[]{}<>%\"", c)) {
+      values += c == ',' || c == ';' || c == '\t' || c == ' ' || c == '%';
+      begin = i;
+    }
+    const auto refuse = [&](const std::string& what, size_t most) {
+      source.refuse(line_at(text, i), "more than " + std::to_string(most) + " " + what +
+                                          "; cut the file or leave out rows");
+    };
+    if (lists > kMostLists) refuse("lists or elements, too many for a motion", kMostLists);
+    if (values > kMostInRow) refuse("values in one row", kMostInRow);
+    if (depth > kDeepestElement) refuse("elements inside each other", kDeepestElement);
+    if (i - begin > kLongestValue) refuse("characters in one value", kLongestValue);
+  }
+}
+
+// Numbers with decimal commas, whatever else the text contains.
+bool has_decimal_commas(const std::string& text) {
+  size_t points = 0, commas = 0;
+  for (size_t i = 1; i + 1 < text.size(); ++i) {
+    if (text[i] != '.' && text[i] != ',') continue;
+    const bool inside = std::isdigit(static_cast<unsigned char>(text[i - 1])) &&
+                        std::isdigit(static_cast<unsigned char>(text[i + 1]));
+    (text[i] == '.' ? points : commas) += inside;
+  }
+  // Points in versions and names. Chosen: one in fifty.
+  return commas > 2 && points * 50 < commas;
+}
+
+// The end of every message about a motion's content: the remedy that the content suggests, and how
+// the format was recognized (null: it was not).
+std::string remedy(const MotionFormat* format, const ImportedMotion& motion,
+                   const std::string& bytes, const std::string& message) {
+  std::string words;
+  const bool text = !format || !format->binary;
+  const bool named = message.find("truncated") != std::string::npos ||
+                     message.find("decimal point") != std::string::npos;
+  const bool open = !bytes.empty() && std::strchr("\r\n}])>", bytes.back()) == nullptr;
+  const bool counts = format && format->name == "hoap";  // whole numbers between commas
+  if (format && text && !named && open) words += "; the file may be truncated";
+  if (text && !named && !counts && has_decimal_commas(bytes))
+    words += "; if the commas are decimal commas, write decimal points";
+  if (!format) return words;
+  words += " (read as " + format->words;
+  if (!motion.reason.empty())
+    words +=
+        ", because " + motion.reason + "; import reads " + text::join(read_format_names(), ", ");
+  return words + ")";
+}
+
+// A text that was cut may end within a number, which nothing else can show.
+bool may_be_cut(const std::string& text) {
+  const auto last = static_cast<unsigned char>(text.back());
+  return std::isdigit(last) || last == '.' || last == '-';
 }
 
 MotionFile read_file_of(const std::string& bytes, const std::string& file, const RobotModel& model,
                         const ImportOptions& options, ImportedMotion& result) {
   MotionInput source{{}, file, model, options};
+  if (is_utf16(bytes)) source.refuse(1, "this is UTF-16 text; save it as UTF-8");
   const MotionFormat* format = nullptr;
-  const bool text = bytes.find('\0') == std::string::npos || bytes.starts_with("\xFF\xFE") ||
-                    bytes.starts_with("\xFE\xFF");
-  source.bytes = text ? plain_text(bytes, file) : bytes;
-  if (text) {
-    refuse_too_long(
-        source, static_cast<size_t>(std::count(source.bytes.begin(), source.bytes.end(), '\n')));
-  }
+  const bool text = bytes.find('\0') == std::string::npos;
+  if (text) refuse_too_many(source, bytes);
+  source.bytes = text ? plain_text(bytes) : bytes;
   if (options.format.empty()) {
     const Recognized recognized = recognize(source);
     format = recognized.format;
@@ -67,19 +172,21 @@ MotionFile read_file_of(const std::string& bytes, const std::string& file, const
                                  text::join(read_format_names(), ", "));
   }
   result.format = format->name;
-  source.words = format->name == "csv" || format->name == "json" || format->name == "hoap"
-                     ? ""
-                     : format->words;
   if (!format->binary && !text) {
     const size_t at = bytes.find('\0');
-    source.refuse(static_cast<size_t>(
-                      std::count(bytes.begin(), bytes.begin() + static_cast<long>(at), '\n')) +
-                      1,
-                  "is a binary file, text is needed");
+    source.refuse(line_at(bytes, at), "is a binary file, text is needed");
   }
+  if (!format->binary) refuse_other_encodings(source);
   MotionFile motion = format->read(source);
   if (format->name == "hoap" && !motion.sequence.empty()) motion.sequence = bytes;
-  refuse_too_long(source, static_cast<size_t>(motion.rows()));
+  if (static_cast<size_t>(motion.rows()) > kMostRows)
+    source.refuse(0, std::to_string(motion.rows()) + " rows; at most " + std::to_string(kMostRows) +
+                         " are read, so cut the file or leave out rows");
+  if (!options.motion.empty() && !motion.chosen)
+    motion.notes.push_back("--motion is not used, because the file has one motion");
+  if (!format->binary && may_be_cut(source.bytes))
+    motion.notes.push_back(
+        "the last line of the file does not end; if the file was cut, its last value may be wrong");
   return motion;
 }
 
@@ -468,11 +575,8 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
   imported.filled.push_back("angles smoothed by at most " + text::brief(degrees) + " deg");
 }
 
-}  // namespace
-
-ImportedMotion read_motion_rows(const std::string& bytes, const std::string& file,
-                                const RobotModel& model, const ImportOptions& options) {
-  ImportedMotion result;
+void read_rows(const std::string& bytes, const std::string& file, const RobotModel& model,
+               const ImportOptions& options, ImportedMotion& result) {
   const MotionFile read = read_file_of(bytes, file, model, options, result);
   const std::vector<int> columns = map_joints(read, model, options, file, result.filled);
   result.filled.insert(result.filled.end(), read.notes.begin(), read.notes.end());
@@ -495,6 +599,20 @@ ImportedMotion read_motion_rows(const std::string& bytes, const std::string& fil
     fail(ErrorCode::bad_file, file + ": " + std::to_string(result.motion.theta.rows()) +
                                   " rows of motion; at least " + std::to_string(kLeastRows) +
                                   " are needed");
+}
+
+}  // namespace
+
+ImportedMotion read_motion_rows(const std::string& bytes, const std::string& file,
+                                const RobotModel& model, const ImportOptions& options) {
+  ImportedMotion result;
+  try {
+    read_rows(bytes, file, model, options, result);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_file) throw;
+    throw_with_message(error, error.what() + remedy(find_motion_format(result.format), result,
+                                                    bytes, error.what()));
+  }
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/utf8.hpp"
 
 namespace ayumi {
 
@@ -30,21 +31,10 @@ std::string shape_text(const std::vector<size_t>& shape) {
 std::u32string code_points(const std::string& text) {
   std::u32string points;
   for (size_t at = 0; at < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[at]);
-    const size_t size = lead < 0x80    ? 1
-                        : lead >= 0xf0 ? 4
-                        : lead >= 0xe0 ? 3
-                        : lead >= 0xc2 ? 2
-                                       : 0;
-    char32_t point = size <= 1 ? lead : lead & (0xff >> (size + 1));
-    bool valid = size > 0 && at + size <= text.size();
-    for (size_t i = 1; valid && i < size; ++i) {
-      const auto next = static_cast<unsigned char>(text[at + i]);
-      valid = (next & 0xc0) == 0x80;
-      point = (point << 6) | (next & 0x3f);
-    }
-    points.push_back(valid ? point : U'\ufffd');
-    at += valid ? size : 1;
+    char32_t point = U'\ufffd';
+    const size_t size = text::utf8_character(std::string_view(text).substr(at), point);
+    points.push_back(size > 0 ? point : U'\ufffd');
+    at += std::max<size_t>(size, 1);
   }
   return points;
 }
@@ -99,6 +89,9 @@ NpyArray array_of(const std::string& bytes, const std::string& place) {
     fail(ErrorCode::bad_file, place + ": " + reason);
   };
   if (bytes.size() < 12 || bytes.compare(0, 6, kNpyMagic, 6) != 0) refuse("is not a NumPy array");
+  // Definition: version 2 has a long head, version 3 has names in UTF-8.
+  if (bytes[6] < 1 || bytes[6] > 3)
+    refuse("version " + std::to_string(bytes[6]) + " of NumPy's format; versions 1 to 3 are read");
   const bool long_head = bytes[6] != 1;
   const auto byte = [&](size_t i) {
     return static_cast<size_t>(static_cast<unsigned char>(bytes[i]));

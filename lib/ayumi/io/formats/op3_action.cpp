@@ -61,24 +61,32 @@ MotionFile read_op3_action(const MotionInput& source) {
     source.refuse(0, std::to_string(bytes.size()) + " bytes; an action file has " +
                          std::to_string(kPages * kPageBytes));
   std::vector<size_t> full;
-  std::vector<std::string> names;
+  std::vector<bool> follows(kPages, false);
   for (size_t page = 0; page < kPages; ++page) {
     const size_t steps = byte_at(bytes, page * kPageBytes + kStepCount);
     if (steps == 0 || steps > kSteps ||
         byte_at(bytes, page * kPageBytes + kChecksum) != checksum_of(bytes, page))
       continue;
     full.push_back(page);
-    names.push_back(page_name(bytes, page));
+    const size_t next = byte_at(bytes, page * kPageBytes + kNext);
+    if (next != page) follows[next] = true;
   }
   if (full.empty()) source.refuse(0, "no page has steps and a right checksum");
+  // A motion is a page that follows no other one, and the pages that follow it.
+  std::vector<size_t> starts;
+  for (const size_t page : full)
+    if (!follows[page]) starts.push_back(page);
+  if (starts.empty()) starts = full;  // they go round in circles
+  std::vector<std::string> names;
+  for (const size_t page : starts) names.push_back(page_name(bytes, page));
   MotionFile motion;
-  motion.name = names.front();
+  const size_t start = starts[source.chosen_motion(names, starts, motion)];
   std::vector<std::array<int, kServos>> rows;
   std::array<bool, kServos> used = {};
   std::vector<bool> played(kPages, false);
   double now = 0;
   size_t pages = 0;
-  for (size_t page = full.front();;) {
+  for (size_t page = start;;) {
     const size_t begin = page * kPageBytes, count = byte_at(bytes, begin + kStepCount);
     if (played[page] || count == 0 || count > kSteps) break;
     played[page] = true;
@@ -124,10 +132,7 @@ MotionFile read_op3_action(const MotionInput& source) {
   }
   motion.keys = true;
   motion.notes.push_back("positions: 4096 counts a turn, 2048 at 0 rad; times in units of 8 ms");
-  motion.notes.push_back(
-      text::counted(pages, "page") + " from '" + motion.name + "'" +
-      (full.size() > pages ? "; the file has " + std::to_string(full.size()) + " pages with steps"
-                           : ""));
+  motion.notes.push_back(text::counted(pages, "page") + " from page " + std::to_string(start));
   return motion;
 }
 

@@ -174,7 +174,7 @@ std::string recognize_ros_trajectory(const MotionInput& source) {
 MotionFile read_ros_trajectory(const MotionInput& source) {
   std::vector<Trajectory> found;
   for (const std::string& document : documents_of(source.bytes))
-    find_trajectories(source, parse_yaml(document, source.file, source.words), found);
+    find_trajectories(source, parse_yaml(document, source.file), found);
   if (found.empty()) source.refuse(0, "there is no trajectory with joint_names and points");
   return joined(source, std::move(found));
 }
@@ -210,11 +210,12 @@ std::string recognize_play_motion(const MotionInput& source) {
 }
 
 MotionFile read_play_motion(const MotionInput& source) {
-  const YamlNode root = parse_yaml(source.bytes, source.file, source.words);
+  const YamlNode root = parse_yaml(source.bytes, source.file);
   const YamlNode* motions = motions_of(root);
   if (!motions || !motions->is_map() || motions->items.empty())
     source.refuse(yaml_line(root), "there is no motion");
-  const YamlNode& first = motions->items.front();
+  MotionFile about;
+  const YamlNode& first = motions->items[source.chosen_motion(motions->keys, {}, about)];
   const YamlNode *names = first.find("joints"), *positions = first.find("positions"),
                  *times = first.find("times_from_start");
   if (!names || !positions || !times)
@@ -234,10 +235,9 @@ MotionFile read_play_motion(const MotionInput& source) {
   }
   if (one.times.empty()) source.refuse(yaml_line(first), "there is no posture");
   MotionFile motion = joined(source, {std::move(one)});
-  motion.name = motions->keys.front();
-  if (motions->items.size() > 1)
-    motion.notes.push_back("the motion '" + motion.name + "' is read, and not " +
-                           text::join({motions->keys.begin() + 1, motions->keys.end()}, ", "));
+  motion.name = about.name;
+  motion.chosen = about.chosen;
+  motion.notes.insert(motion.notes.end(), about.notes.begin(), about.notes.end());
   return motion;
 }
 

@@ -124,8 +124,18 @@ std::vector<Support> supports_of(const NumberTable& table, const TableLayout& la
   return result;
 }
 
+void require_known_version(const NumberTable& table, const std::string& file) {
+  const auto format = table.header.find("format");
+  if (format == table.header.end() || !format->second.starts_with("ayumi.")) return;
+  if (format->second != kReferenceFormat && format->second != kMotionFormat)
+    refuse_table(file, "format '" + format->second +
+                           "' cannot be read; this version of Ayumi reads " + kReferenceFormat +
+                           " and " + kMotionFormat);
+}
+
 MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
   const std::string& file = source.file;
+  require_known_version(table, file);
   MotionFile motion;
   motion.commands = holds_commands(table);
   motion.caution = caution_of(table);

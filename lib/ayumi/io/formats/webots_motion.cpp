@@ -40,7 +40,17 @@ double time_of(const MotionInput& source, std::string_view cell, size_t line) {
 }  // namespace
 
 std::string recognize_webots_motion(const MotionInput& source) {
-  return source.bytes.starts_with(kMagic) ? "its first line begins with #WEBOTS_MOTION" : "";
+  return source.bytes.starts_with(kMagic) && recognize_webots_durations(source).empty()
+             ? "its first line begins with #WEBOTS_MOTION"
+             : "";
+}
+
+std::string recognize_webots_durations(const MotionInput& source) {
+  std::string_view rest = source.bytes;
+  const std::vector<std::string_view> head = split(take_line(rest), ',');
+  return head[0] == kMagic && head.size() == 2 && take_line(rest).find('%') != std::string::npos
+             ? "its first line is #WEBOTS_MOTION and a version, and % parts the names in the second"
+             : "";
 }
 
 MotionFile read_webots_motion(const MotionInput& source) {
@@ -113,6 +123,19 @@ MotionFile read_webots_motion(const MotionInput& source) {
         "first pose");
   }
   return motion;
+}
+
+std::vector<WrittenFile> write_webots_durations(const RobotModel&, const MotionFile& motion) {
+  std::string text = std::string(kMagic) + ",V1.1\n" + text::join(motion.joints, "%") + "\n";
+  for (Eigen::Index k = 0; k < motion.rows(); ++k) {
+    text += "play";
+    for (const double value : motion.values.row(k)) text += "%" + text::exact(value);
+    // The first pose is reached in the time of one row, too.
+    const auto at = static_cast<size_t>(k);
+    const double time = k > 0 ? motion.times[at] - motion.times[at - 1] : 1 / motion.rate;
+    text += "%" + text::exact(time) + "\n";
+  }
+  return {{"", text}};
 }
 
 std::vector<WrittenFile> write_webots_motion(const RobotModel&, const MotionFile& motion) {

@@ -159,7 +159,14 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
     const size_t offset = error.byte > 0 ? error.byte - 1 : 0;
     fail_in_text(code, file, bytes, offset, reason_of(error.what()));
   } catch (const Json::exception& error) {
-    fail(code, file + ": the JSON cannot be used: " + reason_of(error.what()));
+    // A number beyond those of a double, which stands between quotes at the end of the message.
+    const std::string reason = reason_of(error.what());
+    const size_t quote = reason.find('\'');
+    const size_t at = quote == std::string::npos
+                          ? std::string::npos
+                          : bytes.find(reason.substr(quote + 1, reason.size() - quote - 2));
+    fail_in_text(code, file, bytes, at == std::string::npos ? 0 : at,
+                 "the JSON cannot be used: " + reason);
   }
   if (builder.too_deep())
     fail_in_text(code, file, bytes, too_deep_at(bytes),

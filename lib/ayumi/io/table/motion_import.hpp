@@ -21,6 +21,7 @@ struct ImportOptions {
                                    ///< none of angles
   bool by_order = false;           ///< columns are the robot's joints in its own order
   std::vector<std::string> joints{};  ///< names of the columns, in the order of the file
+  std::string motion{};  ///< name or number of the motion, of a file with several; "": the first
 };
 
 struct ImportedMotion {

@@ -17,7 +17,6 @@ namespace ayumi {
 
 namespace {
 
-constexpr const char* kMotionFormat = "ayumi.motion/1";
 constexpr const char* kFrame = "world: x forward, y left, z up";
 constexpr const char* kUnits = "m, rad, s, N";
 constexpr const char* kQuaternion = "w x y z, base to world";

@@ -12,6 +12,7 @@
 namespace ayumi {
 
 inline constexpr const char* kReferenceFormat = "ayumi.reference/1";
+inline constexpr const char* kMotionFormat = "ayumi.motion/1";
 inline const std::vector<std::string> kCogColumns = {"cog.x[m]", "cog.y[m]", "cog.z[m]"};
 inline const std::vector<std::string> kZmpColumns = {"zmp.x[m]", "zmp.y[m]", "zmp.z[m]"};
 inline const std::vector<std::string> kBaseColumns = {

@@ -129,13 +129,12 @@ const YamlNode* YamlNode::find(std::string_view key, std::string_view other) con
   return nullptr;
 }
 
-YamlNode parse_yaml(const std::string& text, const std::string& file, const std::string& words) {
+YamlNode parse_yaml(const std::string& text, const std::string& file) {
   TextBuffer buffer(text);
   std::istream stream(&buffer);
   TreeBuilder builder;
   const auto refuse = [&](int line, const std::string& reason) {
-    fail(ErrorCode::bad_file,
-         file + ":" + std::to_string(line) + ": " + reason + " (read as " + words + ")");
+    fail(ErrorCode::bad_file, file + ":" + std::to_string(line) + ": " + reason);
   };
   try {
     YAML::Parser parser(stream);

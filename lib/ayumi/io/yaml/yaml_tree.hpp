@@ -25,7 +25,7 @@ struct YamlNode {
 };
 
 /// Throws Error(bad_file) "file:line: ..." for text that is no YAML, for aliases, and for more than
-/// one document. `words`: what the file was recognized as.
-YamlNode parse_yaml(const std::string& text, const std::string& file, const std::string& words);
+/// one document.
+YamlNode parse_yaml(const std::string& text, const std::string& file);
 
 }  // namespace ayumi

@@ -1,0 +1,15 @@
+#pragma once
+// Text of other programs is not always UTF-8. Defined in text.cpp.
+
+#include <string_view>
+
+namespace ayumi::text {
+
+/// The bytes of the UTF-8 character that `text` begins with, its number in `code`; 0 when the bytes
+/// are not UTF-8 (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
+size_t utf8_character(std::string_view text, char32_t& code);
+
+/// Index of the first byte that is no part of UTF-8 text; npos: there is none.
+size_t not_utf8_at(std::string_view text);
+
+}  // namespace ayumi::text
