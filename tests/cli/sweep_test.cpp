@@ -272,6 +272,19 @@ TEST(SweepCommand, TwoWritersAreRefused) {
   EXPECT_NE(second.err.find("t.db.lock"), std::string::npos) << second.err;
 }
 
+TEST(SweepCommand, ThePageWorksInABrowser) {
+  if (std::string(AYUMI_CHROMEDRIVER).empty())
+    GTEST_SKIP() << "chromium-driver is not installed: the page is not tried in a browser";
+  const Sweep s;
+  const Output out = s.sweep({"-o", "p.db", "--page", "p.html", "--replays", "1"});
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const Output said = run_program(
+      {AYUMI_SOURCE_DIR "/tests/cli/sweep_browser.mjs", AYUMI_CHROMEDRIVER, s.folder / "p.html"},
+      s.folder.path(), AYUMI_NODE);
+  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+  EXPECT_EQ(said.out, "ok\n");
+}
+
 // A draw is the case of `certify` and `simulate --case`, and each measure belongs to the robot of
 // its case.
 TEST(SweepCommand, DrawsProfilesRobotsAndParameters) {
