@@ -140,8 +140,11 @@ SweepHead head_of(const CaseRunner& runner, std::uint64_t seed) {
 
 void ResultsDatabase::complain(const std::string& doing) const {
   const int code = database_ ? sqlite3_errcode(database_) : SQLITE_NOMEM;
-  // A quota or a limit on the size of files shows as an error of writing.
-  const bool unwritten = database_ && sqlite3_extended_errcode(database_) == SQLITE_IOERR_WRITE;
+  // A quota or a limit on the size of files shows as an error of writing; a reader needs room, too,
+  // for the memory that it shares with writers.
+  const int detail = database_ ? sqlite3_extended_errcode(database_) : SQLITE_OK;
+  const bool unwritten = detail == SQLITE_IOERR_WRITE || detail == SQLITE_IOERR_SHMSIZE ||
+                         detail == SQLITE_IOERR_FSYNC;
   std::string why = database_ ? sqlite3_errmsg(database_) : "out of memory";
   if (code == SQLITE_FULL || unwritten)
     why =
