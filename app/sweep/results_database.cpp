@@ -434,7 +434,8 @@ long ResultsDatabase::merge(const fs::path& other) {
   for (const std::string& name : names)
     unequal.push_back("a." + sql_name(name) + " IS NOT b." + sql_name(name));
   Statement different(database_,
-                      "SELECT a.\"case\" FROM main.cases a JOIN theirs.cases b ON "
+                      // CROSS JOIN: for each row of theirs, of which there may be far fewer.
+                      "SELECT a.\"case\" FROM theirs.cases b CROSS JOIN main.cases a ON "
                       "a.\"case\" = b.\"case\" WHERE a.error IS NULL AND b.error IS "
                       "NULL AND (" +
                           text::join(unequal, " OR ") + ") ORDER BY 1 LIMIT 1");
