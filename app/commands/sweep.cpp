@@ -103,9 +103,12 @@ void create_results(const fs::path& file, const SweepHead& head) {
   write_file_with(file, [&](const fs::path& temporary) {
     try {
       ResultsDatabase(temporary, head).close();
-    } catch (...) {
+    } catch (const Error& error) {
       remove_results(temporary);
-      throw;
+      std::string words = error.what();  // in which the user's name stands for the temporary one
+      if (const size_t at = words.find(temporary.string()); at != std::string::npos)
+        words.replace(at, temporary.string().size(), file.string());
+      fail(error.code(), words);
     }
   });
 }
@@ -152,7 +155,7 @@ void run_sweep(Context& context, const SweepCommand& options) {
       options.engine == "slurm"
           ? run_on_slurm(context, runner, *results, missing, options.slurm, context.progress())
           : run_cases(runner, *results, missing, context.threads, context.progress());
-  results->add_work({cost.seconds, cost.useful});
+  results->add_work({cost.seconds + runner.setup_seconds(), cost.useful});
   if (cost.cases > 0)
     context.print("  " + text::counted(cost.cases, "case") + " run, " +
                   text::brief(cost.seconds / double(cost.cases), 3) +

@@ -34,6 +34,10 @@ constexpr size_t kKeptMotions = 6;
 /// come at one time.
 constexpr size_t kKeptLaws = 16;
 
+/// Cases that are tried before the first run to find one that can use the uncertainty of the study.
+/// Chosen: each may sample a motion, which takes some 10 ms; half of it finds fewer.
+constexpr long kMostTried = 20;
+
 using Clock = std::chrono::steady_clock;
 
 /// Adds the time of its life to a counter [ns].
@@ -230,6 +234,7 @@ CaseRunner::CaseRunner(const Context& context, const SweepStudy& study)
   if (set == study.named().end() || !set->second.pointer.starts_with("/sweep/settings"))
     for (const auto& [word, pattern] : patterns_) add_robot(pattern.robot, robot_of(pattern));
   refuse_unused();
+  refuse_unusable_uncertainty();
   setup_seconds_ = std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
@@ -247,24 +252,7 @@ void CaseRunner::refuse_unused() const {
         refuse(where.pointer, "no pattern of the study declares the parameter '" + parameter + "'" +
                                   text::suggestion(parameter, {declared.begin(), declared.end()}));
     } else if (name.starts_with("gain.")) {
-      std::set<std::string> laws;
-      for (const std::string& law : study_->words("controller")) laws.insert(law);
-      for (const auto& [word, pattern] : patterns_) laws.insert(name_of(pattern.controller.type));
-      std::string why;
-      bool used = false;
-      for (const std::string& law : laws)
-        for (const auto& [robot, model] : robots_) try {
-            ControllerSpec spec{controller_type(law), {}};
-            spec.gains.emplace_back(name.substr(5), std::get<double>(where.value));
-            if (spec.type == ControllerKind::none) continue;
-            check_controller(model, spec);
-            used = true;
-          } catch (const Error& error) {
-            why = error.what();
-          }
-      if (!used)
-        refuse(where.pointer,
-               why.empty() ? "open loop has no gains, so nothing uses '" + name + "'" : why);
+      refuse_unused_gain(name, where.pointer);
     }
   }
   for (const std::string& profile : study_->words("profile")) {
@@ -277,6 +265,56 @@ void CaseRunner::refuse_unused() const {
                                                         profile + "'" +
                                                         text::suggestion(profile, known));
   }
+}
+
+/// A gain is used when it belongs to the law of some case.
+void CaseRunner::refuse_unused_gain(const std::string& gain, const std::string& pointer) const {
+  std::string why = "open loop has no gains, so nothing uses '" + gain + "'";
+  std::set<std::pair<std::string, std::string>> tried;  // laws and robots
+  for (long i = 0; i < study_->size(); ++i) {
+    const Settings settings = study_->settings(i);
+    if (!settings.contains(gain) || !settings.contains("pattern")) continue;
+    const Pattern& pattern = patterns_.at(word_of(settings, "pattern"));
+    std::string law = word_of(settings, "controller"), robot = word_of(settings, "robot");
+    if (law.empty()) law = name_of(pattern.controller.type);
+    robot = robot.empty() ? robot_of(pattern) : robot_name(robot);
+    const auto model = robots_.find(robot);
+    if (model == robots_.end() || !tried.emplace(law, robot).second) continue;
+    try {
+      ControllerSpec spec{controller_type(law), {}};
+      if (spec.type == ControllerKind::none) continue;
+      spec.gains.emplace_back(gain.substr(5), number_of(settings, gain, 0));
+      check_controller(model->second, spec);
+      return;
+    } catch (const Error& error) {
+      why = error.what();
+    }
+  }
+  fail(ErrorCode::bad_pattern, study_->file().string() + ": " + pointer + ": " + why);
+}
+
+/// The uncertainty of the study is used when some case can draw from it.
+void CaseRunner::refuse_unusable_uncertainty() const {
+  if (!study_->named().contains("draw") || study_->uncertainty().uncertainty.empty()) return;
+  std::optional<Error> why;
+  std::set<std::pair<std::string, std::string>> tried;  // patterns and robots
+  for (long i = 0, motions = 0; i < study_->size() && motions < kMostTried; ++i) {
+    const Settings settings = study_->settings(i);
+    const std::pair key(word_of(settings, "pattern"), word_of(settings, "robot"));
+    if (!settings.contains("draw") || tried.contains(key)) continue;
+    ++motions;
+    try {
+      const std::shared_ptr<Prepared> motion = prepared(settings);
+      const std::shared_ptr<const Law> made = law(*motion, settings);
+      tried.insert(key);
+      draws(*motion, settings, made->options);
+      return;
+    } catch (const Error& error) {
+      // A motion that cannot be made is the fault of its case.
+      if (tried.contains(key) && !why) why = error;
+    }
+  }
+  if (why) throw Error(*why);
 }
 
 std::shared_ptr<CaseRunner::Prepared> CaseRunner::prepared(const Settings& settings) const {
@@ -301,6 +339,10 @@ std::shared_ptr<CaseRunner::Prepared> CaseRunner::prepared(const Settings& setti
       for (const auto& [name, value] : settings)
         if (name.starts_with("set.")) set[name.substr(4)] = std::get<double>(value);
       const std::string word = word_of(settings, "pattern");
+      if (word.empty())
+        fail(ErrorCode::bad_pattern, study_->file().string() +
+                                         ": /sweep: this case has no setting 'pattern'; name a "
+                                         "pattern for it or in /sweep/settings");
       Pattern pattern =
           set.empty() ? patterns_.at(word) : read_given_pattern(pattern_file(word), set);
       const std::string robot = word_of(settings, "robot");
@@ -459,20 +501,26 @@ struct CaseRunner::OneCase {
   SimulateOptions options;
 };
 
+std::shared_ptr<const CaseRunner::Draws> CaseRunner::draws(Prepared& motion,
+                                                           const Settings& settings,
+                                                           const SimulateOptions& options) const {
+  return motion.kept(motion.draws, loop_key(settings), [&] {
+    const Task& task = *motion.task;
+    return std::make_shared<const Draws>(
+        study_->uncertainty().uncertainty.empty() ? load_study(task, "") : study_->uncertainty(),
+        task, options);
+  });
+}
+
 void CaseRunner::make_case(long number, const Settings& settings, OneCase& made) const {
   made.motion = prepared(settings);
-  const Task& task = *made.motion->task;
   made.law = law(*made.motion, settings);
   made.options = made.law->options;
   if (auto world = study_->world(settings)) made.options.world = std::move(*world);
   if (auto scenario = study_->disturbances(settings)) made.options.scenario = std::move(*scenario);
   made.options.seed = seed_of(*context_, settings);
   if (settings.contains("draw")) {
-    made.draws = made.motion->kept(made.motion->draws, loop_key(settings), [&] {
-      return std::make_shared<const Draws>(
-          study_->uncertainty().uncertainty.empty() ? load_study(task, "") : study_->uncertainty(),
-          task, made.options);
-    });
+    made.draws = draws(*made.motion, settings, made.options);
     const UncertainTask& uncertain = made.draws->task;
     const CaseNumbers numbers =
         uncertain.numbers(made.options.seed, static_cast<long>(number_of(settings, "draw", 0)));

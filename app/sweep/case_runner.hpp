@@ -84,6 +84,10 @@ class CaseRunner {
   std::filesystem::path pattern_file(const std::string& word) const;
   std::string robot_name(const std::string& word) const;
   void refuse_unused() const;
+  void refuse_unused_gain(const std::string& gain, const std::string& pointer) const;
+  void refuse_unusable_uncertainty() const;
+  std::shared_ptr<const Draws> draws(Prepared& motion, const Settings& settings,
+                                     const SimulateOptions& options) const;
   struct Watch;
   std::vector<Cell> figures(long number, const Settings& settings, Watch& watch) const;
 

@@ -140,8 +140,11 @@ SweepHead head_of(const CaseRunner& runner, std::uint64_t seed) {
 
 void ResultsDatabase::complain(const std::string& doing) const {
   const int code = database_ ? sqlite3_errcode(database_) : SQLITE_NOMEM;
-  // A quota or a limit on the size of files shows as an error of writing.
-  const bool unwritten = database_ && sqlite3_extended_errcode(database_) == SQLITE_IOERR_WRITE;
+  // A quota or a limit on the size of files shows as an error of writing; a reader needs room, too,
+  // for the memory that it shares with writers.
+  const int detail = database_ ? sqlite3_extended_errcode(database_) : SQLITE_OK;
+  const bool unwritten = detail == SQLITE_IOERR_WRITE || detail == SQLITE_IOERR_SHMSIZE ||
+                         detail == SQLITE_IOERR_FSYNC;
   std::string why = database_ ? sqlite3_errmsg(database_) : "out of memory";
   if (code == SQLITE_FULL || unwritten)
     why =
@@ -431,7 +434,8 @@ long ResultsDatabase::merge(const fs::path& other) {
   for (const std::string& name : names)
     unequal.push_back("a." + sql_name(name) + " IS NOT b." + sql_name(name));
   Statement different(database_,
-                      "SELECT a.\"case\" FROM main.cases a JOIN theirs.cases b ON "
+                      // CROSS JOIN: for each row of theirs, of which there may be far fewer.
+                      "SELECT a.\"case\" FROM theirs.cases b CROSS JOIN main.cases a ON "
                       "a.\"case\" = b.\"case\" WHERE a.error IS NULL AND b.error IS "
                       "NULL AND (" +
                           text::join(unequal, " OR ") + ") ORDER BY 1 LIMIT 1");

@@ -520,24 +520,22 @@ class Engine {
       const Clock::time_point begin = Clock::now();
       long array = 0, task = 0;
       std::sscanf(part.filename().c_str(), "part-%ld-%ld.db", &array, &task);
-      std::vector<bool> theirs(done_.size());
-      SweepWork work;
-      bool good = true;
+      std::unique_ptr<ResultsDatabase> rows;
       try {
-        const ResultsDatabase rows(part, ResultsDatabase::Mode::read);
-        rows.require_study(results_.head());
-        rows.mark_done(theirs);
-        work = rows.work();
+        rows = std::make_unique<ResultsDatabase>(part, ResultsDatabase::Mode::read);
+        rows->require_study(results_.head());
       } catch (const Error& error) {
-        good = false;
+        rows.reset();
         why_lost_ = one_line(error.what());
       }
+      const bool good = rows != nullptr;
       if (good) {
         results_.merge(part);
-        for (size_t i = 0; i < theirs.size(); ++i)
-          if (theirs[i]) done_[i] = true;
+        rows->mark_done(done_);
+        const SweepWork work = rows->work();
         cost_.useful += work.useful;
         cost_.seconds += work.seconds + seconds_since(begin);
+        rows.reset();
       }
       for (const char* rest : {"", "-wal", "-shm"}) {
         std::error_code ignored;

@@ -37,6 +37,10 @@ constexpr const char* kPolicy =
 
 constexpr const char* kStyle =
     "table.sorts th[scope=col]{cursor:pointer;text-decoration:underline dotted}\n"
+    "th[aria-sort=ascending]::after{content:\" \\25B2\"}\n"
+    "th[aria-sort=descending]::after{content:\" \\25BC\"}\n"
+    ".pair{display:flex;flex-wrap:wrap;gap:0 3em}\n.maps{max-width:100%;overflow-x:auto}\n"
+    ".maps caption,#rates td{white-space:nowrap}\n.maps th[scope=col]{text-align:center}\n"
     "td.map{text-align:center;min-width:4em}\niframe{width:100%;height:80vh;border:1px solid "
     "#8888}\n";
 
@@ -183,9 +187,8 @@ std::string map_table(const ResultsDatabase& results, const Grouping& x, const G
   }
   if (cells.empty()) return "";
   std::string out = "<div class=\"wide maps\" tabindex=\"0\" role=\"region\" aria-label=\"" +
-                    html::escaped(what) + "\"><table>\n<caption>" + html::escaped(what) + ": " +
-                    html::escaped(y.axis) + " (down) and " + html::escaped(x.axis) +
-                    " (across)</caption>\n<tr><th></th>";
+                    html::escaped(what + ": " + y.axis + " and " + x.axis) +
+                    "\"><table>\n<caption>" + html::escaped(what) + "</caption>\n<tr><th></th>";
   for (const std::string& group : x.order)
     out += "<th scope=\"col\">" + html::escaped(x.names.at(group)) + "</th>";
   out += "</tr>\n";
@@ -229,8 +232,13 @@ std::string maps_section(const ResultsDatabase& results, const std::vector<Group
   for (size_t i = 0; i < usable.size(); ++i)
     for (size_t j = i + 1; j < usable.size(); ++j) {
       if (maps++ >= kMostMaps) continue;
+      std::string pair;
       for (const Quantity& q : quantities)
-        out += map_table(results, *usable[j], *usable[i], q.what, q.expression, q.scale);
+        pair += map_table(results, *usable[j], *usable[i], q.what, q.expression, q.scale);
+      if (!pair.empty())
+        out += "<h3>" + html::escaped(usable[i]->axis) + " (down) and " +
+               html::escaped(usable[j]->axis) + " (across)</h3>\n<div class=\"pair\">" + pair +
+               "</div>\n";
     }
   if (out.empty()) return "";
   if (maps > kMostMaps)
@@ -269,7 +277,8 @@ std::string replay_of(const CaseRunner& runner, const Json& row) {
   const std::string title = runner.study().name() + ", case " + std::to_string(number);
   ReportInput input;
   input.title = title;
-  input.runs = {{"closed loop", &log}};
+  const bool open = log.controller && log.controller->kind == ControllerKind::none;
+  input.runs = {{open ? "open loop" : "closed loop", &log}};
   const Report report = make_report(task->robot, input, {.max_bytes = kReplayBytes});
   std::string words = "Case " + std::to_string(number) + ": " + cell_text(row.at("outcome"));
   for (const std::string& axis : runner.study().axes())

@@ -230,6 +230,22 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "x.db"}), 3, "no pattern of the study declares the parameter 'speed'");
   s.write_study(R"({"value.impulse": 0.1, "gain.kx": [1, 2]})");
   expect(s.sweep({"-o", "x.db"}), 3, "kx");
+  s.write_study(R"({"value.impulse": 0.1, "gain.ka": [0.5, 1], "controller": "none"})");
+  expect(s.sweep({"-o", "x.db"}), 3, "open loop has no gains, so nothing uses 'gain.ka'");
+  s.write_study(R"({"value.impulse": 0.1, "draw": [0, 1]})");
+  const std::string study = contents(s.folder / "study.json");
+  const auto with_uncertainty = [&](const std::string& text) {
+    write(s.folder / "study.json",
+          study.substr(0, study.rfind('}')) + R"(, "uncertainty": )" + text + "}");
+  };
+  with_uncertainty(R"({"quantities": [{"what": "mass", "uniform": [0.9, 1.1]}]})");
+  expect(s.sweep({"-o", "x.db"}), 3, "the distribution has no source of its numbers");
+  with_uncertainty(R"({"quantities": [{"what": "mass", "on": "tail", "uniform": [0.9, 1.1],
+                       "source": "assumed: a test"}]})");
+  expect(s.sweep({"-o", "x.db"}), 3, "nothing uses this quantity");
+  with_uncertainty(R"({"factors": [{"name": "battery", "source": "assumed: a test"}],
+    "quantities": [{"what": "mass", "uniform": [0.9, 1.1], "source": "assumed: a test"}]})");
+  expect(s.sweep({"-o", "x.db"}), 3, "no quantity uses the factor 'battery'");
   s.write_study(R"({"value.impulse": 0.1, "profile": "hoap9"})");
   expect(s.sweep({"-o", "x.db"}), 3, "no robot of the study has the profile 'hoap9'");
   EXPECT_FALSE(fs::exists(s.folder / "x.db"));
@@ -270,6 +286,19 @@ TEST(SweepCommand, TwoWritersAreRefused) {
   const Output second = run_program({"-c", script}, s.folder.path(), "/bin/bash");
   EXPECT_EQ(second.exit_code, 3) << second.err;
   EXPECT_NE(second.err.find("t.db.lock"), std::string::npos) << second.err;
+}
+
+TEST(SweepCommand, ThePageWorksInABrowser) {
+  if (std::string(AYUMI_CHROMEDRIVER).empty())
+    GTEST_SKIP() << "chromium-driver is not installed: the page is not tried in a browser";
+  const Sweep s;
+  const Output out = s.sweep({"-o", "p.db", "--page", "p.html", "--replays", "1"});
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const Output said = run_program(
+      {AYUMI_SOURCE_DIR "/tests/cli/sweep_browser.mjs", AYUMI_CHROMEDRIVER, s.folder / "p.html"},
+      s.folder.path(), AYUMI_NODE);
+  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+  EXPECT_EQ(said.out, "ok\n");
 }
 
 // A draw is the case of `certify` and `simulate --case`, and each measure belongs to the robot of

@@ -27,6 +27,13 @@ export async function startDriver(program, shots) {
       browserName: "chrome", "goog:chromeOptions": { args },
       "goog:loggingPrefs": { browser: "ALL", performance: "ALL" } } } });
     return { run: (script, ...args) => call("POST", `/${sessionId}/execute/sync`, { script, args }),
+      inFrame: async (selector, script) => {
+        const id = await call("POST", `/${sessionId}/element`, { using: "css selector", value: selector });
+        await call("POST", `/${sessionId}/frame`, { id });
+        const answer = await call("POST", `/${sessionId}/execute/sync`, { script, args: [] });
+        await call("POST", `/${sessionId}/frame`, { id: null });
+        return answer;
+      },
       load: (url) => call("POST", `/${sessionId}/url`, { url }),
       tool: (cmd, params) => call("POST", `/${sessionId}/goog/cdp/execute`, { cmd, params }),
       act: (actions) => call("POST", `/${sessionId}/actions`, { actions }),
