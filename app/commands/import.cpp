@@ -8,6 +8,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/formats/motion_formats.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/table/motion_import.hpp"
 #include "option_checks.hpp"
@@ -88,6 +89,34 @@ void add_ramps(const ImportCommand& options, const RobotModel& model, ImportedMo
                             " s from rest to its own speed, along its own path (--ramp)");
 }
 
+/// A file of key poses: the pattern has keys, and no table.
+void import_keys(const Context& context, const ImportCommand& options, ImportedKeys keys) {
+  Pattern& pattern = keys.pattern;
+  pattern.name = "imported from " + fs::path(options.file).filename().string();
+  pattern.robot = robot_as_written(options.robot);
+  pattern.file = "imported";
+  if (options.ground || options.ramp > 0)
+    keys.filled.push_back("--ground and --ramp are not used, because the file has key poses");
+  write_pattern(options.out, pattern, keys.filled);
+  std::string words = options.out + ": " + text::fixed(pattern.duration(), 3) + " s, " +
+                      text::counted(pattern.keyframes.size(), "keyframe") + " and " +
+                      text::counted(pattern.phases.size(), "phase") + " (" + keys.format +
+                      (keys.reason.empty() ? "" : ", because " + keys.reason) + ")\n";
+  for (const std::string& line : keys.filled) words += "  " + line + "\n";
+  context.print(words);
+  context.print_json(Json{
+      {"output", options.out},
+      {"table", nullptr},
+      {"sequence", nullptr},
+      {"format", keys.format},
+      {"format_reason", keys.reason.empty() ? Json(nullptr) : Json(keys.reason)},
+      {"rows", pattern.keyframes.size()},
+      {"duration_s", pattern.duration()},
+      {"contacts", Json::array()},
+      {"filled",
+       keys.filled}}.dump(2));
+}
+
 void import_motion(const Context& context, const ImportCommand& options) {
   refuse_overwriting(context, options.out);
   refuse_overwriting(context, table_beside(options.out));
@@ -99,6 +128,10 @@ void import_motion(const Context& context, const ImportCommand& options) {
     fail(ErrorCode::bad_file,
          name + ": this is a pattern already; import reads motions in the formats " +
              text::join(read_format_names(), ", "));
+  if (std::optional<ImportedKeys> keys = read_key_poses(bytes, name, model, options.import)) {
+    import_keys(context, options, std::move(*keys));
+    return;
+  }
   ImportedMotion imported = read_motion(bytes, name, model, options.import);
   imported.motion.contact = options.contact;
   add_ramps(options, model, imported);

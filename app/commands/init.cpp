@@ -106,7 +106,7 @@ void init(const Context& context, const InitOptions& options) {
 void add_init(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("init",
                                          "write the first sidecar of a robot from its URDF, MJCF, "
-                                         "SDF or body file, with a picture and a to-do list");
+                                         "SDF, body or ztk file, with a picture and a to-do list");
   command->footer(
       "Examples:\n  ayumi init somebody.urdf -o my_robots/somebody\n"
       "Then follow the to-do list, and make a motion:\n"
@@ -114,8 +114,9 @@ void add_init(CLI::App& app, Context& context) {
       "walk_run");
   auto options = std::make_shared<InitOptions>();
   command
-      ->add_option("robot", options->robot,
-                   "URDF, MJCF, SDF or Choreonoid body, or a folder with one such file.")
+      ->add_option(
+          "robot", options->robot,
+          "URDF, MJCF, SDF, Choreonoid body or mi-lib ztk, or a folder with one such file.")
       ->required()
       ->type_name("FILE");
   command->add_option("-o,--out", options->out, "Folder of the robot; it is created if needed.")

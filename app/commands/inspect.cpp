@@ -386,7 +386,7 @@ void add_inspect(CLI::App& app, Context& context) {
   auto options = std::make_shared<InspectOptions>();
   command
       ->add_option("robot", options->robot,
-                   "Name of a bundled robot, folder, sidecar, URDF, MJCF, SDF or body file.")
+                   "Name of a bundled robot, folder, sidecar, URDF, MJCF, SDF, body or ztk file.")
       ->required()
       ->type_name("ROBOT");
   command->add_option("--picture", options->picture, "Draw the home posture on the ground, .png.")

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/table/motion_import.hpp"
 #include "tests/support/degree.hpp"
@@ -72,6 +74,25 @@ TEST(ForeignTable, UnitsMayStandInTheHeadRow) {
   expect_the_motion(
       read(table("time_ms,l_elbow [rad],r_knee[rad]", ',', '.', 1e3, kDegree), {.degrees = true}),
       "what the column says goes before the option");
+}
+
+// Three decimals at 500 rows per second: accelerations that no motion has.
+TEST(ForeignTable, RoughAnglesAreSaid) {
+  const auto rough = [](double decimals, ImportOptions options) {
+    std::string text = "t,l_knee\n";
+    for (int k = 0; k < 500; ++k)
+      text += std::to_string(0.002 * k) + "," +
+              std::to_string(std::round(0.5 * std::sin(0.004 * k) * decimals) / decimals) + "\n";
+    for (const std::string& line : read(text, options).filled)
+      if (line.find("the angles are rough") != std::string::npos) return line;
+    return std::string();
+  };
+  EXPECT_NE(rough(1e3, {}).find("l_knee has "), std::string::npos);
+  EXPECT_NE(rough(1e3, {}).find("--smooth DEG"), std::string::npos);
+  EXPECT_EQ(rough(1e6, {}), "");
+  ImportOptions smooth;
+  smooth.smooth = 0.1;
+  EXPECT_EQ(rough(1e3, smooth), "");
 }
 
 TEST(ForeignTable, MistakesAreOneLine) {

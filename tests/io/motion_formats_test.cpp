@@ -101,6 +101,10 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
   c3d[0] = 2;
   c3d[1] = 'P';
   EXPECT_NE(refusal_of(c3d).find("a C3D recording"), std::string::npos);
+  EXPECT_NE(refusal_of("(dp0\nVfps\np1\n", "m.pkl").find("a Python pickle"), std::string::npos);
+  EXPECT_NE(refusal_of("Coordinates\nversion=1\nendheader\ntime\tknee\n0\t1\n").find("OpenSim"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("<Root type=\"Motion\"/>").find("R+ Motion"), std::string::npos);
   for (const std::string& name : read_format_names())
     EXPECT_NE(refusal_of("???").find(name), std::string::npos) << name;
 }
@@ -139,6 +143,9 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
             std::string::npos);
   EXPECT_NE(refusal_of("type: CompositeSeq\ncontent: BodyMotion\ncomponents:\n  - [ 1, 2\n")
                 .find("not valid YAML"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("type: CompositeSeq\ncontent: BodyMotion\ntype: a\ncomponents: []\n")
+                .find("m.dat:3: the key 'type' appears twice in one map; keep one"),
             std::string::npos);
   EXPECT_NE(
       refusal_of("type: CompositeSeq\ncontent: BodyMotion\nformat_version: 7\ncomponents: []\n")

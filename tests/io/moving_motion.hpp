@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/io/table/table.hpp"
@@ -45,10 +46,27 @@ inline ReferenceTrajectory table_of(const RobotModel& model, const MotionFile& m
   return table;
 }
 
+/// Every row as a key pose of Choreonoid, with all joints by their numbers.
+inline std::string key_poses_of(const RobotModel& model, const MotionFile& motion) {
+  std::string text = "type: PoseSeq\nname: moving\ntargetBody: r\nrefs:\n";
+  for (Eigen::Index k = 0; k < motion.rows(); ++k) {
+    std::string ids, angles;
+    for (size_t j = 0; j < motion.joints.size(); ++j) {
+      ids += (j > 0 ? ", " : "") + std::to_string(model.find_dof(motion.joints[j]));
+      angles += (j > 0 ? ", " : "") + text::exact(motion.values(k, static_cast<Eigen::Index>(j)));
+    }
+    text += "  -\n    time: " + text::exact(motion.times[static_cast<size_t>(k)]) +
+            "\n    refer:\n      type: Pose\n      joints: [" + ids + "]\n      q: [" + angles +
+            "]\n";
+  }
+  return text;
+}
+
 /// The main file of the motion in a format that is read; "": there is no way to write one here.
 inline std::string file_of(const MotionFormat& format, const RobotModel& model,
                            const MotionFile& motion) {
   if (format.write) return format.write(model, motion)[0].bytes;
+  if (format.name == "choreonoid-poses") return key_poses_of(model, motion);
   if (format.name == "csv") return reference_csv(table_of(model, motion), {});
   if (format.name == "json") return reference_json(table_of(model, motion), {});
   if (format.name == "hoap")

@@ -213,6 +213,22 @@ TEST_F(PatternWriter, WritingAndReadingIsTheIdentity) {
   }
 }
 
+// The robot's folder is that of the pattern, or lies beside it: its name alone would be a bundled
+// robot.
+TEST_F(PatternWriter, TheFolderOfARobotStaysAPath) {
+  fs::create_directories(folder_ / "robots" / "mine");
+  Pattern pattern = read(kTwoSteps);
+  pattern.robot = "./robots/mine";
+  for (const fs::path& file : {folder_ / "robots" / "mine" / "p.json",
+                               folder_ / "robots" / "p.json", folder_ / "q.json"}) {
+    write_pattern(file, pattern);
+    const Pattern moved = read_pattern(file);
+    EXPECT_TRUE(fs::equivalent(robot_of(moved), folder_ / "robots" / "mine"))
+        << file << ": " << moved.robot;
+    EXPECT_NE(moved.robot.find('/'), std::string::npos);
+  }
+}
+
 TEST_F(PatternWriter, WritesWhatAPersonReads) {
   Pattern p = read(kTwoSteps);
   const std::string text = pattern_text(p, {"Two steps."});

@@ -9,6 +9,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/robot/robot_source.hpp"
+#include "ayumi/io/robot/ztk.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/relative_error.hpp"
 #include "tests/support/robot_texts.hpp"
@@ -37,7 +38,8 @@ RobotModel from_text(const std::string& text, const std::string& name) {
 }
 
 // Columns of `other` in the order of the joints of `model`.
-void expect_same(const RobotModel& model, const RobotModel& other, const std::string& what) {
+void expect_same(const RobotModel& model, const RobotModel& other, const std::string& what,
+                 double degree_rounding = 0) {
   ASSERT_EQ(other.dof_count(), model.dof_count()) << what;
   const int n = model.velocity_count();
   std::vector<int> column(static_cast<size_t>(n));
@@ -47,8 +49,9 @@ void expect_same(const RobotModel& model, const RobotModel& other, const std::st
     ASSERT_GE(there, 0) << what << ": " << model.dofs()[i].name;
     column[static_cast<size_t>(6 + i)] = 6 + there;
     EXPECT_EQ(other.dofs()[there].limited, model.dofs()[i].limited) << what;
-    EXPECT_EQ(other.dofs()[there].lower, model.dofs()[i].lower) << what;
-    EXPECT_EQ(other.dofs()[there].upper, model.dofs()[i].upper) << what;
+    // Some formats hold degrees, which round.
+    EXPECT_NEAR(other.dofs()[there].lower, model.dofs()[i].lower, degree_rounding) << what;
+    EXPECT_NEAR(other.dofs()[there].upper, model.dofs()[i].upper, degree_rounding) << what;
   }
   test::Random random(7);
   RobotData data(model), other_data(other);
@@ -80,6 +83,9 @@ void expect_same(const RobotModel& model, const RobotModel& other, const std::st
 void expect_same_in_all_formats(const RobotModel& model) {
   expect_same(model, from_text(test::sdf_text_of(model), "r.sdf"), "SDF of " + model.name());
   expect_same(model, from_text(test::body_text_of(model), "r.body"), "body of " + model.name());
+  const RobotModel ztk = from_text(ztk_text(model.description(), model.dof_names()), "r.ztk");
+  expect_same(model, ztk, "ztk of " + model.name(), 1e-14);
+  EXPECT_EQ(ztk.dof_names(), model.dof_names());
   if (!has_mujoco()) return;
   for (const bool diagonal : {false, true})
     for (const bool offsets : {false, true})
@@ -102,6 +108,115 @@ TEST(RobotFormats, RandomTreesAreTheSame) {
 TEST(RobotFormats, BodyOrderIsThatOfTheIds) {
   const RobotModel model = load_robot("hoap1", {{AYUMI_SOURCE_DIR "/robots"}});
   EXPECT_EQ(from_text(test::body_text_of(model), "r.body").dof_names(), model.dof_names());
+}
+
+// Motors, mirrored shapes, remarks and both ways to write brackets, as RoKi's robots have them.
+TEST(Ztk, IsReadAsRokiWritesIt) {
+  const std::string text = R"([roki::chain]
+name : legs
+[zeo::optic]
+name: red
+diffuse: 1.0, 0.0, 0.0
+[zeo::shape]
+name: plate
+type: polyhedron
+optic: red
+vert: 0 { 0.1, 0.0, 0.0 }
+vert: 1  0.1, 0.1, 0.0
+vert: 2  0.0, 0.0, 0.2
+face: 0 1 2
+[zeo::shape]
+name: other_plate
+mirror: plate y
+[zeo::shape]
+name: rod
+type: cylinder
+center: { 0, 0, 0 }
+center: { 0, 0.2, 0 }
+radius: 0.01
+[roki::motor]
+name: m
+type: dc
+motorconstant: 0.02
+admittance: 0.5
+maxvoltage: 24
+minvoltage: -24
+gearratio: 100
+[roki::link]
+name: base
+jointtype: float
+mass: 2.0   % a remark
+inertia: {
+ 0.01, 0, 0
+ 0, 0.01, 0
+ 0, 0, 0.01
+}
+shape: plate
+shape: other_plate
+[roki::link]
+name: knee
+jointtype: revolute
+min: -90
+max: 45
+coulomb: 1.5
+motor: m
+mass: 0.5
+COM: { 0, 0, -0.1 }
+inertia: {
+ 0.001, 0, 0
+ 0, 0.001, 0
+ 0, 0, 0.001
+}
+frame: {
+ 0, -1, 0, 0.1
+ 1, 0, 0, 0.2
+ 0, 0, 1, 0.3
+}
+shape: rod
+parent: base
+)";
+  const RobotDescription robot = parse_robot(text, "legs.ztk", {});
+  EXPECT_EQ(robot.name, "legs");
+  ASSERT_EQ(robot.links.size(), 2u);
+  ASSERT_EQ(robot.joints.size(), 1u);
+  const JointDescription& knee = robot.joints[0];
+  EXPECT_EQ(knee.type, JointType::revolute);
+  EXPECT_EQ(knee.axis, Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(knee.lower, -EIGEN_PI / 2, 1e-15);
+  EXPECT_NEAR(knee.upper, EIGEN_PI / 4, 1e-15);
+  EXPECT_EQ(knee.friction, 1.5);
+  EXPECT_NEAR(knee.effort, 24, 1e-12);
+  EXPECT_EQ(knee.origin.translation(), Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_LT((knee.origin.linear().col(0) - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+  EXPECT_EQ(robot.joint_order, std::vector<std::string>{"knee"});
+  ASSERT_EQ(robot.links[0].visuals.size(), 2u);
+  const MeshPart& mirrored =
+      std::get<MeshShape>(robot.links[0].visuals[1].shape).mesh.parts.front();
+  EXPECT_EQ(mirrored.vertices[1], Eigen::Vector3f(0.1f, -0.1f, 0));
+  const PlacedShape& rod = robot.links[1].visuals[0];
+  EXPECT_EQ(std::get<Cylinder>(rod.shape).length, 0.2);
+  EXPECT_LT((rod.pose * Eigen::Vector3d(0, 0, 0.1) - Eigen::Vector3d(0, 0.2, 0)).norm(), 1e-15);
+
+  const auto refusal = [&](const std::string& from, const std::string& to) {
+    std::string other = text;
+    other.replace(other.find(from), from.size(), to);
+    try {
+      parse_robot(other, "legs.ztk", {});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("read");
+  };
+  EXPECT_EQ(refusal("COM: { 0, 0, -0.1 }", "COM: { 0, 0, nan }"),
+            "legs.ztk:50: COM: 'nan' is not a finite number");
+  EXPECT_EQ(refusal("COM: { 0, 0, -0.1 }", "COM: { 0, -0.1 }"),
+            "legs.ztk:50: COM: 3 numbers needed, found 2");
+  EXPECT_NE(refusal("jointtype: revolute", "jointtype: hooke").find("'hooke' is not supported"),
+            std::string::npos);
+  EXPECT_NE(refusal("face: 0 1 2", "face: 0 1 7").find("none of the 3 that are given"),
+            std::string::npos);
+  EXPECT_NE(refusal(" 1, 0, 0, 0.2", " 2, 0, 0, 0.2").find("are no rotation"), std::string::npos);
+  EXPECT_NE(refusal("parent: base", "parent: bas").find("bas"), std::string::npos);
 }
 
 RobotDescription mjcf(const std::string& inside, const std::string& around = "") {

@@ -31,8 +31,22 @@ struct Outcome {
   ImportedMotion motion = {};
 };
 
+// The joints of the keys as the rows of a motion.
+ImportedMotion rows_of(const ImportedKeys& keys) {
+  ImportedMotion motion;
+  const auto& frames = keys.pattern.keyframes;
+  motion.motion.theta.setZero(static_cast<Eigen::Index>(frames.size()), hoap1().dof_count());
+  for (size_t k = 0; k < frames.size(); ++k)
+    for (const auto& [joint, angle] : frames[k].joints)
+      motion.motion.theta(static_cast<Eigen::Index>(k), hoap1().find_dof(joint)) = angle;
+  motion.filled = keys.filled;
+  return motion;
+}
+
 Outcome outcome_of(const MotionFormat& format, const std::string& bytes) {
   try {
+    if (const auto keys = read_key_poses(bytes, "folder/m.dat", hoap1(), options_for(format)))
+      return {"", rows_of(*keys)};
     return {"", read_motion_rows(bytes, "folder/m.dat", hoap1(), options_for(format))};
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_file) << error.what();
@@ -160,6 +174,17 @@ TEST_P(UnreadableMotions, AreRefusedInOneLineOrReadAsTheyWere) {
   const std::string refused = outcome_of(format(), commas).message;
   expect_one_line(refused, "decimal commas");
   EXPECT_NE(refused.find("decimal point"), std::string::npos) << refused;
+}
+
+// Joints that are mapped by order must be as many as those of the robot.
+TEST_P(UnreadableMotions, AnotherNumberOfJointsIsRefused) {
+  if ((format().holds & kJointNames) || !format().write) return;
+  MotionFile fewer = motion();
+  fewer.joints.pop_back();
+  fewer.values.conservativeResize(Eigen::NoChange, fewer.values.cols() - 1);
+  const std::string message = outcome_of(format(), file_of(format(), hoap1(), fewer)).message;
+  expect_one_line(message, "19 joints");
+  EXPECT_NE(message.find("'hoap1' has 20 joints"), std::string::npos) << message;
 }
 
 // Two joints, so that a million rows are a file that may be opened.

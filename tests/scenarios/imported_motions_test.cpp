@@ -5,12 +5,19 @@
 #include <filesystem>
 
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/formats/motion_formats.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/table/motion_import.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace ayumi {
 namespace {
@@ -61,6 +68,179 @@ TEST(ImportedMotions, AZmpThatNoGroundGives) {
   EXPECT_LT(log.result.max_tilt, 0.02);
   for (const SimulationSample& s : log.samples)
     EXPECT_LT((s.reference_theta - s.command_theta).cwiseAbs().maxCoeff(), 0.03);
+}
+
+template <typename Values>
+std::string yaml_list(const Values& values) {
+  std::string words = "[ ";
+  bool first = true;
+  for (const double value : values) {
+    words += (first ? "" : ", ") + text::exact(value);
+    first = false;
+  }
+  return words + " ]";
+}
+
+// A link of a key pose of Choreonoid.
+std::string ik_link(const std::string& name, const Eigen::Isometry3d& pose,
+                    const std::string& more) {
+  const Eigen::Matrix3d rows = pose.linear().transpose();
+  return "        -\n          name: " + name +
+         "\n          translation: " + yaml_list(pose.translation()) +
+         "\n          rotation: " + yaml_list(rows.reshaped()) + "\n" + more;
+}
+
+// Key poses of a step: the right foot goes 30 mm forward, and an arm is lifted meanwhile. The robot
+// of the file is this one.
+std::string step_of_key_poses(const RobotModel& model) {
+  RobotState state = model.rest_state();
+  RobotData data(model);
+  update_positions(model, state, data);
+  state.base.position.z() -= sole_pose(model, data, Side::left).translation().z();
+  update_positions(model, state, data);
+  const Eigen::Isometry3d base(Eigen::Translation3d(state.base.position));
+  const auto foot = [&](Side side, double forward, double up, bool touching) {
+    const Sole& sole = model.sole(side);
+    const Eigen::Isometry3d moved(Eigen::Translation3d(forward, 0, up));
+    const std::string& body = model.bodies()[static_cast<size_t>(sole.body)].name;
+    return ik_link(body, moved * sole_pose(model, data, side) * sole.frame.inverse(),
+                   touching ? "          isTouching: true\n" : "");
+  };
+  const auto key = [](double time, const std::string& more, const std::string& inside) {
+    return "  -\n    time: " + text::exact(time) + "\n" + more +
+           "    refer:\n      type: Pose\n      name: \"\"\n" + inside;
+  };
+  const auto zmp = [&](double y) {
+    return "      zmp: " + yaml_list(Eigen::Vector3d(0.01, y, 0)) + "\n";
+  };
+  std::vector<double> ids;
+  for (int i = 0; i < model.dof_count(); ++i) ids.push_back(i);
+  const std::string links = "      ikLinks:\n";
+  const double side = sole_pose(model, data, Side::left).translation().y();
+  return "type: PoseSeq\nname: step\ntargetBody: r\nrefs:\n" +
+         key(0, "",
+             "      joints: " + yaml_list(ids) + "\n      q: " + yaml_list(state.theta) + "\n" +
+                 links + ik_link("WAIST", base, "          isBaseLink: true\n") +
+                 foot(Side::left, 0, 0, true) + foot(Side::right, 0, 0, true) + zmp(0)) +
+         key(1, "", zmp(0)) + key(1.6, "", zmp(side)) +
+         key(2, "    maxTransitionTime: 0.3\n",
+             "      joints: [ " + std::to_string(model.find_dof("l_shoulder_pitch")) +
+                 " ]\n      q: [ 0.5 ]\n" + links + foot(Side::right, 0.015, 0.015, false)) +
+         key(2.3, "", links + foot(Side::right, 0.03, 0, true) + zmp(side)) + key(3, "", zmp(0)) +
+         key(4, "", zmp(0));
+}
+
+TEST(ImportedMotions, KeyPosesAreKeysOfAPattern) {
+  const RobotModel& model = hoap1();
+  const std::string text = step_of_key_poses(model);
+  ImportOptions options;
+  const auto refusal = [&] {
+    try {
+      read_key_poses(text, "step.pseq", model, options);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("read");
+  };
+  EXPECT_NE(refusal().find("give --order"), std::string::npos) << refusal();
+  options.by_order = true;
+  std::optional<ImportedKeys> keys = read_key_poses(text, "step.pseq", model, options);
+  ASSERT_TRUE(keys.has_value());
+  EXPECT_EQ(keys->format, "choreonoid-poses");
+  Pattern& pattern = keys->pattern;
+  pattern.robot = "hoap1";
+  EXPECT_FALSE(pattern.table.has_value());
+  ASSERT_EQ(pattern.phases.size(), 3u);
+  EXPECT_EQ(pattern.phases[0].support, Support::both);
+  EXPECT_EQ(pattern.phases[1].support, Support::left);
+  EXPECT_EQ(pattern.phases[2].support, Support::both);
+  EXPECT_NEAR(pattern.phases[0].until, 1.7, 1e-12);
+  EXPECT_NEAR(pattern.phases[1].until, 2.3, 1e-12);
+  EXPECT_EQ(pattern.phases[2].until, 4);
+  const CommandSeries series = sample(model, pattern_of_text(pattern_text(pattern), "step.json"));
+  const auto at = [&](double t) -> const CommandSample& {
+    return series.samples[static_cast<size_t>(std::lround(t / series.dt))];
+  };
+  const auto right = static_cast<size_t>(Side::right);
+  const Eigen::Vector3d start = at(0).feet[right].translation();
+  EXPECT_LT((at(1.7).feet[right].translation() - start).norm(), 1e-9);
+  EXPECT_NEAR(at(2).feet[right].translation().z(), 0.015, 1e-6);
+  EXPECT_NEAR(at(2.3).feet[right].translation().x() - start.x(), 0.03, 1e-9);
+  EXPECT_NEAR(at(1.6).zmp.y(), at(0).feet[0].translation().y(), 1e-3);
+  const int arm = model.find_dof("l_shoulder_pitch");
+  EXPECT_NEAR(at(1.7).state.theta[arm], at(0).state.theta[arm], 1e-9);
+  EXPECT_NEAR(at(2).state.theta[arm], 0.5, 1e-9);
+  // A motion in another format is none of key poses.
+  EXPECT_FALSE(read_key_poses("time,0,1\nl_knee,0,1\n", "k.csv", model).has_value());
+}
+
+// A file of every format and robot, whole and cut at either end: what was read makes a pattern that
+// can be written, read and sampled.
+TEST(ImportedMotions, EveryFormatCanBeSampled) {
+  int tried = 0;
+  for (const char* name : {"hoap1", "humanoid30"}) {
+    const RobotModel model = load_robot(name, {{AYUMI_SOURCE_DIR "/robots"}});
+    WalkParameters walk = walk_defaults(model);
+    walk.steps = 2;
+    Pattern pattern = walk_pattern(model, walk);
+    pattern.robot = name;
+    const CommandSeries series = sample(model, pattern);
+    for (const MotionFormat& format : motion_formats()) {
+      if (!format.read || !format.write) continue;
+      MotionFile whole;
+      whole.rate = format.name == "op3-action" ? 62.5 : 50;
+      whole.joints = model.dof_names();
+      const auto rows = static_cast<int>(series.duration() * whole.rate);
+      for (const auto& [from, to] : {std::pair{0.0, 1.0}, {0.35, 1.0}, {0.0, 0.62}}) {
+        SCOPED_TRACE(std::string(name) + " " + format.name + " from " + std::to_string(from) +
+                     " to " + std::to_string(to));
+        MotionFile motion = whole;
+        const int first = static_cast<int>(from * rows), last = static_cast<int>(to * rows);
+        motion.values.resize(last - first, model.dof_count());
+        for (int k = first; k < last; ++k) {
+          const auto& at =
+              series.samples[static_cast<size_t>(std::lround(k / whole.rate / series.dt))];
+          motion.times.push_back((k - first) / whole.rate);
+          motion.values.row(k - first) = at.state.theta.transpose();
+          motion.base.push_back(at.state.base);
+          motion.cog.push_back(at.cog);
+          motion.zmp.push_back(at.zmp);
+          motion.fz.push_back(at.fz);
+        }
+        std::vector<WrittenFile> files;
+        try {
+          files = format.write(model, motion);
+        } catch (const Error&) {
+          continue;  // this robot has no servo numbers
+        }
+        test::TemporaryFolder folder;
+        for (const WrittenFile& file : files)
+          write_file((folder.path() / "m.dat")
+                         .replace_extension(file.extension.empty() ? ".dat" : file.extension),
+                     file.bytes);
+        const std::string main =
+            (folder.path() / "m.dat")
+                .replace_extension(files[0].extension.empty() ? ".dat" : files[0].extension)
+                .string();
+        ImportOptions options;
+        options.by_order = !(format.holds & kJointNames);
+        if (!(format.holds & kRate)) options.rate = whole.rate;
+        const ImportedMotion read = read_motion(read_file(main), main, model, options);
+        for (const double ramp : {0.0, 0.3}) {
+          const RawMotion raw = ramp > 0 ? with_ramps(model, read.motion, ramp) : read.motion;
+          GroundedMotion found = grounded(model, raw, "out.csv");
+          found.pattern.robot = name;
+          found.pattern.file = "imported";
+          const auto out = folder.path() / "out.json";
+          write_pattern_and_table(out, found.pattern);
+          const CommandSeries again = sample(model, read_pattern(out));
+          EXPECT_NEAR(again.duration(), (raw.theta.rows() - 1) * raw.dt, 0.002);
+          ++tried;
+        }
+      }
+    }
+  }
+  EXPECT_GE(tried, 2 * 3 * 2 * 14);
 }
 
 // Every sequence of HOAP-3 that is at hand. The data are not part of this program: without them

@@ -14,6 +14,7 @@
 #include "ayumi/io/formats/motion_csv.hpp"
 #include "ayumi/io/formats/npz_motion.hpp"
 #include "ayumi/io/formats/op3_action.hpp"
+#include "ayumi/io/formats/pose_sequence.hpp"
 #include "ayumi/io/formats/qianim.hpp"
 #include "ayumi/io/formats/ros_trajectory.hpp"
 #include "ayumi/io/formats/table_motion.hpp"
@@ -37,6 +38,8 @@ using namespace std::string_literals;
 const std::vector<Foreign>& foreign_files() {
   static const std::string arrays =
       "load it in Python and save its arrays with numpy.savez (fps, root_pos, root_rot, dof_pos)";
+  static const std::string retarget =
+      "retarget it to the robot first, and write the joint angles as CSV";
   static const std::vector<Foreign> files = {
       {"#ROSBAG", "a ROS 1 bag", "write its joint trajectory as YAML, or its joint states as CSV"},
       {"SQLite format 3", "an SQLite database, such as a ROS 2 bag",
@@ -58,6 +61,23 @@ const std::vector<Foreign>& foreign_files() {
       {"\x1f\x8b", "a file compressed with gzip", "unpack it first"},
       {"\x93NUMPY", "a single NumPy array (.npy)", arrays},
       {"\x89PNG", "a picture", "name the motion file"},
+      {"BZh9", "a file compressed with bzip2", "unpack it first"},
+      {"\xFD"
+       "7zXZ",
+       "a file compressed with xz", "unpack it first"},
+      {"\x28\xB5\x2F\xFD", "a file compressed with zstd", "unpack it first"},
+      {"7z\xBC\xAF", "a 7z archive", "unpack it first"},
+      {"x\x9C", "data compressed with zlib, such as a file of joblib", arrays},
+      {"x\x01", "data compressed with zlib, such as a file of joblib", arrays},
+      {"x\xDA", "data compressed with zlib, such as a file of joblib", arrays},
+      {"PAR1", "a Parquet file", "write its joint angles as CSV"},
+      {"MATLAB 5.0", "a MATLAB file (.mat)", "write its joint angles as CSV"},
+      {"Vocaloid Motion Data", "a motion of MikuMikuDance (.vmd)", retarget},
+      {"PathFileType", "a TRC recording of markers", retarget},
+      {"#!OML:ASF", "an ASF/AMC recording of a person", retarget},
+      {":version", "a skeleton of ASF/AMC", retarget},
+      {"#usda", "a USD scene", retarget},
+      {"PXR-USDC", "a USD scene", retarget},
       {"\x89HDF", "an HDF5 file", "write its joint angles as CSV"}};
   return files;
 }
@@ -77,6 +97,9 @@ const Foreign* signed_kind(const MotionInput& source) {
   if (source.bytes.size() >= 512 && source.bytes[1] == 'P' &&
       static_cast<unsigned char>(source.bytes[0]) < 16)
     return &c3d;
+  static const Foreign opensim = {"", "a motion of OpenSim (.mot, .sto)",
+                                  "write its coordinates as a table with a head row, as CSV"};
+  if (source.bytes.substr(0, 2000).find("\nendheader") != std::string::npos) return &opensim;
   return nullptr;
 }
 
@@ -84,12 +107,24 @@ const Foreign* signed_kind(const MotionInput& source) {
 const Foreign* text_kind(const MotionInput& source) {
   static const Foreign mtnx = {"", "a motion of ROBOTIS R+ Motion (.mtnx)",
                                "write the motion as CSV, or as an action file (.bin)"};
-  if (lower_extension(source.file) == ".mtnx") return &mtnx;
+  static const Foreign pickle = {"", "a Python pickle",
+                                 "load it in Python and save its arrays with numpy.savez (fps, "
+                                 "root_pos, root_rot, dof_pos)"};
+  const std::string extension = lower_extension(source.file);
+  if (extension == ".mtnx" || extension == ".mtn") return &mtnx;
+  if (source.bytes.substr(0, 2000).find("<Root type=\"Motion\"") != std::string::npos) return &mtnx;
+  if (extension == ".pkl" || extension == ".pickle" || extension == ".joblib") return &pickle;
   static const Foreign archive = {
       "", "an archive without the arrays of a motion",
       "save fps, root_pos, root_rot and dof_pos, or fps, joint_pos, body_pos_w and body_quat_w, "
       "with numpy.savez"};
-  if (source.bytes.starts_with("PK")) return &archive;
+  static const Foreign workbook = {"", "an Office workbook", "save the sheet as CSV"};
+  static const Foreign torch = {"", "a file of PyTorch",
+                                "load it in Python and save its arrays with numpy.savez"};
+  if (source.bytes.starts_with("PK")) {
+    if (source.bytes.find("[Content_Types].xml") != std::string::npos) return &workbook;
+    return source.bytes.find("data.pkl") != std::string::npos ? &torch : &archive;
+  }
   static const Foreign urdf = {"", "a robot description (URDF)",
                                "give it with --robot, and name a motion file"};
   static const Foreign mjcf = {"", "a MuJoCo model", "name a motion file"};
@@ -119,6 +154,8 @@ const std::vector<MotionFormat>& motion_formats() {
       {"choreonoid", "Choreonoid BodyMotion",
        kJointNames | kRate | kRoot | kZmp | kCog | kVerticalForce, false, false,
        recognize_body_motion, read_body_motion, write_body_motion},
+      {"choreonoid-poses", "Choreonoid key poses (.pseq)", kRate | kRoot | kZmp, false, false,
+       recognize_pose_sequence, nullptr, nullptr, read_pose_sequence},
       {"ros-trajectory", "ROS JointTrajectory", kJointNames | kRate, true, false,
        recognize_ros_trajectory, read_ros_trajectory, write_ros_trajectory},
       {"play-motion2", "play_motion2 parameters", kJointNames | kRate, true, false,
@@ -159,7 +196,7 @@ const MotionFormat* find_motion_format(const std::string& name) {
 std::vector<std::string> read_format_names() {
   std::vector<std::string> names;
   for (const MotionFormat& format : motion_formats())
-    if (format.read) names.push_back(format.name);
+    if (format.read || format.read_keys) names.push_back(format.name);
   return names;
 }
 
@@ -172,9 +209,12 @@ std::vector<std::string> written_format_names() {
 
 Recognized recognize(const MotionInput& source) {
   const Foreign* kind = signed_kind(source);
+  // Bytes of 0 at the beginning are no text, whatever stands before them.
+  constexpr size_t kBeginning = 100;
+  const bool binary = source.bytes.substr(0, kBeginning).find('\0') != std::string::npos;
   for (const MotionFormat& format : motion_formats()) {
     if (kind) break;
-    if (!format.recognize) continue;
+    if (!format.recognize || (binary && !format.binary)) continue;
     const std::string reason = format.recognize(source);
     if (!reason.empty()) return {&format, reason};
   }
@@ -185,7 +225,8 @@ Recognized recognize(const MotionInput& source) {
   if (kind)
     source.refuse(0, "this is " + kind->words + ", which import does not read; " + kind->advice +
                          "; " + formats);
-  source.refuse(0, "the content is of no format that import knows; " + formats);
+  source.refuse(0, std::string("the content is ") + (binary ? "binary, and " : "") +
+                       "of no format that import knows; " + formats);
 }
 
 std::string cannot_hold(const MotionFormat& format, const MotionFile& motion) {

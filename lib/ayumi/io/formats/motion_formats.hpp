@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ayumi/io/formats/motion_file.hpp"
+#include "ayumi/motion/pattern.hpp"
 
 namespace ayumi {
 
@@ -32,6 +33,8 @@ struct MotionFormat {
   MotionFile (*read)(const MotionInput&) = nullptr;
   /// Null: it is only read.
   std::vector<WrittenFile> (*write)(const RobotModel&, const MotionFile&) = nullptr;
+  /// In place of `read`: the keys of a pattern; adds what was assumed, in words.
+  Pattern (*read_keys)(const MotionInput&, std::vector<std::string>& notes) = nullptr;
 };
 
 /// In the order in which content is compared with them.

@@ -153,9 +153,11 @@ bool may_be_cut(const std::string& text) {
   return std::isdigit(last) || last == '.' || last == '-';
 }
 
-MotionFile read_file_of(const std::string& bytes, const std::string& file, const RobotModel& model,
-                        const ImportOptions& options, ImportedMotion& result) {
-  MotionInput source{{}, file, model, options};
+// The format of the file; `source` then has its content as readers take it, `result` the name of
+// the format and the reason.
+const MotionFormat& format_of(const std::string& bytes, MotionInput& source,
+                              ImportedMotion& result) {
+  const ImportOptions& options = source.options;
   if (is_utf16(bytes)) source.refuse(1, "this is UTF-16 text; save it as UTF-8");
   const MotionFormat* format = nullptr;
   const bool text = bytes.find('\0') == std::string::npos;
@@ -167,7 +169,7 @@ MotionFile read_file_of(const std::string& bytes, const std::string& file, const
     result.reason = recognized.reason;
   } else {
     format = find_motion_format(options.format);
-    if (!format || !format->read)
+    if (!format || !(format->read || format->read_keys))
       fail(ErrorCode::usage, "--format " + options.format + " cannot be read; import reads " +
                                  text::join(read_format_names(), ", "));
   }
@@ -177,6 +179,15 @@ MotionFile read_file_of(const std::string& bytes, const std::string& file, const
     source.refuse(line_at(bytes, at), "is a binary file, text is needed");
   }
   if (!format->binary) refuse_other_encodings(source);
+  return *format;
+}
+
+MotionFile read_file_of(const std::string& bytes, const std::string& file, const RobotModel& model,
+                        const ImportOptions& options, ImportedMotion& result) {
+  MotionInput source{{}, file, model, options};
+  const MotionFormat* const format = &format_of(bytes, source, result);
+  if (!format->read)
+    source.refuse(0, "the file holds key poses in place of rows; import makes a pattern of it");
   MotionFile motion = format->read(source);
   if (format->name == "hoap" && !motion.sequence.empty()) motion.sequence = bytes;
   if (static_cast<size_t>(motion.rows()) > kMostRows)
@@ -548,6 +559,38 @@ Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, doub
   return smoothed_within(mirrored, band, cutoff).segment(more, n);
 }
 
+// Angles that were rounded, or measured with noise, have accelerations from row to row that no
+// motion has: the differences of a row's acceleration from its neighbours' are then larger than the
+// accelerations themselves. In smooth motions they are smaller.
+void say_rough(const RobotModel& model, ImportedMotion& imported) {
+  // Derived: white noise has third differences sqrt(20/6) = 1.8 times its second ones; a motion of
+  // 2 Hz at 30 rows per second 0.4 times. In between.
+  constexpr double kNoise = 1.2;
+  // Acceleration of noise that is said [rad/s^2, m/s^2]. Chosen: what quick motions of joints have.
+  constexpr double kSaid = 20;
+  const Eigen::MatrixXd& theta = imported.motion.theta;
+  const Eigen::Index rows = theta.rows();
+  const double dt = imported.motion.dt;
+  double worst = 0;
+  Eigen::Index joint = 0;
+  for (Eigen::Index j = 0; j < theta.cols(); ++j) {
+    const Eigen::VectorXd rate = theta.col(j).tail(rows - 1) - theta.col(j).head(rows - 1);
+    const Eigen::VectorXd second = rate.tail(rows - 2) - rate.head(rows - 2);
+    const Eigen::VectorXd third = second.tail(rows - 3) - second.head(rows - 3);
+    const double acceleration = second.norm() / std::sqrt(static_cast<double>(rows - 2));
+    if (third.norm() < kNoise * second.norm() || acceleration / (dt * dt) < worst) continue;
+    worst = acceleration / (dt * dt);
+    joint = j;
+  }
+  if (worst < kSaid) return;
+  imported.filled.push_back(
+      "the angles are rough, as if they were rounded or measured with noise: " +
+      model.dof_names()[static_cast<size_t>(joint)] + " has " + text::brief(worst, 2) +
+      (model.dofs()[static_cast<size_t>(joint)].prismatic ? " m/s2" : " rad/s2") +
+      " from row to row (root mean square), and forces follow from accelerations; --smooth DEG, "
+      "such as 0.1, smooths the angles by at most this");
+}
+
 // Counts are rounded, and straight between the times for which they were made: differences of that
 // are no accelerations of anything. Servos do not follow a tenth of a degree.
 void smooth_angles(const RobotModel& model, const ImportOptions& options,
@@ -558,7 +601,10 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
   // (0.55 s each).
   constexpr double kCutoff = 20;
   const double degrees = options.smooth.value_or(imported.format == "hoap" ? kOfCounts : 0);
-  if (degrees <= 0) return;
+  if (degrees <= 0) {
+    say_rough(model, imported);
+    return;
+  }
   Eigen::MatrixXd& theta = imported.motion.theta;
   for (int i = 0; i < model.dof_count(); ++i) {
     const Dof& dof = model.dofs()[i];
@@ -601,19 +647,41 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
                                   " are needed");
 }
 
-}  // namespace
-
-ImportedMotion read_motion_rows(const std::string& bytes, const std::string& file,
-                                const RobotModel& model, const ImportOptions& options) {
-  ImportedMotion result;
+// Calls `read`; an Error about the file then says what the file was taken for.
+template <typename Read>
+void with_remedy(const std::string& bytes, ImportedMotion& result, const Read& read) {
   try {
-    read_rows(bytes, file, model, options, result);
+    read();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_file) throw;
     throw_with_message(error, error.what() + remedy(find_motion_format(result.format), result,
                                                     bytes, error.what()));
   }
+}
+
+}  // namespace
+
+ImportedMotion read_motion_rows(const std::string& bytes, const std::string& file,
+                                const RobotModel& model, const ImportOptions& options) {
+  ImportedMotion result;
+  with_remedy(bytes, result, [&] { read_rows(bytes, file, model, options, result); });
   return result;
+}
+
+std::optional<ImportedKeys> read_key_poses(const std::string& bytes, const std::string& file,
+                                           const RobotModel& model, const ImportOptions& options) {
+  ImportedMotion about;
+  std::optional<ImportedKeys> keys;
+  with_remedy(bytes, about, [&] {
+    MotionInput source{{}, file, model, options};
+    const MotionFormat& format = format_of(bytes, source, about);
+    if (!format.read_keys) return;
+    keys.emplace();
+    keys->pattern = format.read_keys(source, keys->filled);
+    keys->format = format.name;
+    keys->reason = about.reason;
+  });
+  return keys;
 }
 
 ImportedMotion read_motion(const std::string& bytes, const std::string& file,

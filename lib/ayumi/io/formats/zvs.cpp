@@ -2,6 +2,7 @@
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/robot/ztk.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/math/rotation.hpp"
 
@@ -85,7 +86,7 @@ MotionFile read_zvs(const MotionInput& source) {
   return motion;
 }
 
-std::vector<WrittenFile> write_zvs(const RobotModel&, const MotionFile& motion) {
+std::vector<WrittenFile> write_zvs(const RobotModel& model, const MotionFile& motion) {
   std::string text;
   const size_t rows = motion.times.size();
   const auto width = static_cast<size_t>(motion.values.cols()) + kRootValues;
@@ -100,7 +101,8 @@ std::vector<WrittenFile> write_zvs(const RobotModel&, const MotionFile& motion) 
       text += " " + text::exact(value);
     text += " )\n";
   }
-  return {{"", text}};
+  // RoKi reads the motion for the robot beside it, whose links have the same order.
+  return {{"", text}, {".ztk", ztk_text(model.description(), model.dof_names())}};
 }
 
 }  // namespace ayumi

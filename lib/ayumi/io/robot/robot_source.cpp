@@ -8,6 +8,7 @@
 #include "ayumi/io/robot/mjcf.hpp"
 #include "ayumi/io/robot/sdf.hpp"
 #include "ayumi/io/robot/urdf.hpp"
+#include "ayumi/io/robot/ztk.hpp"
 
 namespace ayumi {
 
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReadRobots =
-    "Ayumi reads robots as URDF, MJCF, SDF and Choreonoid body, and its own robot.json";
+    "Ayumi reads robots as URDF, MJCF, SDF, Choreonoid body and mi-lib ztk, and its own robot.json";
 constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
 
 std::string robot_ending(const fs::path& path) {
@@ -60,8 +61,8 @@ std::string outermost_element(std::string_view text) {
 }  // namespace
 
 bool has_robot_ending(const fs::path& path) {
-  static const std::vector<std::string> endings = {".urdf", ".xacro", ".xml",
-                                                   ".mjcf", ".sdf",   ".body"};
+  static const std::vector<std::string> endings = {".urdf", ".xacro", ".xml", ".mjcf",
+                                                   ".sdf",  ".body",  ".ztk"};
   return std::find(endings.begin(), endings.end(), robot_ending(path)) != endings.end();
 }
 
@@ -92,6 +93,9 @@ RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
   // A line of a body file before any other that is not a remark.
   if (extension == ".body" || text.substr(0, 4096).find("ChoreonoidBody") != std::string_view::npos)
     return RobotFormat::body;
+  if (extension == ".ztk" || text.substr(0, 4096).find("[roki::") != std::string_view::npos ||
+      text.starts_with("[zeo::"))
+    return RobotFormat::ztk;
   if (text.starts_with("#VRML")) refuse_robot(path, "this is a VRML model; convert it to URDF");
   refuse_robot(path, text.empty() ? "the file is empty" : "this is not a robot");
 }
@@ -107,6 +111,8 @@ RobotDescription parse_robot(const std::string& bytes, const fs::path& path,
       return parse_sdf(bytes, path, packages);
     case RobotFormat::body:
       return parse_choreonoid_body(bytes, path, packages);
+    case RobotFormat::ztk:
+      return parse_ztk(bytes, path);
     case RobotFormat::sidecar:
       break;
   }

@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-enum class RobotFormat { sidecar, urdf, mjcf, sdf, body };
+enum class RobotFormat { sidecar, urdf, mjcf, sdf, body, ztk };
 
 /// The format of a robot's file, by its content; its name decides only where the content is none of
 /// them. Throws Error(bad_file) for a file that is something else, saying what it is where that can

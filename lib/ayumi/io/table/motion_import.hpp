@@ -35,6 +35,20 @@ struct ImportedMotion {
   std::vector<std::string> filled;  ///< what the file does not say, or says beside the motion
 };
 
+/// A file of key poses as a pattern.
+struct ImportedKeys {
+  Pattern pattern;                       ///< without robot and name
+  std::string format;                    ///< name of motion_formats()
+  std::string reason;                    ///< as ImportedMotion::reason
+  std::vector<std::string> filled = {};  ///< what was assumed or left out
+};
+
+/// The keys of a file of key poses; none for a file of any other format. Throws as
+/// read_motion_rows().
+std::optional<ImportedKeys> read_key_poses(const std::string& bytes, const std::string& file,
+                                           const RobotModel& model,
+                                           const ImportOptions& options = {});
+
 /// The rows of a file as they are, evenly spaced, with the columns of the robot's joints. Joints
 /// are mapped by their names or the robot's aliases, and by order only where the options say so.
 /// Unset values and rows between key postures are interpolated. Throws Error(bad_file) that names

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <istream>
+#include <set>
 #include <streambuf>
 
 #include "ayumi/base/error.hpp"
@@ -35,8 +36,8 @@ class TreeBuilder : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { scalar(mark, ""); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    if (refused.empty()) refused_line = mark.line + 1;
     if (refused.empty()) refused = "aliases (*name) are not read";
-    refused_line = mark.line + 1;
     scalar(mark, "");
   }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
@@ -59,6 +60,7 @@ class TreeBuilder : public YAML::EventHandler {
     YamlNode node;
     std::string key = {};
     bool has_key = false;
+    std::set<std::string> known = {};
   };
 
   void scalar(const YAML::Mark& mark, const std::string& value) {
@@ -102,6 +104,10 @@ class TreeBuilder : public YAML::EventHandler {
     if (parent.node.is_map() && !parent.has_key) {
       parent.key = node.text;
       parent.has_key = true;
+      if (!parent.known.insert(parent.key).second && refused.empty()) {
+        refused = "the key '" + parent.key + "' appears twice in one map; keep one";
+        refused_line = node.line;
+      }
       return;
     }
     if (parent.node.is_map()) {

@@ -24,8 +24,8 @@ struct YamlNode {
   const YamlNode* find(std::string_view key, std::string_view other = "") const;
 };
 
-/// Throws Error(bad_file) "file:line: ..." for text that is no YAML, for aliases, and for more than
-/// one document.
+/// Throws Error(bad_file) "file:line: ..." for text that is no YAML, for aliases, for a key twice
+/// in a map, and for more than one document.
 YamlNode parse_yaml(const std::string& text, const std::string& file);
 
 }  // namespace ayumi

@@ -1,0 +1,437 @@
+#include "ayumi/io/formats/pose_sequence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/inverse_kinematics.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/yaml/yaml_tree.hpp"
+#include "ayumi/math/elementary.hpp"
+#include "ayumi/math/rotation.hpp"
+
+namespace ayumi {
+
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+// Differences of a foot that stands still from key to key [m, rad]. Chosen: editors of key poses
+// print nine digits, and solvers of postures leave some micrometres.
+constexpr double kSamePlace = 1e-3, kSameTurn = 2e-3;
+// Keys of a file. Chosen: a motion edited by hand has some hundred.
+constexpr size_t kMostKeys = 100'000;
+
+/// One key of the file.
+struct PoseKey {
+  double time = 0, transition = 0;  ///< [s]; transition 0: since the key before
+  std::vector<int> joints;          ///< ids
+  std::vector<double> angles;
+  std::optional<Isometry3d> base;
+  std::array<std::optional<Isometry3d>, 2> feet;  ///< soles, by Side
+  std::array<bool, 2> touching = {};
+  std::optional<Vector3d> zmp;
+};
+
+class PoseSequenceReader {
+ public:
+  PoseSequenceReader(const MotionInput& source, std::vector<std::string>& notes)
+      : source_(source), notes_(notes), model_(source.model) {}
+
+  Pattern whole() {
+    if (!model_.has_soles())
+      fail(ErrorCode::bad_model,
+           model_.name() + ": the robot has no soles; name both in its sidecar");
+    const YamlNode root = parse_yaml(source_.bytes, source_.file);
+    const YamlNode* refs = root.find("refs");
+    if (!refs || !refs->is_list()) refuse(root, "`refs`, the list of key poses, is missing");
+    if (refs->items.size() > kMostKeys)
+      refuse(*refs, std::to_string(refs->items.size()) + " key poses; at most " +
+                        std::to_string(kMostKeys) + " are read");
+    for (const YamlNode& ref : refs->items) read_key(ref);
+    if (keys_.size() < 2) refuse(root, "a motion needs two key poses or more");
+    map_ids(root);
+    Pattern result = pattern();
+    say();
+    return result;
+  }
+
+ private:
+  [[noreturn]] void refuse(const YamlNode& node, const std::string& reason) const {
+    source_.refuse(static_cast<size_t>(node.line), reason);
+  }
+
+  double number(const YamlNode& node, const char* key) const {
+    return source_.number(node.text, static_cast<size_t>(node.line), key);
+  }
+
+  std::vector<double> numbers(const YamlNode& node, const char* key, size_t count) const {
+    if (!node.is_list() || !node.items.empty())
+      refuse(node, std::string(key) + ": a list of finite numbers is needed");
+    if (count > 0 && node.numbers.size() != count)
+      refuse(node, std::string(key) + ": " + text::counted(count, "number") + " needed, found " +
+                       std::to_string(node.numbers.size()));
+    return node.numbers;
+  }
+
+  static bool is_true(const YamlNode* node) {
+    return node && (node->text == "true" || node->text == "True");
+  }
+
+  void read_key(const YamlNode& ref) {
+    const YamlNode *time = ref.find("time"), *pose = ref.find("refer");
+    if (!time || !pose || !pose->is_map()) refuse(ref, "a key needs `time` and `refer`");
+    const YamlNode* type = pose->find("type");
+    if (!type || type->text != "Pose") {
+      other_.insert(type ? type->text : "refer");
+      return;
+    }
+    PoseKey key;
+    key.time = number(*time, "time");
+    if (!(key.time >= 0) || (!keys_.empty() && !(key.time > keys_.back().time)))
+      refuse(*time, "time " + text::brief(key.time) +
+                        " s does not come after that of the key before; times must increase");
+    if (const YamlNode* most = ref.find("maxTransitionTime", "max_transition_time"))
+      key.transition = std::max(number(*most, "maxTransitionTime"), 0.0);
+    const YamlNode *ids = pose->find("joints"), *angles = pose->find("q", "displacements");
+    if (ids && angles) {
+      key.angles = numbers(*angles, "q", 0);
+      for (const double id : numbers(*ids, "joints", key.angles.size())) {
+        if (!(id >= 0 && id < 1e4) || id != std::floor(id))
+          refuse(*ids, "joints: " + text::brief(id) + " is no joint id");
+        key.joints.push_back(static_cast<int>(id));
+      }
+    }
+    const YamlNode* links = pose->find("ikLinks", "ik_links");
+    if (links)
+      for (const YamlNode& link : links->items) read_link(link, key);
+    if (const YamlNode* zmp = pose->find("zmp")) {
+      const std::vector<double> v = numbers(*zmp, "zmp", 3);
+      key.zmp = Vector3d(v[0], v[1], v[2]);
+      still_ += is_true(pose->find("isZmpStationaryPoint", "is_zmp_stationary_point"));
+    }
+    keys_.push_back(std::move(key));
+  }
+
+  void read_link(const YamlNode& node, PoseKey& key) {
+    const YamlNode *name = node.find("name"), *place = node.find("translation"),
+                   *turn = node.find("rotation");
+    if (!name || !place || !turn) refuse(node, "a link needs name, translation and rotation");
+    Isometry3d pose = Isometry3d::Identity();
+    const std::vector<double> p = numbers(*place, "translation", 3);
+    const std::vector<double> r = numbers(*turn, "rotation", 9);
+    pose.translation() << p[0], p[1], p[2];
+    for (int i = 0; i < 9; ++i) pose.linear()(i / 3, i % 3) = r[static_cast<size_t>(i)];
+    pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
+    if (is_true(node.find("isBaseLink", "is_base_link"))) {
+      key.base = pose;
+      return;
+    }
+    for (const Side side : {Side::left, Side::right}) {
+      const Sole& sole = model_.sole(side);
+      const auto foot = static_cast<size_t>(side);
+      const auto link = std::find_if(model_.links().begin(), model_.links().end(),
+                                     [&](const Link& each) { return each.name == name->text; });
+      if (link == model_.links().end() || link->body != sole.body) continue;
+      key.feet[foot] = pose * link->pose.inverse() * sole.frame;
+      key.touching[foot] = is_true(node.find("isTouching", "is_touching"));
+      return;
+    }
+    left_out_.insert(name->text);
+  }
+
+  // Ids as joints of the robot: by --joints, or by order on request.
+  void map_ids(const YamlNode& root) {
+    int most = -1;
+    for (const PoseKey& key : keys_)
+      for (const int id : key.joints) most = std::max(most, id);
+    const std::vector<std::string> own = model_.dof_names();
+    const std::vector<std::string>& given = source_.options.joints;
+    if (given.empty() && !source_.options.by_order && most >= 0)
+      refuse(root, "the file names its joints by numbers up to " + std::to_string(most) +
+                       "; give --order if they count the " + text::counted(own.size(), "joint") +
+                       " of '" + model_.name() + "' from 0 (" + own.front() + ", ..., " +
+                       own.back() + "), or --joints A,B,... with their names");
+    names_ = given.empty() ? own : given;
+    if (most >= static_cast<int>(names_.size()))
+      refuse(root, "the file has the joint " + std::to_string(most) + ", but there are " +
+                       text::counted(names_.size(), "joint") + " (from 0)");
+    for (const std::string& name : names_)
+      if (find_joint(model_, name) < 0)
+        refuse(root, "'" + name + "' is no joint of '" + model_.name() + "'" +
+                         text::suggestion(name, own));
+    if (given.empty() && most >= 0)
+      notes_.push_back("joints: mapped by order, as --order asks: " + text::join(own, ", "));
+  }
+
+  bool places_feet() const {
+    for (const size_t foot : {size_t{0}, size_t{1}})
+      if (std::none_of(keys_.begin(), keys_.end(),
+                       [&](const PoseKey& key) { return key.feet[foot].has_value(); }))
+        return false;
+    return true;
+  }
+
+  // Where the COG is in every key that places the base link: legs bent so that both feet have their
+  // places and the base link its own. Empty: the legs do not reach, or the key has no base.
+  std::vector<std::optional<Vector3d>> cogs_of_bases(const InverseKinematics& solver) const {
+    std::vector<std::optional<Vector3d>> result;
+    RobotState state = model_.rest_state();
+    state.theta = solver.start();
+    RobotData data(model_);
+    PostureTarget target;
+    for (const size_t foot : {size_t{0}, size_t{1}})
+      for (const PoseKey& key : keys_)
+        if (key.feet[foot]) {
+          target.feet[foot] = *key.feet[foot];
+          break;
+        }
+    for (const PoseKey& key : keys_) {
+      result.emplace_back();
+      for (const size_t foot : {size_t{0}, size_t{1}})
+        if (key.feet[foot]) target.feet[foot] = *key.feet[foot];
+      for (size_t i = 0; i < key.joints.size(); ++i) {
+        const int dof = find_joint(model_, names_[static_cast<size_t>(key.joints[i])]);
+        if (!solver.solves(dof)) state.theta[dof] = key.angles[i];
+      }
+      if (!key.base) continue;
+      state.base = {key.base->translation(), Eigen::Quaterniond(key.base->linear())};
+      target.trunk = key.base->linear();
+      update_positions(model_, state, data);
+      target.cog = data.cog;
+      // The COG moves with the base nearly one to one, so few passes are enough. Chosen: as many as
+      // leave less than a micrometre.
+      constexpr int kPasses = 8;
+      bool reached = true;
+      for (int pass = 0; reached && pass < kPasses; ++pass) {
+        RobotState trial = state;
+        reached = solver.solve(target, trial, data).reached;
+        if (!reached) break;
+        target.cog += key.base->translation() - trial.base.position;
+        state.theta = trial.theta;
+      }
+      if (reached) result.back() = target.cog;
+    }
+    return result;
+  }
+
+  static Foothold foothold(const Isometry3d& pose) {
+    return {pose.translation(), matrix_to_rpy(pose.linear())};
+  }
+
+  static bool same_place(const Isometry3d& a, const Isometry3d& b) {
+    return (a.translation() - b.translation()).norm() < kSamePlace &&
+           elementary::angle_between(Eigen::Quaterniond(a.linear()),
+                                     Eigen::Quaterniond(b.linear())) < kSameTurn;
+  }
+
+  /// When a foot leaves its place, and when it stands at the next one.
+  struct Move {
+    double from = 0, to = 0;
+  };
+
+  // A foot that stands keeps its place to the last bit, because it must not move while it carries.
+  std::vector<Move> settle(size_t foot) {
+    std::vector<Move> moves;
+    const PoseKey* before = nullptr;
+    for (PoseKey& key : keys_) {
+      if (!key.feet[foot]) continue;
+      if (key.touching[foot]) {  // level on the ground
+        Isometry3d& pose = *key.feet[foot];
+        const double yaw = matrix_to_rpy(pose.linear()).z();
+        if (std::abs(pose.translation().z()) < kSamePlace) pose.translation().z() = 0;
+        pose.linear() = rpy_to_matrix({0, 0, yaw});
+      }
+      if (before) {
+        const bool stands = before->touching[foot] && key.touching[foot] &&
+                            same_place(*before->feet[foot], *key.feet[foot]);
+        if (stands)
+          key.feet[foot] = before->feet[foot];
+        else
+          moves.push_back({start_of(key, before->time), key.time});
+      }
+      before = &key;
+    }
+    return moves;
+  }
+
+  static double start_of(const PoseKey& key, double before) {
+    return key.transition > 0 ? std::max(before, key.time - key.transition) : before;
+  }
+
+  void add_phases(const std::array<std::vector<Move>, 2>& moves, Pattern& pattern) const {
+    const double end = keys_.back().time;
+    std::set<double> times = {end};
+    for (const std::vector<Move>& foot : moves)
+      for (const Move& move : foot) {
+        times.insert(move.from);
+        times.insert(move.to);
+      }
+    double begin = 0;
+    for (const double until : times) {
+      if (!(until > begin)) continue;
+      const double middle = 0.5 * (begin + until);
+      const auto carries = [&](size_t foot) {
+        return std::none_of(moves[foot].begin(), moves[foot].end(), [&](const Move& move) {
+          return move.from < middle && middle < move.to;
+        });
+      };
+      const bool left = carries(0), right = carries(1);
+      Phase phase;
+      phase.until = until;
+      phase.support = left && right ? Support::both
+                      : left        ? Support::left
+                      : right       ? Support::right
+                                    : Support::none;
+      if (!pattern.phases.empty() && pattern.phases.back().support == phase.support)
+        pattern.phases.back().until = until;
+      else
+        pattern.phases.push_back(phase);
+      begin = until;
+    }
+  }
+
+  Pattern pattern() {
+    Pattern result;
+    result.degrees = true;
+    const bool feet = places_feet();
+    std::array<std::vector<Move>, 2> moves;
+    const InverseKinematics solver(model_, model_.posture());
+    if (feet) {
+      moves = {settle(0), settle(1)};
+      for (const size_t foot : {size_t{0}, size_t{1}})
+        for (const PoseKey& key : keys_)
+          if (key.feet[foot] && !result.start_feet[foot])
+            result.start_feet[foot] = foothold(*key.feet[foot]);
+    }
+    add_phases(moves, result);
+    add_joints(solver, feet);
+    if (feet) add_places(solver);
+    for (auto& [time, frame] : frames_) {
+      frame.t = time;
+      result.keyframes.push_back(std::move(frame));
+    }
+    return result;
+  }
+
+  Keyframe& frame_at(double time) { return frames_[time]; }
+
+  // One track: `value_of(key)` is its value in a key, if it has one, and `set` writes a value into
+  // a keyframe. Where a key limits its transition, the value before holds until then.
+  template <typename ValueOf, typename Set>
+  void add_track(const ValueOf& value_of, const Set& set) {
+    decltype(value_of(keys_.front())) before;
+    double since = 0;
+    for (const PoseKey& key : keys_) {
+      const auto value = value_of(key);
+      if (!value) continue;
+      const double start = start_of(key, since);
+      if (before && start > since) set(frame_at(start), *before);
+      set(frame_at(key.time), *value);
+      before = value;
+      since = key.time;
+    }
+  }
+
+  void add_joints(const InverseKinematics& solver, bool feet) {
+    for (size_t id = 0; id < names_.size(); ++id) {
+      const int dof = find_joint(model_, names_[id]);
+      if (feet && solver.solves(dof)) continue;
+      const std::string& name = model_.dofs()[static_cast<size_t>(dof)].name;
+      add_track(
+          [&](const PoseKey& key) -> std::optional<double> {
+            for (size_t i = 0; i < key.joints.size(); ++i)
+              if (key.joints[i] == static_cast<int>(id)) return key.angles[i];
+            return {};
+          },
+          [&](Keyframe& frame, double angle) { frame.joints[name] = angle; });
+    }
+    for (int dof = 0; dof < model_.dof_count(); ++dof) legs_ += feet && solver.solves(dof);
+  }
+
+  void add_places(const InverseKinematics& solver) {
+    for (const size_t foot : {size_t{0}, size_t{1}})
+      add_track(
+          [&](const PoseKey& key) { return key.feet[foot]; },
+          [&](Keyframe& frame, const Isometry3d& pose) { frame.feet[foot] = foothold(pose); });
+    add_track([](const PoseKey& key) { return key.base; },
+              [](Keyframe& frame, const Isometry3d& pose) {
+                frame.torso = matrix_to_rpy(pose.linear());
+              });
+    zmp_leads_ = zmp_keys() > 1;
+    if (zmp_leads_)
+      add_track([](const PoseKey& key) { return key.zmp; },
+                [](Keyframe& frame, const Vector3d& zmp) {
+                  frame.zmp = ZmpKey{ZmpKey::Place::point, zmp.head<2>()};
+                });
+    const std::vector<std::optional<Vector3d>> cogs = cogs_of_bases(solver);
+    for (size_t i = 0; i < keys_.size(); ++i) out_of_reach_ += keys_[i].base && !cogs[i];
+    add_track([&](const PoseKey& key) { return cogs[static_cast<size_t>(&key - keys_.data())]; },
+              [&](Keyframe& frame, const Vector3d& cog) {
+                frame.cog_height = cog.z();
+                if (zmp_leads_) return;
+                frame.cog_x = cog.x();
+                frame.cog_y = cog.y();
+              });
+  }
+
+  size_t zmp_keys() const {
+    return static_cast<size_t>(std::count_if(
+        keys_.begin(), keys_.end(), [](const PoseKey& key) { return key.zmp.has_value(); }));
+  }
+
+  void say() {
+    notes_.push_back("units: seconds, metres and radians, as the format defines them");
+    notes_.push_back(text::counted(keys_.size(), "key pose") + ", " +
+                     text::counted(zmp_keys(), "ZMP key") + " (" + std::to_string(still_) +
+                     " of them stationary); between them everything follows minimum jerk and rests "
+                     "at its keys");
+    if (places_feet())
+      notes_.push_back("the file places the feet, so the " + text::counted(legs_, "leg joint") +
+                       " follow from feet, trunk and " +
+                       (zmp_leads_ ? "ZMP" : "COG, which is that of the base link's places") +
+                       (zmp_keys() == 1 ? "; the single ZMP key is left out" : ""));
+    else
+      notes_.push_back(
+          "the file does not place both feet, so the legs follow their joints, with both feet on "
+          "the ground" +
+          std::string(zmp_keys() > 0 ? "; its ZMP is left out" : ""));
+    if (out_of_reach_ > 0)
+      notes_.push_back("places of the base link that the legs do not reach, left out: " +
+                       std::to_string(out_of_reach_));
+    if (!left_out_.empty())
+      notes_.push_back("places of links left out: " +
+                       text::join({left_out_.begin(), left_out_.end()}, ", "));
+    if (!other_.empty())
+      notes_.push_back("keys of other kinds left out: " +
+                       text::join({other_.begin(), other_.end()}, ", "));
+  }
+
+  const MotionInput& source_;
+  std::vector<std::string>& notes_;
+  const RobotModel& model_;
+  std::vector<PoseKey> keys_;
+  std::vector<std::string> names_;     // by id
+  std::map<double, Keyframe> frames_;  // by time
+  std::set<std::string> left_out_, other_;
+  int still_ = 0, legs_ = 0, out_of_reach_ = 0;
+  bool zmp_leads_ = false;
+};
+
+}  // namespace
+
+std::string recognize_pose_sequence(const MotionInput& source) {
+  const std::string head = source.bytes.substr(0, 4000);
+  return head.find("type: PoseSeq") != std::string::npos ? "it says that its type is PoseSeq" : "";
+}
+
+Pattern read_pose_sequence(const MotionInput& source, std::vector<std::string>& notes) {
+  return PoseSequenceReader(source, notes).whole();
+}
+
+}  // namespace ayumi
