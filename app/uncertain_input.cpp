@@ -1,6 +1,7 @@
 #include "uncertain_input.hpp"
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/io/pattern/assumed_study.hpp"
 
 namespace ayumi::app {
 
@@ -18,11 +19,7 @@ Study load_study(const Task& input, const std::string& file) {
             .sha256 = input.pattern.sha256,
             .uncertainty = input.pattern.uncertainty};
   const std::filesystem::path standard = default_study(input.robot);
-  if (standard.empty())
-    fail(ErrorCode::bad_pattern,
-         input.robot.name() +
-             " has no uncertainty.json beside its sidecar, and the pattern has no \"uncertainty\"; "
-             "write a study file and name it with --study");
+  if (standard.empty()) return assumed_study(input.robot);
   return read_study(standard);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // The uncertainty of a pattern on the command line: that of --study, else that of the pattern, else
-// the default one of its robot.
+// the default one of its robot, else the one that is assumed of any robot.
 
 #include <string>
 
@@ -10,7 +10,7 @@
 namespace ayumi::app {
 
 /// `file` is the argument of --study, "" where it was not given. Throws as read_study(), and
-/// Error(bad_pattern) where there is no uncertainty.
+/// Error(bad_pattern) where the file has no uncertainty.
 Study load_study(const Task& input, const std::string& file);
 
 }  // namespace ayumi::app

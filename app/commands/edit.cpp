@@ -14,6 +14,7 @@
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/study/retime.hpp"
 #include "check_table.hpp"
+#include "loop_words.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 
@@ -240,20 +241,6 @@ void join(Context& context, const EditCommand& options) {
                check_edited(context, options, input, input.pattern),
                kept_words(input.pattern, reason),
                Json{{"joins_s", joins}, {"keys_kept", !input.pattern.table}});
-}
-
-std::string gap_words(const LoopGap& gap) {
-  return "feet " + text::fixed(1e3 * gap.feet, 2) + " mm, base " + text::fixed(1e3 * gap.base, 2) +
-         " mm, posture " + text::fixed(gap.posture * 180 / M_PI, 2) + " deg (" + gap.joint +
-         "), rates " + text::fixed(gap.rate * 180 / M_PI, 2) + " deg/s";
-}
-
-Json gap_json(const LoopGap& gap) {
-  return {{"feet_m", gap.feet},
-          {"base_m", gap.base},
-          {"posture_rad", gap.posture},
-          {"rate_rad_per_s", gap.rate},
-          {"joint", gap.joint}};
 }
 
 // The end meets the beginning, by a transition where it does not, and the motion is repeated.

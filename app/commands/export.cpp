@@ -14,6 +14,7 @@
 #include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/io/formats/sign_test.hpp"
+#include "ayumi/io/formats/table_motion.hpp"
 #include "ayumi/io/kept_rows.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
@@ -295,26 +296,8 @@ void export_gltf(const ExportOptions& options, Context& context) {
 
 /// The table as a motion of any format.
 MotionFile motion_file_of(const Source& source, const ReferenceTrajectory& table) {
-  MotionFile motion;
-  motion.rate = 1 / table.dt;
-  motion.joints = table.joints;
-  motion.name = fs::path(table.provenance.pattern).stem().string();
-  const auto rows = static_cast<Eigen::Index>(table.rows.size());
-  motion.values.resize(rows, static_cast<Eigen::Index>(table.joints.size()));
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    const ReferenceRow& row = table.rows[static_cast<size_t>(k)];
-    motion.times.push_back(static_cast<double>(k) * table.dt);
-    motion.values.row(k) = row.theta.transpose();
-    motion.base.push_back(row.base);
-    motion.cog.push_back(row.cog);
-    motion.zmp.push_back(row.zmp);
-    motion.fz.push_back(row.fz);
-    motion.support.push_back(row.contact[0] && row.contact[1] ? Support::both
-                             : row.contact[0]                 ? Support::left
-                             : row.contact[1]                 ? Support::right
-                                                              : Support::none);
-  }
-  if (source.torque.rows() == rows) motion.torque = source.torque;
+  MotionFile motion = motion_of_table(table);
+  if (source.torque.rows() == motion.rows()) motion.torque = source.torque;
   return motion;
 }
 

@@ -10,6 +10,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/controller.hpp"
 #include "ayumi/control/gain_design.hpp"
+#include "ayumi/io/pattern/assumed_study.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/task_file.hpp"
 #include "ayumi/limits/limit.hpp"
@@ -224,7 +225,8 @@ CaseRunner::CaseRunner(const Context& context, const SweepStudy& study)
     inputs_.push_back({"robot", shown, robot.description().sha256});
     if (study.named().contains("draw") && study.uncertainty().uncertainty.empty()) {
       const fs::path standard = default_study(robot);
-      if (!standard.empty()) inputs_.push_back({"uncertainty", shown, read_study(standard).sha256});
+      const Study study_of_robot = standard.empty() ? assumed_study(robot) : read_study(standard);
+      inputs_.push_back({"uncertainty", shown, study_of_robot.sha256});
     }
     robots_.emplace(name, std::move(robot));
   };

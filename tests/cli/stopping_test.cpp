@@ -5,7 +5,7 @@
 #include <ctime>
 #include <thread>
 
-#include "tests/cli/program.hpp"
+#include "tests/cli/background_program.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -23,33 +23,6 @@ class OnlyPath {
  private:
   std::string before_;
 };
-
-pid_t start(const std::vector<std::string>& arguments, const fs::path& folder) {
-  std::vector<std::string> words = {program_under_test()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const int nothing = ::open("/dev/null", O_RDWR);
-    if (::chdir(folder.c_str()) != 0 || ::dup2(nothing, 1) < 0 || ::dup2(nothing, 2) < 0)
-      ::_exit(126);
-    ::execv(argv[0], argv.data());
-    ::_exit(127);
-  }
-  return child;
-}
-
-/// Whether the condition holds within `seconds`.
-bool holds_within(double seconds, const std::function<bool()>& condition) {
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  while (!condition()) {
-    if (Clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
-}
 
 /// An `ffmpeg` that writes its process id to the file `started` and then does nothing, ever.
 void write_hanging_ffmpeg(const Folder& folder) {

@@ -5,8 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/io/pattern/assumed_study.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/error_message.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/json_schema.hpp"
 
 namespace ayumi::test {
@@ -152,6 +155,24 @@ TEST(StudyFile, SchemaListsTheKinds) {
   std::vector<std::string> kinds;
   for (const UncertainKindInfo& kind : uncertain_kinds()) kinds.push_back(kind.name);
   EXPECT_EQ(patterns.at("$defs").at("quantity").at("properties").at("what").at("enum"), kinds);
+}
+
+TEST(AssumedStudy, IsAStudyOfWhatTheRobotHasAndSaysThatItIsAssumed) {
+  const RobotModel biped = load_robot(AYUMI_SOURCE_DIR "/examples/biped/biped.urdf");
+  const Study study = assumed_study(biped);
+  EXPECT_NE(study.file.find("assumed"), std::string::npos);
+  ASSERT_FALSE(study.uncertainty.quantities.empty());
+  for (const UncertainQuantity& quantity : study.uncertainty.quantities)
+    EXPECT_TRUE(is_assumed(quantity.source)) << quantity.name;
+  // Written, it is the same study.
+  EXPECT_EQ(study_of_text(assumed_study_text(biped), "again").sha256, study.sha256);
+  // The COG is displaced by a share of the height of the robot: 5 mm for HOAP-1.
+  const Study hoap = assumed_study(test::hoap1());
+  const auto cog =
+      std::find_if(hoap.uncertainty.quantities.begin(), hoap.uncertainty.quantities.end(),
+                   [](const UncertainQuantity& q) { return q.kind == UncertainKind::cog; });
+  ASSERT_NE(cog, hoap.uncertainty.quantities.end());
+  EXPECT_NEAR(cog->distribution.high, 0.005, 2e-4);
 }
 
 }  // namespace

@@ -79,14 +79,21 @@ KnownResults run_cases(const UncertainTask& task, const CertifyOptions& options,
   for (long i = 0; i < most; ++i)
     task.check(task.draw(task.numbers(options.seed, i)), "case " + std::to_string(i));
   const bool whole = options.all || options.shards > 1;
-  for (long begin = 0; begin < most; begin += kBatch * options.shards) {
+  long failures = 0;
+  for (long begin = 0; begin < most;) {
+    long end = std::min(most, begin + kBatch * options.shards);
+    // Without another failure the test stops there, and what comes behind would be run in vain.
+    if (!whole && failures < static_cast<long>(test.plan().size()))
+      end = std::min(end, std::max(begin + 1, test.plan()[static_cast<size_t>(failures)]));
     std::vector<long> wanted;
-    for (long i = begin; i < std::min(most, begin + kBatch * options.shards); ++i)
+    for (long i = begin; i < end; ++i)
       if (i % options.shards == options.shard && !results[static_cast<size_t>(i)])
         wanted.push_back(i);
     run_numbers(task, wanted, options, results, save, progress);
+    begin = end;
     if (whole) continue;
     const SequentialOutcome outcome = test.outcome(failures_in_order(results));
+    failures = outcome.failures;
     if (!outcome.stopped) continue;
     std::fill(results.begin() + outcome.runs, results.end(), std::nullopt);
     break;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/author/generate/walk_in_parts.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -38,8 +39,6 @@ constexpr double kStairLeg = 0.905;
 /// Time in which the ZMP rests at both ends, and then moves onto the first foot, in units of
 /// 1/omega. Chosen: the anticipation of the COG has fallen to exp(-4.5) = 1 % at the ends.
 constexpr double kZmpRest = 4.5, kZmpShift = 2.6;
-
-double to_tenth_milliradian(double x) { return std::round(1e4 * x) / 1e4 + 0.0; }
 
 /// Distance by which a sole reaches ahead of its frame and behind it [m].
 struct SoleLength {
@@ -109,12 +108,14 @@ ZmpKey::Place place_of(Side side) {
   return side == Side::left ? ZmpKey::Place::left : ZmpKey::Place::right;
 }
 
-Foothold foothold(const Vector3d& center, double yaw, double beside) {
+Foothold foothold(const Vector3d& center, double yaw, double beside, int decimals) {
+  double parts = 1;
+  for (int i = 0; i < decimals; ++i) parts *= 10;
+  const auto rounded = [&](double x) { return std::round(parts * x) / parts + 0.0; };
   const Vector3d at = center + rpy_to_matrix({0, 0, yaw}) * Vector3d(0, beside, 0);
   Foothold result;
-  result.position = {to_tenth_millimetre(at.x()), to_tenth_millimetre(at.y()),
-                     to_tenth_millimetre(at.z())};
-  result.rpy.z() = to_tenth_milliradian(yaw);
+  result.position = {rounded(at.x()), rounded(at.y()), rounded(at.z())};
+  result.rpy.z() = rounded(yaw);
   return result;
 }
 
@@ -206,14 +207,27 @@ WalkParameters stair_defaults(const RobotModel& model, double rise) {
 }
 
 Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) {
-  const WalkParameters& p = parameters;
-  check_parameters(model, p);
-  Pattern pattern;
-  pattern.name = title(p);
-  pattern.robot = model.name();
-  pattern.cog_height = to_tenth_millimetre(p.cog_height);
+  return walk_in_parts(model, {parameters});
+}
 
-  if (p.cog_height == 0) pattern.cog_height = bent_height(model);
+Pattern walk_in_parts(const RobotModel& model, const std::vector<WalkParameters>& parts,
+                      int decimals) {
+  if (parts.empty()) fail(ErrorCode::usage, "walk: give at least one part");
+  const WalkParameters& first = parts.front();
+  for (const WalkParameters& p : parts) {
+    check_parameters(model, p);
+    if (p.cog_height != first.cog_height)
+      fail(ErrorCode::usage, "walk: the COG height must be the same in all parts");
+    if (p.rise != 0 && parts.size() > 1)
+      fail(ErrorCode::usage, "walk: stairs (rise) cannot be one of several parts");
+  }
+  Pattern pattern;
+  for (const WalkParameters& p : parts)
+    pattern.name += (pattern.name.empty() ? "" : ", then ") + title(p);
+  pattern.robot = model.name();
+  pattern.cog_height = to_tenth_millimetre(first.cog_height);
+
+  if (first.cog_height == 0) pattern.cog_height = bent_height(model);
 
   const auto start = start_feet(model, pattern);
   auto feet = start;
@@ -221,7 +235,6 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
   const double rest = to_millisecond(0.01 * std::round(100 * kZmpRest / omega));
   const double shift = to_millisecond(0.01 * std::round(100 * kZmpShift / omega));
-  const double both = p.period * p.double_support;
 
   PatternBuilder writer{pattern};
   writer.key(0, ZmpKey::Place::center);
@@ -229,28 +242,32 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters) 
   writer.phase(rest + shift, Support::both);
   Vector3d center = Vector3d::Zero();
   double yaw = 0;
-  Side swing = p.first_swing;
-  const Side leading = p.side > 0 ? Side::left : Side::right;
-  const int swings = p.rise != 0 ? 2 * p.steps : p.steps + 1;
-  if (p.rise != 0) {
-    pattern.world = stairs(model, p);
+  Side swing = first.first_swing;
+  if (first.rise != 0) {
+    pattern.world = stairs(model, first);
     // Between soles of different height the height of the ZMP is a convention.
-    pattern.tolerances["zmp_residual"] = to_tenth_millimetre(std::max(0.005, 0.6 * p.rise));
+    pattern.tolerances["zmp_residual"] = to_tenth_millimetre(std::max(0.005, 0.6 * first.rise));
   }
-  for (int i = 0; i < swings; ++i) {
-    const bool closing = i + 1 == swings;
-    if (p.rise != 0) {
-      if (i % 2 == 0) center += Vector3d(p.stride, 0, p.rise);
-    } else if (!closing) {
-      const double turned = yaw + p.turn;
-      const Vector3d move(p.stride, swing == leading ? p.side : 0.0, 0);
-      center += rpy_to_matrix({0, 0, 0.5 * (yaw + turned)}) * move;
-      yaw = turned;
+  for (size_t part = 0; part < parts.size(); ++part) {
+    const WalkParameters& p = parts[part];
+    const Side leading = p.side > 0 ? Side::left : Side::right;
+    const bool last = part + 1 == parts.size();
+    const int swings = p.rise != 0 ? 2 * p.steps : p.steps + last;
+    for (int i = 0; i < swings; ++i) {
+      const bool closing = last && i + 1 == swings;
+      if (p.rise != 0) {
+        if (i % 2 == 0) center += Vector3d(p.stride, 0, p.rise);
+      } else if (!closing) {
+        const double turned = yaw + p.turn;
+        const Vector3d move(p.stride, swing == leading ? p.side : 0.0, 0);
+        center += rpy_to_matrix({0, 0, 0.5 * (yaw + turned)}) * move;
+        yaw = turned;
+      }
+      write_step(writer, model, p, swing,
+                 foothold(center, yaw, swing == Side::left ? beside : -beside, decimals), feet);
+      if (!closing) writer.phase(p.period * p.double_support, Support::both);
+      swing = other(swing);
     }
-    write_step(writer, model, p, swing,
-               foothold(center, yaw, swing == Side::left ? beside : -beside), feet);
-    if (!closing) writer.phase(both, Support::both);
-    swing = other(swing);
   }
   writer.key(writer.t + shift, ZmpKey::Place::center);
   writer.phase(rest + shift, Support::both);

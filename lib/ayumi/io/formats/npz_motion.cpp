@@ -151,8 +151,12 @@ MotionFile read_tracking_npz(const MotionInput& source) {
   return motion;
 }
 
-std::vector<WrittenFile> write_tracking_npz(const RobotModel& model, const MotionFile& motion) {
+namespace {
+
+/// `beside` rows at the beginning and at the end each are not written.
+std::string tracking_npz(const RobotModel& model, const MotionFile& motion, size_t beside) {
   const auto rows = static_cast<size_t>(motion.rows()), bodies = model.bodies().size();
+  const size_t kept = rows - 2 * beside;
   std::vector<std::vector<Eigen::Vector3d>> position(rows);
   std::vector<std::vector<Eigen::Quaterniond>> turn(rows);
   RobotData data(model);
@@ -169,7 +173,7 @@ std::vector<WrittenFile> write_tracking_npz(const RobotModel& model, const Motio
     turn[k][0] = motion.base[k].attitude;
   }
   std::vector<double> joint, speed, place, quaternion, linear, angular;
-  for (size_t k = 0; k < rows; ++k) {
+  for (size_t k = beside; k < rows - beside; ++k) {
     const auto values = motion.values.row(static_cast<Eigen::Index>(k));
     joint.insert(joint.end(), values.begin(), values.end());
     const Eigen::VectorXd rate = rate_at(k, rows, motion.rate, [&](size_t a, size_t b) {
@@ -193,15 +197,25 @@ std::vector<WrittenFile> write_tracking_npz(const RobotModel& model, const Motio
   std::vector<std::string> names;
   for (const Body& body : model.bodies()) names.push_back(body.name);
   const size_t joints = motion.joints.size();
-  return {{"", zip_of({{"fps.npy", npy_numbers({motion.rate}, {1})},
-                       {"joint_pos.npy", npy_numbers(joint, {rows, joints})},
-                       {"joint_vel.npy", npy_numbers(speed, {rows, joints})},
-                       {"body_pos_w.npy", npy_numbers(place, {rows, bodies, 3})},
-                       {"body_quat_w.npy", npy_numbers(quaternion, {rows, bodies, 4})},
-                       {"body_lin_vel_w.npy", npy_numbers(linear, {rows, bodies, 3})},
-                       {"body_ang_vel_w.npy", npy_numbers(angular, {rows, bodies, 3})},
-                       {"joint_names.npy", npy_words(motion.joints, {joints})},
-                       {"body_names.npy", npy_words(names, {bodies})}})}};
+  return zip_of({{"fps.npy", npy_numbers({motion.rate}, {1})},
+                 {"joint_pos.npy", npy_numbers(joint, {kept, joints})},
+                 {"joint_vel.npy", npy_numbers(speed, {kept, joints})},
+                 {"body_pos_w.npy", npy_numbers(place, {kept, bodies, 3})},
+                 {"body_quat_w.npy", npy_numbers(quaternion, {kept, bodies, 4})},
+                 {"body_lin_vel_w.npy", npy_numbers(linear, {kept, bodies, 3})},
+                 {"body_ang_vel_w.npy", npy_numbers(angular, {kept, bodies, 3})},
+                 {"joint_names.npy", npy_words(motion.joints, {joints})},
+                 {"body_names.npy", npy_words(names, {bodies})}});
+}
+
+}  // namespace
+
+std::vector<WrittenFile> write_tracking_npz(const RobotModel& model, const MotionFile& motion) {
+  return {{"", tracking_npz(model, motion, 0)}};
+}
+
+std::string tracking_npz_within(const RobotModel& model, const MotionFile& motion) {
+  return tracking_npz(model, motion, 1);
 }
 
 std::string recognize_gmr_npz(const MotionInput& source) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -203,6 +204,29 @@ std::string recognize_json_table(const MotionInput& source) {
 
 MotionFile read_json_table(const MotionInput& source) {
   return read_number_motion(source, number_table(source.bytes, source.file));
+}
+
+MotionFile motion_of_table(const ReferenceTrajectory& table) {
+  MotionFile motion;
+  motion.rate = 1 / table.dt;
+  motion.joints = table.joints;
+  motion.name = std::filesystem::path(table.provenance.pattern).stem().string();
+  const auto rows = static_cast<Eigen::Index>(table.rows.size());
+  motion.values.resize(rows, static_cast<Eigen::Index>(table.joints.size()));
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const ReferenceRow& row = table.rows[static_cast<size_t>(k)];
+    motion.times.push_back(static_cast<double>(k) * table.dt);
+    motion.values.row(k) = row.theta.transpose();
+    motion.base.push_back(row.base);
+    motion.cog.push_back(row.cog);
+    motion.zmp.push_back(row.zmp);
+    motion.fz.push_back(row.fz);
+    motion.support.push_back(row.contact[0] && row.contact[1] ? Support::both
+                             : row.contact[0]                 ? Support::left
+                             : row.contact[1]                 ? Support::right
+                                                              : Support::none);
+  }
+  return motion;
 }
 
 }  // namespace ayumi

@@ -4,6 +4,7 @@
 // columns as in Ayumi's own tables; the same as JSON with "columns" and "data".
 
 #include "ayumi/io/formats/motion_file.hpp"
+#include "ayumi/motion/reference_trajectory.hpp"
 
 namespace ayumi {
 
@@ -11,5 +12,8 @@ std::string recognize_csv_table(const MotionInput& source);
 MotionFile read_csv_table(const MotionInput& source);
 std::string recognize_json_table(const MotionInput& source);
 MotionFile read_json_table(const MotionInput& source);
+
+/// The rows of a joint table, with the times that they have there.
+MotionFile motion_of_table(const ReferenceTrajectory& table);
 
 }  // namespace ayumi

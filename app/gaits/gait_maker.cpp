@@ -1,0 +1,317 @@
+#include "gaits/gait_maker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/author/edit/gait_cycle.hpp"
+#include "ayumi/author/generate/walk_in_parts.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/control/controller.hpp"
+#include "ayumi/io/formats/npz_motion.hpp"
+#include "ayumi/io/formats/table_motion.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/io/table/table.hpp"
+#include "ayumi/math/elementary.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/repair/repair_pattern.hpp"
+#include "ayumi/sim/simulator.hpp"
+#include "ayumi/task/servo_table.hpp"
+#include "certify_results.hpp"
+#include "loop_words.hpp"
+#include "simulation.hpp"
+#include "uncertain_input.hpp"
+
+namespace ayumi::app {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// Share of a disturbance of the pendulum that is left when a walk has forgotten it. Chosen: of a
+/// COG that is 15 mm elsewhere, 1.5 um are left, far below what a loop may leave open. With half or
+/// twice of it, walks have the same number of steps, or one more.
+constexpr double kForgotten = 1e-4;
+/// Of footholds [m, rad]. Chosen: with 4, as new patterns have them, the steps of a walk that turns
+/// differ by 0.05 mm and the posture by 0.02 degrees, more than a loop may leave open; with 7, by
+/// less than the solver leaves.
+constexpr int kDecimals = 7;
+
+bool is_of_the_walk(const Error& error) {
+  return error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage;
+}
+
+std::string share_words(double share) { return text::brief(100 * share, 3) + " %"; }
+
+Json figures_json(const ConsistencyReport& report) {
+  return {{"zmp_margin_m", report.summary[FindingKind::support_margin]},
+          {"joint_speed_ratio", report.summary[FindingKind::joint_speed]},
+          {"joint_torque_ratio", report.summary[FindingKind::joint_torque]}};
+}
+
+}  // namespace
+
+/// A walk that passes the check, or the reason why there is none.
+struct GaitMaker::Made {
+  std::optional<Task> task;
+  ConsistencyReport report = {};
+  double moved = 0;  ///< largest change of a joint by a repair [rad]
+  bool repaired = false;
+  std::string stage = {}, reason = {};  ///< "generate", "check", "repair"
+};
+
+GaitMaker::GaitMaker(RobotModel model, const GaitOptions& options)
+    : model_(std::move(model)), options_(options) {
+  if (!model_.has_soles())
+    fail(ErrorCode::bad_model, model_.name() +
+                                   ": the robot has no soles, so it cannot walk; name "
+                                   "them under \"soles\" of its sidecar");
+  profile_ = model_.limits(options_.profile).name;
+  controller_ = Pattern().controller;
+  if (!options_.controller.empty()) controller_ = {controller_type(options_.controller), {}};
+  check_controller(model_, controller_);
+  if (!options_.certify) return;
+  Task still = make_task(stand_pattern(model_, 0.1, options_.cog_height), model_, profile_, {}, 1);
+  study_ = load_study(still, options_.study_file);
+  // What the study says of things that this robot does not have is refused before the first walk.
+  still.pattern.controller = controller_;
+  const UncertainTask refuses(still.robot, still.series, study_.uncertainty,
+                              simulate_options(still));
+}
+
+int GaitMaker::memory(double period) const {
+  const double height = options_.cog_height > 0 ? options_.cog_height : starting_height(model_);
+  const double omega = std::sqrt(kGravity / height);
+  return std::max(2, static_cast<int>(std::ceil(-elementary::log(kForgotten) / (omega * period))));
+}
+
+int GaitMaker::lead(double period) const { return (memory(period) + 1) / 2 * 2; }
+
+WalkParameters GaitMaker::walk(const GaitCell& cell, int steps) const {
+  WalkParameters w = walk_defaults(model_);
+  w.steps = steps;
+  w.period = cell.period;
+  w.stride = cell.forward * cell.period;
+  w.side = 2 * cell.sideways * cell.period;  // only every second step leads sideways
+  w.turn = cell.turn * cell.period;
+  w.cog_height = options_.cog_height;
+  return w;
+}
+
+GaitMaker::Made GaitMaker::made(Pattern pattern, const Progress& progress) const {
+  Made result;
+  pattern.robot = options_.robot;
+  pattern.profile = options_.profile;
+  pattern.controller = controller_;
+  pattern.file.clear();
+  try {
+    result.task = make_task(std::move(pattern), model_, profile_, progress, 1);
+  } catch (const Error& error) {
+    if (!is_of_the_walk(error)) throw;
+    result.stage = "generate";
+    result.reason = error.what();
+    return result;
+  }
+  Task& task = *result.task;
+  const Judgement judged = judge(task);
+  result.report = judged.report;
+  if (judged.good()) return result;
+  RepairOptions wishes = preferred_options(task.pattern);
+  wishes.check = check_options(task);
+  const RepairResult repaired = repair(task.robot, task.pattern, task.series, wishes, progress);
+  if (repaired.status != RepairStatus::repaired) {
+    result.stage = "repair";
+    result.reason = judged.reason() + "; the repair ends with " + name_of(repaired.status);
+    if (!repaired.reasons.empty()) result.reason += ": " + repaired.reasons.front();
+    return result;
+  }
+  task.pattern.correction = repaired.correction;
+  task.series = repaired.series;
+  result.report = repaired.check;
+  result.repaired = true;
+  result.moved = repaired.max_joint_change;
+  return result;
+}
+
+void GaitMaker::simulate(const Made& walk, Json& json, std::string& stage, std::string& reason,
+                         const Progress& progress) const {
+  const Task& task = *walk.task;
+  const SimulateOptions options = simulate_options(task);
+  Simulator run(task.robot, task.series, options);
+  run.keep_samples(false);
+  while (run.advance(1000, progress) && !run.fell()) {
+  }
+  const SimulationResult r = run.result();
+  json["simulation"] = {{"outcome", name_of(r.outcome)},
+                        {"max_cog_error_m", run.largest_errors().cog},
+                        {"max_torque_ratio", r.max_torque_ratio}};
+  if (r.outcome == Outcome::stands) return;
+  stage = "simulate";
+  reason = std::string("the simulated robot ") +
+           (r.outcome == Outcome::fell ? "falls at " + text::fixed(r.fell_at, 2) + " s"
+                                       : "does not come to rest");
+}
+
+namespace {
+
+/// Rows from `first` on, `count` of them.
+ReferenceTrajectory rows_of(const ReferenceTrajectory& table, size_t first, size_t count) {
+  ReferenceTrajectory part = table;
+  part.rows.assign(table.rows.begin() + static_cast<long>(first),
+                   table.rows.begin() + static_cast<long>(first + count));
+  return part;
+}
+
+}  // namespace
+
+GaitResult GaitMaker::make(const GaitCell& cell, const Progress& progress) const {
+  GaitResult result;
+  Json& json = result.json;
+  json = {{"name", cell.name},
+          {"forward_m_s", cell.forward},
+          {"sideways_m_s", cell.sideways},
+          {"turn_rad_s", cell.turn},
+          {"period_s", cell.period},
+          {"status", "missing"},
+          {"stage", nullptr},
+          {"reason", nullptr}};
+  const auto missing = [&](const std::string& stage, const std::string& reason) {
+    json["stage"] = stage;
+    json["reason"] = reason;
+    return result;
+  };
+  const int begin = lead(cell.period);
+  const WalkParameters w = walk(cell, begin + 1 + memory(cell.period));
+  Made walk;
+  try {
+    Pattern pattern = walk_in_parts(model_, {w}, kDecimals);
+    pattern.name = cell.name;
+    walk = made(std::move(pattern), progress);
+  } catch (const Error& error) {
+    if (!is_of_the_walk(error)) throw;
+    return missing("generate", error.what());
+  }
+  if (!walk.reason.empty()) return missing(walk.stage, walk.reason);
+  Task& task = *walk.task;
+  json.update(figures_json(walk.report));
+  json["repaired"] = walk.repaired;
+  if (walk.repaired) json["repair_max_joint_rad"] = walk.moved;
+
+  const MotionPart motion{task.pattern, task.series};
+  const LoopGap whole = loop_gap(model_, motion);
+  const GaitCycle cycle = gait_cycle(model_, motion, begin);
+  const LoopGap& open = whole.closed ? cycle.gap : whole;
+  if (!open.closed)
+    return missing("loop", std::string("the end of the ") + (whole.closed ? "cycle" : "walk") +
+                               " does not meet its beginning: " + gap_words(open));
+
+  std::string stage, reason;
+  simulate(walk, json, stage, reason, progress);
+  if (!reason.empty()) return missing(stage, reason);
+  json["certificate"] = nullptr;
+  if (options_.certify) {
+    CertifyOptions study = options_.study;
+    study.threads = 1;
+    const UncertainTask uncertain(task.robot, task.series, study_.uncertainty,
+                                  simulate_options(task));
+    const KnownResults cases = run_cases(uncertain, study, {}, {}, progress);
+    const Certificate found = certificate(study, cases);
+    json["certificate"] = certificate_json(found, study);
+    if (!found.outcome.certified)
+      return missing("certify",
+                     std::to_string(found.outcome.failures) + " of " +
+                         std::to_string(found.outcome.runs) +
+                         " runs failed; the robot fails with a probability of at least " +
+                         share_words(found.lower) + " and at most " + share_words(found.upper));
+  }
+  json["status"] = options_.certify ? "certified" : "stands";
+
+  const std::string text = pattern_text(task.pattern, {"A walk of a library: " + cell.name +
+                                                       " (m/s forward, m/s to the left, deg/s, "
+                                                       "s for each step)."});
+  task.pattern.sha256 = sha256(text);
+  const std::string pattern = "patterns/" + cell.name + ".json";
+  result.files.emplace_back(pattern, text);
+
+  // Rows of the walk, and of the cycle at the next rate of which a whole number is in it.
+  const double length = static_cast<double>(cycle.end - cycle.begin) * task.series.dt;
+  ReferenceTrajectory table = table_of_series(model_, profile_, task.series, ServoContent::ideal);
+  table.provenance = provenance(task, "none");
+  const ReferenceTrajectory rows = resampled(table, 1 / options_.rate);
+  const double count = std::max(2.0, std::round(length * options_.rate)), step = length / count;
+  const ReferenceTrajectory fine = resampled(table, step);
+  const auto first =
+      static_cast<size_t>(std::ceil(static_cast<double>(cycle.begin) * task.series.dt / step));
+  const auto number = static_cast<size_t>(count);
+  const auto add = [&](const std::string& folder, const ReferenceTrajectory& part,
+                       const std::string& npz) {
+    const std::string path = folder + "/" + cell.name;
+    result.files.emplace_back(path + ".csv", reference_csv(part));
+    result.files.emplace_back(path + ".npz", npz);
+    return Json{{"table", path + ".csv"},
+                {"npz", path + ".npz"},
+                {"rows", part.rows.size()},
+                {"fps", 1 / part.dt}};
+  };
+  const MotionFile around = motion_of_table(rows_of(fine, first - 1, number + 2));
+  json["pattern"] = pattern;
+  json["pattern_sha256"] = task.pattern.sha256;
+  json["walk"] =
+      add("walks", rows, write_tracking_npz(model_, motion_of_table(rows)).front().bytes);
+  json["cycle"] = add("cycles", rows_of(fine, first, number), tracking_npz_within(model_, around));
+  json["cycle"].update(Json{{"begin_s", static_cast<double>(first) * step},
+                            {"duration_s", length},
+                            {"first_swing", cycle.first == Side::left ? "left" : "right"},
+                            {"displacement_m", {cycle.displacement.x(), cycle.displacement.y()}},
+                            {"turn_rad", cycle.turn},
+                            {"gap", gap_json(cycle.gap)}});
+  return result;
+}
+
+GaitResult GaitMaker::change(const GaitCell& from, const GaitCell& to,
+                             const Progress& progress) const {
+  GaitResult result;
+  Json& json = result.json;
+  json = {{"from", from.name},
+          {"to", to.name},
+          {"status", "missing"},
+          {"stage", nullptr},
+          {"reason", nullptr}};
+  const auto missing = [&](const std::string& stage, const std::string& reason) {
+    json["stage"] = stage;
+    json["reason"] = reason;
+    return result;
+  };
+  const int steps = lead(from.period);
+  Made walked;
+  try {
+    Pattern pattern = walk_in_parts(
+        model_, {walk(from, steps), walk(to, lead(to.period) + 1 + memory(to.period))}, kDecimals);
+    pattern.name = from.name + " to " + to.name;
+    walked = made(std::move(pattern), progress);
+  } catch (const Error& error) {
+    if (!is_of_the_walk(error)) throw;
+    return missing("generate", error.what());
+  }
+  if (!walked.reason.empty()) return missing(walked.stage, walked.reason);
+  std::string stage, reason;
+  simulate(walked, json, stage, reason, progress);
+  if (!reason.empty()) return missing(stage, reason);
+  const Task& task = *walked.task;
+  json["status"] = "stands";
+  json.update(figures_json(walked.report));
+  json["repaired"] = walked.repaired;
+  if (walked.repaired) json["repair_max_joint_rad"] = walked.moved;
+  const std::string path = "transitions/" + from.name + "_to_" + to.name + ".json";
+  const std::string text = pattern_text(task.pattern, {"A walk of a library that changes from " +
+                                                       from.name + " to " + to.name + "."});
+  result.files.emplace_back(path, text);
+  json["pattern"] = path;
+  json["pattern_sha256"] = sha256(text);
+  const GaitCycle before = gait_cycle(model_, {task.pattern, task.series}, steps);
+  json["changes_at_s"] = static_cast<double>(before.begin) * task.series.dt;
+  return result;
+}
+
+}  // namespace ayumi::app

@@ -1,0 +1,146 @@
+#include "gaits/library_folder.hpp"
+
+#include <algorithm>
+
+#include "ayumi/base/error.hpp"
+
+namespace ayumi::app {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kStaging = ".ayumi_part";
+constexpr const char* kIndex = "index.json";
+constexpr const char* kAsked = "asked.json";
+/// There while files are moved: those that are in their place then are the library's own.
+constexpr const char* kDelivering = "delivering.json";
+/// What a library has at the top of its folder beside the index.
+constexpr const char* kTop[] = {"patterns", "walks", "cycles", "transitions", "map.svg", "map.png"};
+constexpr const char* kFormat = "ayumi.gaits/1";
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(fs::symlink_status(path, ignored));
+}
+
+/// The files that a finished library lists, the index included. Names that leave the folder are no
+/// library's.
+std::vector<std::string> files_of_library(const fs::path& folder) {
+  const fs::path index = folder / kIndex;
+  std::vector<std::string> files = {kIndex};
+  try {
+    const Json json = Json::parse(read_file(index));
+    if (json.at("format") != kFormat) throw std::out_of_range("format");
+    for (const Json& each : json.at("files")) {
+      const fs::path path = fs::path(each.get<std::string>()).lexically_normal();
+      if (path.is_absolute() || path.empty() || *path.begin() == "..")
+        throw std::out_of_range("files");
+      files.push_back(path.string());
+    }
+  } catch (const Json::exception&) {
+    files.clear();
+  } catch (const std::out_of_range&) {
+    files.clear();
+  }
+  if (files.empty())
+    fail(ErrorCode::bad_file, index.string() +
+                                  ": this is not the index of a library of walks, so no library "
+                                  "replaces it; move it away or choose another folder");
+  return files;
+}
+
+void require_target(const fs::path& folder, bool replace) {
+  if (!is_there(folder)) return;
+  if (!fs::is_directory(folder))
+    fail(ErrorCode::bad_file, folder.string() + ": this is not a folder; -o needs a folder");
+  if (is_there(folder / kStaging / kDelivering)) return;
+  if (is_there(folder / kIndex)) {
+    files_of_library(folder);
+    if (!replace) refuse_existing(folder);
+    return;
+  }
+  for (const char* name : kTop)
+    if (is_there(folder / name))
+      fail(ErrorCode::bad_file, (folder / name).string() +
+                                    ": this already exists and is not a part of a library of "
+                                    "walks; move it away or choose another folder");
+}
+
+}  // namespace
+
+LibraryFolder::LibraryFolder(const fs::path& folder, const Json& asked, bool replace)
+    : target_((folder / "").parent_path()), staging_(target_ / kStaging), lock_(target_) {
+  require_target(target_, replace);
+  const std::string text = asked.dump(1) + "\n";
+  std::error_code error;
+  if (is_there(staging_ / kAsked) && !replace) {
+    if (read_file(staging_ / kAsked) == text) return;
+    fail(ErrorCode::bad_file, target_.string() +
+                                  ": this folder holds an unfinished library of which other things "
+                                  "were asked; give the same options to go on, or --force to begin "
+                                  "anew, or choose another folder");
+  }
+  // The same question goes on also with --force, unless it was finished and delivered before.
+  if (is_there(staging_ / kAsked) && read_file(staging_ / kAsked) == text) return;
+  fs::remove_all(staging_, error);
+  fs::create_directories(staging_ / "done", error);
+  if (error)
+    fail(ErrorCode::bad_file, target_.string() + ": cannot be written (" + error.message() + ")");
+  write_file(staging_ / kAsked, text);
+}
+
+std::optional<Json> LibraryFolder::known(const std::string& name) const {
+  const fs::path file = staging_ / "done" / (name + ".json");
+  if (!is_there(file)) return {};
+  try {
+    return Json::parse(read_file(file));
+  } catch (const Json::exception&) {  // written whole, so something else has changed it
+    return {};
+  }
+}
+
+void LibraryFolder::add(const std::string& name, const Json& result,
+                        const LibraryFiles& files) const {
+  for (const auto& [path, bytes] : files) {
+    fs::create_directories((staging_ / path).parent_path());
+    write_file(staging_ / path, bytes);
+  }
+  write_file(staging_ / "done" / (name + ".json"), result.dump());
+}
+
+void LibraryFolder::deliver(const Json& index, const std::vector<std::string>& paths) const {
+  std::vector<std::string> previous;
+  const bool again = is_there(staging_ / kDelivering);
+  if (is_there(target_ / kIndex)) previous = files_of_library(target_);
+  if (!again)
+    for (const std::string& path : paths)
+      if (is_there(target_ / path) &&
+          std::find(previous.begin(), previous.end(), path) == previous.end())
+        fail(ErrorCode::bad_file, (target_ / path).string() +
+                                      ": this already exists and is not a part of the library that "
+                                      "is replaced; move it away or choose another folder");
+  write_file(staging_ / kIndex, index.dump(1) + "\n");
+  write_file(staging_ / kDelivering, "true\n");
+  try {
+    // From here until the index is moved there is no complete library in the folder.
+    for (const std::string& path : previous) fs::remove(target_ / path);
+    for (const std::string& path : paths) {
+      fs::create_directories((target_ / path).parent_path());
+      if (is_there(staging_ / path)) fs::rename(staging_ / path, target_ / path);
+    }
+    fs::rename(staging_ / kIndex, target_ / kIndex);
+  } catch (const fs::filesystem_error& error) {
+    fail(ErrorCode::bad_file,
+         target_.string() + ": cannot be written (" + error.code().message() + ")");
+  }
+  std::error_code ignored;
+  fs::remove_all(staging_, ignored);
+  // Folders of the library that was replaced.
+  for (const char* name : kTop)
+    if (fs::is_directory(target_ / name, ignored) && fs::is_empty(target_ / name, ignored))
+      fs::remove(target_ / name, ignored);
+}
+
+}  // namespace ayumi::app

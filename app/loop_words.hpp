@@ -1,0 +1,16 @@
+#pragma once
+// How well the end of a motion meets its beginning, in words and as JSON.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "ayumi/author/edit/edit.hpp"
+
+namespace ayumi::app {
+
+/// "feet 0.01 mm, base 0.02 mm, posture 0.10 deg (l_knee), rates 0.00 deg/s"
+std::string gap_words(const LoopGap& gap);
+
+nlohmann::ordered_json gap_json(const LoopGap& gap);
+
+}  // namespace ayumi::app

@@ -1,0 +1,25 @@
+#pragma once
+// The part of a walk that repeats: two steps, from the middle of the double support before the
+// swing of one foot to the middle of the double support before the next swing of the same foot. At
+// both times the robot has the same posture and rates, moved over the ground, when the walk has
+// forgotten its start and does not yet know its end.
+
+#include <Eigen/Core>
+
+#include "ayumi/author/edit/edit.hpp"
+
+namespace ayumi {
+
+struct GaitCycle {
+  long begin = 0, end = 0;       ///< samples at both ends
+  Side first = Side::right;      ///< foot that swings first
+  Eigen::Vector2d displacement;  ///< of the robot in one cycle, in its heading at the begin [m]
+  double turn = 0;               ///< in one cycle, left positive [rad]
+  LoopGap gap;                   ///< between the end and the begin
+};
+
+/// The cycle that begins before swing `swing`, counted from 0. Throws Error(bad_pattern) where the
+/// pattern has fewer than `swing` + 3 swings or a foot is in the air at an end of the cycle.
+GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swing);
+
+}  // namespace ayumi

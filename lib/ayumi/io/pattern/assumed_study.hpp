@@ -1,0 +1,15 @@
+#pragma once
+// The uncertainty of a robot about which nobody has stated any: the usual ranges of small humanoid
+// robots, scaled to this one. Every distribution is assumed, and says so.
+
+#include "ayumi/io/pattern/study_file.hpp"
+
+namespace ayumi {
+
+/// As a study file, which can be written and edited.
+std::string assumed_study_text(const RobotModel& robot);
+
+/// The same, read. Its name of a file says that it is assumed.
+Study assumed_study(const RobotModel& robot);
+
+}  // namespace ayumi

@@ -1,0 +1,40 @@
+#pragma once
+// The real program in the background, to be stopped by a signal.
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "tests/cli/program.hpp"
+
+namespace ayumi::test {
+
+/// Starts `program arguments…` in `folder`, without streams, and does not wait for it.
+inline pid_t start(const std::vector<std::string>& arguments, const fs::path& folder) {
+  std::vector<std::string> words = {program_under_test()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int nothing = ::open("/dev/null", O_RDWR);
+    if (::chdir(folder.c_str()) != 0 || ::dup2(nothing, 1) < 0 || ::dup2(nothing, 2) < 0)
+      ::_exit(126);
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  return child;
+}
+
+/// Whether the condition holds within `seconds`.
+inline bool holds_within(double seconds, const std::function<bool()>& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+}  // namespace ayumi::test
