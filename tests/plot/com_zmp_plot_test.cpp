@@ -102,10 +102,10 @@ TEST(Loci, OnlyWhatDiffersIsDrawnWithJointsAndLimits) {
 TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
   const TwoRuns runs;
   const Drawing drawing = draw_loci(runs.both(), {});
-  EXPECT_TRUE(
-      has(drawing,
-          "The axes fit the command and the runs that stand; the curves of a fall end at the edge of "
-          "the axes. A cross marks the fall."));
+  EXPECT_TRUE(has(
+      drawing,
+      "The axes fit the command and the runs that stand; the curves of a fall end at the edge of "
+      "the axes. A cross marks the fall."));
   for (const auto& item : drawing.items)
     if (const auto* path = std::get_if<DrawnPath>(&item)) {
       for (const Eigen::Vector2d& p : path->points)

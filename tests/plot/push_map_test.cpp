@@ -82,7 +82,8 @@ TEST(PushMap, RefusesWhatItCannotDraw) {
   EXPECT_NE(message({}).find("there is no phase to draw"), std::string::npos);
   PushMap map = four_directions();
   map.phases[1].curves[1].impulse.pop_back();
-  EXPECT_NE(message(map).find("standing: the number of values of a curve is not the number of directions"),
+  EXPECT_NE(message(map).find(
+                "standing: the number of values of a curve is not the number of directions"),
             std::string::npos);
   map = four_directions();
   map.laws = {"a", "b", "c", "d", "e"};
