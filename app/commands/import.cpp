@@ -117,7 +117,18 @@ void import_keys(const Context& context, const ImportCommand& options, ImportedK
        keys.filled}}.dump(2));
 }
 
+// Not even --force lets the result replace the file that it comes from.
+void refuse_own_input(const ImportCommand& options) {
+  std::error_code ignored;
+  for (const fs::path& path :
+       {fs::path(options.out), table_beside(options.out), sequence_beside(options.out)})
+    if (fs::equivalent(path, options.file, ignored))
+      fail(ErrorCode::bad_file, options.file + ": the result would overwrite this file (" +
+                                    path.string() + "); choose another name with -o");
+}
+
 void import_motion(const Context& context, const ImportCommand& options) {
+  refuse_own_input(options);
   refuse_overwriting(context, options.out);
   refuse_overwriting(context, table_beside(options.out));
   refuse_overwriting(context, sequence_beside(options.out));

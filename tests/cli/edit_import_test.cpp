@@ -125,6 +125,10 @@ TEST_F(Edit, SequencesComeBack) {
   EXPECT_NEAR(last["position_m"][0], 0.24, 0.004);
   // Made for the robot's own file, the table takes the name of no other.
   EXPECT_EQ(ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "walk.json"}).exit_code, 3);
+  const Output own =
+      ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "walk.json", "--force"});
+  EXPECT_EQ(own.exit_code, 3);
+  EXPECT_NE(own.err.find("the result would overwrite this file"), std::string::npos) << own.err;
   const Output checked = ayumi({"check", "back.json", "--json"});
   EXPECT_TRUE(checked.exit_code == 0 || checked.exit_code == 1) << checked.err;
   const Json summary = Json::parse(checked.out)["summary"];

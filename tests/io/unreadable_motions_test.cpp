@@ -110,8 +110,7 @@ std::pair<size_t, size_t> middle_number(const std::string& text) {
   const auto digit = [&](size_t i) {
     return std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.' || text[i] == '-';
   };
-  size_t begin = text.find("positions: [", text.size() / 2);  // velocities are not read
-  begin = text.find_first_of(",[ \"", begin == std::string::npos ? text.size() / 2 : begin);
+  size_t begin = text.find_first_of(",[ \"", text.size() / 2);
   while (begin + 1 < text.size() && !digit(begin)) ++begin;
   size_t end = begin;
   while (end < text.size() && (digit(end) || text[end] == 'e')) ++end;

@@ -61,6 +61,17 @@ Trajectory trajectory_of(const MotionInput& source, const YamlNode& names, const
       source.refuse(yaml_line(point), "a point needs positions and time_from_start");
     if (!positions->items.empty())
       source.refuse(yaml_line(*positions), "the positions are not finite numbers");
+    // They are not used, but a file with such values is broken.
+    for (const char* const key : {"velocities", "accelerations", "effort"}) {
+      const YamlNode* const list = point.find(key);
+      if (!list) continue;
+      if (!list->items.empty())
+        source.refuse(yaml_line(*list), "the " + std::string(key) + " are not finite numbers");
+      if (!list->numbers.empty() && list->numbers.size() != result.joints.size())
+        source.refuse(yaml_line(*list), text::counted(list->numbers.size(), "value") + " of " +
+                                            key + " for " +
+                                            text::counted(result.joints.size(), "joint"));
+    }
     add_key(source, yaml_line(point), duration_of(source, *time), positions->numbers, result);
   }
   if (result.times.empty()) source.refuse(yaml_line(points), "there is no point");
