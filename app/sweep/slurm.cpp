@@ -147,6 +147,13 @@ std::string shell_word(const std::string& text) {
   return quoted + "'";
 }
 
+/// A path as sbatch reads it, for which % begins a field.
+std::string sbatch_path(const fs::path& path) {
+  std::string text;
+  for (const char c : path.string()) text += c == '%' ? std::string("%%") : std::string(1, c);
+  return text;
+}
+
 using TaskNumber = std::pair<long, long>;  // number of the array, and of the task in it (from 1)
 
 /// What was submitted and may still arrive.
@@ -480,11 +487,10 @@ class Engine {
     const fs::path script = array_file(folder_, array, ".sh");
     write_file(list, lists);
     write_file(script, script_of(context_, runner_, folder_, state_.name, array, count));
-    std::vector<std::string> words = {
-        "sbatch", "--parsable",
-        "--output=" +
-            (fs::absolute(folder_) / ("log-" + std::to_string(array) + "-%a.txt")).string(),
-        "--chdir=" + fs::current_path().string()};
+    std::vector<std::string> words = {"sbatch", "--parsable",
+                                      "--output=" + sbatch_path(fs::absolute(folder_)) + "/log-" +
+                                          std::to_string(array) + "-%a.txt",
+                                      "--chdir=" + fs::current_path().string()};
     if (!options_.partition.empty()) words.push_back("--partition=" + options_.partition);
     if (!options_.time.empty()) words.push_back("--time=" + options_.time);
     if (!options_.memory.empty()) words.push_back("--mem=" + options_.memory);
