@@ -228,8 +228,8 @@ GaitResult GaitMaker::make(const GaitCell& cell, const Progress& progress) const
   json["status"] = options_.certify ? "certified" : "stands";
 
   const std::string text = pattern_text(task.pattern, {"A walk of a library: " + cell.name +
-                                                       " (m/s forward, m/s to the left, deg/s, "
-                                                       "s for each step)."});
+                                                       " (mm/s forward, mm/s to the left, deg/s, "
+                                                       "ms for each step)."});
   task.pattern.sha256 = sha256(text);
   const std::string pattern = "patterns/" + cell.name + ".json";
   result.files.emplace_back(pattern, text);
