@@ -99,6 +99,13 @@ std::vector<GaitCell> GaitGrid::cells() const {
   return all;
 }
 
+std::vector<GaitCell> GaitGrid::corners() const {
+  const auto ends = [](const std::vector<double>& axis) {
+    return axis.size() == 1 ? axis : std::vector{axis.front(), axis.back()};
+  };
+  return GaitGrid{ends(forward), ends(sideways), ends(turn), ends(period)}.cells();
+}
+
 std::vector<std::pair<size_t, size_t>> GaitGrid::neighbours() const {
   // Values of each axis, and the distance of two neighbours in the list of cells.
   const std::array<std::pair<size_t, size_t>, 4> axes = {

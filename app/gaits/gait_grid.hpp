@@ -27,6 +27,8 @@ struct GaitGrid {
   /// Cells by period, then turning rate, then forward speed, then sideways speed.
   GaitCell cell(size_t index) const;
   std::vector<GaitCell> cells() const;
+  /// Those with the least or the largest value of every axis.
+  std::vector<GaitCell> corners() const;
   /// Pairs of cells that differ by one place on one axis, each pair in both orders.
   std::vector<std::pair<size_t, size_t>> neighbours() const;
 };
