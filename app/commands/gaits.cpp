@@ -111,7 +111,7 @@ Json asked_json(const GaitMaker& maker, const GaitOptions& options, const GaitGr
           {"profile", maker.profile()},
           {"controller", name_of(maker.controller().type)},
           {"grid", grid_json(grid)},
-          {"cog_height_m", options.cog_height},
+          {"cog_height_m", maker.height()},
           {"rate_hz", options.rate},
           {"study", study},
           {"with_transitions", options.transitions}};
@@ -234,8 +234,10 @@ void make_gaits(Context& context, GaitsCommand command) {
   GaitGrid grid;
   fill_axes(command, model, grid);
   options.robot = robot_from(command.robot, command.out);
-  const GaitMaker maker(std::move(model), options);
+  GaitMaker maker(std::move(model), options);
   const std::vector<GaitCell> grid_cells = grid.cells();
+  if (options.cog_height == 0)
+    maker.use_height(maker.best_height(grid.corners(), context.threads, context.progress()));
   const auto neighbours =
       options.transitions ? grid.neighbours() : std::vector<std::pair<size_t, size_t>>();
   const Json asked = asked_json(maker, options, grid);
@@ -342,8 +344,9 @@ void add_gaits(CLI::App& app, Context& context) {
   add_axis("--turn", options->turn, "Turning rates to the left [deg/s] (default: -8, 0 and 8).");
   add_axis("--period", options->period, "Times of one step [s] (default: that of new walk).");
   command
-      ->add_option("--cog-height", gaits.cog_height,
-                   "COG height above the soles [m] (default: that of new walk).")
+      ->add_option(
+          "--cog-height", gaits.cog_height,
+          "COG height above the soles [m] (default: the one with which most walks pass the check).")
       ->check(number_within(0.01, 5.0).description(""))
       ->type_name("M");
   command->add_option("--rate", gaits.rate, "Rows per second of tables and archives.")

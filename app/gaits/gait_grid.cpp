@@ -16,6 +16,9 @@ namespace {
 /// Values of an axis at most. Chosen: above what can be read in a map; half or twice of it changes
 /// only which mistyped list is refused.
 constexpr long kMostValues = 1000;
+/// Distance of two values of an axis [m/s, deg/s, s]. Chosen: names of cells differ, and below what
+/// a walk can show; half or twice of it changes nothing.
+constexpr double kLeastDistance = 1e-6;
 
 std::vector<std::string> split_at(const std::string& words, char separator) {
   std::vector<std::string> parts = {""};
@@ -66,8 +69,9 @@ std::vector<double> axis_values(const std::string& words, const std::string& opt
                                "FROM:TO:COUNT, for example 0:0.1:3");
   }
   for (size_t i = 1; i < values.size(); ++i)
-    if (!(values[i] > values[i - 1]))
-      fail(ErrorCode::usage, option + ": the values must ascend, but " + text::exact(values[i]) +
+    if (!(values[i] > values[i - 1] + kLeastDistance))
+      fail(ErrorCode::usage, option + ": the values must ascend by more than " +
+                                 text::brief(kLeastDistance) + ", but " + text::exact(values[i]) +
                                  " comes after " + text::exact(values[i - 1]));
   if (values.size() > kMostValues)
     fail(ErrorCode::usage, option + ": " + std::to_string(values.size()) +
@@ -79,8 +83,10 @@ GaitCell GaitGrid::cell(size_t index) const {
   const size_t s = index % sideways.size(), f = index / sideways.size() % forward.size();
   const size_t rest = index / (sideways.size() * forward.size());
   const size_t t = rest % turn.size(), p = rest / turn.size();
-  return {.name = "f" + text::exact(forward[f]) + "_s" + text::exact(sideways[s]) + "_t" +
-                  text::exact(turn[t]) + "_p" + text::exact(period[p]),
+  // Whole numbers in most grids, so that names have no points.
+  const auto thousandths = [](double value) { return text::brief(1e3 * value, 9); };
+  return {.name = "f" + thousandths(forward[f]) + "_s" + thousandths(sideways[s]) + "_t" +
+                  text::brief(turn[t], 9) + "_p" + thousandths(period[p]),
           .forward = forward[f],
           .sideways = sideways[s],
           .turn = turn[t] * std::numbers::pi / 180,
@@ -91,6 +97,13 @@ std::vector<GaitCell> GaitGrid::cells() const {
   std::vector<GaitCell> all;
   for (size_t i = 0; i < size(); ++i) all.push_back(cell(i));
   return all;
+}
+
+std::vector<GaitCell> GaitGrid::corners() const {
+  const auto ends = [](const std::vector<double>& axis) {
+    return axis.size() == 1 ? axis : std::vector{axis.front(), axis.back()};
+  };
+  return GaitGrid{ends(forward), ends(sideways), ends(turn), ends(period)}.cells();
 }
 
 std::vector<std::pair<size_t, size_t>> GaitGrid::neighbours() const {

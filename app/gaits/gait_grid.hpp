@@ -11,7 +11,7 @@ namespace ayumi::app {
 /// What a walk is asked to do, as a command of velocity: distances and angles of one step divided
 /// by its period.
 struct GaitCell {
-  std::string name;     ///< "f0.05_s-0.02_t10_p0.55": m/s, m/s, deg/s, s
+  std::string name;     ///< "f50_s-20_t10_p550": mm/s, mm/s, deg/s, ms
   double forward = 0;   ///< [m/s]
   double sideways = 0;  ///< left positive [m/s]
   double turn = 0;      ///< left positive [rad/s]
@@ -27,6 +27,8 @@ struct GaitGrid {
   /// Cells by period, then turning rate, then forward speed, then sideways speed.
   GaitCell cell(size_t index) const;
   std::vector<GaitCell> cells() const;
+  /// Those with the least or the largest value of every axis.
+  std::vector<GaitCell> corners() const;
   /// Pairs of cells that differ by one place on one axis, each pair in both orders.
   std::vector<std::pair<size_t, size_t>> neighbours() const;
 };

@@ -42,6 +42,14 @@ class GaitMaker {
   const Study& study() const { return study_; }
   const ControllerSpec& controller() const { return controller_; }
 
+  /// The COG height with which most of the cells pass the check without a repair; of several, the
+  /// one nearest to that of new walks. 0: that one [m].
+  double best_height(const std::vector<GaitCell>& cells, int threads,
+                     const Progress& progress) const;
+  /// Of all walks from now on; 0: that of new walks [m].
+  void use_height(double height) { options_.cog_height = height; }
+  double height() const;
+
   /// The same for any number of threads. Any number of them may call it.
   GaitResult make(const GaitCell& cell, const Progress& progress) const;
   /// A walk from one cell to another.

@@ -154,7 +154,7 @@ TEST(Gaits, BadInputIsOneLineAndWritesNothing) {
     EXPECT_NE(output.err.find(message), std::string::npos) << output.err;
     EXPECT_FALSE(fs::exists(folder / "lib"));
   };
-  refused({"--forward", "0.1,0.05"}, 2, "--forward: the values must ascend");
+  refused({"--forward", "0.1,0.05"}, 2, "--forward: the values must ascend by more than");
   refused({"--forward", "0:0.1"}, 2, "FROM:TO:COUNT");
   refused({"--turn", "0:10:2.5"}, 2, "whole number");
   refused({"--sideways", "left"}, 2, "'left' is not a number");
