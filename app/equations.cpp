@@ -381,6 +381,10 @@ const char* kResolve =
     "Many joint rates give the COG its reference velocity while the free foot and the trunk follow "
     "the plan. This equation selects the rates nearest to the commanded ones, weighted with W. (v "
     "is u - J_U cmd dtheta; the paper prints the other sign.)";
+const char* kTask =
+    "Many joint rates give the COG its reference velocity while the free foot and the trunk follow "
+    "the plan. Of these rates, those are wanted that are nearest to the commanded ones, weighted "
+    "with W. J_U and u stack the two conditions; (23) is the solution.";
 const char* kJump =
     "Height law of the variable impedant pendulum: a spring and a damper act between the COG and "
     "its reference height. The gains of (25) hold the height without overshoot. The gains of (26) "
@@ -401,38 +405,60 @@ double RunInstant::gain(const std::string& name) const {
 const std::vector<Equation>& equations() {
   static const std::vector<Equation> all = [] {
     std::vector<Equation> list;
-    const auto add = [&](int first, int last, const char* formula, const char* words,
+    const auto add = [&](int number, const char* formula, const char* words,
                          EquationNumbers (*numbers)(const RunInstant&)) {
-      for (int n = first; n <= last; ++n) list.push_back({n, formula, words, numbers});
+      list.push_back({number, formula, words, numbers});
     };
-    add(1, 4, "0v_k = 0J_k dtheta,  0w_k = 0J_wk dtheta", kTree, nullptr);
-    add(5, 7, "0dp_G = sum m_k 0dp_Gk / sum m_k = 0J_G dtheta", kFloating, cog_numbers);
-    add(8, 11, "w_0 = w_F - R_0 0J_wF dtheta,  dp_0 analogously, with the foot F at rest",
-        kAnchored, nullptr);
-    add(12, 13, "dp_G = J_G dtheta", kCogJacobian, cog_numbers);
-    add(14, 15, "ddx = w2 (x - x_Z),  ddy = w2 (y - y_Z)", kPendulum, pendulum_numbers);
-    add(16, 16, "ddz = f_z / m - g",
+    add(1, "dp = dp_0 - (R_0 0p) x w_0 + R_0 0dp", kTree, nullptr);
+    add(2, "w_k = w_0 + R_0 0w_k", kTree, nullptr);
+    add(3, "0w_k = 0J_wk dtheta", kTree, nullptr);
+    add(4, "0dp = 0J dtheta", kTree, nullptr);
+    add(5, "dp_G = dp_0 - (R_0 0p_G) x w_0 + R_0 0dp_G", kFloating, cog_numbers);
+    add(6, "0dp_G = sum_{k>=1} m_k 0dp_Gk / sum_{k>=0} m_k", kFloating, cog_numbers);
+    add(7, "0J_G = sum_{k>=1} m_k 0J_Gk / sum_{k>=0} m_k", kFloating, cog_numbers);
+    add(8, "w_F = 0  <=>  w_0 = -R_0 0w_F", kAnchored, nullptr);
+    add(9, "dp_F = 0  <=>  dp_0 = (R_0 0p_F) x w_0 - R_0 0dp_F", kAnchored, nullptr);
+    add(10, "w_0 = -R_0 0J_wF dtheta", kAnchored, nullptr);
+    add(11, "dp_0 = -R_0 (0p_F x (0J_wF dtheta) + 0J_F dtheta)", kAnchored, nullptr);
+    add(12, "dp_G = R_0 (0J_G - 0J_F + [(0p_G - 0p_F) x] 0J_wF) dtheta", kCogJacobian, cog_numbers);
+    add(13, "J_G = R_0 (0J_G - 0J_F + [(0p_G - 0p_F) x] 0J_wF)", kCogJacobian, cog_numbers);
+    add(14, "ddx_G = w2 (x_G - x_Z)", kPendulum, pendulum_numbers);
+    add(15, "ddy_G = w2 (y_G - y_Z)", kPendulum, pendulum_numbers);
+    add(16, "ddz_G = f_z / m - g",
         "The vertical ground force carries the weight; the difference between the two accelerates "
         "the COG.",
         vertical_numbers);
-    add(17, 17, "w2 = f_z / (m (z_G - z_Z))",
+    add(17, "w2 = f_z / (m (z_G - z_Z))",
         "w is the rate of the pendulum: a lower robot falls faster. Without a ground force, w has "
         "no "
         "meaning.",
         omega_numbers);
-    add(18, 19, "ref x_Z = cmd x_Z - K Delta x - D Delta dx, then the nearest point of the support",
+    add(18,
+        "ref x_Z = cmd x_Z - K_x Delta x_G - D_x Delta dx_G, then the nearest point of the support",
         kLong, zmp_numbers);
-    add(20, 20, "ref f_z = cmd f_z + m (K_z Delta z + D_z Delta dz), not below f_min",
+    add(19,
+        "ref y_Z = cmd y_Z - K_y Delta y_G - D_y Delta dy_G, then the nearest point of the support",
+        kLong, zmp_numbers);
+    add(20, "ref f_z = cmd f_z + m (K_z Delta z_G + D_z Delta dz_G), not below f_min",
         "This is the law for the height: the feet push harder when the COG is too low or sinks.",
         force_numbers);
-    add(21, 21, "Delta = cmd - measured",
+    add(21, "Delta p_G = cmd p_G - p_G",
         "Delta is the command minus the measurement, in the frame of the foot on which the robot "
         "stands.",
         delta_numbers);
-    add(22, 23, "ref dtheta = cmd dtheta + W^-1 J_U' (J_U W^-1 J_U')^-1 v,  v = u - J_U cmd dtheta",
+    add(22,
+        "minimise 1/2 (cmd dtheta - ref dtheta)' W (cmd dtheta - ref dtheta)  subject to  "
+        "J_G ref dtheta = ref dp_G,  J_C ref dtheta = c  <=>  J_U ref dtheta = u",
+        kTask, resolution_numbers);
+    add(23, "ref dtheta = cmd dtheta + W^-1 J_U' (J_U W^-1 J_U')^-1 v,  v = u - J_U cmd dtheta",
         kResolve, resolution_numbers);
-    add(24, 27, "ref f_z = K_Pz (ref z - z) + K_Dz (ref dz - dz) + m g", kJump, spring_numbers);
-    add(28, 29, "ref dtheta = W^-1 J_U' (J_U W^-1 J_U')^-1 u", kSynergy, resolution_numbers);
+    add(24, "ref f_z = K_Pz (ref z_G - z_G) + K_Dz (ref dz_G - dz_G) + m g", kJump, spring_numbers);
+    add(25, "K_Pz > 0,  K_Dz > 0,  K_Dz^2 >= 4 m K_Pz", kJump, spring_numbers);
+    add(26, "K_Dz = 0,  K_Pz = 2 m g z_H / z_d^2", kJump, spring_numbers);
+    add(27, "K_Dz = 0,  K_Pz = m dz_G-^2 / z_d^2", kJump, spring_numbers);
+    add(28, "minimise 1/2 ref dtheta' W ref dtheta  subject to  J_U ref dtheta = u", kSynergy,
+        resolution_numbers);
+    add(29, "ref dtheta = W^-1 J_U' (J_U W^-1 J_U')^-1 u", kSynergy, resolution_numbers);
     return list;
   }();
   return all;

@@ -135,11 +135,17 @@ TEST(ExplainCommand, WordsAndTheNumbersOfARun) {
   ASSERT_EQ(numbers.exit_code, 0) << numbers.err;
   // g / z = 9.80665 / 0.245, the reference force being near the weight
   EXPECT_NE(numbers.out.find("(6.50 kg x 245.0 mm) = 40.0"), std::string::npos) << numbers.out;
+  std::set<std::string> formulas;
   for (int n = 1; n <= 29; ++n) {
     const Output each = run_here({"explain", std::to_string(n), "run@0.2", "--json"});
     ASSERT_EQ(each.exit_code, 0) << n << each.err;
     EXPECT_EQ(Json::parse(each.out)["equation"], n);
+    formulas.insert(Json::parse(each.out)["formula"]);
   }
+  EXPECT_EQ(formulas.size(), 29u);
+  EXPECT_EQ(
+      run_here({"explain", "22"}).out.rfind("(22)  minimise 1/2 (cmd dtheta - ref dtheta)'", 0),
+      0u);
   const Output late = run_here({"explain", "18", "run@20"});
   EXPECT_EQ(late.exit_code, 2);
   EXPECT_NE(late.err.find("t = 20 s is outside the run"), std::string::npos) << late.err;
