@@ -22,6 +22,7 @@
 #include "describe.hpp"
 #include "help.hpp"
 #include "libraries.hpp"
+#include "names.hpp"
 #include "option_checks.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
@@ -351,6 +352,11 @@ int parse_and_run(int argc, char** argv) {
   if (argc == 1) {
     std::fputs(app.help().c_str(), stdout);
     return 2;
+  }
+  // Asked by the completion of shells; what follows is no command line that could be parsed.
+  if (argc > 2 && std::string(argv[1]) == "--names") {
+    print_names(context, argv[2], {argv + 3, argv + argc});
+    return 0;
   }
   app.require_subcommand(1);
   try {

@@ -1,5 +1,7 @@
 #include "describe.hpp"
 
+#include <map>
+
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 
@@ -47,6 +49,32 @@ bool takes_value(const CLI::Option& option) { return option.get_items_expected_m
 std::string value_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type.substr(0, type.find(':'));
+}
+
+// What `ayumi --names` lists for the value of an option or for a word of a command; "" for files
+// and numbers.
+std::string names_kind(const CLI::Option& option) {
+  static const std::map<std::string, std::string> kinds = {
+      {"robot", "robots"},     {"ROBOT", "robots"},     {"profile", "profiles"},
+      {"posture", "postures"}, {"POSTURE", "postures"}, {"gain", "gains"},
+      {"gains", "gains"},      {"joint", "joints"},     {"joints", "joints"},
+      {"lock", "joints"},      {"weight", "joints"}};
+  const std::string name = option.get_positional() && flags_of(option).empty()
+                               ? option.get_name(true)
+                           : option.get_lnames().empty() ? ""
+                                                         : option.get_lnames().front();
+  if (value_of(option).starts_with("ROBOT|")) return "robots";
+  const auto known = kinds.find(name);
+  return known == kinds.end() ? "" : known->second;
+}
+
+// The kinds of the words after the command, separated by commas; "" for files.
+std::string word_kinds(const CLI::App& app) {
+  std::vector<std::string> kinds;
+  for (const CLI::Option* option : options_of(app))
+    if (option->get_positional() && flags_of(*option).empty() && !names_kind(*option).empty())
+      kinds.push_back(names_kind(*option));
+  return text::join(kinds, ",");
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
@@ -125,7 +153,7 @@ std::string bash_completion(const CLI::App& app) {
   std::string text =
       "# Completion of ayumi for bash.\n"
       "_ayumi() {\n"
-      "  local word=${COMP_WORDS[COMP_CWORD]} path= i\n"
+      "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} path= kind= i\n"
       "  for ((i = 1; i < COMP_CWORD; ++i)); do\n"
       "    case \"$path ${COMP_WORDS[i]}\" in\n";
   for (const Level& level : levels_of(app))
@@ -134,10 +162,23 @@ std::string bash_completion(const CLI::App& app) {
   text += "    '') names='" + names_below(app) + "' ;;\n";
   for (const Level& level : levels_of(app))
     text += "    ' " + level.words + "') flags+=' " + all_flags(*level.app) + "' names='" +
-            names_below(*level.app) + "' ;;\n";
+            names_below(*level.app) + "' kind='" + word_kinds(*level.app) + "' ;;\n";
+  text += "  esac\n  case \"$path $before\" in\n";
+  for (const Level& level : levels_of(app))
+    for (const CLI::Option* option : options_of(*level.app))
+      if (takes_value(*option) && !flags_of(*option).empty())
+        for (const std::string& flag : flags_of(*option))
+          text += "    ' " + level.words + " " + flag +
+                  "') kind=" + (names_kind(*option).empty() ? "files" : names_kind(*option)) +
+                  " names= ;;\n";
   return text +
          "  esac\n"
-         "  if [[ $word == -* ]]; then\n"
+         "  if [[ -n $kind && $kind != files && $word != -* ]]; then\n"
+         "    names=$(ayumi --names $kind \"${COMP_WORDS[@]:1:COMP_CWORD-1}\" 2>/dev/null)\n"
+         "    mapfile -t COMPREPLY < <(compgen -W \"$names\" -- \"$word\")\n"
+         "    [[ $kind == robots* ]] && mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- "
+         "\"$word\")\n"
+         "  elif [[ $word == -* ]]; then\n"
          "    mapfile -t COMPREPLY < <(compgen -W \"$flags\" -- \"$word\")\n"
          "  elif [[ -n $names ]]; then\n"
          "    mapfile -t COMPREPLY < <(compgen -W \"$names\" -- \"$word\")\n"
@@ -155,12 +196,19 @@ std::string plain(std::string text) {
   return replaced(std::move(text), "\n", " ");
 }
 
+std::string zsh_action(const std::string& kind) {
+  return kind.empty() ? "_files" : "_ayumi_names " + kind;
+}
+
 std::string zsh_options(const CLI::App& app) {
   std::string text;
   for (const CLI::Option* option : options_of(app))
     for (const std::string& flag : flags_of(*option))
       text += " \\\n        '*" + flag + "[" + plain(option->get_description()) + "]" +
-              (takes_value(*option) ? ":" + plain(value_of(*option)) + ":_files" : "") + "'";
+              (takes_value(*option)
+                   ? ":" + plain(value_of(*option)) + ":" + zsh_action(names_kind(*option))
+                   : "") +
+              "'";
   return text;
 }
 
@@ -174,6 +222,12 @@ std::string zsh_names(const CLI::App& app) {
 std::string zsh_completion(const CLI::App& app) {
   std::string text =
       "#compdef ayumi\n# Completion of ayumi for zsh.\n"
+      "_ayumi_names() {\n"
+      "  local -a known\n"
+      "  known=(${(f)\"$(ayumi --names $1 ${words[2,CURRENT-1]} 2>/dev/null)\"})\n"
+      "  compadd -a known\n"
+      "  [[ $1 == robots* ]] && _files\n"
+      "}\n"
       "_ayumi() {\n  local path= word\n  local -a names\n"
       "  for word in ${words[2,CURRENT-1]}; do\n    case \"$path $word\" in\n";
   for (const Level& level : levels_of(app))
@@ -188,9 +242,14 @@ std::string zsh_completion(const CLI::App& app) {
       text += "      if [[ $PREFIX != -* ]]; then\n        names=(" + names +
               ")\n        _describe command names\n        return\n      fi\n";
     text += "      _arguments -S" + zsh_options(*level.app) +
-            (level.words.empty() ? "" : zsh_options(app)) + " \\\n        '*:file:_files' ;;\n";
+            (level.words.empty() ? "" : zsh_options(app)) + " \\\n        '*:file:" +
+            zsh_action(level.words.empty() ? "" : word_kinds(*level.app)) + "' ;;\n";
   }
   return text + "  esac\n}\n_ayumi \"$@\"\n";
+}
+
+std::string fish_names(const std::string& kind) {
+  return " -a '(ayumi --names " + kind + " (commandline -opc)[2..] 2>/dev/null)'";
 }
 
 std::string fish_options(const CLI::App& app, const std::string& condition) {
@@ -201,6 +260,7 @@ std::string fish_options(const CLI::App& app, const std::string& condition) {
     for (const std::string& name : option->get_snames()) text += " -s " + name;
     for (const std::string& name : option->get_lnames()) text += " -l " + name;
     if (takes_value(*option)) text += " -r";
+    if (!names_kind(*option).empty()) text += fish_names(names_kind(*option));
     text += " -d '" + plain(option->get_description()) + "'\n";
   }
   return text;
@@ -219,7 +279,10 @@ std::string fish_completion(const CLI::App& app) {
     for (const CLI::App* command : level.app->get_subcommands([](const CLI::App*) { return true; }))
       text += "complete -c ayumi -f -n '" + within + "' -a " + command->get_name() + " -d '" +
               plain(command->get_description()) + "'\n";
-    if (!level.words.empty()) text += fish_options(*level.app, " -n '" + within + "'");
+    if (level.words.empty()) continue;
+    text += fish_options(*level.app, " -n '" + within + "'");
+    if (const std::string kind = word_kinds(*level.app); !kind.empty())
+      text += "complete -c ayumi -n '" + within + "'" + fish_names(kind) + "\n";
   }
   return text;
 }

@@ -26,7 +26,7 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
                   "none, or a pattern file whose scenario replaces the pattern's.")
       ->type_name("F");
   command.add_option("--gain", choice.gains, "Set a gain of the controller.")
-      ->type_name("NAME=VALUE")
+      ->type_name("GAIN=VALUE")
       ->allow_extra_args(false);
   command.add_flag(
       "--noise", choice.noise,

@@ -434,7 +434,7 @@ void add_edit(CLI::App& app, Context& context) {
   CLI::App& ramp_command = add_edit_of(
       *command, "ramp", "move from a posture to the motion, and back at its end", options);
   ramp_command
-      .add_option("--from", options.ramps.in,
+      .add_option("--in", options.ramps.in,
                   "Time to move from the posture to the motion [s]; 0 = none.")
       ->check(number_within(0.0, 60.0))
       ->type_name("S")

@@ -691,8 +691,9 @@ void add_export(CLI::App& app, Context& context) {
                       "Layout of the sidecar for --format hoap (default: the first one).");
   command
       ->add_option(
-          "--from", options->safety.from,
+          "--posture", options->safety.from,
           "Posture of the robot before the ramp, or 'first' for the first posture of the motion.")
+      ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--profile", options->safety.profile,
                       "Actuator profile that the table is judged by (default: for hoap the robot's "
@@ -701,7 +702,7 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--robot", options->robot,
                       "Robot to use in place of the one that the run names.");
   command->add_option("--set", options->set, "Set a parameter that the pattern declares.")
-      ->type_name("NAME=NUMBER")
+      ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--pushed", options->pushed,
                     "Export the table of the run with its disturbances. The table says so.");

@@ -181,7 +181,7 @@ void add_gains(CLI::App& app, Context& context) {
                    "Time after which a constant ZMP offset is accepted as normal [s]; 0 = never.")
       ->type_name("T");
   command->add_option("--gain", options->gains, "Set a gain by its name.")
-      ->type_name("NAME=VALUE")
+      ->type_name("GAIN=VALUE")
       ->allow_extra_args(false);
   command
       ->add_option("--latency", options->latency,

@@ -326,7 +326,7 @@ CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string&
 }
 
 void add_name(CLI::App& command, const Options& options) {
-  command.add_option("NAME", options->name, "Name of the posture.")->required();
+  command.add_option("POSTURE", options->name, "Name of the posture.")->required();
 }
 
 void add_library(CLI::App& command, const Options& options) {

@@ -237,7 +237,7 @@ void add_push(CLI::App& app, Context& context) {
       ->type_name("NAME")
       ->allow_extra_args(false);
   command->add_option("--gain", options->gains, "Set a gain of the controller.")
-      ->type_name("NAME=VALUE")
+      ->type_name("GAIN=VALUE")
       ->allow_extra_args(false);
   command
       ->add_option("--directions", push.directions,

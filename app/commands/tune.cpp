@@ -137,7 +137,7 @@ void add_tune(CLI::App& app, Context& context) {
   command
       ->add_option("--gain", options->start,
                    "Gain at the start of the search (default: the pattern's).")
-      ->type_name("NAME=VALUE")
+      ->type_name("GAIN=VALUE")
       ->allow_extra_args(false);
   command->add_option("--tune", t.gains, "Gains to change (default: ka,q,ks,kd,tau_z,ankle).")
       ->delimiter(',')

@@ -57,6 +57,51 @@ TEST(Describe, AnUnknownKindIsRefused) {
   EXPECT_NE(output.err.find("known: man, bash, zsh, fish"), std::string::npos) << output.err;
 }
 
+std::string names(std::vector<std::string> words) {
+  words.insert(words.begin(), "--names");
+  const Output output = run_program(words, testing::TempDir());
+  EXPECT_EQ(output.exit_code, 0) << output.err;
+  return "\n" + output.out;
+}
+
+TEST(Names, AreThoseOfTheRobotOnTheCommandLine) {
+  EXPECT_NE(names({"robots"}).find("\nhoap1\n"), std::string::npos);
+  EXPECT_NE(names({"gains"}).find("\nka\n"), std::string::npos);
+  EXPECT_NE(names({"postures", "posture", "draw", "hoap1"}).find("\nhome\n"), std::string::npos);
+  const std::string tall = names({"joints", "new", "walk", "--robot", "humanoid30"});
+  EXPECT_NE(tall.find("\nneck"), std::string::npos) << tall;
+  EXPECT_EQ(names({"joints", "new", "walk"}).find("\nneck"), std::string::npos);
+  const std::string profiles = names({"profiles", "check", "patterns/hoap1_walk.json"});
+  EXPECT_NE(profiles.find("\nhoap1-strong\n"), std::string::npos) << profiles;
+  // A shell that completes wants no message.
+  const Output broken = run_program({"--names", "joints", "no/such.json"}, testing::TempDir());
+  EXPECT_EQ(broken.exit_code, 0);
+  EXPECT_EQ(broken.err, "");
+}
+
+TEST(Names, AreAskedForByEveryCompletion) {
+  const std::string bash = described("bash"), zsh = described("zsh"), fish = described("fish");
+  EXPECT_NE(bash.find("' repair --lock') kind=joints"), std::string::npos);
+  EXPECT_NE(bash.find("' run --gain') kind=gains"), std::string::npos);
+  EXPECT_NE(bash.find("' edit ramp --posture') kind=postures"), std::string::npos);
+  EXPECT_NE(zsh.find(":_ayumi_names joints'"), std::string::npos);
+  EXPECT_NE(zsh.find(":_ayumi_names robots'"), std::string::npos);
+  EXPECT_NE(fish.find("-l profile -r -a '(ayumi --names profiles "), std::string::npos);
+}
+
+TEST(Names, CompleteInBash) {
+  const Folder folder;
+  write(folder / "complete.sh", described("bash") +
+                                    "COMP_WORDS=(ayumi repair w.json --lock l_k); COMP_CWORD=4\n"
+                                    "_ayumi; echo \"${COMPREPLY[@]}\"\n");
+  const fs::path program = program_under_test();
+  const std::string command = "PATH=" + program.parent_path().string() + ":$PATH bash '" +
+                              (folder / "complete.sh").string() + "' > '" +
+                              (folder / "out").string() + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(contents(folder / "out"), "l_knee\n");
+}
+
 // OSMesa brings a compiler, which takes longer to load than all other libraries together.
 TEST(Start, TheProgramLoadsNoOsmesa) {
   ::setenv("LD_TRACE_LOADED_OBJECTS", "1", 1);  // the loader prints the libraries and stops

@@ -82,7 +82,7 @@ TEST_F(Edit, MotionsJoin) {
 
 TEST_F(Edit, RampsComeFromAPosture) {
   ASSERT_EQ(ayumi({"new", "sway", "-o", "sway.json"}).exit_code, 0);
-  const Output out = ayumi({"edit", "ramp", "sway.json", "--from", "0.8", "--back", "0.5",
+  const Output out = ayumi({"edit", "ramp", "sway.json", "--in", "0.8", "--back", "0.5",
                             "--posture", "home", "-o", "r.json", "--json"});
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
   const Json before =
@@ -100,7 +100,7 @@ TEST_F(Edit, WhatDoesNotJoinIsRefused) {
             std::string::npos)
       << robots.err;
   EXPECT_EQ(
-      ayumi({"edit", "ramp", "squat.json", "--from", "0", "--back", "0", "-o", "a.json"}).exit_code,
+      ayumi({"edit", "ramp", "squat.json", "--in", "0", "--back", "0", "-o", "a.json"}).exit_code,
       2);
 }
 

@@ -1,0 +1,103 @@
+#include "names.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/control/laws/dtad.hpp"
+#include "ayumi/control/laws/viip.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/run/run_folder.hpp"
+#include "pattern_input.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is known of the robot and the pattern on the command line.
+struct Named {
+  std::optional<RobotModel> robot;
+  std::optional<Pattern> pattern;
+};
+
+template <class Read>
+auto tried(const Read& read) -> std::optional<decltype(read())> {
+  try {
+    return read();
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+Named named_by(const Context& context, const std::vector<std::string>& words) {
+  const RobotSearch search = robot_search(context);
+  Named named;
+  const auto load = [&](const std::string& name) {
+    if (!named.robot) named.robot = tried([&] { return load_robot(name, search); });
+  };
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--robot" && i + 1 < words.size()) load(words[i + 1]);
+    if (words[i].starts_with("--robot=")) load(words[i].substr(8));
+  }
+  for (const std::string& word : words) {
+    if (word.empty() || word.front() == '-' || (named.robot && named.pattern)) continue;
+    if (!named.pattern && fs::path(word).extension() == ".json")
+      named.pattern = tried([&] { return read_given_pattern(word, {}); });
+    if (named.pattern) load(robot_of(*named.pattern));
+    if (fs::is_regular_file(fs::path(word) / "run.json"))
+      if (const auto log = tried([&] { return read_run_log(word, ""); }))
+        load(log->provenance.robot);
+    if (fs::exists(word) || word.find('/') == std::string::npos) load(word);
+  }
+  if (!named.robot) load("hoap1");
+  return named;
+}
+
+std::set<std::string> posture_names(const Named& named) {
+  std::set<std::string> names;
+  if (named.robot)
+    for (const auto& entry : named.robot->description().postures) names.insert(entry.first);
+  if (named.pattern)
+    for (const auto& entry : named.pattern->postures) names.insert(entry.first);
+  return names;
+}
+
+std::set<std::string> gain_names() {
+  std::set<std::string> names = {"k", "d"};
+  for (const auto& gain : gains_of(DtadParams())) names.insert(gain.first);
+  for (const auto& gain : gains_of(ViipParams())) names.insert(gain.first);
+  return names;
+}
+
+std::set<std::string> names_of(const Context& context, const std::string& kind,
+                               const std::vector<std::string>& words) {
+  std::set<std::string> names;
+  if (kind == "robots")
+    for (const RobotEntry& entry : find_robots(robot_search(context))) names.insert(entry.name);
+  if (kind == "gains") names = gain_names();
+  if (kind != "joints" && kind != "postures" && kind != "profiles") return names;
+  const Named named = named_by(context, words);
+  if (kind == "postures") return posture_names(named);
+  if (!named.robot) return names;
+  const std::vector<std::string> known =
+      kind == "joints" ? named.robot->dof_names() : named.robot->profile_names();
+  return {known.begin(), known.end()};
+}
+
+}  // namespace
+
+void print_names(const Context& context, const std::string& kinds,
+                 const std::vector<std::string>& words) {
+  std::istringstream each(kinds);
+  for (std::string kind; std::getline(each, kind, ',');)
+    for (const std::string& name : names_of(context, kind, words))
+      std::printf("%s\n", text::printable(name).c_str());
+}
+
+}  // namespace ayumi::app
