@@ -1,6 +1,6 @@
 # Suites that are left out of `ctest -L quick`: each takes more than two seconds alone.
 set(ayumi_slow_suites
-  check.Consequence check.Consistency check.FaultsOnPatterns check.PlantedFault check.SecondRoute
+  check.Consequence check.Consistency check.FaultsOnPatterns check.PlantedFault check.PlantedMistakes check.SecondRoute
   check.SecondRouteOfClearance cli.AuthorServer cli.BrokenInput cli.CertifyCommand cli.CheckRepair cli.CompareCommand cli.Edit cli.ExplainCommand
   cli.Export cli.GainsCommand cli.Infeasible cli.NewJump cli.NewViip cli.NewWalk cli.OneSet cli.PushCommand
   cli.Repeat cli.RobotPath cli.Run cli.Selftest cli.SweepCommand cli.TuneCommand control.FootholdShift docs.CommandsOfPage

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,10 +12,15 @@
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/results_json.hpp"
+#include "ayumi/plot/com_zmp_plot.hpp"
+#include "ayumi/task/plan_log.hpp"
+#include "ayumi/task/scenario_findings.hpp"
 #include "check_table.hpp"
 #include "motion_words.hpp"
 #include "pattern_input.hpp"
@@ -29,6 +36,7 @@ using Json = nlohmann::ordered_json;
 
 struct CheckCommand {
   std::vector<std::string> patterns, tolerances;
+  std::string plot;
   PatternOptions input;
   bool list_tolerances = false, watch = false, all = false;
 };
@@ -77,11 +85,117 @@ std::string refusal_words(const Task& input, const Judgement& judgement) {
   return words;
 }
 
-std::string mistake_words(const std::vector<std::string>& mistakes) {
+std::string mistake_words(const std::vector<Mistake>& mistakes, bool consistent) {
   std::string words;
-  for (const std::string& mistake : mistakes)
-    words += "  " + painted(Paint::caution, "likely cause:") + " " + mistake + "\n";
+  for (const Mistake& mistake : mistakes)
+    words += "  " + painted(Paint::caution, consistent ? "worth a look:" : "likely cause:") + " " +
+             mistake.text() + "\n";
   return words;
+}
+
+// ---- the joints of a motion against their limits
+
+// Panels of each quantity. Chosen: nine panels fill a page.
+constexpr size_t kPanels = 3;
+
+using Share = std::function<double(const SimulationSample&, int dof)>;
+
+// Joints with an error of this kind, then those that use most of their limit.
+std::vector<int> worst_joints(const Task& task, const ConsistencyReport& report, FindingKind kind,
+                              const SimulationLog& log, const Share& share) {
+  std::vector<int> chosen;
+  for (const Finding& f : report.findings) {
+    const int dof = dof_of(f);
+    const bool known = std::find(chosen.begin(), chosen.end(), dof) != chosen.end();
+    if (f.kind == kind && dof >= 0 && !known && chosen.size() < kPanels) chosen.push_back(dof);
+  }
+  std::vector<std::pair<double, int>> used;
+  for (int dof = 0; dof < task.robot.dof_count(); ++dof) {
+    double most = 0;
+    for (const SimulationSample& s : log.samples) most = std::max(most, share(s, dof));
+    used.emplace_back(-most, dof);
+  }
+  std::sort(used.begin(), used.end());
+  for (const auto& entry : used)
+    if (chosen.size() < kPanels &&
+        std::find(chosen.begin(), chosen.end(), entry.second) == chosen.end())
+      chosen.push_back(entry.second);
+  return chosen;
+}
+
+// How far from the middle of its range a joint is; a joint without limits uses none.
+double position_share(const RobotModel& model, const SimulationSample& s, int dof) {
+  const Dof& d = model.dofs()[static_cast<size_t>(dof)];
+  if (!d.limited) return 0;
+  const double middle = 0.5 * (d.lower + d.upper), half = 0.5 * (d.upper - d.lower);
+  return std::abs(s.state.theta[dof] - middle) / half;
+}
+
+// Angle, speed and torque over time, with the limits of the profile that `report` was judged by.
+// Returns the names of the panels.
+std::vector<std::string> plot_joints_against_limits(const Task& task,
+                                                    const ConsistencyReport& report,
+                                                    const fs::path& path) {
+  const ActuatorLimits& limits = task.robot.limits(report.profile);
+  SimulationLog log = plan_log(task.robot, limits, task.series, task.series);
+  LociOptions options;
+  options.title = task.pattern.name + ": joints against their limits (" + limits.name + ")";
+  options.model = &task.robot;
+  options.profile = report.profile;
+  options.cog = options.zmp = options.fz = false;
+  options.command = options.reference = false;
+  options.limits_in_view = true;
+  options.joints = worst_joints(
+      task, report, FindingKind::joint_position, log,
+      [&](const SimulationSample& s, int dof) { return position_share(task.robot, s, dof); });
+  options.speeds = worst_joints(task, report, FindingKind::joint_speed, log,
+                                [&](const SimulationSample& s, int dof) {
+                                  return std::abs(s.state.dtheta[dof]) / limits.speed[dof];
+                                });
+  options.torques = worst_joints(task, report, FindingKind::joint_torque, log,
+                                 [&](const SimulationSample& s, int dof) {
+                                   return std::abs(s.torque[dof]) / limits.peak_torque[dof];
+                                 });
+  write_loci({{"motion", &log}}, path, options);
+  return loci_series(options);
+}
+
+// ---- what is printed
+
+std::string scenario_words(const std::vector<std::string>& sentences) {
+  std::string words;
+  for (const std::string& sentence : sentences)
+    words += "  " + painted(Paint::caution, "scenario:") + " " + sentence + "\n";
+  return words;
+}
+
+// A pattern that cannot be sampled: what, put right, would do, and the first thing that fails.
+[[noreturn]] void explain(const Context& context, const Error& error, const std::string& file,
+                          const CheckCommand& options) {
+  const Pattern pattern = read_given_pattern(file, read_pairs(options.input.set, "--set"));
+  const RobotModel robot = load_robot(robot_of(pattern), robot_search(context));
+  CheckOptions judged;
+  judged.profile = options.input.profile.empty() ? pattern.profile : options.input.profile;
+  judged.tolerances = pattern.tolerances;
+  for (const auto& [kind, value] : read_pairs(options.tolerances, "--tolerance"))
+    judged.tolerances[kind] = value;
+  judged.threads = context.threads;
+  const std::vector<Mistake> mistakes = likely_mistakes(robot, pattern, judged, context.progress());
+  try {
+    sample_at_servo_period(robot, pattern, {}, context.threads);
+  } catch (const Error& first) {
+    throw_with_message(first, with_mistakes(first.what(), pattern, mistakes));
+  }
+  throw error;  // of what no sample shows: a name of the scenario, a gain
+}
+
+Task load_or_explain(const Context& context, const std::string& file, const CheckCommand& options) {
+  try {
+    return load_pattern(context, file, options.input);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_pattern || file == "-") throw;
+    explain(context, error, file, options);
+  }
 }
 
 struct Checked {
@@ -92,14 +206,16 @@ struct Checked {
 
 Checked checked_one(const Context& context, const CheckCommand& options, const std::string& file) {
   const auto begin = std::chrono::steady_clock::now();
-  const Task input = load_pattern(context, file, options.input);
+  const Task input = load_or_explain(context, file, options);
   const CheckOptions judged = check_options(input, options.tolerances);
   const Judgement judgement = judge(input, judged);
   const ConsistencyReport& report = judgement.report;
   const ActuatorNeed& need = judgement.need();
   const std::string own = own_need(input, judged);
-  const std::vector<std::string> mistakes =
-      report.consistent ? std::vector<std::string>() : likely_mistakes(input.robot, input.pattern);
+  const std::vector<Mistake> mistakes =
+      report.consistent ? doubtful_values(input.robot, input.pattern)
+                        : likely_mistakes(input.robot, input.pattern, judged, context.progress());
+  const std::vector<std::string> disturbed = findings_under_scenario(input, judged, report);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   Checked checked;
@@ -107,16 +223,22 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
                   (report.consistent ? painted(Paint::good, "consistent")
                                      : painted(Paint::bad, "INCONSISTENT")) +
                   ", " + text::fixed(input.series.duration(), 2) + " s, actuators " +
-                  report.profile + "\n" + (need.text.empty() ? "" : "  " + need.text + "\n") +
+                  report.profile + "\n" + mistake_words(mistakes, report.consistent) +
+                  scenario_words(disturbed) + (need.text.empty() ? "" : "  " + need.text + "\n") +
                   (own.empty() ? ""
                                : "  the robot's own motors: " + own +
                                      (has_encoders(input.robot)
                                           ? " (`export --format hoap` judges by this profile)"
                                           : "") +
                                      "\n") +
-                  refusal_words(input, judgement) + mistake_words(mistakes) +
+                  refusal_words(input, judgement) +
                   check_table(report, input.robot, options.all ? Shown::findings : Shown::causes) +
                   origin_words(input.series.origin);
+  std::vector<std::string> panels;
+  if (!options.plot.empty()) {
+    panels = plot_joints_against_limits(input, report, options.plot);
+    checked.words += "  drawn in " + options.plot + ": " + text::join(panels, ", ") + "\n";
+  }
   checked.errors = static_cast<int>(
       std::count_if(report.findings.begin(), report.findings.end(),
                     [](const Finding& f) { return f.severity == Severity::error; }));
@@ -126,8 +248,11 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
                        {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
                        {"sufficient_profiles", need.sufficient},
                        {"own", own.empty() ? Json(nullptr) : Json(own)}};
-  json["likely_mistakes"] = mistakes;
+  json["likely_mistakes"] = Json::array();
+  for (const Mistake& mistake : mistakes) json["likely_mistakes"].push_back(mistake.text());
+  json["with_disturbances"] = disturbed;
   json["export_refuses"] = export_refusals(input, judgement);
+  if (!options.plot.empty()) json["plot"] = {{"output", options.plot}, {"series", panels}};
   json["sampled_from"] = input.series.origin;
   json["wall_s"] = wall;
   return checked;
@@ -226,6 +351,11 @@ void check(Context& context, const CheckCommand& options) {
   }
   if (options.patterns.empty()) fail(ErrorCode::usage, "check: name at least one PATTERN");
   refuse_unknown_tolerances(options.tolerances);
+  if (!options.plot.empty()) {
+    if (options.patterns.size() != 1 || options.watch)
+      fail(ErrorCode::usage, "check --plot: name one PATTERN, and leave --watch out");
+    refuse_overwriting(context, options.plot);
+  }
   if (options.watch) {
     watch(context, options);
     return;
@@ -251,6 +381,7 @@ void add_check(CLI::App& app, Context& context) {
       "Examples:\n  ayumi check patterns/hoap1_walk.json\n"
       "  ayumi check walk.json --profile hoap1-strong --tolerance support_margin=0.01\n"
       "  ayumi check a.json b.json --json\n  ayumi check walk.json --watch\n"
+      "  ayumi check walk.json --plot joints.svg\n"
       "  ayumi check --tolerances\n"
       "check assumes level ground; slopes, bumps and moving floors are tested by simulate only.");
   static CheckCommand options;
@@ -263,6 +394,10 @@ void add_check(CLI::App& app, Context& context) {
   command->add_flag("--tolerances", options.list_tolerances,
                     "List all kinds of findings with their tolerances.");
   command->add_flag("--all", options.all, "Print every finding, not one entry for each cause.");
+  command
+      ->add_option("--plot", options.plot,
+                   "Picture of the joints against their limits, .svg or .png.")
+      ->type_name("F");
   command->add_flag("--watch", options.watch,
                     "Check again at every change of the files, until Ctrl-C.");
   add_pattern_options(*command, options.input);

@@ -49,6 +49,54 @@ TEST_F(CheckRepair, TheWalkIsConsistent) {
   EXPECT_TRUE(folder.files().empty());
 }
 
+// The mistake is what is said first, also where the motion cannot even be sampled.
+TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
+  plant("far.json", R"("to": [0.09, -0.039])", R"("to": [0.9, -0.039])");
+  const Output far = ayumi({"check", "far.json", "-q"});
+  EXPECT_EQ(far.exit_code, 3);
+  EXPECT_NE(far.err.find("far.json: likely cause: /phases/5: the right foot's x is 0.9 m; with the "
+                         "decimal point one place further left, 0.09 m"),
+            std::string::npos)
+      << far.err;
+  EXPECT_NE(far.err.find("the first thing that fails: phases/5: t = "), std::string::npos);
+  plant("foot.json", R"({ "t": 2.22, "zmp": "left" })", R"({ "t": 2.22, "zmp": "right" })");
+  const Output foot = ayumi({"check", "foot.json", "-q"});
+  EXPECT_EQ(foot.exit_code, 1);
+  const std::string second_line = foot.out.substr(foot.out.find('\n') + 1);
+  EXPECT_EQ(second_line.rfind("  likely cause: /phases/5: the robot stands on the left foot, but "
+                              "/keyframes/6 puts the ZMP under the right foot",
+                              0),
+            0u)
+      << foot.out;
+}
+
+// The verdict is that of the motion alone, and what the load would do is said.
+TEST_F(CheckRepair, APayloadOfTheScenarioIsNotPassedOver) {
+  plant(
+      "load.json",
+      R"("type": "impulse", "at": 3, "duration": 0.02, "on": "cog", "direction": [0, 1, 0], "impulse": 1.1)",
+      R"("type": "payload", "at": 1, "duration": 3, "on": "r_forearm", "mass": 3)");
+  const Output load = ayumi({"check", "load.json", "-q"});
+  EXPECT_EQ(load.exit_code, 0);
+  EXPECT_NE(
+      load.out.find("scenario: payload of 3 kg on r_forearm at 1 s is a disturbance, which the "
+                    "verdict leaves out; with it, check finds "),
+      std::string::npos)
+      << load.out;
+  EXPECT_EQ(load.out.find("finds no other error"), std::string::npos) << load.out;
+}
+
+TEST_F(CheckRepair, JointsAreDrawnAgainstTheirLimits) {
+  const Output drawn = ayumi({"check", kWalk, "--plot", "joints.svg", "-q"});
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_NE(drawn.out.find("drawn in joints.svg: "), std::string::npos) << drawn.out;
+  const std::string svg = contents(folder / "joints.svg");
+  for (const char* words : {"r_knee [rad/s]", "l_hip_roll [N m]", "[deg]", "limit of a joint"})
+    EXPECT_NE(svg.find(words), std::string::npos) << words;
+  EXPECT_EQ(ayumi({"check", kWalk, "--plot", "joints.svg"}).exit_code, 3);  // it exists
+  EXPECT_EQ(ayumi({"check", kWalk, kWalk, "--plot", "two.svg"}).exit_code, 2);
+}
+
 // Every swing of this walk is too fast for the knees, and each of them has consequences.
 TEST_F(CheckRepair, OneEntryForEachCauseAndAllFindingsOnRequest) {
   ASSERT_EQ(ayumi({"edit", "retime", kWalk, "--scale", "0.5", "-o", "fast.json", "-q"}).exit_code,

@@ -130,6 +130,13 @@ inline const std::vector<Broken>& mistakes() {
        "/phases/0/until: this phase begins at 0 s and ends at 0 s"},
       {"phases", R"([{"until": 2, "support": "both"}, {"until": 1, "support": "both"}])",
        "/phases/1/until: this phase begins at 2 s and ends at 1 s; give a later time"},
+      {"keyframes", R"([{"t": 2, "zmp": "center"}, {"t": 2300, "zmp": "center"},
+                        {"t": 2.6, "zmp": "center"}])",
+       "where /keyframes/1 is meant at 2.3 s in place of 2300 s, correct it there"},
+      {"phases", R"([{"until": 1, "support": "left",
+                      "swing": {"foot": "right", "to": [0, 0], "lift": 15}}])",
+       "/phases/0/swing/lift: 15 is too large; the largest allowed value is 10 m. Lengths are in "
+       "metres: 15 mm are 0.015 m"},
       {"phases", R"([{"until": -1, "support": "both"}])",
        "-1 is too small; the smallest allowed value is 0"},
       {"phases", R"([{"until": 5000, "support": "both"}])",

@@ -11,6 +11,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/mistake_search.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/foot_plan.hpp"
@@ -37,6 +38,11 @@ constexpr double kCrossing = 0.02;
 constexpr double kLiftedKey = 0.005;
 // A foot lower than this over the ground counts as standing on it [m].
 constexpr double kOnGround = 1e-3;
+// Angles below this count as none, and angles this near to a whole number as whole ones [deg].
+// Definition: what rounding to three digits leaves.
+constexpr double kLeastAngle = 1e-3;
+// So many angles make a rule of what may be chance in a few. Chosen: two keys of two joints.
+constexpr size_t kManyAngles = 4;
 // Mistakes of one kind that are named one by one.
 constexpr size_t kNamed = 2;
 
@@ -51,7 +57,15 @@ class Suspicions {
     }
   }
 
-  std::vector<std::string> all() {
+  std::vector<Mistake> doubts() {
+    const bool swings = std::any_of(pattern_.phases.begin(), pattern_.phases.end(),
+                                    [](const Phase& phase) { return phase.swing.has_value(); });
+    if (feet_ && swings) missing_swings();
+    small_angles();
+    return said_;
+  }
+
+  std::vector<Mistake> all() {
     angle_units();
     if (feet_) {
       times();
@@ -68,10 +82,10 @@ class Suspicions {
 
  private:
   /// The first few of one rule, and how many more there are.
-  void say(std::vector<std::string> found) {
+  void say(std::vector<Mistake> found) {
     const size_t more = found.size() > kNamed ? found.size() - kNamed : 0;
     found.resize(found.size() - more);
-    if (more) found.back() += " (and " + std::to_string(more) + " more of this kind)";
+    if (more) found.back().words += " (and " + std::to_string(more) + " more of this kind)";
     said_.insert(said_.end(), found.begin(), found.end());
   }
 
@@ -81,14 +95,15 @@ class Suspicions {
   // Degrees in a pattern whose unit is rad: no joint that has limits turns around that far.
   void angle_units() {
     if (pattern_.degrees) return;
-    std::vector<std::string> found;
+    std::vector<Mistake> found;
     const auto look = [&](const std::string& place, const std::string& joint, double angle) {
       const int dof = model_.find_dof(joint);
       if (dof < 0 || model_.dofs()[dof].prismatic || !model_.dofs()[dof].limited) return;
       if (std::abs(angle) > 2 * std::numbers::pi)
-        found.push_back(place + ": " + joint + " is at " + text::brief(angle) +
+        found.push_back(
+            {place, joint + " is at " + text::brief(angle) +
                         " rad, which is more than a turn; where this is meant in degrees, write "
-                        "\"units\": {\"angle\": \"deg\"}");
+                        "\"units\": {\"angle\": \"deg\"}"});
     };
     for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
       for (const auto& [joint, angle] : pattern_.keyframes[i].joints)
@@ -98,20 +113,42 @@ class Suspicions {
     say(found);
   }
 
+  // Radians in a pattern whose unit is deg: several angles, none of which is more than a turn in
+  // radians, and few of which are whole numbers.
+  void small_angles() {
+    if (!pattern_.degrees) return;
+    size_t count = 0, whole = 0;
+    for (const Keyframe& key : pattern_.keyframes)
+      for (const auto& entry : key.joints) {
+        const double degrees = entry.second * 180 / std::numbers::pi;
+        if (std::abs(degrees) < kLeastAngle) continue;
+        if (std::abs(degrees) > 2 * std::numbers::pi) return;
+        ++count;
+        if (std::abs(degrees - std::round(degrees)) < kLeastAngle) ++whole;
+      }
+    if (count >= kManyAngles && 2 * whole < count)
+      said_.push_back({"/units",
+                       "all angles of joints are less than 2 pi deg; where they are meant in "
+                       "radians, write \"units\": {\"angle\": \"rad\"}"});
+  }
+
   void times() {
-    std::vector<std::string> found;
+    std::vector<Mistake> found;
     for (size_t i = 0; i < feet_->phases().size(); ++i) {
       const Phase& phase = feet_->phases()[i];
       const double lasts = phase.until - feet_->begin(static_cast<int>(i));
       if (phase.swing && lasts > kLongestSwing)
-        found.push_back(phase_place(i) + ": the swing lasts " + text::brief(lasts) +
-                        " s; times are in seconds, so where they are meant in ms, divide them by "
-                        "1000");
+        found.push_back(
+            {phase_place(i),
+             std::string("the swing lasts ") + text::brief(lasts) +
+                 " s; times are in seconds, so where they are meant in ms, divide them by "
+                 "1000"});
     }
     if (found.empty() && feet_->duration() > kLongestStand)
-      found.push_back("the motion lasts " + text::brief(feet_->duration()) +
-                      " s; times are in seconds, so where they are meant in ms, divide them by "
-                      "1000");
+      found.push_back(
+          {"", "the motion lasts " + text::brief(feet_->duration()) +
+                   " s; times are in seconds, so where they are meant in ms, divide them by "
+                   "1000"});
     say(found);
   }
 
@@ -127,17 +164,17 @@ class Suspicions {
 
   void cog_heights() {
     const double home = default_cog_height(model_, {}), most = highest_cog(home);
-    std::vector<std::string> found;
+    std::vector<Mistake> found;
     const auto look = [&](const std::string& place, double height) {
       if (height <= most && height >= kLowestCog * home) return;
-      std::string words = place + ": the COG height is " + metres(height) + ", but the COG of " +
+      std::string words = "the COG height is " + metres(height) + ", but the COG of " +
                           model_.name() + " is " + metres(home) +
                           " above its soles at home, and at most " + metres(most);
       for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
         if (height * factor <= most && height * factor >= kLowestCog * home)
           words += "; heights are in metres, and " + text::brief(height) + " " + unit + " are " +
                    metres(height * factor);
-      found.push_back(words);
+      found.push_back({place, words});
     };
     if (pattern_.cog_height != 0) look("/defaults/cog_height", pattern_.cog_height);
     for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
@@ -155,7 +192,7 @@ class Suspicions {
 
   void footholds() {
     const double leg = leg_length(model_);
-    std::vector<std::string> found;
+    std::vector<Mistake> found;
     std::array<bool, 2> far = {};  // this foot stands at a foothold that was named
     for (size_t i = 0; i < feet_->phases().size(); ++i) {
       if (!feet_->phases()[i].swing) continue;
@@ -164,10 +201,11 @@ class Suspicions {
       bool& named = far[static_cast<size_t>(index(swing.foot))];
       named = distance > leg && !far[static_cast<size_t>(index(other(swing.foot)))];
       if (!named) continue;
-      found.push_back(phase_place(i) + ": the " + name_of(swing.foot) + " foot lands " +
-                      metres(distance) + " from the " + name_of(other(swing.foot)) +
-                      " foot, but the legs are " + metres(leg) + " long" +
-                      (distance > 10 * leg ? "; lengths are in metres" : ""));
+      found.push_back({phase_place(i), std::string("the ") + name_of(swing.foot) + " foot lands " +
+                                           metres(distance) + " from the " +
+                                           name_of(other(swing.foot)) + " foot, but the legs are " +
+                                           metres(leg) + " long" +
+                                           (distance > 10 * leg ? "; lengths are in metres" : "")});
     }
     say(found);
   }
@@ -182,28 +220,30 @@ class Suspicions {
   }
 
   void crossings() {
-    std::vector<std::string> found;
+    std::vector<Mistake> found;
     for (size_t i = 0; i < feet_->phases().size(); ++i) {
       if (!feet_->phases()[i].swing) continue;
       const Swing& swing = *feet_->phases()[i].swing;
       const double outwards = (swing.foot == Side::left ? 1 : -1) * landing(i).y();
       if (outwards > -kCrossing) {
         if (soles_overlap(landing(i)))
-          found.push_back(phase_place(i) + ": the " + name_of(swing.foot) + " foot lands on the " +
-                          name_of(other(swing.foot)) + " foot; left and right may be exchanged");
+          found.push_back({phase_place(i), std::string("the ") + name_of(swing.foot) +
+                                               " foot lands on the " + name_of(other(swing.foot)) +
+                                               " foot; left and right may be exchanged"});
         continue;
       }
-      found.push_back(phase_place(i) + ": the " + name_of(swing.foot) + " foot lands " +
-                      text::fixed(-1000 * outwards, 0) + " mm to the " +
-                      name_of(other(swing.foot)) + " of the " + name_of(other(swing.foot)) +
-                      " foot, so the legs cross; left and right may be exchanged");
+      found.push_back({phase_place(i),
+                       std::string("the ") + name_of(swing.foot) + " foot lands " +
+                           text::fixed(-1000 * outwards, 0) + " mm to the " +
+                           name_of(other(swing.foot)) + " of the " + name_of(other(swing.foot)) +
+                           " foot, so the legs cross; left and right may be exchanged"});
     }
     say(found);
   }
 
   // A single support in which the keys before and after its middle are under the other foot.
   void zmp_keys() {
-    std::vector<std::string> found;
+    std::vector<Mistake> found;
     for (size_t i = 0; i < feet_->phases().size(); ++i) {
       const Support support = feet_->phases()[i].support;
       if (support != Support::left && support != Support::right) continue;
@@ -221,15 +261,16 @@ class Suspicions {
       };
       if (!is_wrong(before) || !is_wrong(after)) continue;
       const bool left = support == Support::left;
-      found.push_back(phase_place(i) + ": the robot stands on the " + (left ? "left" : "right") +
-                      " foot, but " + key_place(*before) + " and " + key_place(*after) +
-                      " put the ZMP under the " + (left ? "right" : "left") + " foot");
+      found.push_back(
+          {phase_place(i), std::string("the robot stands on the ") + (left ? "left" : "right") +
+                               " foot, but " + key_place(*before) + " and " + key_place(*after) +
+                               " put the ZMP under the " + (left ? "right" : "left") + " foot"});
     }
     say(found);
   }
 
   void missing_swings() {
-    std::vector<std::string> found;
+    std::vector<Mistake> found;
     for (size_t i = 0; i < feet_->phases().size(); ++i) {
       const Phase& phase = feet_->phases()[i];
       if (phase.swing || phase.viip ||
@@ -244,9 +285,10 @@ class Suspicions {
           (feet_->pose(idle, phase.until).translation() - feet_->pose(idle, begin).translation())
               .norm();
       if (std::abs(height) < kOnGround && moved < kOnGround)
-        found.push_back(phase_place(i) + ": the robot stands on the " + name_of(other(idle)) +
-                        " foot alone, but the " + name_of(idle) +
-                        " foot stays on the ground; its swing may be missing");
+        found.push_back(
+            {phase_place(i), std::string("the robot stands on the ") + name_of(other(idle)) +
+                                 " foot alone, but the " + name_of(idle) +
+                                 " foot stays on the ground; its swing may be missing"});
     }
     say(found);
   }
@@ -256,7 +298,7 @@ class Suspicions {
     const bool has_height = std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
                                         [](const Keyframe& key) { return key.cog_height; });
     if (has_height) return;
-    std::vector<std::string> found;
+    std::vector<Mistake> found;
     for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
       const Keyframe& key = pattern_.keyframes[i];
       for (const Side side : {Side::left, Side::right}) {
@@ -264,18 +306,19 @@ class Suspicions {
         if (!foot || supports(feet_->support(key.t), side)) continue;
         const double lift = foot->position.z() - feet_->pose(other(side), key.t).translation().z();
         if (lift > kLiftedKey)
-          found.push_back(key_place(i) + ": the " + name_of(side) + " foot is " +
-                          text::fixed(1000 * lift, 0) +
-                          " mm up, and the COG rises by half of it, because without keys its "
-                          "height is above the mean of both soles; keep the COG down with keys "
-                          "of \"cog\": {\"height\": ...}, or lower /defaults/cog_height");
+          found.push_back(
+              {key_place(i),
+               std::string("the ") + name_of(side) + " foot is " + text::fixed(1000 * lift, 0) +
+                   " mm up, and the COG rises by half of it, because without keys its "
+                   "height is above the mean of both soles; keep the COG down with keys "
+                   "of \"cog\": {\"height\": ...}, or lower /defaults/cog_height"});
       }
     }
     say(found);
   }
 
   void leg_keys() {
-    std::vector<std::string> found;
+    std::vector<Mistake> found;
     for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
       for (const auto& [joint, angle] : pattern_.keyframes[i].joints) {
         const int dof = model_.find_dof(joint);
@@ -284,10 +327,11 @@ class Suspicions {
           return std::find(leg.begin(), leg.end(), dof) != leg.end();
         };
         if (dof < 0 || !model_.has_soles() || (!in(Side::left) && !in(Side::right))) continue;
-        found.push_back(key_place(i) + ": " + joint +
-                        " is a joint of a leg; with such a key, every leg joint follows its keys "
-                        "alone, and no leg is solved from the feet and the COG; leave it out, and "
-                        "give the COG, the feet or the torso instead");
+        found.push_back(
+            {key_place(i),
+             joint + " is a joint of a leg; with such a key, every leg joint follows its keys "
+                     "alone, and no leg is solved from the feet and the COG; leave it out, and "
+                     "give the COG, the feet or the torso instead"});
         break;
       }
     say(found);
@@ -296,20 +340,42 @@ class Suspicions {
   const RobotModel& model_;
   const Pattern& pattern_;
   std::optional<FootPlan> feet_;
-  std::vector<std::string> said_;
+  std::vector<Mistake> said_;
 };
 
 }  // namespace
 
-std::vector<std::string> likely_mistakes(const RobotModel& model, const Pattern& pattern) {
+std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern) {
   if (pattern.table) return {};  // nobody wrote its values by hand
   return Suspicions(model, pattern).all();
 }
 
-std::string with_likely_mistakes(const std::string& message, const RobotModel& model,
-                                 const Pattern& pattern) {
-  const std::vector<std::string> found = likely_mistakes(model, pattern);
-  return found.empty() ? message : message + "; likely cause: " + text::join(found, "; ");
+std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern) {
+  if (pattern.table) return {};
+  return Suspicions(model, pattern).doubts();
+}
+
+std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pattern,
+                                     const CheckOptions& options, const Progress& progress) {
+  const std::vector<Mistake> impossible = impossible_values(model, pattern);
+  const std::vector<Explanation> explanations =
+      find_explanations(model, pattern, options, progress);
+  if (explanations.empty()) return impossible;
+  std::vector<Mistake> mistakes;
+  for (const Explanation& e : explanations)
+    mistakes.push_back({e.place, e.written + "; " + e.instead});
+  return mistakes;
+}
+
+std::string with_mistakes(const std::string& message, const Pattern& pattern,
+                          const std::vector<Mistake>& mistakes) {
+  if (mistakes.empty()) return message;
+  std::vector<std::string> texts;
+  for (const Mistake& mistake : mistakes) texts.push_back(mistake.text());
+  const std::string file = pattern.file.empty() ? "" : pattern.file + ": ";
+  const bool in_file = !file.empty() && message.rfind(file, 0) == 0;
+  return (in_file ? file : "") + "likely cause: " + text::join(texts, "; or ") +
+         "; the first thing that fails: " + (in_file ? message.substr(file.size()) : message);
 }
 
 }  // namespace ayumi

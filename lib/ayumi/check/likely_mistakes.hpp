@@ -1,23 +1,44 @@
 #pragma once
 // What an author has probably written wrongly, where a pattern cannot be sampled or is
 // inconsistent. A finding names a joint and an instant; what the author wrote is a unit, a
-// foothold, a key. Each rule compares a value of the pattern with what the robot can do, and none
-// of them depends on where the motion fails first.
+// foothold, a key. First one thing after the other is put right on trial (mistake_search). Where
+// that explains nothing, the values that the robot cannot do are named, whatever fails first.
 
 #include <string>
 #include <vector>
 
+#include "ayumi/base/progress.hpp"
+#include "ayumi/limits/limit.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/pattern.hpp"
 
 namespace ayumi {
 
-/// Sentences, each with the place in the file; empty where every value is a possible one. A
-/// consistent pattern may have some of them, too: ask only where something is wrong.
-std::vector<std::string> likely_mistakes(const RobotModel& model, const Pattern& pattern);
+/// What is likely to be wrong in a pattern.
+struct Mistake {
+  std::string place;  ///< JSON pointer in the file; "" for the whole pattern
+  std::string words;
 
-/// "message; likely cause: ...", or the message where no mistake is likely.
-std::string with_likely_mistakes(const std::string& message, const RobotModel& model,
-                                 const Pattern& pattern);
+  std::string text() const { return place.empty() ? words : place + ": " + words; }
+};
+
+/// The values that the robot cannot do. A consistent pattern may have some of them, too: ask only
+/// where something is wrong. Takes no time.
+std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern);
+
+/// What a consistent pattern was hardly meant to be: a single support without a swing among others
+/// with one, and angles of a few degrees that look like radians.
+std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern);
+
+/// What, put right, would make the pattern consistent; where nothing does, its impossible values.
+/// Samples and checks the pattern some fifty times, which takes a few seconds; `progress` may stop
+/// it.
+std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pattern,
+                                     const CheckOptions& options, const Progress& progress = {});
+
+/// "likely cause: ...; the first thing that fails: MESSAGE", or MESSAGE where no mistake is
+/// likely. The name of the pattern's file, where MESSAGE begins with it, stays in front.
+std::string with_mistakes(const std::string& message, const Pattern& pattern,
+                          const std::vector<Mistake>& mistakes);
 
 }  // namespace ayumi

@@ -31,6 +31,7 @@ struct PanelPlan {
   bool spikes = false;  ///< landings may exceed the range
   double seen = 0;      ///< runs that differ by less differ in nothing that matters
   std::vector<double> limits = {};  ///< drawn where they are within the range
+  bool limits_in_view = false;      ///< the range reaches to the limits
 };
 
 constexpr double kDegree = M_PI / 180;
@@ -55,6 +56,17 @@ PanelPlan speed_panel(const RobotModel& model, const std::string& profile, int d
   panel.name = d.name + (d.prismatic ? " [m/s]" : " [rad/s]");
   panel.run = [dof](const SimulationSample& s) { return s.state.dtheta[dof]; };
   panel.least = d.prismatic ? 0.02 : 0.2;
+  if (std::isfinite(limit)) panel.limits = {-limit, limit};
+  return panel;
+}
+
+PanelPlan torque_panel(const RobotModel& model, const std::string& profile, int dof) {
+  const Dof& d = model.dofs()[static_cast<size_t>(dof)];
+  const double limit = model.limits(profile).peak_torque[dof];
+  PanelPlan panel;
+  panel.name = d.name + (d.prismatic ? " [N]" : " [N m]");
+  panel.run = [dof](const SimulationSample& s) { return s.torque[dof]; };
+  panel.least = d.prismatic ? 1 : 0.1;
   if (std::isfinite(limit)) panel.limits = {-limit, limit};
   return panel;
 }
@@ -84,6 +96,9 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
     for (const int dof : options.joints) panels.push_back(joint_panel(*options.model, dof));
     for (const int dof : options.speeds)
       panels.push_back(speed_panel(*options.model, options.profile, dof));
+    for (const int dof : options.torques)
+      panels.push_back(torque_panel(*options.model, options.profile, dof));
+    for (PanelPlan& panel : panels) panel.limits_in_view = options.limits_in_view;
   }
   if (options.cog)
     for (int i = 0; i < 3; ++i)
@@ -150,6 +165,7 @@ Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
   if (panel.reference && !has_fallen(*runs.back().log))
     extend(values, series(*runs.back().log, panel.reference, time));
   if (values.empty()) values = values_before_falls(panel, runs, time);
+  if (panel.limits_in_view) values.insert(values.end(), panel.limits.begin(), panel.limits.end());
   if (values.empty()) return {0, panel.least > 0 ? panel.least : 1};
   std::sort(values.begin(), values.end());
   const size_t skip = panel.spikes ? values.size() / 500 : 0;

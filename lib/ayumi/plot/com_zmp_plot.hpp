@@ -24,7 +24,9 @@ struct LociOptions {
   const RobotModel* model = nullptr;       ///< of the runs; with it a panel of the ZMP margin
   std::vector<int> joints = {};            ///< dofs with a panel of their angle; needs the model
   std::vector<int> speeds = {};            ///< dofs with a panel of their speed; needs the model
-  std::string profile = {};                ///< whose speed limits are drawn; empty: the default
+  std::vector<int> torques = {};           ///< dofs with a panel of their torque; needs the model
+  std::string profile = {};                ///< whose limits are drawn; empty: the default
+  bool limits_in_view = false;             ///< panels of joints reach to the limits of the joint
   bool command = true, reference = true;   ///< what is commanded; the reference ZMP
   /// Leave out panels in which the runs differ by less than can be seen, and name them below.
   bool only_differences = false;

@@ -83,7 +83,8 @@ Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
       return sample_at_servo_period(robot, pattern, progress, threads);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::bad_pattern) throw;
-      throw_with_message(error, with_likely_mistakes(error.what(), robot, pattern));
+      throw_with_message(error,
+                         with_mistakes(error.what(), pattern, impossible_values(robot, pattern)));
     }
   }();
   std::string robot_name = robot.name();

@@ -19,6 +19,9 @@ Support read_support(const JsonNode& node) {
   return Support::none;
 }
 
+// The highest that a foot is lifted [m]. Chosen: more than any legs can.
+constexpr double kLargestLift = 10;
+
 // Sums of times are rounded, so that they print as they would be written [1/s].
 constexpr double kTimeSteps = 1e9;
 
@@ -54,7 +57,8 @@ Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
   if (supports(support, swing.foot))
     node.at("foot").complain("the " + std::string(name_of(swing.foot)) +
                              " foot carries the robot in this phase (support " + name_of(support) +
-                             "), so this foot cannot swing");
+                             "), so this foot cannot swing; one of the two names the wrong foot: "
+                             "left and right may be exchanged");
   if (node.has("step") == node.has("to"))
     node.complain(node.has("to") ? "\"to\" and \"step\" both say where the foot lands; keep one"
                                  : "\"to\" is missing, the foothold, or \"step\", a step relative "
@@ -63,7 +67,13 @@ Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
     swing.step = read_step(*step, scope);
   else
     swing.to = read_foothold(node.at("to"), scope);
-  if (const auto lift = node.find("lift")) swing.lift = read_number(*lift, scope, 0, 10);
+  if (const auto lift = node.find("lift")) {
+    swing.lift = read_number(*lift, scope, 0, kLargestNumber);
+    if (swing.lift > kLargestLift)
+      lift->complain(text::exact(swing.lift) + " is too large; the largest allowed value is " +
+                     text::exact(kLargestLift) + " m. Lengths are in metres: " +
+                     text::exact(swing.lift) + " mm are " + text::exact(swing.lift / 1000) + " m");
+  }
   return swing;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/number_slips.hpp"
 #include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
@@ -197,6 +198,27 @@ void each_item(const JsonNode& list, const std::string& name, PatternScope& scop
                 " items; repeat less often");
 }
 
+// A time so many times later than the next one is out by a power of ten. Chosen: half of ten.
+constexpr double kGrossTime = 5;
+
+// "; /keyframes/4 may be meant at 2.3 s": where the time before the one that is too early would be
+// in order with a slip of the keyboard less, or else that one itself. `before` is the time before
+// both.
+std::string meant_time(double before, double previous, const std::string& place_of_previous,
+                       double t) {
+  // A time that is a little too late has no decimal point out of place.
+  const bool gross = previous > kGrossTime * t;
+  for (const double slip : number_slips(previous))
+    if (slip > before && slip < t && (gross || slip > previous / kGrossTime))
+      return "; where " + place_of_previous + " is meant at " + text::exact(slip) +
+             " s in place of " + text::exact(previous) +
+             " s, correct it there, else give a later time";
+  for (const double slip : number_slips(t))
+    if (slip > previous && slip < 2 * previous - before)
+      return "; give a later time (" + text::exact(slip) + " s?)";
+  return "; give a later time";
+}
+
 void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
   const JsonNode phases = root.at("phases");
   phases.expect_array();
@@ -210,7 +232,14 @@ void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
     if (!(until > previous))
       node.at(node.has("until") ? "until" : "duration")
           .complain("this phase begins at " + text::exact(previous) + " s and ends at " +
-                    text::exact(until) + " s; give a later time");
+                    text::exact(until) + " s" +
+                    (pattern.phases.size() < 2
+                         ? "; give a later time"
+                         : meant_time(pattern.phases.size() > 2
+                                          ? pattern.phases[pattern.phases.size() - 3].until
+                                          : 0,
+                                      previous, pattern.phases[pattern.phases.size() - 2].pointer,
+                                      until)));
     if (pattern.phases.size() > kMostItems) complain_of_many(phases);
   });
 }
@@ -234,7 +263,13 @@ void read_keyframes(const JsonNode& root, PatternScope& scope, Pattern& pattern)
           .complain("this keyframe is at " + text::exact(t) + " s, but " +
                     (first ? "the motion begins at 0 s"
                            : "the keyframe before it is at " + text::exact(previous) + " s") +
-                    "; give a later time");
+                    (first
+                         ? "; give a later time"
+                         : meant_time(pattern.keyframes.size() > 2
+                                          ? pattern.keyframes[pattern.keyframes.size() - 3].t
+                                          : 0,
+                                      previous,
+                                      pattern.keyframes[pattern.keyframes.size() - 2].pointer, t)));
     if (pattern.keyframes.size() > kMostItems) complain_of_many(*keyframes);
   });
 }

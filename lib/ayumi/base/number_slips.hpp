@@ -1,0 +1,34 @@
+#pragma once
+// What may have been meant by a number that was typed: slips of the keyboard, for messages.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+/// A decimal point that is one or two places off, thousandths, two neighbouring digits exchanged,
+/// and a zero too many behind the point ("2.03" for "2.3"). Never the number itself.
+inline std::vector<double> number_slips(double value) {
+  std::vector<double> slips = {value / 1000, value / 100, value / 10, value * 10};
+  const std::string digits = text::exact(value);
+  if (digits.find_first_of("en") != std::string::npos) return slips;  // "1e-09", "nan"
+  for (size_t i = 0; i + 1 < digits.size(); ++i) {
+    const size_t j = digits[i + 1] == '.' ? i + 2 : i + 1;
+    if (digits[i] == '-' || digits[i] == '.' || j >= digits.size() || digits[i] == digits[j])
+      continue;
+    std::string other = digits;
+    std::swap(other[i], other[j]);
+    slips.push_back(std::stod(other));
+  }
+  for (size_t i = digits.find('.'); i != std::string::npos && i + 2 < digits.size(); ++i)
+    if (digits[i + 1] == '0') {
+      std::string other = digits;
+      other.erase(i + 1, 1);
+      slips.push_back(std::stod(other));
+    }
+  return slips;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,953 @@
+#include "ayumi/check/mistake_search.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/in_parallel.hpp"
+#include "ayumi/base/number_slips.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/check/written_values.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/foot_plan.hpp"
+#include "ayumi/plan/sample.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Samples of a trial. Chosen: a walk of 7 s then has a step of 5 ms, and 50 trials take a second of
+// processor time; the step is that of coarse servos.
+constexpr double kTrialSamples = 1500;
+// The longest step of a trial [s]. Chosen: twenty samples in a swing of 0.2 s.
+constexpr double kLongestStep = 0.01;
+// Values that are left out on trial, those that get the other sign, and those that are looked at
+// closely. Chosen: a time at which a motion fails lies between at most two keys of each of some ten
+// tracks.
+constexpr size_t kTriedValues = 24;
+constexpr size_t kTriedSigns = 12;
+constexpr size_t kSuspects = 3;
+// Steps of the bisection for the range of a value. Chosen: 3 % of the way.
+constexpr int kBisections = 5;
+// A value of which more than this share is possible is no slip of a factor of ten. Chosen: such a
+// slip is at 0.1, and motions seldom bear five times what their author meant.
+constexpr double kGrossShare = 0.5;
+// Where less than this share of a value is possible, its sign is wrong rather than its size.
+// Chosen: what the tolerances of the check let pass.
+constexpr double kNoShare = 0.05;
+// A small change is by less than this share of a value. Chosen: more than rounding, less than a
+// slip.
+constexpr double kSmallChange = 0.2;
+// Errors whose windows say where the mistake may be, and hypotheses of one kind that are tried.
+// Chosen: one mistake is beside the first error that it brings about; the second is for errors that
+// last for the whole motion.
+constexpr int kFirstErrors = 2;
+constexpr size_t kTriedOfOneKind = 64;
+// Trials after which a person may stop the search. Chosen: those of a walk take 0.1 s.
+constexpr size_t kTrialsBetweenReports = 4;
+// Mistakes that are named of several that explain the same. Chosen: a third one hides the first.
+constexpr size_t kNamedTogether = 2;
+// Mistakes that are looked for one after the other in a pattern with several. Chosen: with more of
+// them, an author mends the first and asks again.
+constexpr int kRounds = 3;
+// Part of a swing that a missing double support takes. Chosen: that of the generated walks.
+constexpr double kDoubleSupport = 0.2;
+// A phase whose duration differs by less than this share from that of its like is as long as it was
+// meant to be. Chosen: generated walks differ by 1 %.
+constexpr double kUsualShare = 0.2;
+// Errors of a motion that cannot be sampled. Definition: more than of any that can.
+constexpr int kUnsampled = std::numeric_limits<int>::max();
+
+/// How particular an explanation is.
+enum class Rank { unit, slip, exchange, sign, missing, amount, pace };
+
+struct Window {
+  double begin = 0, end = 0;
+};
+
+struct Outcome {
+  int errors = kUnsampled;
+  std::vector<Window> windows = {};  ///< of the errors that follow from no other one [s]
+
+  bool good() const { return errors == 0; }
+  bool touches(double begin, double end) const {
+    return errors == kUnsampled ||
+           std::any_of(windows.begin(), windows.end(),
+                       [&](const Window& w) { return w.begin <= end && begin <= w.end; });
+  }
+};
+
+using Mend = std::function<void(Pattern&)>;
+
+struct Hypothesis {
+  Rank rank = Rank::amount;
+  Explanation says;
+  Mend mend;
+  double change = 0;  ///< of a value, as a share of it: the least of several amounts is named first
+};
+
+struct Candidate {
+  Hypothesis hypothesis;
+  Outcome outcome;
+};
+
+// Findings about the table at the servo's own period, which a trial does not have.
+bool needs_servo_period(FindingKind kind) {
+  return kind == FindingKind::table_step || kind == FindingKind::table_position ||
+         kind == FindingKind::table_rest || kind == FindingKind::servo_step ||
+         kind == FindingKind::motor_acceleration;
+}
+
+/// Samples and checks versions of a pattern.
+class Trials {
+ public:
+  Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
+         const Progress& progress)
+      : model_(model), options_(options), progress_(progress) {
+    options_.threads = 1;
+    threads_ = options.threads;
+    const double tick = model.description().servo_period;
+    const double step = std::min(pattern.duration() / kTrialSamples, kLongestStep);
+    dt_ = tick * std::max(1.0, std::floor(step / tick));
+  }
+
+  Outcome of(const Pattern& pattern) const {
+    Outcome outcome;
+    try {
+      CheckOptions options = options_;
+      options.friction = pattern.world.friction;
+      const ConsistencyReport report =
+          check_consistency(model_, sample(model_, pattern, {.dt = dt_, .threads = 1}), options);
+      outcome.errors = 0;
+      for (const Finding& f : report.findings) {  // errors come in order of time
+        if (f.severity != Severity::error || needs_servo_period(f.kind)) continue;
+        if (outcome.errors++ < kFirstErrors) outcome.windows.push_back({f.begin, f.end});
+      }
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_pattern && error.code() != ErrorCode::usage) throw;
+    }
+    return outcome;
+  }
+
+  Outcome after(const Pattern& pattern, const Mend& mend) const {
+    return after(pattern, std::vector<Mend>{mend}).front();
+  }
+
+  /// The outcomes in the same order.
+  std::vector<Outcome> after(const Pattern& pattern, const std::vector<Mend>& mends) const {
+    std::vector<Outcome> outcomes(mends.size());
+    for (size_t begin = 0; begin < mends.size(); begin += kTrialsBetweenReports) {
+      report(progress_, {"look for the cause", -1, ""});  // may stop the search
+      std::atomic<bool> stop = false;
+      in_parallel(
+          std::min(kTrialsBetweenReports, mends.size() - begin), threads_, stop,
+          [&](size_t i) { outcomes[begin + i] = outcome_after(pattern, mends[begin + i]); });
+    }
+    return outcomes;
+  }
+
+ private:
+  Outcome outcome_after(const Pattern& pattern, const Mend& mend) const {
+    Pattern mended = pattern;
+    try {
+      mend(mended);
+    } catch (const Error&) {
+      return {};
+    }
+    return of(mended);
+  }
+
+  const RobotModel& model_;
+  CheckOptions options_;
+  const Progress& progress_;
+  int threads_ = 0;
+  double dt_ = 0.001;
+};
+
+std::string seconds(double t) { return text::brief(t, 5) + " s"; }
+
+Support opposite(Support support) {
+  return support == Support::left    ? Support::right
+         : support == Support::right ? Support::left
+                                     : support;
+}
+
+bool is_single(Support support) { return support == Support::left || support == Support::right; }
+
+Side stance_of(Support support) { return support == Support::left ? Side::left : Side::right; }
+
+/// Everything that may be wrong in one pattern, kind by kind.
+class Hypotheses {
+ public:
+  Hypotheses(const RobotModel& model, const Pattern& pattern, const Outcome& found)
+      : model_(model), pattern_(pattern), found_(found), values_(written_values(model, pattern)) {}
+
+  const std::vector<WrittenValue>& values() const { return values_; }
+
+  std::vector<Hypothesis> units() const {
+    std::vector<Hypothesis> made;
+    angle_units(made);
+    time_units(made);
+    length_units(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> times() const {
+    std::vector<Hypothesis> made;
+    key_times(made);
+    phase_times(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> exchanges() const {
+    std::vector<Hypothesis> made;
+    footholds(made);
+    zmp_keys(made);
+    phase_sides(made);
+    starts(made);
+    key_sides(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> missing() const {
+    std::vector<Hypothesis> made;
+    swings(made);
+    double_supports(made);
+    leg_keys(made);
+    interpolations(made);
+    level_cog(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> paces() const {
+    std::vector<Hypothesis> made;
+    cog_height(made);
+    if (pattern_.table || pattern_.correction) return made;
+    for (const double factor : {1.25, 1.6, 2.0, 3.0, 5.0})
+      made.push_back({Rank::pace,
+                      {"/phases", "the motion takes " + seconds(pattern_.duration()),
+                       "with all times multiplied by " + text::brief(factor)},
+                      [this, factor](Pattern& p) { p = retimed(model_, p, factor); }});
+    return made;
+  }
+
+ private:
+  double begin_of(size_t phase) const { return phase > 0 ? pattern_.phases[phase - 1].until : 0.0; }
+  std::string phase_place(size_t i) const { return pointer_of_phase(pattern_, i); }
+  std::string key_place(size_t i) const { return pointer_of_keyframe(pattern_, i); }
+  /// Whether an error may come from this phase, or from that of the next step.
+  bool reaches(size_t phase) const {
+    const size_t last = std::min(phase + 4, pattern_.phases.size() - 1);
+    return found_.touches(begin_of(phase), pattern_.phases[last].until);
+  }
+  bool reaches_key(size_t key) const {
+    const auto& keys = pattern_.keyframes;
+    return found_.touches(key > 0 ? keys[key - 1].t : 0,
+                          key + 1 < keys.size() ? keys[key + 1].t : pattern_.duration());
+  }
+
+  void scale_all(Pattern& pattern, Quantity quantity, double factor) const {
+    for (const WrittenValue& value : values_)
+      if (value.quantity == quantity) value.scale(pattern, factor);
+  }
+
+  void angle_units(std::vector<Hypothesis>& made) const {
+    double most = 0;
+    for (const WrittenValue& value : values_)
+      for (const WrittenNumber& number : value.numbers)
+        if (value.quantity == Quantity::angle) most = std::max(most, std::abs(number.value));
+    constexpr double degree = std::numbers::pi / 180;
+    const bool small = most <= 2 * std::numbers::pi * degree;
+    if (most == 0 || (pattern_.degrees && !small)) return;
+    const std::string meant = pattern_.degrees ? "rad" : "deg",
+                      unit = pattern_.degrees ? "deg" : "rad";
+    made.push_back({Rank::unit,
+                    {"/units",
+                     "the angles are declared in " + unit + ", and the largest is " +
+                         text::brief(pattern_.degrees ? most / degree : most) + " " + unit,
+                     "with \"units\": {\"angle\": \"" + meant + "\"}"},
+                    [this, factor = pattern_.degrees ? 1 / degree : degree](Pattern& p) {
+                      scale_all(p, Quantity::angle, factor);
+                    }});
+  }
+
+  void time_units(std::vector<Hypothesis>& made) const {
+    for (const auto& [unit, factor] : {std::pair("ms", 1e-3), std::pair("hundredths", 1e-2)})
+      if (pattern_.duration() * factor > 0.1 && pattern_.duration() > 30)
+        made.push_back({Rank::unit,
+                        {"/phases", "the motion lasts " + seconds(pattern_.duration()),
+                         std::string("times are in seconds, and with all of them read as ") + unit},
+                        [factor = factor](Pattern& p) {
+                          for (Phase& phase : p.phases) phase.until *= factor;
+                          for (Keyframe& key : p.keyframes) key.t *= factor;
+                        }});
+  }
+
+  // Where most lengths are farther than three legs reach.
+  void length_units(std::vector<Hypothesis>& made) const {
+    const double leg = leg_length(model_);
+    int far = 0, all = 0;
+    for (const WrittenValue& value : values_) {
+      if (value.quantity != Quantity::length || value.suspicion(model_) == 0) continue;
+      ++all;
+      if (std::abs(value.numbers.front().value) > 3 * leg) ++far;
+    }
+    if (far < 2 || 2 * far < all) return;
+    for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
+      made.push_back(
+          {Rank::unit,
+           {"/units", "lengths are in metres", std::string("with all of them read as ") + unit},
+           [this, factor = factor](Pattern& p) { scale_all(p, Quantity::length, factor); }});
+  }
+
+  // ---- times
+
+  // A key of a block that repeats has no time of its own in the file.
+  bool is_repeated(size_t key) const {
+    const std::string& pointer = pattern_.keyframes[key].pointer;
+    return !pointer.empty() &&
+           std::count_if(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                         [&](const Keyframe& other) { return other.pointer == pointer; }) > 1;
+  }
+
+  void key_times(std::vector<Hypothesis>& made) const {
+    const auto& keys = pattern_.keyframes;
+    for (size_t i = 0; i < keys.size(); ++i) {
+      if (!reaches_key(i) || is_repeated(i)) continue;
+      const double before = i > 0 ? keys[i - 1].t : 0;
+      const double after = i + 1 < keys.size() ? keys[i + 1].t : pattern_.duration();
+      const auto add = [&](Rank rank, double t, const std::string& why) {
+        if (t <= before || t >= after || t == keys[i].t) return;
+        made.push_back(
+            {rank,
+             {key_place(i), "t is " + seconds(keys[i].t) + why, "with t = " + seconds(t)},
+             [i, t](Pattern& p) { p.keyframes[i].t = t; }});
+      };
+      for (const double t : number_slips(keys[i].t)) add(Rank::slip, t, "");
+      if (i == 0) continue;
+      const double in = keys[i].t - before, out = after - keys[i].t;
+      const std::string lasts = ", so the segment before it lasts " + seconds(in) +
+                                " and the one after it " + seconds(out);
+      // Between a short and a long neighbour, towards the long one.
+      for (const double share : {0.35, 0.6, 0.8}) {
+        const double t = in < out ? keys[i].t + share * out : keys[i].t - share * in;
+        add(Rank::amount, std::round(1000 * t) / 1000, lasts);
+        const double back = in < out ? keys[i].t - share * in : keys[i].t + share * out;
+        add(Rank::amount, std::round(1000 * back) / 1000, lasts);
+      }
+    }
+  }
+
+  /// The median of the durations of phases that are like this one; nothing without others.
+  std::optional<double> usual_duration(size_t phase) const {
+    std::vector<double> like;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i)
+      if (i != phase &&
+          is_single(pattern_.phases[i].support) == is_single(pattern_.phases[phase].support) &&
+          pattern_.phases[i].swing.has_value() == pattern_.phases[phase].swing.has_value())
+        like.push_back(pattern_.phases[i].until - begin_of(i));
+    if (like.size() < 2) return std::nullopt;
+    std::sort(like.begin(), like.end());
+    return like[like.size() / 2];
+  }
+
+  void phase_times(std::vector<Hypothesis>& made) const {
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!reaches(i)) continue;
+      const double until = pattern_.phases[i].until, begin = begin_of(i);
+      const double after =
+          i + 1 < pattern_.phases.size() ? pattern_.phases[i + 1].until : until * 1e3;
+      const std::optional<double> usual = usual_duration(i);
+      if (usual && std::abs(until - begin - *usual) < kUsualShare * *usual) continue;
+      std::vector<double> meant;
+      if (usual) meant.push_back(std::round(1000 * (begin + *usual)) / 1000);
+      for (const double slip : number_slips(until)) meant.push_back(slip);
+      const std::string lasts = "the phase ends at " + seconds(until) + " and lasts " +
+                                seconds(until - begin) +
+                                (usual ? ", while others like it last " + seconds(*usual) : "");
+      for (const double t : meant)
+        if (t > begin && t < after && t != until)
+          made.push_back({Rank::slip,
+                          {phase_place(i), lasts, "with an end at " + seconds(t)},
+                          [i, t](Pattern& p) { p.phases[i].until = t; }});
+      if (!usual) continue;
+      made.push_back({Rank::slip,
+                      {phase_place(i), lasts,
+                       "with a duration of " + seconds(*usual) + " and everything after it " +
+                           (*usual > until - begin ? "later" : "earlier")},
+                      [i, until, later = *usual - (until - begin)](Pattern& p) {
+                        for (size_t k = i; k < p.phases.size(); ++k) p.phases[k].until += later;
+                        for (Keyframe& key : p.keyframes)
+                          if (key.t >= until - 1e-9) key.t += later;
+                      }});
+    }
+  }
+
+  // ---- sides
+
+  void zmp_keys(std::vector<Hypothesis>& made) const {
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const Phase& phase = pattern_.phases[i];
+      if (!is_single(phase.support) || !reaches(i)) continue;
+      const ZmpKey::Place meant =
+          phase.support == Support::left ? ZmpKey::Place::left : ZmpKey::Place::right;
+      std::vector<size_t> wrong;
+      for (size_t k = 0; k < pattern_.keyframes.size(); ++k) {
+        const Keyframe& key = pattern_.keyframes[k];
+        if (key.zmp && key.t >= begin_of(i) - 1e-9 && key.t <= phase.until + 1e-9 &&
+            key.zmp->place != meant)
+          wrong.push_back(k);
+      }
+      if (wrong.empty()) continue;
+      std::vector<std::string> places;
+      for (const size_t k : wrong) places.push_back(key_place(k));
+      const std::string foot = name_of(stance_of(phase.support));
+      const auto place = pattern_.keyframes[wrong.front()].zmp->place;
+      const std::string at = place == ZmpKey::Place::left     ? "under the left foot"
+                             : place == ZmpKey::Place::right  ? "under the right foot"
+                             : place == ZmpKey::Place::center ? "at \"center\""
+                                                              : "at a point";
+      made.push_back(
+          {Rank::exchange,
+           {phase_place(i),
+            "the robot stands on the " + foot + " foot, but " + text::join(places, " and ") +
+                (places.size() > 1 ? " put" : " puts") + " the ZMP " + at,
+            "with \"zmp\": \"" + foot + "\" there"},
+           [wrong, meant](Pattern& p) {
+             for (const size_t k : wrong) p.keyframes[k].zmp->place = meant;
+           }});
+    }
+  }
+
+  void phase_sides(std::vector<Hypothesis>& made) const {
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const Phase& phase = pattern_.phases[i];
+      if (!is_single(phase.support) || !reaches(i)) continue;
+      const Support meant = opposite(phase.support);
+      made.push_back({Rank::exchange,
+                      {phase_place(i),
+                       std::string("support is ") + name_of(phase.support) +
+                           (phase.swing ? std::string(" and the ") + name_of(phase.swing->foot) +
+                                              " foot swings"
+                                        : "") +
+                           "; left and right may be exchanged",
+                       std::string("with support ") + name_of(meant) +
+                           (phase.swing ? std::string(" and a swing of the ") +
+                                              name_of(other(phase.swing->foot)) + " foot"
+                                        : "")},
+                      [i, meant](Pattern& p) {
+                        p.phases[i].support = meant;
+                        if (p.phases[i].swing)
+                          p.phases[i].swing->foot = other(p.phases[i].swing->foot);
+                      }});
+      if (!phase.swing || phase.swing->step) continue;
+      std::vector<size_t> later;
+      for (size_t k = i + 1; k < pattern_.phases.size() && later.size() < 2; ++k)
+        if (pattern_.phases[k].swing && !pattern_.phases[k].swing->step) later.push_back(k);
+      for (const size_t k : later)
+        made.push_back(
+            {Rank::exchange,
+             {phase_place(i),
+              std::string("the footholds of this phase and of ") + phase_place(k) +
+                  " may be exchanged",
+              "with each in the other's place"},
+             [i, k](Pattern& p) { std::swap(p.phases[i].swing->to, p.phases[k].swing->to); }});
+    }
+  }
+
+  // A whole foothold or foot key in another unit.
+  void footholds(std::vector<Hypothesis>& made) const {
+    const auto add = [&](const std::string& place, Side side, const Foothold& foot,
+                         const std::function<Foothold&(Pattern&)>& in) {
+      if (foot.position.norm() < 1e-9) return;
+      for (const auto& [unit, factor] :
+           {std::pair("mm", 1e-3), std::pair("cm", 1e-2), std::pair("dm", 1e-1)}) {
+        const Eigen::Vector3d meant = foot.position * factor;
+        made.push_back(
+            {Rank::slip,
+             {place,
+              std::string("the ") + name_of(side) + " foot is at (" +
+                  text::brief(foot.position.x()) + ", " + text::brief(foot.position.y()) + ", " +
+                  text::brief(foot.position.z()) + ") m; lengths are in metres",
+              std::string("read in ") + unit + ", as (" + text::brief(meant.x()) + ", " +
+                  text::brief(meant.y()) + ", " + text::brief(meant.z()) + ") m,"},
+             [in, factor = factor](Pattern& p) { in(p).position *= factor; }});
+      }
+    };
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const auto& swing = pattern_.phases[i].swing;
+      if (swing && !swing->step && reaches(i))
+        add(phase_place(i), swing->foot, swing->to,
+            [i](Pattern& p) -> Foothold& { return p.phases[i].swing->to; });
+    }
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      for (const size_t side : {size_t(0), size_t(1)})
+        if (const auto& foot = pattern_.keyframes[i].feet[side]; foot && reaches_key(i))
+          add(key_place(i), static_cast<Side>(side), *foot,
+              [i, side](Pattern& p) -> Foothold& { return *p.keyframes[i].feet[side]; });
+  }
+
+  void starts(std::vector<Hypothesis>& made) const {
+    if (!pattern_.start_feet[0] || !pattern_.start_feet[1]) return;
+    made.push_back({Rank::exchange,
+                    {"/start", "the left and the right foot may be exchanged",
+                     "with each in the other's place"},
+                    [](Pattern& p) { std::swap(p.start_feet[0], p.start_feet[1]); }});
+  }
+
+  Support support_at(double t) const {
+    for (const Phase& phase : pattern_.phases)
+      if (t <= phase.until) return phase.support;
+    return Support::both;
+  }
+
+  void key_sides(std::vector<Hypothesis>& made) const {
+    std::optional<MirrorMap> map;
+    try {
+      map = mirror_map(model_);
+    } catch (const Error&) {  // the robot has no mirror image
+    }
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
+      const Keyframe& key = pattern_.keyframes[i];
+      if (!reaches_key(i)) continue;
+      for (const Side side : {Side::left, Side::right}) {
+        const auto s = static_cast<size_t>(index(side)), o = 1 - s;
+        if (!key.feet[s] || key.feet[o] || support_at(key.t) != on(side)) continue;
+        made.push_back(
+            {Rank::exchange,
+             {key_place(i),
+              std::string("the key moves the ") + name_of(side) +
+                  " foot, which carries the robot; left and right may be exchanged",
+              std::string("with the ") + name_of(other(side)) + " foot in its place"},
+             [i, s, o](Pattern& p) { std::swap(p.keyframes[i].feet[s], p.keyframes[i].feet[o]); }});
+      }
+      if (!map || key.joints.empty()) continue;
+      // No other key moves its joints.
+      const bool is_alone = std::none_of(
+          pattern_.keyframes.begin(), pattern_.keyframes.end(), [&](const Keyframe& k) {
+            return &k != &key &&
+                   std::any_of(key.joints.begin(), key.joints.end(),
+                               [&](const auto& e) { return k.joints.contains(e.first); });
+          });
+      made.push_back(
+          {is_alone ? Rank::slip : Rank::sign,
+           {key_place(i),
+            "the key moves " + key.joints.begin()->first +
+                (key.joints.size() > 1 ? " and others" : "") + "; left and right may be exchanged",
+            "with the joints of the other side"},
+           [this, i, map](Pattern& p) {
+             std::map<std::string, double> joints;
+             for (const auto& [joint, angle] : p.keyframes[i].joints) {
+               const int dof = model_.find_dof(joint);
+               joints[dof < 0
+                          ? joint
+                          : model_.dofs()[static_cast<size_t>(map->dof[static_cast<size_t>(dof)])]
+                                .name] = angle;
+             }
+             p.keyframes[i].joints = joints;
+           }});
+    }
+  }
+
+  // ---- what is missing, or is too much
+
+  bool has_foot_key(Side side, double begin, double end) const {
+    return std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                       [&](const Keyframe& key) {
+                         return key.t >= begin - 1e-9 && key.t <= end + 1e-9 &&
+                                key.feet[static_cast<size_t>(index(side))];
+                       });
+  }
+
+  void swings(std::vector<Hypothesis>& made) const {
+    std::optional<FootPlan> feet;
+    try {
+      feet.emplace(model_, pattern_);
+    } catch (const Error&) {
+      return;
+    }
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const Phase& phase = pattern_.phases[i];
+      if (phase.swing || phase.viip || !is_single(phase.support)) continue;
+      const Side idle = other(stance_of(phase.support));
+      if (has_foot_key(idle, begin_of(i), phase.until)) continue;
+      // Half the way of the other foot's next step ahead of it, or beside it.
+      RelativeStep step;
+      const Eigen::Isometry3d stance = feet->pose(other(idle), phase.until);
+      for (size_t k = i + 1; k < pattern_.phases.size(); ++k)
+        if (pattern_.phases[k].swing && pattern_.phases[k].swing->foot == other(idle)) {
+          const Eigen::Vector3d way =
+              stance.inverse() * feet->pose(other(idle), pattern_.phases[k].until).translation();
+          step.forward = 0.5 * way.x();
+          break;
+        }
+      double lift = Swing{}.lift;
+      for (const Phase& like : pattern_.phases)
+        if (like.swing) lift = like.swing->lift;
+      made.push_back({Rank::missing,
+                      {phase_place(i),
+                       std::string("the robot stands on the ") + name_of(other(idle)) +
+                           " foot alone, but the " + name_of(idle) +
+                           " foot stays on the ground; its swing may be missing",
+                       "with a swing to a place " + text::brief(step.forward, 3) +
+                           " m ahead of the other foot"},
+                      [i, idle, lift, step](Pattern& p) {
+                        p.phases[i].swing =
+                            Swing{.foot = idle, .to = {}, .lift = lift, .step = step};
+                      }});
+    }
+  }
+
+  void double_supports(std::vector<Hypothesis>& made) const {
+    for (size_t i = 1; i < pattern_.phases.size(); ++i) {
+      const Phase &before = pattern_.phases[i - 1], &phase = pattern_.phases[i];
+      if (!is_single(phase.support) || before.support != opposite(phase.support)) continue;
+      if (!reaches(i) && !reaches(i - 1)) continue;
+      double until = before.until + kDoubleSupport * (phase.until - before.until);
+      for (const Keyframe& key : pattern_.keyframes)
+        if (key.zmp && key.t > before.until + 1e-9 && key.t < phase.until - 1e-9) {
+          until = key.t;
+          break;
+        }
+      made.push_back({Rank::missing,
+                      {phase_place(i),
+                       std::string("the robot passes from the ") + name_of(before.support) +
+                           " foot to the " + name_of(phase.support) +
+                           " foot at once; a phase with support \"both\" may be missing before it",
+                       "with such a phase until " + seconds(until)},
+                      [i, until](Pattern& p) {
+                        Phase both;
+                        both.until = until;
+                        p.phases.insert(p.phases.begin() + static_cast<long>(i), both);
+                      }});
+    }
+  }
+
+  bool is_leg_joint(const std::string& joint) const {
+    const int dof = model_.find_dof(joint);
+    for (const Side side : {Side::left, Side::right}) {
+      const std::vector<int>& leg = model_.leg(side);
+      if (dof >= 0 && std::find(leg.begin(), leg.end(), dof) != leg.end()) return true;
+    }
+    return false;
+  }
+
+  void leg_keys(std::vector<Hypothesis>& made) const {
+    if (!model_.has_soles()) return;
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      for (const auto& entry : pattern_.keyframes[i].joints) {
+        if (!is_leg_joint(entry.first)) continue;
+        made.push_back(
+            {Rank::missing,
+             {key_place(i),
+              entry.first +
+                  " is a joint of a leg; with such a key, every leg joint follows its keys "
+                  "alone, and no leg is solved from the feet and the COG",
+              "without keys of leg joints (give the COG, the feet or the torso instead)"},
+             [this](Pattern& p) {
+               for (Keyframe& key : p.keyframes)
+                 std::erase_if(key.joints, [&](const auto& e) { return is_leg_joint(e.first); });
+             }});
+        return;
+      }
+  }
+
+  void interpolations(std::vector<Hypothesis>& made) const {
+    const auto jumps = [](Interpolation i) {
+      return i == Interpolation::hold || i == Interpolation::linear;
+    };
+    const auto add = [&](const std::string& place, Interpolation now, const Mend& mend) {
+      made.push_back({Rank::missing,
+                      {place,
+                       std::string("interpolation \"") + name_of(now) + "\" makes " +
+                           (now == Interpolation::hold ? "the angle jump" : "the speed jump"),
+                       "with \"minimum_jerk\""},
+                      mend});
+    };
+    if (jumps(pattern_.interpolation))
+      add("/defaults/interpolation", pattern_.interpolation,
+          [](Pattern& p) { p.interpolation = Interpolation::minimum_jerk; });
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      if (const auto& own = pattern_.keyframes[i].interpolation;
+          own && jumps(*own) && reaches_key(i))
+        add(key_place(i), *own,
+            [i](Pattern& p) { p.keyframes[i].interpolation = Interpolation::minimum_jerk; });
+  }
+
+  // The COG keeps its height above the mean of both soles, which a lifted foot raises by half.
+  void level_cog(std::vector<Hypothesis>& made) const {
+    const bool has_height = std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                                        [](const Keyframe& key) { return key.cog_height; });
+    if (has_height) return;
+    size_t highest = 0;
+    double lift = 0;
+    Side lifted = Side::left;
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      for (const Side side : {Side::left, Side::right})
+        if (const auto& foot = pattern_.keyframes[i].feet[static_cast<size_t>(index(side))];
+            foot && foot->position.z() > lift) {
+          lift = foot->position.z();
+          lifted = side;
+          highest = i;
+        }
+    if (lift <= 0) return;
+    for (const double share : {1.0, 0.99, 0.97, 0.94}) {
+      const double height = std::round(1e4 * share * default_cog_height(model_, pattern_)) / 1e4;
+      made.push_back(
+          {Rank::missing,
+           {key_place(highest),
+            std::string("the ") + name_of(lifted) + " foot is " + text::fixed(1000 * lift, 0) +
+                " mm up, and the COG rises by half of it, because without keys its height is above "
+                "the mean of both soles",
+            "with keys of \"cog\": {\"height\": " + text::brief(height) + "}, which keep it down,"},
+           [height](Pattern& p) {
+             for (Keyframe& key : p.keyframes) key.cog_height = height;
+           }});
+    }
+  }
+
+  // Legs that are nearly straight at the height of home.
+  void cog_height(std::vector<Hypothesis>& made) const {
+    const double height = default_cog_height(model_, pattern_);
+    for (const double share : {0.99, 0.97, 0.94, 0.9, 0.85})
+      made.push_back({Rank::pace,
+                      {"/defaults/cog_height",
+                       "the COG height is " + text::brief(height) +
+                           " m, at which the legs are nearly straight",
+                       "with " + text::brief(share * height, 3) + " m"},
+                      [lower = share * height](Pattern& p) { p.cog_height = lower; }});
+  }
+
+  const RobotModel& model_;
+  const Pattern& pattern_;
+  const Outcome& found_;
+  std::vector<WrittenValue> values_;
+};
+
+/// The search in one pattern.
+class Search {
+ public:
+  Search(const Trials& trials, const RobotModel& model, const Pattern& pattern,
+         const Outcome& found)
+      : trials_(trials),
+        model_(model),
+        pattern_(pattern),
+        found_(found),
+        hypotheses_(model, pattern, found) {}
+
+  /// The best explanations, equal in what they leave and in their rank.
+  std::vector<Candidate> best() {
+    const auto kinds = {&Hypotheses::units, &Hypotheses::times, &Hypotheses::exchanges,
+                        &Hypotheses::missing};
+    Rank reached = Rank::unit;
+    for (const auto kind : kinds) {
+      if (kind == *(kinds.begin() + 1)) values();
+      test((hypotheses_.*kind)());
+      if (enough(reached)) return chosen();
+      reached = kind == *kinds.begin() ? Rank::slip : Rank::sign;
+    }
+    if (!enough(Rank::amount)) test(hypotheses_.paces());
+    return chosen();
+  }
+
+ private:
+  bool enough(Rank reached) const {
+    return std::any_of(tried_.begin(), tried_.end(), [&](const Candidate& c) {
+      return c.outcome.good() && c.hypothesis.rank <= reached;
+    });
+  }
+
+  void test(std::vector<Hypothesis> hypotheses) {
+    if (hypotheses.size() > kTriedOfOneKind) hypotheses.resize(kTriedOfOneKind);
+    std::vector<Mend> mends;
+    for (const Hypothesis& h : hypotheses) mends.push_back(h.mend);
+    const std::vector<Outcome> outcomes = trials_.after(pattern_, mends);
+    for (size_t i = 0; i < hypotheses.size(); ++i)
+      tried_.push_back({std::move(hypotheses[i]), outcomes[i]});
+  }
+
+  // Values without which the errors vanish; of these what was probably meant, and how far the value
+  // may go.
+  void values() {
+    std::vector<WrittenValue> suspects;
+    for (const WrittenValue& value : hypotheses_.values())
+      if (value.suspicion(model_) > 0 && found_.touches(value.begin, value.end))
+        suspects.push_back(value);
+    std::stable_sort(suspects.begin(), suspects.end(),
+                     [&](const WrittenValue& a, const WrittenValue& b) {
+                       return a.suspicion(model_) > b.suspicion(model_);
+                     });
+    if (suspects.size() > kTriedValues) suspects.resize(kTriedValues);
+    std::vector<Mend> mends;
+    for (const WrittenValue& value : suspects)
+      mends.push_back([&value](Pattern& p) { value.pull(p, 0); });
+    const std::vector<Outcome> without = trials_.after(pattern_, mends);
+    int least = found_.errors;
+    for (const Outcome& outcome : without) least = std::min(least, outcome.errors);
+    std::vector<Hypothesis> signs;
+    for (size_t i = 0; i < suspects.size() && signs.size() < kTriedSigns; ++i)
+      if (without[i].errors > 0 && suspects[i].has_sign())
+        signs.push_back(sign_of(suspects[i], ""));
+    test(std::move(signs));
+    if (least == found_.errors) return;
+    size_t looked_at = 0;
+    for (size_t i = 0; i < suspects.size() && looked_at < kSuspects; ++i)
+      if (without[i].errors == least) {
+        look_at(suspects[i], without[i]);
+        ++looked_at;
+      }
+    demote_slips();
+  }
+
+  // Where a small change of another value is enough, a decimal point is as good a guess as a size.
+  void demote_slips() {
+    const auto small = [](const Candidate& c) {
+      return c.hypothesis.rank == Rank::amount && c.hypothesis.change < kSmallChange;
+    };
+    const auto found = std::find_if(tried_.begin(), tried_.end(), small);
+    if (found == tried_.end()) return;
+    const std::string place = found->hypothesis.says.place;
+    for (Candidate& c : tried_)
+      if (c.hypothesis.rank == Rank::slip && c.hypothesis.says.place != place) {
+        c.hypothesis.rank = Rank::amount;
+        c.hypothesis.change = 1;
+      }
+  }
+
+  void look_at(const WrittenValue& value, const Outcome& without) {
+    double possible = 0, impossible = 1;
+    for (int i = 0; i < kBisections; ++i) {
+      const double share = 0.5 * (possible + impossible);
+      const Outcome outcome = trials_.after(pattern_, [&](Pattern& p) { value.pull(p, share); });
+      (outcome.errors <= without.errors ? possible : impossible) = share;
+    }
+    const WrittenNumber& number = value.numbers.front();
+    const double limit = number.neutral + possible * (number.value - number.neutral);
+    const std::string up_to =
+        (number.value > number.neutral ? "up to " : "down to ") + value.text(pattern_, limit);
+    const std::string written = value.words + " is " + value.text(pattern_, number.value);
+    tried_.push_back({{Rank::amount,
+                       {value.place, written, "with values " + up_to},
+                       [value](Pattern& p) { value.pull(p, 0); },
+                       number.value == 0 ? 1 : std::abs(1 - limit / number.value)},
+                      without});
+    std::vector<Hypothesis> slips;
+    // Hardly any value of this sign is possible, and this one is of a usual size.
+    const bool other_sign =
+        limit / number.value < kNoShare && std::abs(number.value) < value.unit(model_);
+    if (value.has_sign())
+      slips.push_back(sign_of(value, ", and with values " + up_to,
+                              value.across ? Rank::slip
+                              : other_sign ? Rank::exchange
+                                           : Rank::sign));
+    const bool too_large = limit / number.value < kGrossShare && !other_sign;
+    const bool too_small = limit / number.value > 1 / kGrossShare;
+    const auto add = [&](double factor, const std::string& why) {
+      slips.push_back({Rank::slip,
+                       {value.place, written,
+                        why + ", " + value.text(pattern_, factor * number.value) +
+                            ", and with values " + up_to},
+                       [value, factor](Pattern& p) { value.scale(p, factor); }});
+    };
+    // The least change first.
+    if (too_large) add(0.1, "with the decimal point one place further left");
+    if (too_large && value.quantity == Quantity::angle && !pattern_.degrees)
+      add(std::numbers::pi / 180, "read in deg");
+    if (too_large && value.quantity == Quantity::length) {
+      add(1e-2, "read in cm");
+      add(1e-3, "read in mm");
+    }
+    if (too_small && value.quantity == Quantity::force) add(kGravity, "read in kg");
+    if (too_small) add(10, "with the decimal point one place further right");
+    if (too_small && value.quantity == Quantity::angle && pattern_.degrees)
+      add(180 / std::numbers::pi, "read in rad");
+    test(std::move(slips));
+  }
+
+  Hypothesis sign_of(const WrittenValue& value, const std::string& more,
+                     Rank rank = Rank::sign) const {
+    const double number = value.numbers.front().value;
+    return {rank,
+            {value.place, value.words + " is " + value.text(pattern_, number),
+             (value.across ? "on the other side (left and right may be exchanged), "
+                           : "with the other sign, ") +
+                 value.text(pattern_, -number) + more + ","},
+            [value](Pattern& p) { value.scale(p, -1); }};
+  }
+
+  /// The fewest errors that remain, then the most particular rank; the first few of these.
+  std::vector<Candidate> chosen() const {
+    std::vector<Candidate> sorted;
+    for (const Candidate& c : tried_)
+      if (c.outcome.errors < found_.errors) sorted.push_back(c);
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
+      return std::tie(a.outcome.errors, a.hypothesis.rank, a.hypothesis.change) <
+             std::tie(b.outcome.errors, b.hypothesis.rank, b.hypothesis.change);
+    });
+    std::vector<Candidate> best;
+    for (const Candidate& c : sorted) {
+      if (c.outcome.errors != sorted.front().outcome.errors ||
+          c.hypothesis.rank != sorted.front().hypothesis.rank || best.size() == kNamedTogether)
+        break;
+      const auto same = [&](const Candidate& b) {
+        return b.hypothesis.says.place == c.hypothesis.says.place &&
+               b.hypothesis.says.written == c.hypothesis.says.written;
+      };
+      if (std::none_of(best.begin(), best.end(), same)) best.push_back(c);
+    }
+    return best;
+  }
+
+  const Trials& trials_;
+  const RobotModel& model_;
+  const Pattern& pattern_;
+  const Outcome& found_;
+  Hypotheses hypotheses_;
+  std::vector<Candidate> tried_;
+};
+
+std::string result_words(const Outcome& before, const Outcome& after) {
+  if (after.good()) return " the pattern is consistent";
+  if (before.errors == kUnsampled)
+    return " the motion can be sampled, with " + text::counted(after.errors, "error");
+  return " " + text::counted(after.errors, "error") + " of " + std::to_string(before.errors) +
+         (after.errors == 1 ? " remains" : " remain");
+}
+
+}  // namespace
+
+std::vector<Explanation> find_explanations(const RobotModel& model, const Pattern& pattern,
+                                           const CheckOptions& options, const Progress& progress) {
+  if (pattern.table || pattern.phases.empty() || !model.has_soles()) return {};
+  const Trials trials(model, pattern, options, progress);
+  std::vector<Explanation> explanations;
+  Pattern current = pattern;
+  Outcome found = trials.of(current);
+  for (int round = 0; round < kRounds && !found.good(); ++round) {
+    Search search(trials, model, current, found);  // which the mendings refer to
+    std::vector<Candidate> best = search.best();
+    if (best.empty()) break;
+    for (Candidate& c : best) {
+      c.hypothesis.says.instead += result_words(found, c.outcome);
+      explanations.push_back(c.hypothesis.says);
+    }
+    Pattern mended = current;
+    best.front().hypothesis.mend(mended);
+    const Outcome left = best.front().outcome;
+    current = std::move(mended);
+    found = left;
+  }
+  return explanations;
+}
+
+}  // namespace ayumi

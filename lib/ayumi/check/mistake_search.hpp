@@ -1,0 +1,28 @@
+#pragma once
+// What an author has probably written wrongly, found by trial: one thing in the pattern is put
+// right, and the motion is sampled and checked again. What is enough to make the pattern consistent
+// is named, the most particular first: a unit, a decimal point, an exchanged side, a sign,
+// something that is missing, then a value that is too large or too small.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/limits/limit.hpp"
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/pattern.hpp"
+
+namespace ayumi {
+
+struct Explanation {
+  std::string place;    ///< JSON pointer in the pattern's file
+  std::string written;  ///< what stands there: "the right foot's x is 0.9 m"
+  std::string instead;  ///< what would do: "with 0.09 m, ... the pattern is consistent"
+};
+
+/// Where one change is not enough, those of several steps, each with the errors that it leaves.
+/// Empty for a consistent pattern, and where no change that is tried helps. `progress` may stop it.
+std::vector<Explanation> find_explanations(const RobotModel& model, const Pattern& pattern,
+                                           const CheckOptions& options, const Progress& progress);
+
+}  // namespace ayumi

@@ -1,0 +1,17 @@
+#pragma once
+// What the check leaves out of the verdict because it is a disturbance, and what it would find with
+// it.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/task/task.hpp"
+
+namespace ayumi {
+
+/// A sentence for each payload and each change of friction in the scenario. `plain` is the report
+/// without them.
+std::vector<std::string> findings_under_scenario(const Task& task, const CheckOptions& options,
+                                                 const ConsistencyReport& plain);
+
+}  // namespace ayumi

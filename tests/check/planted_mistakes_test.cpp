@@ -1,0 +1,218 @@
+// Mistakes that people make, planted into sound patterns of two robots, and what the check calls
+// them: the first likely cause names the place in the file and what was meant.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+#include <regex>
+
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/check/likely_mistakes.hpp"
+#include "tests/support/robot_motions.hpp"
+
+namespace ayumi::test {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+const RobotModel& small() { return bundled_robot("hoap1"); }
+const RobotModel& tall() { return bundled_robot("humanoid30"); }
+
+Pattern walk(const RobotModel& robot) {
+  WalkParameters steps = walk_defaults(robot);
+  steps.steps = 3;
+  return walk_pattern(robot, steps);
+}
+
+struct Mistaken {
+  const char* name;
+  const RobotModel& robot;
+  Pattern pattern;
+  std::function<void(Pattern&)> plant;
+  const char* named;  ///< a regular expression that the first likely cause matches
+};
+
+Swing& swing(Pattern& p, size_t phase) { return *p.phases[phase].swing; }
+
+std::vector<Mistaken> list() {
+  std::vector<Mistaken> all;
+  const auto add = [&](const char* name, const RobotModel& robot, Pattern pattern,
+                       const char* named, std::function<void(Pattern&)> plant) {
+    all.push_back({name, robot, std::move(pattern), std::move(plant), named});
+  };
+  const Pattern steps = walk(small()), strides = walk(tall());
+  const Pattern squat = squat_pattern(small(), squat_defaults(small()));
+  const Pattern sway = sway_pattern(tall(), sway_defaults(tall()));
+  const Pattern bow = bow_pattern(small(), bow_defaults(small()));
+  const Pattern wave = wave_pattern(small(), wave_defaults(small()));
+  KickParameters low = kick_defaults(small());
+  low.cog_height = 0.238;
+  const Pattern kick = kick_pattern(small(), low);
+  Pattern jump = jump_pattern(small(), jump_defaults(small()));
+  jump.profile = "hoap1-strong";
+  add("foothold of 0.6 m", small(), steps, "/phases/3: the left foot's x is 0.6 m.* 0.06 m",
+      [](Pattern& p) { swing(p, 3).to.position.x() = 0.6; });
+  add("footholds exchanged", small(), steps, "/phases/3: .*/phases/5 may be exchanged",
+      [](Pattern& p) { std::swap(swing(p, 3).to, swing(p, 5).to); });
+  add("missing swing", small(), steps, "/phases/3: .*its swing may be missing",
+      [](Pattern& p) { p.phases[3].swing.reset(); });
+  add("degrees as radians", small(), wave, "/units: .*\"angle\": \"deg\"", [](Pattern& p) {
+    p.degrees = false;
+    for (Keyframe& key : p.keyframes)
+      for (auto& entry : key.joints) entry.second /= kDegree;
+  });
+  add("radians as degrees", small(), wave, "/units: .*\"angle\": \"rad\"", [](Pattern& p) {
+    for (Keyframe& key : p.keyframes)
+      for (auto& entry : key.joints) entry.second *= kDegree;
+  });
+  add("COG height of 2.15 m", small(), squat, "/keyframes/2: the COG height is 2.15 m.* 0.215 m",
+      [](Pattern& p) { p.keyframes[2].cog_height = 2.15; });
+  add("a COG height of 600 mm", tall(), strides, "/defaults/cog_height: .*in mm, 0.6 m",
+      [](Pattern& p) { p.cog_height = 600; });
+  add("times in ms", small(), steps, "/phases: .*read as ms", [](Pattern& p) {
+    for (Phase& phase : p.phases) phase.until *= 1000;
+    for (Keyframe& key : p.keyframes) key.t *= 1000;
+  });
+  add("a ZMP key under the wrong foot", small(), steps,
+      "/phases/3: the robot stands on the right foot, but /keyframes/4 puts the ZMP under the left",
+      [](Pattern& p) { p.keyframes[4].zmp->place = ZmpKey::Place::left; });
+  add("the ZMP in the middle while one foot stands", small(), kick,
+      "/phases/1: the robot stands on the left foot.*at \"center\"", [](Pattern& p) {
+        for (Keyframe& key : p.keyframes)
+          if (key.zmp) key.zmp->place = ZmpKey::Place::center;
+      });
+  add("a time with a digit too many", small(), wave, "/keyframes/4: t is .* with t = 2.3 s",
+      [](Pattern& p) { p.keyframes[4].t = 2.03; });
+  add("a leg key", small(), steps, "/keyframes/3: l_knee is a joint of a leg",
+      [](Pattern& p) { p.keyframes[3].joints["l_knee"] = 1; });
+  add("a foot key 30 mm up", small(), kick,
+      "/keyframes/3: the right foot('s z is 0.03 m| is 30 mm up)", [](Pattern& p) {
+        p.cog_height = 0;
+        p.keyframes.erase(p.keyframes.begin() + 3);
+        p.keyframes[3].t = 2.08;
+        p.keyframes[3].feet[1] = Foothold{{0, -0.039, 0.03}};
+      });
+  add("legs too straight for a lifted foot", small(), kick,
+      "/(defaults/cog_height: .*nearly straight|keyframes/[34]: the right foot is .* mm up)",
+      [](Pattern& p) { p.cog_height = 0; });
+  add("knees nearly straight at lift-off", small(), jump,
+      "/keyframes/2: the COG height is 0.262 m.* at most 0.2",
+      [](Pattern& p) { p.keyframes[2].cog_height = p.keyframes[3].cog_height = 0.262; });
+  add("a segment too long for its stoop", small(), jump, "/keyframes/1: t is 1.1 s, so .* lasts",
+      [](Pattern& p) { p.keyframes[1].t = 1.1; });
+  add("the foot on the wrong side", small(), steps,
+      "/phases/3: the left foot's y is -0.039 m; on the other side .*exchanged.* 0.039 m",
+      [](Pattern& p) { swing(p, 3).to.position.y() *= -1; });
+  add("a phase that names the wrong foot", small(), steps,
+      "/phases/3: support is left .*exchanged; with support right", [](Pattern& p) {
+        p.phases[3].support = Support::left;
+        swing(p, 3).foot = Side::right;
+      });
+  add("a foothold in mm", small(), steps, "/phases/3: the left foot is at \\(60, 39.*read in mm",
+      [](Pattern& p) { swing(p, 3).to.position *= 1000; });
+  add("a lift of 0.9 m", tall(), strides, "/phases/3: the lift of the swing is 0.9 m",
+      [](Pattern& p) { swing(p, 3).lift = 0.9; });
+  add("an elbow with the wrong sign", small(), wave,
+      "/keyframes/3: r_elbow is .*with the other sign",
+      [](Pattern& p) { p.keyframes[3].joints["r_elbow"] *= -1; });
+  add("the joints of the other arm", small(), wave, "/keyframes/2: .*left and right",
+      [](Pattern& p) {
+        std::map<std::string, double> other;
+        for (const auto& [joint, angle] : p.keyframes[2].joints)
+          other["l" + joint.substr(1)] = angle;
+        p.keyframes[2].joints = other;
+      });
+  add("a trunk too far ahead", small(), bow,
+      "/keyframes/2: the pitch of the trunk is 75 deg.*up to", [](Pattern& p) {
+        for (const size_t k : {size_t(2), size_t(3)}) p.keyframes[k].torso->y() = 75 * kDegree;
+      });
+  add("the trunk's degrees as radians", small(), bow, "/units: .*\"angle\": \"deg\"",
+      [](Pattern& p) {
+        p.degrees = false;
+        for (Keyframe& key : p.keyframes)
+          if (key.torso) *key.torso /= kDegree;
+      });
+  add("a squat too deep", small(), squat, "/keyframes/2: the COG height is 0.115 m.*down to 0.1",
+      [](Pattern& p) { p.keyframes[2].cog_height = 0.115; });
+  add("a sway in mm", tall(), sway, "/keyframes/2: the COG's y is .*read in mm",
+      [](Pattern& p) { *p.keyframes[2].cog_y *= 1000; });
+  add("a sway ten times too far", tall(), sway, "/keyframes/3: the COG's y is .*decimal point",
+      [](Pattern& p) { *p.keyframes[3].cog_y *= 10; });
+  add("slippery ground", small(), steps, "/world/friction: .*0.05; with .*0.1",
+      [](Pattern& p) { p.world.friction = 0.05; });
+  add("a force in kg", small(), steps, "/keyframes/2: f_z is 6 N",
+      [](Pattern& p) { p.keyframes[2].fz = 6; });
+  add("a phase that ends too early", small(), steps,
+      "/phases/3: the phase ends at .*while others like it last",
+      [](Pattern& p) { p.phases[3].until = p.phases[2].until + 0.05; });
+  add("a foot under the ground", small(), kick, "/keyframes/4: the right foot's z is -0.03 m",
+      [](Pattern& p) { p.keyframes[4].feet[1]->position.z() *= -1; });
+  add("a foothold in the air", small(), steps, "/phases/3: the left foot's z is 0.05 m",
+      [](Pattern& p) { swing(p, 3).to.position.z() = 0.05; });
+  add("feet exchanged at the start", small(), steps, "/start: .*exchanged", [](Pattern& p) {
+    p.start_feet = {Foothold{{0, -0.039, 0}}, Foothold{{0, 0.039, 0}}};
+  });
+  add("a key that jumps", small(), wave, "/keyframes/3: interpolation \"hold\"",
+      [](Pattern& p) { p.keyframes[3].interpolation = Interpolation::hold; });
+  add("a yaw of 60 deg", tall(), strides, "/phases/3: the left foot's yaw is 90 deg",
+      [](Pattern& p) { swing(p, 3).to.rpy.z() = 90 * kDegree; });
+  add("a key of the foot that stands", small(), kick, "/keyframes/4: the key moves the left foot",
+      [](Pattern& p) { std::swap(p.keyframes[4].feet[0], p.keyframes[4].feet[1]); });
+  add("a kick to the wrong side", small(), kick, "/keyframes/4: the right foot's y is 0.039 m; on",
+      [](Pattern& p) { p.keyframes[4].feet[1]->position.y() *= -1; });
+  add("a missing double support", small(), steps, "/phases/4: .*\"both\" may be missing",
+      [](Pattern& p) { p.phases.erase(p.phases.begin() + 4); });
+  add("a swing too short, and all after it", tall(), strides,
+      "/phases/3: the phase ends .*everything after it later", [](Pattern& p) {
+        const double until = p.phases[3].until, cut = until - p.phases[2].until - 0.1;
+        for (size_t i = 3; i < p.phases.size(); ++i) p.phases[i].until -= cut;
+        for (Keyframe& key : p.keyframes)
+          if (key.t >= until - 1e-9) key.t -= cut;
+      });
+  add("two mistakes", small(), steps, "/phases/[13]: ", [](Pattern& p) {
+    p.keyframes[2].zmp->place = p.keyframes[3].zmp->place = ZmpKey::Place::right;
+    swing(p, 5).to.position.y() *= -1;
+  });
+  return all;
+}
+
+CheckOptions options_of(const Pattern& pattern) {
+  CheckOptions options;
+  options.profile = pattern.profile;
+  options.friction = pattern.world.friction;
+  return options;
+}
+
+TEST(PlantedMistakes, AreNamed) {
+  for (const Mistaken& mistaken : list()) {
+    Pattern pattern = mistaken.pattern;
+    mistaken.plant(pattern);
+    const std::vector<Mistake> found =
+        likely_mistakes(mistaken.robot, pattern, options_of(pattern));
+    ASSERT_FALSE(found.empty()) << mistaken.name;
+    EXPECT_TRUE(std::regex_search(found.front().text(), std::regex(mistaken.named)))
+        << mistaken.name << ": " << found.front().text();
+  }
+}
+
+TEST(PlantedMistakes, SoundPatternsHaveNone) {
+  for (const Mistaken& mistaken : list()) {
+    EXPECT_TRUE(
+        likely_mistakes(mistaken.robot, mistaken.pattern, options_of(mistaken.pattern)).empty())
+        << mistaken.name;
+    EXPECT_TRUE(doubtful_values(mistaken.robot, mistaken.pattern).empty()) << mistaken.name;
+  }
+}
+
+// The pattern is consistent with its foot on the ground, but nobody means this.
+TEST(PlantedMistakes, AMissingSwingOfAConsistentPatternIsDoubted) {
+  Pattern pattern = walk(tall());
+  pattern.phases[3].swing.reset();
+  const std::vector<Mistake> doubts = doubtful_values(tall(), pattern);
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_EQ(doubts.front().place, "/phases/3");
+}
+
+}  // namespace
+}  // namespace ayumi::test
