@@ -9,6 +9,7 @@
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
+#include "ayumi/check/mistake_search.hpp"
 #include "tests/support/robot_motions.hpp"
 
 namespace ayumi::test {
@@ -199,7 +200,8 @@ TEST(PlantedMistakes, AreNamed) {
 TEST(PlantedMistakes, SoundPatternsHaveNone) {
   for (const Mistaken& mistaken : list()) {
     EXPECT_TRUE(
-        likely_mistakes(mistaken.robot, mistaken.pattern, options_of(mistaken.pattern)).empty())
+        find_explanations(mistaken.robot, mistaken.pattern, options_of(mistaken.pattern), {})
+            .empty())
         << mistaken.name;
     EXPECT_TRUE(doubtful_values(mistaken.robot, mistaken.pattern).empty()) << mistaken.name;
   }
