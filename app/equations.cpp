@@ -378,13 +378,14 @@ const char* kLong =
     "the "
     "support, because the ground cannot push outside the feet.";
 const char* kResolve =
-    "Many joint rates give the COG its reference velocity while the free foot and the trunk follow "
-    "the plan. This equation selects the rates nearest to the commanded ones, weighted with W. (v "
+    "There are many sets of joint rates with which the COG has its reference velocity while the "
+    "free foot and the trunk follow the plan. This equation selects the rates nearest to the "
+    "commanded ones, weighted with W. (v "
     "is u - J_U cmd dtheta; the paper prints the other sign.)";
 const char* kTask =
-    "Many joint rates give the COG its reference velocity while the free foot and the trunk follow "
-    "the plan. Of these rates, those are wanted that are nearest to the commanded ones, weighted "
-    "with W. J_U and u stack the two conditions; (23) is the solution.";
+    "There are many sets of joint rates with which the COG has its reference velocity while the "
+    "free foot and the trunk follow the plan. The one that is nearest to the commanded rates, "
+    "weighted with W, is wanted. J_U and u stack the two conditions; (23) is the solution.";
 const char* kJump =
     "Height law of the variable impedant pendulum: a spring and a damper act between the COG and "
     "its reference height. The gains of (25) hold the height without overshoot. The gains of (26) "

@@ -325,8 +325,8 @@ void edit_key(Context& context, const EditCommand& options) {
   if (options.key_by != 0) key.to = key.at + options.key_by;
   if (!key.to && !key.mirror)
     fail(ErrorCode::usage,
-         "edit key: say what happens to the keyframe: --to T or --by S moves it, with --copy it "
-         "also stays, and --mirror exchanges left and right");
+         "edit key: say what to do with the keyframe: --to T or --by S moves it; with --copy, the "
+         "keyframe stays and a copy is moved; --mirror exchanges left and right");
   if (key.copy && !key.to)
     fail(ErrorCode::usage, "edit key: a copy needs its time: --to T or --by S");
   const Task input = load(context, options);

@@ -368,11 +368,9 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal") return "the plain posture (--servo ideal)";
   const bool one = servo.lag.find(' ') == std::string::npos;
-  return std::string(servo.content == "lead"
-                         ? "the targets are ahead of the posture by the time that the servos lag"
-                         : "the targets are ahead of the posture by the time that the servos lag, "
-                           "and they compensate for the sag") +
-         (one ? ", " + servo.lag + " s" : "");
+  return "the targets are ahead of the posture by the lag of the servos" +
+         (one ? " (" + servo.lag + " s)" : "") +
+         (servo.content == "lead" ? "" : ", and they also compensate for the sag");
 }
 
 std::string in_words(const ExportOptions& options, const Source& source, const SafeTable& safe,

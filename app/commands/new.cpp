@@ -332,7 +332,7 @@ void new_kick(const Context& context, NewOptions options) {
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
   write_new(context, model, pattern, options,
             {"Kicks " + text::brief(p.length) + " m ahead with the " + options.which +
-                 " foot: keys of the foot while it is free.",
+                 " foot. This foot has keys while it is free.",
              "The COG is solved from the ZMP keys for the whole robot."});
 }
 

@@ -157,9 +157,9 @@ void run_sweep(Context& context, const SweepCommand& options) {
           : run_cases(runner, *results, missing, context.threads, context.progress());
   results->add_work({cost.seconds + runner.setup_seconds(), cost.useful});
   if (cost.cases > 0)
-    context.print("  " + text::counted(cost.cases, "case") + " run, " +
+    context.print("  " + text::counted(cost.cases, "case") + " run; each took " +
                   text::brief(cost.seconds / double(cost.cases), 3) +
-                  " s of one thread for each case, " +
+                  " s of computing time on one thread, " +
                   text::fixed(100 * (1 - cost.useful / std::max(1e-9, cost.seconds)), 2) +
                   " % of it outside the simulation\n");
   conclude(context, *results, options.outputs, &runner,

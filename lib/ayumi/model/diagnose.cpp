@@ -181,8 +181,8 @@ class Doctor {
     if (gyration > reach)
       warn("link", link.name,
            "its inertia is that of a body larger than its shape; is this a placeholder?",
-           millimetres(gyration) + " radius, and its shape reaches " + millimetres(reach) +
-               " from its centre of mass",
+           millimetres(gyration) + " radius of gyration, but its shape reaches only " +
+               millimetres(reach) + " from its centre of mass",
            gyration / std::max(reach, 1e-9));
     if (box.diagonal().norm() > 5 * size_)
       warn("link", link.name,

@@ -333,9 +333,9 @@ void require_keys(const KeyedTracks& part) {
 
 void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
   const auto stop = [&](const std::string& what) {
-    fail(ErrorCode::bad_pattern, in_file(b.pattern, "keyframes") +
-                                     ": only one of the motions has " + what +
-                                     "; in the other motion they are solved");
+    fail(ErrorCode::bad_pattern,
+         in_file(b.pattern, "keyframes") + ": only one of the motions has " + what +
+             "; keys of both motions are kept only where both have this or neither has it");
   };
   if (a.tracks.zmp.has_value() != b.tracks.zmp.has_value()) stop("keys of the ZMP");
   for (const size_t axis : {0, 1})
@@ -343,7 +343,7 @@ void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
       stop("keys of the COG's place");
   if (a.pattern.full_model != b.pattern.full_model) stop("the COG of a point mass");
   if (a.tracks.torso.has_value() != b.tracks.torso.has_value() && (a.turns() || b.turns()))
-    stop("keys of the trunk, and the feet turn");
+    stop("keys of the trunk, which otherwise turns with the feet, and the feet turn here");
 }
 
 // Keyframes of the second pattern as they read in the first one.

@@ -94,7 +94,7 @@ void apply_signs(const RobotModel& model, bool encoder_signs, Eigen::MatrixXd& t
   }
   if (!encoder_signs) theta.swap(other);
   if (encoder_signs)
-    notes.push_back("angles in radians have the signs of the encoders: those of " +
+    notes.push_back("angles in radians have the signs of the encoders, so the angles of " +
                     (negative.empty() ? std::string("no joint") : text::join(negative, ", ")) +
                     " were negated (--signs joint takes all angles as they are)");
   else

@@ -283,11 +283,11 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
   if (unknown.size() > matched.size())
     fail(ErrorCode::bad_file,
          file + ": this is a motion of another robot: " +
-             (matched.empty() ? "no joint of it is one of " + robot
+             (matched.empty() ? "its joints " + shortened(unknown) + " are not joints of " + robot
                               : "of its " + text::counted(names.size(), "joint") + " only " +
-                                    shortened(matched) + " are joints of " + robot) +
-             ", but not " + shortened(unknown) + "; the joints of " + robot + " are " +
-             shortened(model.dof_names()) +
+                                    shortened(matched) + " are joints of " + robot + ", but not " +
+                                    shortened(unknown)) +
+             "; the joints of " + robot + " are " + shortened(model.dof_names()) +
              "; \"aliases\" in the sidecar give them other names, and --joints A,B,... names the "
              "columns");
   for (int dof = 0; dof < model.dof_count(); ++dof)

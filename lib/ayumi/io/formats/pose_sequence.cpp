@@ -392,10 +392,11 @@ class PoseSequenceReader {
                      " of them stationary); between them everything follows minimum jerk and rests "
                      "at its keys");
     if (places_feet())
-      notes_.push_back("the file places the feet, so the " + text::counted(legs_, "leg joint") +
-                       " follow from feet, trunk and " +
-                       (zmp_leads_ ? "ZMP" : "COG, which is that of the base link's places") +
-                       (zmp_keys() == 1 ? "; the single ZMP key is left out" : ""));
+      notes_.push_back(
+          "the file places the feet, so the " + text::counted(legs_, "leg joint") +
+          " follow from the feet, the trunk and the " +
+          (zmp_leads_ ? "ZMP" : "COG; the COG follows from the places of the base link") +
+          (zmp_keys() == 1 ? "; the single ZMP key is left out" : ""));
     else
       notes_.push_back(
           "the file does not place both feet, so the legs follow their joints, with both feet on "

@@ -436,8 +436,9 @@ class MjcfReader {
                                    " that close a loop or weld bodies are left out: Ayumi computes "
                                    "trees");
     if (curves > 0)
-      robot_.assumptions.push_back(text::counted(curves, "joint equality", "joint equalities") +
-                                   " with powers of a joint are left out");
+      robot_.assumptions.push_back(
+          text::counted(curves, "joint equality", "joint equalities") +
+          " with the square or a higher power of a joint's position are left out");
   }
 
   // Position actuators are servos; every other actuator has the limits of its force. A joint that
