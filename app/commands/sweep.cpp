@@ -151,11 +151,20 @@ void run_sweep(Context& context, const SweepCommand& options) {
                   " that could not be run will be run again\n");
   std::vector<bool> missing = results->done();
   for (size_t i = 0; i < missing.size(); ++i) missing[i] = asked[i] && !missing[i];
-  const RunCost cost =
-      options.engine == "slurm"
-          ? run_on_slurm(context, runner, *results, missing, options.slurm, context.progress())
-          : run_cases(runner, *results, missing, context.threads, context.progress());
-  results->add_work({cost.seconds + runner.setup_seconds(), cost.useful});
+  RunCost cost;
+  const bool local = options.engine == "local";
+  const auto note_work = [&](double seconds, double useful) {
+    if (local) results->add_work({seconds + runner.setup_seconds(), useful});
+  };
+  try {
+    cost =
+        local ? run_cases(runner, *results, missing, context.threads, context.progress())
+              : run_on_slurm(context, runner, *results, missing, options.slurm, context.progress());
+  } catch (const Interrupted&) {
+    note_work(runner.seconds(), runner.useful_seconds());
+    throw;
+  }
+  note_work(cost.seconds, cost.useful);
   if (cost.cases > 0)
     context.print("  " + text::counted(cost.cases, "case") + " run; each took " +
                   text::brief(cost.seconds / double(cost.cases), 3) +

@@ -428,19 +428,20 @@ class Engine {
         chosen[static_cast<size_t>(i)] = true;
         ++taken;
       }
-    cost_ = run_cases(runner_, results_, chosen, context_.threads, progress_);
+    const RunCost pilot = run_cases(runner_, results_, chosen, context_.threads, progress_);
+    add_work({pilot.seconds + runner_.setup_seconds(), pilot.useful});
     for (size_t i = 0; i < cases.size(); ++i)
       if (chosen[i]) {
         cases[i] = false;
         done_[i] = true;
       }
-    const double each = double(std::max(1L, cost_.cases));
+    const double each = double(std::max(1L, pilot.cases));
     // Reading of inputs, and what the cases share: a task does it once.
-    const double setup = runner_.setup_seconds() + cost_.seconds - cost_.useful;
+    const double setup = runner_.setup_seconds() + pilot.seconds - pilot.useful;
     const double limit = kShareOfLimit * slurm_seconds(options_.time);
-    chunk_ = chunk_size(cost_.useful / each, setup, all - count,
+    chunk_ = chunk_size(pilot.useful / each, setup, all - count,
                         limit > 0 ? std::min(limit, options_.task_seconds) : options_.task_seconds);
-    context_.print("  pilot run: " + text::brief(cost_.useful / each, 3) +
+    context_.print("  pilot run: " + text::brief(pilot.useful / each, 3) +
                    " s of simulation for a case, " + text::brief(setup, 3) +
                    " s for the start of a task; tasks of " + text::counted(chunk_, "case") + "\n");
   }
@@ -519,6 +520,12 @@ class Engine {
     return "";
   }
 
+  void add_work(const SweepWork& more) {
+    results_.add_work(more);
+    cost_.seconds += more.seconds;
+    cost_.useful += more.useful;
+  }
+
   /// Merges the files that have arrived. One that is damaged or was made of other inputs is worth
   /// nothing; its task then counts as lost.
   void collect() {
@@ -539,8 +546,7 @@ class Engine {
         results_.merge(part);
         rows->mark_done(done_);
         const SweepWork work = rows->work();
-        cost_.useful += work.useful;
-        cost_.seconds += work.seconds + seconds_since(begin);
+        add_work({work.seconds + seconds_since(begin), work.useful});
         rows.reset();
       }
       for (const char* rest : {"", "-wal", "-shm"}) {
