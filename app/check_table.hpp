@@ -2,6 +2,7 @@
 // A consistency report for people.
 
 #include <string>
+#include <vector>
 
 #include "ayumi/check/consistency.hpp"
 
@@ -19,6 +20,9 @@ inline constexpr int kMostGroups = 10;
 /// its hint, and lines with the most important figures.
 std::string check_table(const ConsistencyReport& report, const RobotModel& model,
                         Shown shown = Shown::causes);
+
+/// A line for each of likely_mistakes().
+std::string mistake_words(const std::vector<std::string>& mistakes);
 
 /// Names, default tolerances, units and meanings of all kinds.
 std::string tolerance_table();

@@ -77,13 +77,6 @@ std::string refusal_words(const Task& input, const Judgement& judgement) {
   return words;
 }
 
-std::string mistake_words(const std::vector<std::string>& mistakes) {
-  std::string words;
-  for (const std::string& mistake : mistakes)
-    words += "  " + painted(Paint::caution, "likely cause:") + " " + mistake + "\n";
-  return words;
-}
-
 struct Checked {
   std::string words;
   Json json;
