@@ -122,6 +122,13 @@ std::string check_table(const ConsistencyReport& report, const RobotModel& model
   return out;
 }
 
+std::string mistake_words(const std::vector<Mistake>& mistakes, const char* heading) {
+  std::string words;
+  for (const Mistake& mistake : mistakes)
+    words += "  " + painted(Paint::caution, heading) + " " + mistake.text() + "\n";
+  return words;
+}
+
 std::string tolerance_table() {
   std::string out;
   for (const FindingSpec* spec : finding_specs())

@@ -2,8 +2,10 @@
 // A consistency report for people.
 
 #include <string>
+#include <vector>
 
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/check/likely_mistakes.hpp"
 
 namespace ayumi::app {
 
@@ -19,6 +21,10 @@ inline constexpr int kMostGroups = 10;
 /// its hint, and lines with the most important figures.
 std::string check_table(const ConsistencyReport& report, const RobotModel& model,
                         Shown shown = Shown::causes);
+
+/// A line for each, with this heading.
+std::string mistake_words(const std::vector<Mistake>& mistakes,
+                          const char* heading = "likely cause:");
 
 /// Names, default tolerances, units and meanings of all kinds.
 std::string tolerance_table();

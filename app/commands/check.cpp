@@ -85,14 +85,6 @@ std::string refusal_words(const Task& input, const Judgement& judgement) {
   return words;
 }
 
-std::string mistake_words(const std::vector<Mistake>& mistakes, bool consistent) {
-  std::string words;
-  for (const Mistake& mistake : mistakes)
-    words += "  " + painted(Paint::caution, consistent ? "worth a look:" : "likely cause:") + " " +
-             mistake.text() + "\n";
-  return words;
-}
-
 // ---- the joints of a motion against their limits
 
 // Panels of each quantity. Chosen: nine panels fill a page.
@@ -219,21 +211,22 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   Checked checked;
-  checked.words = file + ": " +
-                  (report.consistent ? painted(Paint::good, "consistent")
-                                     : painted(Paint::bad, "INCONSISTENT")) +
-                  ", " + text::fixed(input.series.duration(), 2) + " s, actuators " +
-                  report.profile + "\n" + mistake_words(mistakes, report.consistent) +
-                  scenario_words(disturbed) + (need.text.empty() ? "" : "  " + need.text + "\n") +
-                  (own.empty() ? ""
-                               : "  the robot's own motors: " + own +
-                                     (has_encoders(input.robot)
-                                          ? " (`export --format hoap` judges by this profile)"
-                                          : "") +
-                                     "\n") +
-                  refusal_words(input, judgement) +
-                  check_table(report, input.robot, options.all ? Shown::findings : Shown::causes) +
-                  origin_words(input.series.origin);
+  checked.words =
+      file + ": " +
+      (report.consistent ? painted(Paint::good, "consistent")
+                         : painted(Paint::bad, "INCONSISTENT")) +
+      ", " + text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
+      mistake_words(mistakes, report.consistent ? "worth a look:" : "likely cause:") +
+      scenario_words(disturbed) + (need.text.empty() ? "" : "  " + need.text + "\n") +
+      (own.empty()
+           ? ""
+           : "  the robot's own motors: " + own +
+                 (has_encoders(input.robot) ? " (`export --format hoap` judges by this profile)"
+                                            : "") +
+                 "\n") +
+      refusal_words(input, judgement) +
+      check_table(report, input.robot, options.all ? Shown::findings : Shown::causes) +
+      origin_words(input.series.origin);
   std::vector<std::string> panels;
   if (!options.plot.empty()) {
     panels = plot_joints_against_limits(input, report, options.plot);

@@ -13,10 +13,12 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/run/results_json.hpp"
+#include "ayumi/plan/sample_plan.hpp"
 #include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/repair/weighted_change.hpp"
 #include "check_table.hpp"
@@ -34,7 +36,7 @@ namespace fs = std::filesystem;
 struct RepairCommand {
   std::string pattern, out, trust, plot;
   std::vector<std::string> locked, weights, tolerances;
-  bool baked = false;
+  bool baked = false, from_scratch = false;
   PatternOptions input;
   std::optional<double> margin, safety;
   RepairOptions repair;  // of what only the command line says
@@ -59,7 +61,7 @@ void write_repaired(const Context& context, const RepairCommand& options, const 
   Pattern corrected = input.pattern;
   const bool unchanged = result.status == RepairStatus::already_consistent;
   if (!unchanged) corrected.correction = result.correction;
-  if (options.baked) {
+  if (options.baked || options.from_scratch) {
     const fs::path table = table_beside(options.out);
     refuse_overwriting(context, table);
     write_pattern_and_table(options.out,
@@ -105,7 +107,7 @@ const char* words_of(RepairStatus status) {
 }
 
 std::string in_words(const RepairCommand& options, const Task& input, const RepairResult& result,
-                     double wall) {
+                     const std::vector<Mistake>& mistakes, double wall) {
   const RobotModel& model = input.robot;
   std::string out = options.pattern + ": " +
                     (result.partial ? "stopped, partial" : words_of(result.status)) + "\n";
@@ -120,6 +122,7 @@ std::string in_words(const RepairCommand& options, const Task& input, const Repa
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
          " iterations, " + text::fixed(wall, 2) + " s\n";
   for (const std::string& reason : result.reasons) out += "  because " + reason + "\n";
+  out += mistake_words(mistakes);
   if (result.status == RepairStatus::repaired) out += check_table(result.check, model);
   return out;
 }
@@ -175,7 +178,8 @@ nlohmann::ordered_json in_json(const PassingPace& pace) {
 
 // Where to see what moved.
 std::string see_words(const RepairCommand& options, const RepairResult& result) {
-  if (result.status == RepairStatus::already_consistent || options.baked) return "";
+  if (result.status == RepairStatus::already_consistent || options.baked || options.from_scratch)
+    return "";
   return "  to see the change: ayumi diff " + options.pattern + " " + options.out +
          " --plot moved.svg; ayumi preview " + options.out + " --ghost " + options.pattern +
          " -o moved.mp4\n";
@@ -197,6 +201,27 @@ Task load(const Context& context, const RepairCommand& options) {
     if (values.empty()) throw;
     fail(error.code(), std::string(error.what()) + "\n" + in_words(values));
   }
+}
+
+// The plan of the pattern in place of a motion: whether the legs can follow it is what the repair
+// has to find out.
+Task load_plan(const Context& context, const RepairCommand& options) {
+  Pattern pattern = read_pattern(options.pattern, read_pairs(options.input.set, "--set"));
+  const std::string name = robot_of(pattern);
+  RobotModel robot = load_robot(name, robot_search(context));
+  const std::string& profile =
+      options.input.profile.empty() ? pattern.profile : options.input.profile;
+  const double tick = robot.description().servo_period;
+  CommandSeries plan =
+      sample_plan(robot, pattern, {.dt = tick, .threads = context.threads}, context.progress());
+  std::string profile_name = robot.limits(profile).name;
+  return {.pattern = std::move(pattern),
+          .robot = std::move(robot),
+          .robot_name = name,
+          .profile = std::move(profile_name),
+          .tick = tick,
+          .series = std::move(plan),
+          .threads = context.threads};
 }
 
 Trust trust_of(const std::string& word) {
@@ -296,14 +321,16 @@ class StruggleTeller {
   Clock::time_point told_ = Clock::now();
 };
 
-RepairResult repair_telling(const Task& input, const RepairOptions& wishes,
+RepairResult repair_telling(const Task& input, const RepairOptions& wishes, bool from_scratch,
                             const Progress& progress) {
   StruggleTeller teller;
   RepairOptions options = wishes;
   options.on_check = [&teller](const ConsistencyReport& check) { teller.note(check); };
   try {
     RepairResult result =
-        repair(input.robot, input.pattern, input.series, options, teller.around(progress));
+        from_scratch
+            ? generate(input.robot, input.pattern, input.series, options, teller.around(progress))
+            : repair(input.robot, input.pattern, input.series, options, teller.around(progress));
     if (result.partial) {
       teller.note(result.check);
       teller.say_what_is_left();
@@ -323,27 +350,39 @@ void repair_pattern(Context& context, RepairCommand options) {
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
   refuse_wrong_wishes(context, options);
-  const Task input = load(context, options);
+  if (options.from_scratch && !options.locked.empty())
+    fail(ErrorCode::usage,
+         "--from-scratch makes a new motion, so that there is nothing to --lock; leave one out");
+  const Task input = options.from_scratch ? load_plan(context, options) : load(context, options);
   options.repair = repair_options(options, input);
   const auto begin = std::chrono::steady_clock::now();
-  const RepairResult result = repair_telling(input, options.repair, context.progress());
+  const RepairResult result =
+      repair_telling(input, options.repair, options.from_scratch, context.progress());
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   context.exit_code = exit_code_of(result);
   const bool written = context.exit_code == 0 || options.repair.keep_partial;
   if (written) write_repaired(context, options, input, result);
+  // Of a motion that is made from scratch, only the plan stands in the pattern: it is not sampled.
+  std::vector<Mistake> mistakes;
+  if (context.exit_code == 4)
+    mistakes = options.from_scratch
+                   ? impossible_values(input.robot, input.pattern)
+                   : likely_mistakes(input.robot, input.pattern,
+                                     check_options(input, options.tolerances), context.progress());
   std::vector<PassingValues> values;
-  if (context.exit_code == 4 && !input.pattern.parameters.empty())
+  const bool changes = context.exit_code == 4 && !options.from_scratch;  // of a motion
+  if (changes && !input.pattern.parameters.empty())
     values = passing_parameters(context, options.pattern, options.input, options.tolerances);
   PassingPace pace;
-  if (context.exit_code == 4)
-    pace = passing_pace(context, input, result.before, options.tolerances);
+  if (changes) pace = passing_pace(context, input, result.before, options.tolerances);
   if (!options.plot.empty() && !result.series.samples.empty())
     plot_motions(input.robot, input.series, result.series,
                  {fs::path(options.pattern).stem().string() + ", before and after its repair",
                   input.profile},
                  options.plot);
-  context.print(in_words(options, input, result, wall) + in_words(values) + in_words(pace) +
+  context.print(in_words(options, input, result, mistakes, wall) + in_words(values) +
+                in_words(pace) +
                 (written ? "  written to " + options.out + "\n" + see_words(options, result)
                          : "  nothing written\n"));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(repair_json(result));
@@ -354,6 +393,8 @@ void repair_pattern(Context& context, RepairCommand options) {
   json["parameters"] = in_json(singles);
   json["parameters_together"] = in_json(alone ? PassingValues() : values.front());
   json["slower"] = in_json(pace);
+  json["likely_mistakes"] = nlohmann::ordered_json::array();
+  for (const Mistake& mistake : mistakes) json["likely_mistakes"].push_back(mistake.text());
   json["wall_s"] = wall;
   json["output"] = written ? nlohmann::ordered_json(options.out) : nullptr;
   context.print_json(json.dump(2));
@@ -397,6 +438,9 @@ void add_repair(CLI::App& app, Context& context) {
       ->check(one_of({"posture", "cog", "zmp"}))
       ->type_name("QUANTITY");
   command->add_flag("--baked", options.baked, "Write a dense table in place of a correction.");
+  command->add_flag("--from-scratch", options.from_scratch,
+                    "Make the motion of the phases, footholds, COG and ZMP of the pattern alone, "
+                    "from the default posture; it is written as a dense table.");
   command->add_flag("--keep-partial", options.repair.keep_partial,
                     "After Ctrl-C or a failure, write the motion with the smallest violation.");
   command

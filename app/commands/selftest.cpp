@@ -85,7 +85,7 @@ const std::array<Job, 5> kJobs = {{
     {"viip", "a walk by VIIP", viip_text,
      "45ef27b221213c0bcb7815058518454858d916e0627385cecd6e7c483c136afa"},
     {"repair", "a repaired walk", repair_text,
-     "115346d20a41eeea70868f26c341550e3d4e50ab586137e817e309da76da85f6"},
+     "25d4131c5e871d06919d81441e1aab94eed84262cbf7fdef7be675d9fbc6c33d"},
     {"push", "limits of pushes", push_text,
      "0bcf10d7962e156ad391cb66afce103f989daec720ee909b72e3ec6195b0f6a7"},
 }};

@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -41,14 +42,19 @@ RobotModel tight_knees(const RobotDescription& robot, const CommandSeries& serie
   return RobotModel(d);
 }
 
-// Of the process, which has one thread [s].
+// Of all threads of the process [s].
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Measured {
   RepairResult result;
   std::vector<int> programs;  // iterations of each
-  double all = 0;
+  double all = 0, wall = 0;   // processor time, time [s]
 };
+
+double wall_seconds() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
+}
 
 void keep_quicker(Measured& best, const RobotModel& model, const CommandSeries& series,
                   const RepairOptions& options) {
@@ -58,13 +64,14 @@ void keep_quicker(Measured& best, const RobotModel& model, const CommandSeries& 
     ++programs.back();
     return true;
   };
-  const double begin = processor_seconds();
+  const double begin = processor_seconds(), wall_begin = wall_seconds();
   RepairResult r = repair(model, series, options, count);
-  const double all = processor_seconds() - begin;
+  const double all = processor_seconds() - begin, wall = wall_seconds() - wall_begin;
   if (best.all > 0 && best.result.work.solver_seconds <= r.work.solver_seconds) return;
   best.result = std::move(r);
   best.programs = programs;
   best.all = all;
+  best.wall = wall;
 }
 
 double milliseconds_each(const RepairWork& work) {
@@ -93,15 +100,15 @@ void measure(const char* name, const RobotModel& model, const CommandSeries& ser
   std::printf(
       "%-16s %5.2f s walk  %-10s %d rounds  %5d variables %5d constraints %7d nonzeros J %6d H  "
       "%3d iterations (%s)  functions %5.2f s  linear algebra %5.2f s  check and the rest %5.2f s  "
-      "together %5.2f s  violation %.1e  peak %4ld MB\n"
+      "together %5.2f s (on the clock %5.2f s)  violation %.1e  peak %4ld MB\n"
       "    with MUMPS: %d iterations, linear algebra %.2f s, together %.2f s; an iteration's "
       "linear "
       "algebra %.1f ms, here %.2f ms, ratio %.2f\n",
       name, series.duration(), name_of(r.status), w.rounds, w.variables, w.constraints,
       w.jacobian_nonzeros, w.hessian_nonzeros, w.iterations, listed(own.programs).c_str(),
       w.function_seconds, w.solver_seconds, own.all - w.function_seconds - w.solver_seconds,
-      own.all, r.constraint_violation, usage.ru_maxrss / 1024, m.iterations, m.solver_seconds,
-      other.all, milliseconds_each(m), milliseconds_each(w),
+      own.all, own.wall, r.constraint_violation, usage.ru_maxrss / 1024, m.iterations,
+      m.solver_seconds, other.all, milliseconds_each(m), milliseconds_each(w),
       milliseconds_each(m) / milliseconds_each(w));
   std::fflush(stdout);
 }

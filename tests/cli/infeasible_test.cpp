@@ -57,6 +57,24 @@ TEST_F(Infeasible, ValuesAndPacesToldPass) {
             1);
 }
 
+// The left foot lands on the right one: the foothold is named, as by check, and nothing is solved.
+TEST_F(Infeasible, AFootholdOnTheOtherFootIsNamed) {
+  std::string walk = contents(fs::path(AYUMI_SOURCE_DIR) / "patterns/hoap1_walk.json");
+  const std::string good = "\"to\": [0.06, 0.039]";
+  walk.replace(walk.find(good), good.size(), "\"to\": [0.03, -0.02]");
+  write(folder / "walk.json", walk);
+  const Output failed = ayumi({"repair", "walk.json", "-o", "out.json"});
+  EXPECT_EQ(failed.exit_code, 4) << failed.err;
+  EXPECT_NE(failed.out.find("because the left foot is planned to stand on the right foot"),
+            std::string::npos)
+      << failed.out;
+  EXPECT_NE(failed.out.find("likely cause: /phases/3: the left foot lands on the right foot"),
+            std::string::npos)
+      << failed.out;
+  EXPECT_NE(failed.out.find(" 0 iterations"), std::string::npos) << failed.out;
+  EXPECT_FALSE(fs::exists(folder / "out.json"));
+}
+
 // What is told to need 5.2 times as long does pass when it gets that.
 TEST_F(Infeasible, AWindowFarTooShortIsStillAMatterOfTime) {
   write(folder / "slap.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",

@@ -136,6 +136,18 @@ TEST(BandedKktSolver, NotConvex) {
   EXPECT_LT((s.x - Eigen::Vector2d(1, 0)).norm(), 1e-5);
 }
 
+// Wide vectors do not change a bit.
+TEST(BandedKktSolver, EveryInstructionSetGivesTheSameBits) {
+  Random random(25);
+  for (const int n : {7, 40, 133}) {
+    const Nlp nlp = program(random_quadratic(random, n, 2 * n, 6));
+    NlpOptions options;
+    const VectorXd widest = solve(nlp, options).x;
+    options.plain_kernels = true;
+    EXPECT_EQ(solve(nlp, options).x, widest);
+  }
+}
+
 // ---- programs of the host
 
 namespace {

@@ -62,6 +62,14 @@ void expect_jacobian(const CorrectionProblem& problem, const VectorXd& x, double
     EXPECT_LT(difference, tolerance) << group << ", " << rows[group] << " rows";
 }
 
+CorrectedMotion corrected_motion(const CommandSample& sample, const VectorXd& value,
+                                 const VectorXd& rate, const VectorXd& second) {
+  CorrectedMotion motion;
+  fill_motion(sample, value, rate, second, motion);
+  fill_motion_derivatives(sample, value, rate, second, motion);
+  return motion;
+}
+
 }  // namespace
 
 // The correction at one sample is that of apply_correction().
@@ -293,4 +301,34 @@ TEST(CorrectionProblem, ObjectiveIsTheIntegral) {
   nlp.gradient(x, gradient);
   const VectorXd e = random.vector(static_cast<int>(x.size()), 1e-3);
   EXPECT_NEAR(gradient.dot(e), (nlp.objective(x + e) - nlp.objective(x - e)) / 2, 1e-10);
+}
+
+// For any number of threads, and whatever was evaluated before.
+TEST(CorrectionProblem, FunctionsGiveTheSameBytesForAnyNumberOfThreads) {
+  const CommandSeries series = walk(limited_biped(), short_walk());
+  CorrectionSpec spec;
+  spec.windows = {{0.3, 1.6}};
+  spec.watched_share = 0;
+  spec.friction = 0.05;
+  const auto functions = [&](int threads) {
+    spec.threads = threads;
+    const CorrectionProblem problem(limited_biped(), series, spec);
+    const Nlp nlp = problem.nlp();
+    Random random(6);
+    std::vector<VectorXd> all;
+    for (int i = 0; i < 3; ++i) {
+      const VectorXd x = random.vector(problem.variable_count(), 0.02),
+                     multipliers = random.vector(problem.constraint_count(), 1);
+      VectorXd g(problem.constraint_count()), J(nlp.jacobian.size()), H(nlp.hessian.size());
+      if (i != 1) nlp.constraints(x, g);
+      nlp.jacobian_values(x, J);
+      nlp.hessian_values(x, 1, multipliers, H);
+      nlp.constraints(x, g);
+      all.insert(all.end(), {g, J, H});
+    }
+    return all;
+  };
+  const std::vector<VectorXd> one = functions(1);
+  EXPECT_GT(one[2].cwiseAbs().maxCoeff(), 0);
+  for (const int threads : {2, 7}) EXPECT_EQ(functions(threads), one) << threads;
 }

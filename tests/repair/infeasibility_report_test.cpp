@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/repair/overlapping_feet.hpp"
 #include "tests/support/planted.hpp"
 
 namespace ayumi::test {
@@ -56,6 +57,26 @@ TEST(InfeasibilityReport, TellsWhatIsLeftWhileItWorks) {
   ASSERT_EQ(whole.status, RepairStatus::repaired);
   EXPECT_FALSE(told.front().empty());
   EXPECT_TRUE(told.back().empty());
+}
+
+// A foot that is planned to land on the other one: nothing is solved, and the foothold is named.
+TEST(InfeasibilityReport, FeetInOnePlaceEndBeforeTheFirstRound) {
+  Pattern pattern = walk_pattern(hoap1(), {.steps = 3});
+  pattern.robot = "hoap1";
+  Phase* landing = nullptr;
+  for (Phase& phase : pattern.phases)
+    if (phase.swing && !landing) landing = &phase;
+  ASSERT_NE(landing, nullptr);
+  const Side foot = landing->swing->foot;
+  landing->swing->to.position.y() = foot == Side::left ? -0.02 : 0.02;
+  const CommandSeries series = sample(hoap1(), pattern);
+  const RepairResult r = repair(hoap1(), series);
+  EXPECT_EQ(r.status, RepairStatus::infeasible);
+  EXPECT_EQ(r.iterations, 0);
+  ASSERT_FALSE(r.reasons.empty());
+  const std::string start = std::string("the ") + name_of(foot) + " foot is planned to stand on";
+  EXPECT_EQ(r.reasons.front().substr(0, start.size()), start) << r.reasons.front();
+  EXPECT_FALSE(overlapping_feet(hoap1(), sample(hoap1(), walk()), r.before));
 }
 
 // Findings know the bodies, joints and feet that they speak of, apart from their words.

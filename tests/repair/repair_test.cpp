@@ -4,11 +4,15 @@
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
-#include "ayumi/plan/sample.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/sample_plan.hpp"
 #include "ayumi/repair/correction_problem.hpp"
+#include "ayumi/repair/repair_pattern.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/random_robot.hpp"
+#include "tests/support/ten_faults.hpp"
 #include "tests/support/walk.hpp"
 #include "tests/support/weighted_change.hpp"
 
@@ -274,4 +278,78 @@ TEST(Repair, JointBeyondItsLimitToTheEndIsBroughtBackThereToo) {
   ASSERT_EQ(r.status, RepairStatus::repaired);
   EXPECT_LE(r.series.samples.back().state.theta[arm], model.dofs()[arm].upper);
   EXPECT_LT(std::abs(r.series.samples.back().state.dtheta[arm]), 1e-6);
+}
+
+// The whole table is measured by tests/bench/bad_starts.cpp.
+TEST(BadStarts, EndAtTheSameMotion) {
+  for (const FaultyMotion& motion : ten_faulty_motions()) {
+    if (motion.name != "elbow beyond its limit" && motion.name != "stance foot displaced by 5 mm")
+      continue;
+    const RepairResult usual = repair(hoap1(), motion.series, motion.options);
+    ASSERT_EQ(usual.status, RepairStatus::repaired) << motion.name;
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      RepairOptions options = motion.options;
+      options.random_start = {0.1, seed};
+      const RepairResult other = repair(hoap1(), motion.series, options);
+      ASSERT_EQ(other.status, RepairStatus::repaired) << motion.name << ", seed " << seed;
+      EXPECT_NE(other.iterations, usual.iterations) << "the start was not used";
+      EXPECT_LT(motion_distance(other.series, usual.series), 1e-3)
+          << motion.name << ", seed " << seed;
+    }
+  }
+}
+
+// A repair that would take more than its work ends with reasons, whatever the machine does.
+TEST(Repair, EndsWithinItsWork) {
+  const CommandSeries series = zmp_outside();
+  const RepairResult whole = repair(limited_biped(), series);
+  RepairOptions options;
+  options.most_work = 0.2 * whole.work.amount / series.duration();
+  const RepairResult r = repair(limited_biped(), series, options);
+  EXPECT_EQ(r.status, RepairStatus::not_converged);
+  EXPECT_LT(r.work.amount, 0.4 * whole.work.amount);  // the iteration that reaches it is finished
+  EXPECT_FALSE(r.reasons.empty());
+}
+
+TEST(Repair, SameBytesForAnyNumberOfThreads) {
+  const CommandSeries series = zmp_outside();
+  RepairOptions one, many;
+  one.check.threads = 1;
+  many.check.threads = 5;
+  const RepairResult a = repair(limited_biped(), series, one),
+                     b = repair(limited_biped(), series, many);
+  EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_EQ(a.correction.coefficients, b.correction.coefficients);
+}
+
+// The plan of a walk and of a squat, and no motion: legs and arms are as they are at home.
+TEST(FromScratch, MakesAMotionOfThePlanAlone) {
+  Pattern squat;
+  squat.robot = "hoap1";
+  squat.phases.emplace_back().until = 3;
+  const double home = default_cog_height(hoap1(), squat);
+  for (const auto& [t, height] : {std::pair(0.0, 1.0), std::pair(1.2, 0.88), std::pair(2.6, 1.0)}) {
+    Keyframe key;
+    key.t = t;
+    key.cog_height = height * home;
+    squat.keyframes.push_back(key);
+  }
+  for (const Pattern& pattern : {squat, walk_pattern(hoap1(), {.steps = 2})}) {
+    const CommandSeries plan = sample_plan(hoap1(), pattern);
+    ASSERT_FALSE(check_consistency(hoap1(), plan).consistent);
+    const RepairResult r = generate(hoap1(), pattern, plan, {});
+    expect_repaired(r);
+    RobotData data(hoap1());
+    for (size_t k = 0; k < plan.samples.size(); k += 20) {
+      update_positions(hoap1(), r.series.samples[k].state, data);
+      for (const Side side : {Side::left, Side::right}) {
+        const Eigen::Vector3d planned =
+            plan.samples[k].feet[static_cast<size_t>(side)].translation();
+        ASSERT_LT((sole_pose(hoap1(), data, side).translation() - planned).norm(), 1e-3)
+            << name_of(side) << " at " << k * plan.dt;
+      }
+    }
+    if (pattern.phases.size() > 1) continue;
+    EXPECT_NEAR(r.series.samples[1200].cog.z(), 0.88 * home, 2e-3);
+  }
 }

@@ -158,6 +158,8 @@ bool is_ballistic(const Track& track, double begin, double end) {
   });
 }
 
+}  // namespace
+
 void require_body_tracks(const SampleJob& job) {
   for (size_t i = 0; i < job.feet.phases().size(); ++i) {
     const Phase& phase = job.feet.phases()[i];
@@ -181,6 +183,8 @@ void require_body_tracks(const SampleJob& job) {
   }
 }
 
+namespace {
+
 // Lean [rad] and miss [m] of a motion that are worth a sentence. Chosen: what a person sees.
 constexpr double kNotedLean = 1e-3, kNotedMiss = 1e-5;
 
@@ -196,10 +200,6 @@ struct Worst {
     zmp = std::max(zmp, other.zmp);
   }
 };
-
-Vector3d cog_at(const CogPlan& plan, double t) {
-  return {plan.cog[0].at(t).value, plan.cog[1].at(t).value, plan.cog[2].at(t).value};
-}
 
 // The posture at the start of a block: that of the grid, or at rest.
 RobotState start_of_block(const SampleJob& job, const CogPlan& plan, int first) {
@@ -222,7 +222,7 @@ Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
     const double t = k * job.dt;
     CommandSample& sample = series.samples[k];
     sample.state = k > first ? series.samples[k - 1].state : start_of_block(job, plan, first);
-    sample.cog = cog_at(plan, t);
+    sample.cog = plan.cog_at(t);
     if (k > first) continue_posture(postures, sample);
     put_plan(job, t, sample);
     const PostureSolution solution =
@@ -237,14 +237,7 @@ Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
 Worst fill_block(const SampleJob& job, const CogPlan& plan, int first, int end,
                  CommandSeries& series) {
   fill_rates(series.samples, first, end, job.dt, job.tracks.rest_ends);
-  for (int k = first; k < end; ++k) {
-    const double t = k * job.dt;
-    CommandSample& sample = series.samples[k];
-    sample.zmp = plan.zmp_at(t);
-    sample.fz = job.tracks.fz ? job.tracks.fz->at(t).value
-                              : job.model.mass() * (sample.ddcog.z() + kGravity);
-    if (sample.support == Support::none && !job.tracks.fz) sample.fz = 0;
-  }
+  for (int k = first; k < end; ++k) put_ground_commands(job, plan, k * job.dt, series.samples[k]);
   TreeDynamics dynamics(job.model);
   std::vector<GroundReaction> reactions;
   full_model_reactions(job.model, std::span(series.samples).subspan(first, end - first), dynamics,
@@ -327,6 +320,14 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
 }
 
 }  // namespace
+
+void put_ground_commands(const SampleJob& job, const CogPlan& plan, double t,
+                         CommandSample& sample) {
+  sample.zmp = plan.zmp_at(t);
+  sample.fz =
+      job.tracks.fz ? job.tracks.fz->at(t).value : job.model.mass() * (sample.ddcog.z() + kGravity);
+  if (sample.support == Support::none && !job.tracks.fz) sample.fz = 0;
+}
 
 bool flies(const SampleJob& job) {
   return std::any_of(job.feet.phases().begin(), job.feet.phases().end(),

@@ -246,6 +246,10 @@ void CogSolver::correct() {
 
 }  // namespace
 
+Vector3d CogPlan::cog_at(double t) const {
+  return {cog[0].at(t).value, cog[1].at(t).value, cog[2].at(t).value};
+}
+
 Vector3d CogPlan::zmp_at(double t) const {
   Vector3d z(zmp[0].at(t).value, zmp[1].at(t).value, zmp[2].at(t).value);
   z.head<2>() += rest_bump(omega[0], t, duration) * bump[0] +

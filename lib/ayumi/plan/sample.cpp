@@ -4,10 +4,13 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/motion/correction.hpp"
+#include "ayumi/motion/differentiate.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/motion/repair_preferences.hpp"
 #include "ayumi/plan/sample_job.hpp"
+#include "ayumi/plan/sample_plan.hpp"
 #include "ayumi/plan/viip_phases.hpp"
 
 namespace ayumi {
@@ -28,8 +31,43 @@ int sample_count(const Pattern& pattern, double duration, double dt) {
   return static_cast<int>(steps) + 1;
 }
 
+// The plan with the default posture carried along it.
+CommandSeries sample_carried(const SampleJob& job) {
+  require_body_tracks(job);
+  CommandSeries series;
+  series.dt = job.dt;
+  series.samples.resize(static_cast<size_t>(job.count));
+  series.origin = job.tracks.origin;
+  const CogPlan plan = plan_cog(job);
+  const Eigen::VectorXd posture = default_posture(job.model, job.pattern);
+  RobotData data(job.model);
+  for (int k = 0; k < job.count; ++k) {
+    const double t = k * job.dt;
+    CommandSample& sample = series.samples[static_cast<size_t>(k)];
+    sample.state = job.model.rest_state();
+    sample.state.theta = posture;
+    put_plan(job, t, sample);
+    sample.state.base.attitude =
+        Eigen::Quaterniond(plan.turned(t, trunk_attitude(job, t, sample.feet)));
+    if (k > 0 && sample.state.base.attitude.dot(
+                     series.samples[static_cast<size_t>(k - 1)].state.base.attitude) < 0)
+      sample.state.base.attitude.coeffs() *= -1;
+    sample.cog = plan.cog_at(t);
+    update_positions(job.model, sample.state, data);
+    sample.state.base.position = sample.cog - data.cog_offset;
+  }
+  fill_rates(series.samples, job.dt, true);
+  for (int k = 0; k < job.count; ++k)
+    put_ground_commands(job, plan, k * job.dt, series.samples[static_cast<size_t>(k)]);
+  series.origin["joints"] = "the default posture, carried along the COG";
+  return series;
+}
+
+enum class Posture { solved, carried };
+
 CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
-                          const SampleOptions& options, const Progress& progress) {
+                          const SampleOptions& options, const Progress& progress,
+                          Posture posture = Posture::solved) {
   const FootPlan feet(model, pattern);
   const InverseKinematics ik(model, default_posture(model, pattern));
   std::vector<bool> solved(model.dof_count());
@@ -40,21 +78,41 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
       model,           pattern, feet,       ik,
       tracks,          links,   options.dt, sample_count(pattern, feet.duration(), options.dt),
       options.threads, progress};
-  CommandSeries series = tracks.joint_driven ? sample_joint_driven(job) : sample_body_driven(job);
-  if (!links.empty()) series.origin[links.origin()] = "keys, by the joints of the limb";
+  CommandSeries series = posture == Posture::carried ? sample_carried(job)
+                         : tracks.joint_driven       ? sample_joint_driven(job)
+                                                     : sample_body_driven(job);
+  if (!links.empty() && posture == Posture::solved)
+    series.origin[links.origin()] = "keys, by the joints of the limb";
   for (const auto& [t, weight] : tracks.weight)
     series.joint_weight.push_back({std::lround(t / options.dt), weight});
   return series;
 }
 
-}  // namespace
-
-CommandSeries sample(const RobotModel& model, const Pattern& pattern, const SampleOptions& options,
-                     const Progress& progress) {
+void require_soles(const RobotModel& model) {
   if (!model.has_soles())
     fail(ErrorCode::bad_model, model.name() +
                                    ": the robot has no soles; add the left and the right sole to "
                                    "\"soles\" in its sidecar");
+}
+
+}  // namespace
+
+CommandSeries sample_plan(const RobotModel& model, const Pattern& pattern,
+                          const SampleOptions& options, const Progress& progress) {
+  require_soles(model);
+  if (has_viip_phases(pattern))
+    fail(ErrorCode::bad_pattern,
+         in_file(pattern, "phases") +
+             ": VIIP moves the robot in a phase, so that there is no plan of its feet; leave the "
+             "VIIP phases out");
+  Pattern plan = pattern;
+  plan.full_model = false;
+  return sample_keys(model, plan, options, progress, Posture::carried);
+}
+
+CommandSeries sample(const RobotModel& model, const Pattern& pattern, const SampleOptions& options,
+                     const Progress& progress) {
+  require_soles(model);
   require_repair_preferences(model, pattern);
   CommandSeries series;
   if (has_viip_phases(pattern)) {

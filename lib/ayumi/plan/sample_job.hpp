@@ -112,6 +112,7 @@ struct CogPlan {
   /// Postures on a grid from beginning to end, close to the motion's: initial guesses; or none.
   std::vector<RobotState> postures;
 
+  Eigen::Vector3d cog_at(double t) const;
   /// Commanded ZMP: the keys with the bumps that a start from rest needs.
   Eigen::Vector3d zmp_at(double t) const;
   /// The trunk attitude that the pattern asks for, turned around flights.
@@ -120,6 +121,13 @@ struct CogPlan {
 
 /// COG keys where given, other axes from the ZMP by (14)(15), corrected for the full model.
 CogPlan plan_cog(const SampleJob& job);
+
+/// Fills the commanded ZMP and f_z of a sample that has the rates of its COG.
+void put_ground_commands(const SampleJob& job, const CogPlan& plan, double t,
+                         CommandSample& sample);
+
+/// Throws Error(bad_pattern) for a flight without the keys that its parabola needs.
+void require_body_tracks(const SampleJob& job);
 
 /// The motion when base and legs follow COG and feet.
 CommandSeries sample_body_driven(const SampleJob& job);

@@ -63,6 +63,16 @@ Nlp relaxed(const Nlp& nlp, const Slacks& relaxation) {
   soft.constraint_lower << nlp.constraint_lower, VectorXd::Constant(extra, -kNoBound);
   soft.constraint_upper << nlp.constraint_upper, VectorXd::Zero(extra);
 
+  if (nlp.start_multipliers.size() > 0) {
+    soft.start_multipliers.resize(m + extra);
+    soft.start_multipliers << nlp.start_multipliers, VectorXd::Zero(extra);
+    for (Eigen::Index i = 0; i < extra; ++i) {  // of lower bounds below 0, of upper ones above
+      double& first = soft.start_multipliers[layout->twice[i]];
+      soft.start_multipliers[m + i] = std::max(0.0, first);
+      first = std::min(0.0, first);
+    }
+  }
+
   // Old nonzeros, then those of the second rows (at the old ones' columns), then the slacks'.
   soft.jacobian = nlp.jacobian;
   std::vector<int> second(static_cast<size_t>(m), -1);
@@ -128,6 +138,15 @@ Nlp relaxed(const Nlp& nlp, const Slacks& relaxation) {
   return soft;
 }
 
+VectorXd unrelaxed_multipliers(const Nlp& nlp, const Slacks& slacks, const VectorXd& multipliers) {
+  const std::vector<int> twice = layout_of(nlp, slacks.group).twice;
+  const auto m = nlp.constraint_lower.size();
+  VectorXd result = multipliers.head(m);
+  for (size_t i = 0; i < twice.size(); ++i)
+    result[twice[i]] += multipliers[m + static_cast<Eigen::Index>(i)];
+  return result;
+}
+
 ViolationPrice price_of(const RowKind& kind) {
   // Derived: the weighted change that costs 1 of the objective.
   constexpr double kChange = 2 / policy::change_weight::kObjectiveScale;
@@ -162,8 +181,6 @@ class SlackCollector {
     for (int i = 0; i < block.rows(); ++i) slacks_.group[block.row + i] = found->second;
   }
 
-  bool empty() const { return unit_.empty(); }
-
   Slacks collected() {
     slacks_.unit = vector_of(unit_);
     slacks_.price = vector_of(price_);
@@ -185,8 +202,8 @@ class SlackCollector {
 
 }  // namespace
 
-Nlp with_soft_goals(const CorrectionProblem& problem, const Nlp& nlp, double dt, double robustness,
-                    double barrier) {
+Slacks soft_goal_slacks(const CorrectionProblem& problem, double dt, double robustness,
+                        double barrier) {
   SlackCollector collector(problem, dt, policy::prices::kSoftGoalWindow);
   const RowPrices prices = row_prices();
   for (const RowBlock& block : problem.blocks()) {
@@ -196,10 +213,9 @@ Nlp with_soft_goals(const CorrectionProblem& problem, const Nlp& nlp, double dt,
     const double most = std::min(block.most_violation / unit, kNoBound);
     if (most > 0) collector.add(block, unit, robustness * prices.*kind.soft_goal, most);
   }
-  if (collector.empty()) return nlp;
   Slacks slacks = collector.collected();
   slacks.start = barrier / policy::prices::kZmpMargin;
-  return relaxed(nlp, slacks);
+  return slacks;
 }
 
 Nlp with_all_limits_relaxed(const CorrectionProblem& problem, const Nlp& nlp, double dt) {

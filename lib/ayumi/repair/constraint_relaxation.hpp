@@ -23,6 +23,10 @@ struct Slacks {
 /// appear twice. Refers to `nlp`, which must outlive it.
 Nlp relaxed(const Nlp& nlp, const Slacks& slacks);
 
+/// Multipliers of the rows of `nlp` from those of relaxed(nlp, slacks).
+Eigen::VectorXd unrelaxed_multipliers(const Nlp& nlp, const Slacks& slacks,
+                                      const Eigen::VectorXd& multipliers);
+
 /// What a violation of rows costs beside the weighted change: `change` [s], in the measure of
 /// weighted_change(), for every `unit` of the largest violation of one limit in a `window` [s].
 struct ViolationPrice {
@@ -34,10 +38,11 @@ ViolationPrice price_of(const RowKind& kind);
 /// flight are the last to be violated; locked postures never are.
 Nlp with_all_limits_relaxed(const CorrectionProblem& problem, const Nlp& nlp, double dt);
 
-/// The program of `problem` with its soft goals relaxed: the ZMP's safe margin down to the least
-/// margin, and swings and the planned DCM without bound. `robustness` is a factor on the prices;
-/// `barrier` the one that the solution starts with, which asks for that much more of each slack.
-Nlp with_soft_goals(const CorrectionProblem& problem, const Nlp& nlp, double dt,
-                    double robustness = 1, double barrier = NlpOptions().start_barrier);
+/// The slack variables that relax the soft goals of `problem`: the ZMP's safe margin down to the
+/// least margin, and swings and the planned DCM without bound; no prices where there are no soft
+/// goals. `robustness` is a factor on the prices; `barrier` the one that the solution starts with,
+/// which asks for that much more of each slack.
+Slacks soft_goal_slacks(const CorrectionProblem& problem, double dt, double robustness,
+                        double barrier);
 
 }  // namespace ayumi

@@ -31,51 +31,63 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Rows of inverse_dynamics by the correction's value, rate and acceleration.
-std::array<MatrixXd, 3> force_derivatives(TreeDynamics& dynamics, const CorrectedMotion& m) {
-  InverseDynamicsDerivatives d;
-  dynamics.inverse_derivatives(m.state, m.acceleration, d);
-  const MatrixXd q = d.configuration.middleCols<3>(3), v = d.velocity.middleCols<3>(3),
-                 a = d.acceleration.middleCols<3>(3);
-  d.configuration.middleCols<3>(3) = q * m.tangent + v * m.w_value + a * m.dw_value;
-  d.velocity.middleCols<3>(3) = v * m.w_rate + a * m.dw_rate;
-  d.acceleration.middleCols<3>(3) = a * m.dw_acceleration;
-  return {std::move(d.configuration), std::move(d.velocity), std::move(d.acceleration)};
+// The derivatives of inverse_dynamics by the tangent become those by the correction.
+void by_correction(const CorrectedMotion& m, InverseDynamicsDerivatives& d) {
+  for (Eigen::Index i = 0; i < d.configuration.rows(); ++i) {
+    const Eigen::RowVector3d q = d.configuration.block<1, 3>(i, 3),
+                             v = d.velocity.block<1, 3>(i, 3), a = d.acceleration.block<1, 3>(i, 3);
+    d.configuration.block<1, 3>(i, 3) = q * m.tangent + v * m.w_value + a * m.dw_value;
+    d.velocity.block<1, 3>(i, 3) = v * m.w_rate + a * m.dw_rate;
+    d.acceleration.block<1, 3>(i, 3) = a * m.dw_acceleration;
+  }
+}
+
+void turn_by_vector(const Matrix3d& tangent, MatrixXd& by) {
+  for (Eigen::Index i = 0; i < by.rows(); ++i) {
+    const Eigen::RowVector3d row = by.block<1, 3>(i, 3);
+    by.block<1, 3>(i, 3) = row * tangent;
+  }
 }
 
 }  // namespace
 
-PointState point_state(const RobotModel& model, const ActuatorLimits& actuators,
-                       const CommandSample& sample, const CollocationPoint& point,
-                       const MatrixXd& coefficients, TreeDynamics* derivatives, RobotData& data) {
-  PointState state;
+void fill_values(const RobotModel& model, const ActuatorLimits& actuators,
+                 const CommandSample& sample, const CollocationPoint& point,
+                 const MatrixXd& coefficients, PointState& state) {
   const auto rows = coefficients.middleRows<4>(point.weights.first);
   state.change = rows.transpose() * point.weights.value;
-  state.motion = corrected_motion(sample, state.change, rows.transpose() * point.weights.rate,
-                                  rows.transpose() * point.weights.acceleration);
-  const CorrectedMotion& m = state.motion;
-  state.data = &data;
-  const VectorXd force = inverse_dynamics(model, m.state, m.acceleration, data);
-  state.wrench = force.head<6>();
-  std::array<MatrixXd, 3> force_by;
-  if (derivatives) {
-    force_by = force_derivatives(*derivatives, m);
-    for (int k = 0; k < 3; ++k) state.wrench_by[k] = force_by[k].topRows<6>();
-    state.cog_by = cog_jacobian_floating(model, data);
-    state.cog_by.middleCols<3>(3) = (state.cog_by.middleCols<3>(3) * m.tangent).eval();
-  }
-  if (point.torques)
-    fill_motor_torques(model, actuators, point, force, derivatives ? &force_by : nullptr, data,
-                       state);
+  state.rate = rows.transpose() * point.weights.rate;
+  state.second = rows.transpose() * point.weights.acceleration;
+  CorrectedMotion& m = state.motion;
+  fill_motion(sample, state.change, state.rate, state.second, m);
+  update_velocities(model, m.state, state.data);
+  newton_euler(model, m.state, m.acceleration, state.data, state.force);
+  state.wrench = state.force.head<6>();
+  if (point.torques) fill_motor_torques(model, actuators, point, state);
+  for (Side side : {Side::left, Side::right})
+    state.soles[static_cast<size_t>(side)] = sole_pose(model, state.data, side);
+}
+
+void fill_derivatives(const RobotModel& model, const ActuatorLimits& actuators,
+                      const CommandSample& sample, const CollocationPoint& point,
+                      DerivativeWorkspace& workspace, PointState& state) {
+  CorrectedMotion& m = state.motion;
+  fill_motion_derivatives(sample, state.change, state.rate, state.second, m);
+  InverseDynamicsDerivatives& d = workspace.force_by;
+  workspace.dynamics.inverse_derivatives(m.state, m.acceleration, d);
+  by_correction(m, d);
+  state.wrench_by[0] = d.configuration.topRows<6>();
+  state.wrench_by[1] = d.velocity.topRows<6>();
+  state.wrench_by[2] = d.acceleration.topRows<6>();
+  state.cog_by = cog_jacobian_floating(model, state.data);
+  turn_by_vector(m.tangent, state.cog_by);
+  if (point.torques) fill_motor_torque_derivatives(model, actuators, point, d, state);
   for (Side side : {Side::left, Side::right}) {
-    const int s = static_cast<int>(side);
-    state.soles[s] = sole_pose(model, data, side);
-    if (!derivatives) continue;
-    MatrixXd& J = state.sole_by[s];
-    J = body_jacobian(model, data, model.sole(side).body, state.soles[s].translation());
-    J.middleCols<3>(3) = (J.middleCols<3>(3) * m.tangent).eval();
+    const auto s = static_cast<size_t>(side);
+    state.sole_by[s] =
+        body_jacobian(model, state.data, model.sole(side).body, state.soles[s].translation());
+    turn_by_vector(m.tangent, state.sole_by[s]);
   }
-  return state;
 }
 
 Vector6d plane_wrench(const CollocationPoint& point, const PointState& state) {
@@ -161,18 +173,16 @@ struct Values {
     return VectorXd::Constant(1, row.scale * quantity(row));
   }
   VectorXd operator()(const ClearanceRows& rows) const {
-    const std::vector<Closest> points =
-        clearance_points(*rows.collisions, rows.shapes, *state.data);
+    const std::vector<Closest> points = clearance_points(*rows.collisions, rows.shapes, state.data);
     VectorXd values(static_cast<Eigen::Index>(points.size()));
     for (size_t i = 0; i < points.size(); ++i)
       values[static_cast<Eigen::Index>(i)] = points[i].clearance;
     return values;
   }
-  VectorXd operator()(const CogRows& rows) const { return state.data->cog - rows.from; }
+  VectorXd operator()(const CogRows& rows) const { return state.data.cog - rows.from; }
   VectorXd operator()(const CorrectionRows&) const { return state.change; }
   VectorXd operator()(const DcmRows& rows) const {
-    const Vector3d rate = cog_jacobian_floating(model, *state.data) * state.motion.state.velocity();
-    const Vector3d dcm = state.data->cog + rows.time * rate;
+    const Vector3d dcm = state.data.cog + rows.time * state.data.dcog;
     VectorXd values(4);
     values << dcm.head<2>() - rows.from, wrench_values(rows.zmp, point, state);
     return values;
@@ -221,9 +231,9 @@ struct ByCorrection {
     return by;
   }
   Derivatives operator()(const ClearanceRows& rows) const {
-    MatrixXd by = clearance_gradient(model, *rows.collisions, rows.shapes, *state.data);
-    by.middleCols<3>(3) = (by.middleCols<3>(3) * state.motion.tangent).eval();
-    return {by, {}, {}};
+    MatrixXd by = clearance_gradient(model, *rows.collisions, rows.shapes, state.data);
+    turn_by_vector(state.motion.tangent, by);
+    return {std::move(by), {}, {}};
   }
   Derivatives operator()(const CogRows&) const { return {state.cog_by, {}, {}}; }
   Derivatives operator()(const CorrectionRows&) const {

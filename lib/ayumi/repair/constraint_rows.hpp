@@ -14,23 +14,37 @@
 namespace ayumi {
 
 struct PointState {
-  Eigen::VectorXd change;  ///< value of the correction (6 + dof)
+  explicit PointState(const RobotData& workspace) : data(workspace) {}
+
+  Eigen::VectorXd change, rate, second;  ///< value of the correction and its derivatives (6 + dof)
   CorrectedMotion motion;
+  RobotData data;                            ///< positions and velocities of `motion`
+  Eigen::VectorXd force;                     ///< of inverse_dynamics() (6 + dof)
   Vector6d wrench = Vector6d::Zero();        ///< of the ground, about the base
-  std::array<Eigen::MatrixXd, 3> wrench_by;  ///< 6 x (6+dof) by value, rate, acceleration
   std::array<Eigen::Isometry3d, 2> soles;    ///< by Side
+  Eigen::VectorXd torque;                    ///< where the point needs it [dof]
+  std::array<Eigen::MatrixXd, 3> wrench_by;  ///< 6 x (6+dof) by value, rate, acceleration
   std::array<Eigen::MatrixXd, 2> sole_by;    ///< 6 x (6+dof) by value
   Eigen::MatrixXd cog_by;                    ///< 3 x (6+dof) by value
-  Eigen::VectorXd torque;                    ///< where the point needs it [dof]
   std::array<Eigen::MatrixXd, 3> torque_by;  ///< dof x (6+dof)
-  /// The workspace it was computed in; valid until the next point_state().
-  RobotData* data = nullptr;
 };
-/// `derivatives`: what computes them; null: values alone.
-PointState point_state(const RobotModel& model, const ActuatorLimits& actuators,
-                       const CommandSample& sample, const CollocationPoint& point,
-                       const Eigen::MatrixXd& coefficients, TreeDynamics* derivatives,
-                       RobotData& data);
+
+/// What computes derivatives.
+struct DerivativeWorkspace {
+  explicit DerivativeWorkspace(const RobotModel& model) : dynamics(model) {}
+  TreeDynamics dynamics;
+  InverseDynamicsDerivatives force_by;  ///< by the correction's value, rate and acceleration
+};
+
+/// Fills all but the derivatives.
+void fill_values(const RobotModel& model, const ActuatorLimits& actuators,
+                 const CommandSample& sample, const CollocationPoint& point,
+                 const Eigen::MatrixXd& coefficients, PointState& state);
+
+/// Fills the derivatives of a state that has its values.
+void fill_derivatives(const RobotModel& model, const ActuatorLimits& actuators,
+                      const CommandSample& sample, const CollocationPoint& point,
+                      DerivativeWorkspace& workspace, PointState& state);
 
 /// The ground wrench about the support plane of the point, in its axes.
 Vector6d plane_wrench(const CollocationPoint& point, const PointState& state);

@@ -1,5 +1,5 @@
-// The rotation part is written once for any scalar; its derivatives by r, r', r'' come from the
-// same lines in dual numbers. The factors of the exponential are power series in |r|^2, without a
+// The rotation part is written once for any scalar: numbers for the motion, dual numbers for its
+// derivatives by r, r', r''. The factors of the exponential are power series in |r|^2, without a
 // branch: 15 terms are exact to rounding for |r| <= pi.
 #include "ayumi/repair/corrected_motion.hpp"
 
@@ -90,32 +90,36 @@ Matrix3d block(const Vector<Dual>& v, int first) {
 
 }  // namespace
 
-CorrectedMotion corrected_motion(const CommandSample& sample, const VectorXd& value,
-                                 const VectorXd& rate, const VectorXd& acceleration) {
+void fill_motion(const CommandSample& sample, const VectorXd& value, const VectorXd& rate,
+                 const VectorXd& second, CorrectedMotion& m) {
   const auto dof = sample.state.theta.size();
-  CorrectedMotion m;
   m.state = sample.state;
-  m.acceleration = sample.acceleration + acceleration;
+  m.acceleration = sample.acceleration + second;
   m.state.base.position += value.head<3>();
   m.state.base_velocity += rate.head<3>();
   m.state.theta += value.tail(dof);
   m.state.dtheta += rate.tail(dof);
   const Vector3d r = value.segment<3>(3);
   m.state.base.attitude = (exp_rotation(r) * sample.state.base.attitude).normalized();
-  const AngularMotion<Dual> angular = angular_motion<Dual>(
-      variables(r, 0), variables(rate.segment<3>(3), 3), variables(acceleration.segment<3>(3), 6),
-      sample.state.base_angular_velocity, sample.acceleration.segment<3>(3));
-  for (int i = 0; i < 3; ++i) {
-    m.state.base_angular_velocity[i] = angular.w[i].value();
-    m.acceleration[3 + i] = angular.dw[i].value();
-  }
+  const AngularMotion<double> angular =
+      angular_motion<double>(r, rate.segment<3>(3), second.segment<3>(3),
+                             sample.state.base_angular_velocity, sample.acceleration.segment<3>(3));
+  m.state.base_angular_velocity = angular.w;
+  m.acceleration.segment<3>(3) = angular.dw;
+}
+
+void fill_motion_derivatives(const CommandSample& sample, const VectorXd& value,
+                             const VectorXd& rate, const VectorXd& second, CorrectedMotion& m) {
+  const AngularMotion<Dual> angular =
+      angular_motion<Dual>(variables(value.segment<3>(3), 0), variables(rate.segment<3>(3), 3),
+                           variables(second.segment<3>(3), 6), sample.state.base_angular_velocity,
+                           sample.acceleration.segment<3>(3));
   m.w_value = block(angular.w, 0);
   m.w_rate = block(angular.w, 3);
   m.dw_value = block(angular.dw, 0);
   m.dw_rate = block(angular.dw, 3);
   m.dw_acceleration = block(angular.dw, 6);
   m.tangent = m.w_rate;  // w is linear in r' with the factor J(r)
-  return m;
 }
 
 }  // namespace ayumi

@@ -21,8 +21,15 @@ struct CorrectedMotion {
   Eigen::Matrix3d dw_value, dw_rate, dw_acceleration;  ///< derivatives of dw by r, r', r''
 };
 
-/// `value`, `rate`, `acceleration`: base position, base rotation vector, theta (6 + dof).
-CorrectedMotion corrected_motion(const CommandSample& sample, const Eigen::VectorXd& value,
-                                 const Eigen::VectorXd& rate, const Eigen::VectorXd& acceleration);
+/// Fills `state` and `acceleration`. `value`, `rate`, `second`: of base position, base rotation
+/// vector, theta (6 + dof). Allocates nothing where `motion` has its size.
+void fill_motion(const CommandSample& sample, const Eigen::VectorXd& value,
+                 const Eigen::VectorXd& rate, const Eigen::VectorXd& second,
+                 CorrectedMotion& motion);
+
+/// Fills the derivatives.
+void fill_motion_derivatives(const CommandSample& sample, const Eigen::VectorXd& value,
+                             const Eigen::VectorXd& rate, const Eigen::VectorXd& second,
+                             CorrectedMotion& motion);
 
 }  // namespace ayumi

@@ -16,11 +16,12 @@ namespace {
 
 // A row depends on the four control points that act at its collocation point.
 SparsePattern jacobian_pattern(const PlacedRows& rows, const std::vector<CollocationPoint>& points,
-                               const Eigen::MatrixXi& index) {
+                               const Eigen::MatrixXi& index, std::vector<int>& first_nonzero) {
   SparsePattern pattern;
   for (size_t b = 0; b < rows.blocks.size(); ++b) {
     const RowBlock& block = rows.blocks[b];
     const int first = points[block.point].weights.first;
+    first_nonzero.push_back(pattern.size());
     for (int i = 0; i < 4; ++i)
       for (int column : rows.columns[b]) {
         const int variable = index(first + i, column);
@@ -31,6 +32,13 @@ SparsePattern jacobian_pattern(const PlacedRows& rows, const std::vector<Colloca
   return pattern;
 }
 
+std::vector<size_t> first_blocks(const std::vector<RowBlock>& blocks, size_t points) {
+  std::vector<size_t> first(points + 1, blocks.size());
+  for (size_t b = blocks.size(); b-- > 0;) first[static_cast<size_t>(blocks[b].point)] = b;
+  for (size_t i = points; i-- > 0;) first[i] = std::min(first[i], first[i + 1]);
+  return first;
+}
+
 }  // namespace
 
 CorrectionProblem::CorrectionProblem(const RobotModel& model, const CommandSeries& series,
@@ -39,89 +47,73 @@ CorrectionProblem::CorrectionProblem(const RobotModel& model, const CommandSerie
       actuators_(model.limits(spec.profile)),
       series_(series),
       spec_(spec),
-      plan_(contact_plan(series)) {
-  variables_ = correction_variables(model, series, spec_);
-  points_ = collocation_points(model, series, plan_, spec_, variables_);
-  rows_ = place_rows(model, series, spec_, plan_, points_);
-  jacobian_ = jacobian_pattern(rows_, points_, variables_.index);
-  hessian_ =
-      program_hessian(model, change_weights(model, series, spec_.weights), variables_, points_);
+      plan_(contact_plan(series)),
+      variables_(correction_variables(model, series, spec_)),
+      points_(collocation_points(model, series, plan_, spec_, variables_)),
+      rows_(place_rows(model, series, spec_, plan_, points_)),
+      first_block_(first_blocks(rows_.blocks, points_.size())),
+      jacobian_(jacobian_pattern(rows_, points_, variables_.index, first_nonzero_)),
+      hessian_(program_hessian(model, change_weights(model, series, spec_.weights), variables_,
+                               points_)),
+      states_(model, actuators_, series, points_, spec_.threads),
+      curvature_(points_.size()) {}
+
+std::span<const RowBlock> CorrectionProblem::blocks_of(size_t point) const {
+  return std::span(rows_.blocks)
+      .subspan(first_block_[point], first_block_[point + 1] - first_block_[point]);
 }
 
 VectorXd CorrectionProblem::constraints(const VectorXd& x) const {
-  return values(series_, variables_.coefficients(x));
+  return values(states_, variables_.coefficients(x));
 }
 
 VectorXd CorrectionProblem::constraints_of(const CommandSeries& motion) const {
-  return values(motion, variables_.zero.coefficients);
+  PointStates states(model_, actuators_, motion, points_, spec_.threads);
+  return values(states, variables_.zero.coefficients);
 }
 
-VectorXd CorrectionProblem::values(const CommandSeries& motion, const MatrixXd& c) const {
+VectorXd CorrectionProblem::values(PointStates& states, const MatrixXd& c) const {
   VectorXd g(constraint_count());
-  RobotData data(model_);
-  PointState state;
-  int at = -1;
-  for (const RowBlock& block : rows_.blocks) {
-    const CollocationPoint& point = points_[block.point];
-    if (block.point != at)
-      state =
-          point_state(model_, actuators_, motion.samples[point.sample], point, c, nullptr, data);
-    at = block.point;
-    g.segment(block.row, block.rows()) = block_values(model_, block, point, state);
-  }
+  states.for_each(c, false, [&](size_t i, const PointState& state, DerivativeWorkspace&) {
+    for (const RowBlock& block : blocks_of(i))
+      g.segment(block.row, block.rows()) = block_values(model_, block, points_[i], state);
+  });
   return g;
 }
 
+// By a control point: its weights times the derivatives by value, rate and acceleration.
 void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) const {
-  const MatrixXd c = variables_.coefficients(x);
-  RobotData data(model_);
-  TreeDynamics dynamics(model_);
-  PointState state;
-  int at = -1;
-  Eigen::Index next = 0;
-  for (size_t b = 0; b < rows_.blocks.size(); ++b) {
-    const RowBlock& block = rows_.blocks[b];
-    const CollocationPoint& point = points_[block.point];
-    if (block.point != at)
-      state =
-          point_state(model_, actuators_, series_.samples[point.sample], point, c, &dynamics, data);
-    at = block.point;
-    const auto by = block_derivatives(model_, block, point, state);
-    const SplineWeights& w = point.weights;
+  const auto fill = [&](size_t at, const PointState& state, DerivativeWorkspace&) {
+    const SplineWeights& w = points_[at].weights;
     const Eigen::Vector4d* weights[] = {&w.value, &w.rate, &w.acceleration};
-    for (int i = 0; i < 4; ++i)
-      for (int column : rows_.columns[b]) {
-        if (variables_.index(w.first + i, column) < 0) continue;
-        for (int row = 0; row < block.rows(); ++row) {
-          double sum = 0;
-          for (int k = 0; k < 3; ++k)
-            if (by[k].size() > 0) sum += (*weights[k])[i] * by[k](row, column);
-          values[next++] = sum;
-        }
+    MatrixXd sum;
+    for (size_t b = first_block_[at]; b < first_block_[at + 1]; ++b) {
+      const RowBlock& block = rows_.blocks[b];
+      const auto by = block_derivatives(model_, block, points_[at], state);
+      double* next = values.data() + first_nonzero_[b];
+      for (int i = 0; i < 4; ++i) {
+        sum.setZero(block.rows(), model_.velocity_count());
+        for (int k = 0; k < 3; ++k)
+          if (by[k].size() > 0) sum += (*weights[k])[i] * by[k];
+        for (const int column : rows_.columns[b])
+          if (variables_.index(w.first + i, column) >= 0)
+            next = std::copy_n(sum.col(column).data(), block.rows(), next);
       }
-  }
+    }
+  };
+  states_.for_each(variables_.coefficients(x), true, fill);
 }
 
 void CorrectionProblem::add_curvature(const VectorXd& x, const VectorXd& multipliers,
                                       VectorXd& values) const {
   if (hessian_.columns.empty()) return;
-  const MatrixXd c = variables_.coefficients(x);
-  RobotData data(model_);
-  TreeDynamics dynamics(model_);
-  ControlPointPairs pairs(hessian_.first_nonzero.size());
-  size_t first = 0;
-  for (size_t at = 0; at < points_.size(); ++at) {
-    size_t end = first;
-    while (end < rows_.blocks.size() && rows_.blocks[end].point == static_cast<int>(at)) ++end;
-    const std::span<const RowBlock> blocks(&rows_.blocks[0] + first, end - first);
-    first = end;
-    const CollocationPoint& point = points_[at];
-    const PointState state =
-        point_state(model_, actuators_, series_.samples[point.sample], point, c, &dynamics, data);
-    const Curvature curvature = curvature_of(model_, blocks, multipliers, point, state, dynamics);
-    if (!is_flat(curvature)) spread_curvature(hessian_, point.weights, curvature, pairs);
-  }
-  add_pairs(hessian_, variables_.index, pairs, values);
+  const auto fill = [&](size_t i, const PointState& state, DerivativeWorkspace& workspace) {
+    curvature_[i] =
+        curvature_at(hessian_, points_[i].weights,
+                     curvature_of(model_, blocks_of(i), multipliers, points_[i], state, workspace));
+  };
+  states_.for_each(variables_.coefficients(x), true, fill);
+  ayumi::add_curvature(hessian_, variables_.index, curvature_, spec_.threads, values);
 }
 
 std::vector<ActiveLimit> CorrectionProblem::beside_active(const VectorXd& x) const {

@@ -6,16 +6,19 @@
 // Derivatives of the rows are exact; the Hessian is that of the objective and, on the ground, the
 // curvature of the rows.
 
+#include <span>
 #include <vector>
 
 #include "ayumi/repair/correction_spec.hpp"
 #include "ayumi/repair/nlp/nlp.hpp"
+#include "ayumi/repair/point_states.hpp"
 #include "ayumi/repair/program_hessian.hpp"
 #include "ayumi/repair/row_placement.hpp"
 
 namespace ayumi {
 
-/// Built once; model and series must outlive it.
+/// Built once; model and series must outlive it. Its functions use several threads themselves and
+/// may not be called by several at once.
 class CorrectionProblem {
  public:
   CorrectionProblem(const RobotModel& model, const CommandSeries& series,
@@ -43,7 +46,8 @@ class CorrectionProblem {
   Eigen::VectorXd point(const Eigen::MatrixXd& coefficients) const;
 
  private:
-  Eigen::VectorXd values(const CommandSeries& motion, const Eigen::MatrixXd& coefficients) const;
+  Eigen::VectorXd values(PointStates& states, const Eigen::MatrixXd& coefficients) const;
+  std::span<const RowBlock> blocks_of(size_t point) const;
   void jacobian_values(const Eigen::VectorXd& x, Eigen::VectorXd& values) const;
   void add_curvature(const Eigen::VectorXd& x, const Eigen::VectorXd& multipliers,
                      Eigen::VectorXd& values) const;
@@ -56,8 +60,12 @@ class CorrectionProblem {
   CorrectionVariables variables_;
   std::vector<CollocationPoint> points_;
   PlacedRows rows_;
+  std::vector<size_t> first_block_;  ///< by point, and one more
+  std::vector<int> first_nonzero_;   ///< by block: of the Jacobian
   SparsePattern jacobian_;
   ProgramHessian hessian_;
+  mutable PointStates states_;  ///< of the last x; the functions of one program run on one thread
+  mutable std::vector<PointCurvature> curvature_;  ///< by point
 };
 
 }  // namespace ayumi

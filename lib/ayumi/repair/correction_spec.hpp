@@ -36,6 +36,8 @@ struct CorrectionSpec {
   Eigen::VectorXd weights;  ///< factors on the weights of the joints [dof]; empty: 1
   Eigen::MatrixXd initial;  ///< control points to start from; empty: no correction
 
+  bool planned_feet = false;  ///< swinging feet follow the planned ones, not the given motion
+
   // What is judged, as in the check.
   Trust trust = Trust::posture;
   const CollisionModel* collisions = nullptr;  ///< null: clearances are not watched
@@ -60,7 +62,8 @@ struct CorrectionSpec {
   bool swing_goals = true;  ///< low soles level and over their places, the others high enough
   double dcm_slack = repair_policy::dcm::kSlack;     ///< half the band of the DCM [m]
   double zmp_slack = repair_policy::dcm::kZmpSlack;  ///< half the band of the ZMP with it [m]
-  std::vector<TimeWindow> wrong_plan;  ///< in which the commanded COG or ZMP is at fault [s]
+  std::array<bool, 3> planned_cog = {};  ///< axes of the COG that stay near the commanded one
+  std::vector<TimeWindow> wrong_plan;    ///< in which the commanded COG or ZMP is at fault [s]
 
   // Where rows are placed.
   int points_per_knot = repair_policy::collocation::kPerKnot;
@@ -68,6 +71,8 @@ struct CorrectionSpec {
   std::vector<double> extra_times;         ///< more collocation points [s]
   std::vector<ActiveLimit> active;         ///< rows of their own
   std::vector<const CommandSeries*> seen;  ///< earlier results, the last one last
+
+  int threads = 0;  ///< of functions and derivatives; 0: all cores. They change no result.
 };
 
 }  // namespace ayumi

@@ -56,7 +56,7 @@ void add_cog(const RobotModel& model, const Vector3d& c, const PointState& state
     for (int i = body; i > 0; i = model.bodies()[i].parent) {
       const Body& above = model.bodies()[i];
       if (above.prismatic) continue;
-      add(6 + above.dof, j, above.ratio * c.dot(state.data->axis[i].cross(moved)));
+      add(6 + above.dof, j, above.ratio * c.dot(state.data.axis[i].cross(moved)));
     }
   }
 }
@@ -64,7 +64,7 @@ void add_cog(const RobotModel& model, const Vector3d& c, const PointState& state
 // Adds the curvature of the ground wrench's power on the rigid motion that turns with `turn` and
 // moves the base origin with `slide`.
 void add_power(const RobotModel& model, const Vector3d& slide, const Vector3d& turn,
-               const PointState& state, TreeDynamics& dynamics, Curvature& sum) {
+               const PointState& state, DerivativeWorkspace& workspace, Curvature& sum) {
   const Vector3d up(0, 0, kGravity);
   RobotState still = state.motion.state;
   still.base_velocity.setZero();
@@ -72,8 +72,8 @@ void add_power(const RobotModel& model, const Vector3d& slide, const Vector3d& t
   still.dtheta.setZero();
   VectorXd motion = VectorXd::Zero(model.velocity_count());
   motion << slide - up, turn, VectorXd::Zero(model.dof_count());
-  InverseDynamicsDerivatives d;
-  dynamics.inverse_derivatives(still, motion, d);
+  InverseDynamicsDerivatives& d = workspace.force_by;
+  workspace.dynamics.inverse_derivatives(still, motion, d);
   MatrixXd& G = d.configuration;
   G.leftCols<3>() += d.acceleration.leftCols<3>() * skew(turn);
   G.middleCols<3>(3) = (G.middleCols<3>(3) * state.motion.tangent).eval();
@@ -99,7 +99,7 @@ bool is_flat(const Curvature& curvature) { return curvature.value.size() == 0; }
 
 Curvature curvature_of(const RobotModel& model, std::span<const RowBlock> blocks,
                        const VectorXd& multipliers, const CollocationPoint& point,
-                       const PointState& state, TreeDynamics& dynamics) {
+                       const PointState& state, DerivativeWorkspace& workspace) {
   std::array<PoseCurvature, 2> poses;
   std::array<bool, 2> foot = {};
   Vector6d ground = Vector6d::Zero();
@@ -129,7 +129,7 @@ Curvature curvature_of(const RobotModel& model, std::span<const RowBlock> blocks
   const Matrix3d R = point.plane.frame.linear();
   const Vector3d turn = R * ground.tail<3>();
   const Vector3d arm = base - point.plane.frame.translation();
-  add_power(model, R * ground.head<3>() + turn.cross(arm), turn, state, dynamics, sum);
+  add_power(model, R * ground.head<3>() + turn.cross(arm), turn, state, workspace, sum);
   return sum;
 }
 

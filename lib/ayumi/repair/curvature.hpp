@@ -30,7 +30,7 @@ struct Curvature {
 /// `blocks` are those of `point`, `multipliers` those of all rows; `state` has derivatives.
 Curvature curvature_of(const RobotModel& model, std::span<const RowBlock> blocks,
                        const Eigen::VectorXd& multipliers, const CollocationPoint& point,
-                       const PointState& state, TreeDynamics& dynamics);
+                       const PointState& state, DerivativeWorkspace& workspace);
 
 /// Whether nothing curves: curvature_of() then leaves its matrices empty.
 bool is_flat(const Curvature& curvature);

@@ -203,6 +203,7 @@ void solve_relaxed(RepairState& state) {
   NlpOptions options = nlp_options(state, false);
   options.max_iterations = std::min(options.max_iterations, policy::infeasible::kMostIterations);
   options.least_violating = nullptr;
+  options.most_work = work_left(state, 0);
   const NlpSolution solution =
       solve(relaxed, options, state.progress, "repair, search for the reasons");
   const double violation = state.result.constraint_violation;

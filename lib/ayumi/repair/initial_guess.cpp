@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "ayumi/math/random.hpp"
 #include "ayumi/math/windows.hpp"
 
 namespace ayumi {
@@ -124,6 +125,18 @@ MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& serie
       }
     }
   return result;
+}
+
+VectorXd random_start(const CorrectionProblem& problem, const RandomStart& how) {
+  // Metres of the base for each radian of a joint. Chosen: a leg of 0.2 m that turns by 0.1 rad
+  // moves the base by 0.02 m.
+  constexpr double kBaseShare = 0.1;
+  Random random(how.seed);
+  MatrixXd c = problem.track(VectorXd::Zero(problem.variable_count())).coefficients;
+  for (Index i = 0; i < c.rows(); ++i)
+    for (Index j = 0; j < c.cols(); ++j)
+      c(i, j) = (j < 3 ? kBaseShare : 1) * how.size * (2 * random.uniform() - 1);
+  return problem.point(c);
 }
 
 VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp, const RobotModel& model,

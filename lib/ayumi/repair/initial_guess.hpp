@@ -8,6 +8,7 @@
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"
 #include "ayumi/repair/correction_problem.hpp"
+#include "ayumi/repair/repair.hpp"
 
 namespace ayumi {
 
@@ -21,6 +22,9 @@ Eigen::MatrixXd with_halved_knots(const Eigen::MatrixXd& coefficients);
 Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& series,
                                     const std::vector<Finding>& findings, double reach,
                                     double spacing, Eigen::Index rows);
+
+/// The variables of the program at random control points.
+Eigen::VectorXd random_start(const CorrectionProblem& problem, const RandomStart& how);
 
 /// The point from which the program starts: no correction or, where that violates the least linear
 /// rows (soles and clearances) by far, the straight-line guess that violates them least.

@@ -1,6 +1,7 @@
 #pragma once
-// Rows of what a repair has to leave alone: postures at locked times and paths of locked feet.
-// They belong to no limit.
+// Rows of what a repair has to leave alone: postures at locked times and paths of locked feet; and
+// of what it has to follow where it generates a motion: planned feet and COG. They belong to no
+// limit.
 
 #include "ayumi/limits/row_site.hpp"
 #include "ayumi/repair/correction_spec.hpp"

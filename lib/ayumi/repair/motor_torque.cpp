@@ -90,22 +90,29 @@ void add_foot(const RobotModel& model, Side side, const Vector6d& wrench, const 
 }  // namespace
 
 void fill_motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
-                        const CollocationPoint& point, const VectorXd& force,
-                        const std::array<MatrixXd, 3>* force_by, const RobotData& data,
-                        PointState& state) {
+                        const CollocationPoint& point, PointState& state) {
+  const CorrectedMotion& m = state.motion;
+  const FootWrenches wrench = shared_load(model, point, m.state.base.position, state.wrench);
+  state.torque =
+      motor_torques(model, actuators, m.state, m.acceleration, state.force, wrench, state.data);
+}
+
+void fill_motor_torque_derivatives(const RobotModel& model, const ActuatorLimits& actuators,
+                                   const CollocationPoint& point,
+                                   const InverseDynamicsDerivatives& force_by, PointState& state) {
   const CorrectedMotion& m = state.motion;
   const Vector3d& base = m.state.base.position;
   const FootWrenches wrench = shared_load(model, point, base, state.wrench);
-  state.torque = motor_torques(model, actuators, m.state, m.acceleration, force, wrench, data);
-  if (!force_by) return;
   const int dof = model.dof_count();
-  for (int k = 0; k < 3; ++k) state.torque_by[k] = (*force_by)[k].bottomRows(dof);
+  state.torque_by[0] = force_by.configuration.bottomRows(dof);
+  state.torque_by[1] = force_by.velocity.bottomRows(dof);
+  state.torque_by[2] = force_by.acceleration.bottomRows(dof);
   const auto slope = sharing_slope(model, point, base, state.wrench);
   for (Side side : {Side::left, Side::right}) {
     const int s = static_cast<int>(side);
     if (!point.contact[s]) continue;
     MatrixXd by_wrench = MatrixXd::Zero(dof, 6);
-    add_foot(model, side, wrench[s], data, m.tangent, by_wrench, state.torque_by[0]);
+    add_foot(model, side, wrench[s], state.data, m.tangent, by_wrench, state.torque_by[0]);
     for (int k = 0; k < 3; ++k)
       state.torque_by[k] += by_wrench * slope[s].rightCols<6>() * state.wrench_by[k];
     state.torque_by[0].leftCols<3>() += by_wrench * slope[s].leftCols<3>();

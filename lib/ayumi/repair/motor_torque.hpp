@@ -6,12 +6,14 @@
 
 namespace ayumi {
 
-/// Fills state.torque and, with `force_by`, state.torque_by. `force`: of inverse_dynamics(), which
-/// left `data`; `force_by`: all its rows by value, rate and acceleration, or null. The wrench of
-/// `state` must be set.
+/// Fills state.torque. The force, the wrench and the positions of `state` must be set.
 void fill_motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
-                        const CollocationPoint& point, const Eigen::VectorXd& force,
-                        const std::array<Eigen::MatrixXd, 3>* force_by, const RobotData& data,
-                        PointState& state);
+                        const CollocationPoint& point, PointState& state);
+
+/// Fills state.torque_by. `force_by`: of inverse_dynamics() by the correction; the derivatives of
+/// the wrench must be set.
+void fill_motor_torque_derivatives(const RobotModel& model, const ActuatorLimits& actuators,
+                                   const CollocationPoint& point,
+                                   const InverseDynamicsDerivatives& force_by, PointState& state);
 
 }  // namespace ayumi

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "ayumi/base/in_parallel.hpp"
 #include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
@@ -73,15 +74,6 @@ void place_curvature(const CorrectionVariables& v, ProgramHessian& h) {
     }
 }
 
-Curvature restricted(const Curvature& all, const std::vector<int>& columns) {
-  Curvature some = all;
-  some.value = all.value(columns, columns);
-  some.acceleration = all.acceleration(columns, columns);
-  for (int k = 0; k < 3; ++k)
-    if (all.force_by[k].size() > 0) some.force_by[k] = all.force_by[k](Eigen::all, columns);
-  return some;
-}
-
 }  // namespace
 
 ProgramHessian program_hessian(const RobotModel& model, const VectorXd& weights,
@@ -103,41 +95,78 @@ void objective_gradient(const ProgramHessian& h, const VectorXd& x, VectorXd& g)
   }
 }
 
-void spread_curvature(const ProgramHessian& h, const SplineWeights& w, const Curvature& all,
-                      ControlPointPairs& pairs) {
-  const Curvature curvature = restricted(all, h.columns);
-  const MatrixXd &V = curvature.value, &G = curvature.acceleration;
-  const MatrixXd Gt = G.transpose(), S = G + Gt;
-  const bool cone = !curvature.cone.isZero(0);
-  std::array<MatrixXd, 4> force;
-  for (int i = 0; i < 4 && cone; ++i)
-    force[i] = w.value[i] * curvature.force_by[0] + w.rate[i] * curvature.force_by[1] +
-               w.acceleration[i] * curvature.force_by[2];
+PointCurvature curvature_at(const ProgramHessian& h, const SplineWeights& w, const Curvature& all) {
+  PointCurvature result;
+  result.weights = w;
+  if (is_flat(all)) return result;
+  result.value = all.value(h.columns, h.columns);
+  result.mixed = all.acceleration(h.columns, h.columns);
+  result.turned = result.mixed.transpose();
+  if (all.cone.isZero(0)) return result;
+  result.cone = all.cone;
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j <= i; ++j) {
-      MatrixXd& pair = pairs[static_cast<size_t>(4 * (w.first + i) + i - j)];
-      if (pair.size() == 0) pair = MatrixXd::Zero(V.rows(), V.cols());
-      pair += w.value[i] * w.value[j] * V + w.acceleration[i] * w.value[j] * G +
-              w.value[i] * w.acceleration[j] * Gt + w.rate[i] * w.rate[j] * S;
-      if (cone) pair.noalias() += force[i].transpose() * (curvature.cone * force[j]);
+    result.force[i] = w.value[i] * all.force_by[0](Eigen::all, h.columns) +
+                      w.rate[i] * all.force_by[1](Eigen::all, h.columns) +
+                      w.acceleration[i] * all.force_by[2](Eigen::all, h.columns);
+  return result;
+}
+
+namespace {
+
+// Adds the curvature by control points `later` and `later` - d, from the points where both act.
+// By rate and rate it is G + G' with G by acceleration and value.
+bool add_pair(const std::vector<PointCurvature>& points, size_t first, int later, int d,
+              MatrixXd& pair) {
+  bool any = false;
+  for (size_t p = first; p < points.size() && points[p].weights.first <= later - d; ++p) {
+    const PointCurvature& at = points[p];
+    if (at.value.size() == 0) continue;
+    const SplineWeights& w = at.weights;
+    const int i = later - w.first, j = i - d;
+    const double rates = w.rate[i] * w.rate[j];
+    if (!any) pair.setZero(at.value.rows(), at.value.cols());
+    any = true;
+    pair += w.value[i] * w.value[j] * at.value +
+            (w.acceleration[i] * w.value[j] + rates) * at.mixed +
+            (w.value[i] * w.acceleration[j] + rates) * at.turned;
+    if (at.force[0].size() > 0) pair.noalias() += at.force[i].transpose() * (at.cone * at.force[j]);
+  }
+  return any;
+}
+
+void add_pairs(const ProgramHessian& h, const Eigen::MatrixXi& index, int point, int d,
+               const MatrixXd& pair, VectorXd& values) {
+  const int columns = static_cast<int>(h.columns.size());
+  int next = h.first_nonzero[static_cast<size_t>(4 * point + d)];
+  for (int a = 0; a < columns; ++a)
+    for (int b = 0; b < (d == 0 ? a + 1 : columns); ++b) {
+      const int one = index(point, h.columns[a]), other = index(point - d, h.columns[b]);
+      if (one < 0 || other < 0) continue;
+      values[next++] += (d > 0 && one == other ? 2 : 1) * pair(a, b);
     }
 }
 
-void add_pairs(const ProgramHessian& h, const Eigen::MatrixXi& index,
-               const ControlPointPairs& pairs, VectorXd& values) {
-  const int columns = static_cast<int>(h.columns.size());
-  for (int point = 0; point < index.rows(); ++point)
-    for (int d = 0; d < 4; ++d) {
-      const auto pair = static_cast<size_t>(4 * point + d);
-      if (pairs[pair].size() == 0) continue;
-      int next = h.first_nonzero[pair];
-      for (int a = 0; a < columns; ++a)
-        for (int b = 0; b < (d == 0 ? a + 1 : columns); ++b) {
-          const int one = index(point, h.columns[a]), other = index(point - d, h.columns[b]);
-          if (one < 0 || other < 0) continue;
-          values[next++] += (d > 0 && one == other ? 2 : 1) * pairs[pair](a, b);
+}  // namespace
+
+void add_curvature(const ProgramHessian& h, const Eigen::MatrixXi& index,
+                   const std::vector<PointCurvature>& points, int threads, VectorXd& values) {
+  // Control points that one thread takes at once. Chosen: less work than to start a thread.
+  constexpr int kTogether = 8;
+  const auto count = static_cast<int>(index.rows());
+  std::atomic<bool> stop = false;
+  in_parallel(
+      static_cast<size_t>((count + kTogether - 1) / kTogether), threads, stop, [&](size_t part) {
+        MatrixXd pair;
+        const int begin = static_cast<int>(part) * kTogether;
+        for (int point = begin; point < std::min(count, begin + kTogether); ++point) {
+          const auto first = std::partition_point(
+              points.begin(), points.end(),
+              [&](const PointCurvature& at) { return at.weights.first < point - 3; });
+          for (int d = 0; d < 4 && d <= point; ++d)
+            if (add_pair(points, static_cast<size_t>(first - points.begin()), point, d, pair))
+              add_pairs(h, index, point, d, pair, values);
         }
-    }
+      });
 }
 
 }  // namespace ayumi

@@ -4,6 +4,7 @@
 //   kObjectiveScale / 2 * sum_columns w integral (d^2 + tau^4 d''^2) dt,
 // quadratic in the control points, by the Gram matrices of the splines.
 
+#include <array>
 #include <vector>
 
 #include "ayumi/repair/collocation.hpp"
@@ -28,13 +29,20 @@ ProgramHessian program_hessian(const RobotModel& model, const Eigen::VectorXd& w
 void objective_gradient(const ProgramHessian& hessian, const Eigen::VectorXd& x,
                         Eigen::VectorXd& gradient);
 
-/// Curvature of the blocks of one point, by pairs of control points: 4 * later point + distance.
-using ControlPointPairs = std::vector<Eigen::MatrixXd>;
-void spread_curvature(const ProgramHessian& hessian, const SplineWeights& weights,
-                      const Curvature& curvature, ControlPointPairs& pairs);
+/// Curvature of the rows of one point, for the columns that curve.
+struct PointCurvature {
+  SplineWeights weights;
+  /// By value and value; by acceleration and value, and turned round. Empty where nothing curves.
+  Eigen::MatrixXd value, mixed, turned;
+  Eigen::Matrix2d cone = Eigen::Matrix2d::Zero();  ///< by the tangential force
+  std::array<Eigen::MatrixXd, 4> force;            ///< that force by each control point
+};
+PointCurvature curvature_at(const ProgramHessian& hessian, const SplineWeights& weights,
+                            const Curvature& curvature);
 
-/// Adds them to the values of the nonzeros.
-void add_pairs(const ProgramHessian& hessian, const Eigen::MatrixXi& index,
-               const ControlPointPairs& pairs, Eigen::VectorXd& values);
+/// Adds the curvature of all points, which are in order of time, to the values of the nonzeros.
+/// `index`: of CorrectionVariables.
+void add_curvature(const ProgramHessian& hessian, const Eigen::MatrixXi& index,
+                   const std::vector<PointCurvature>& points, int threads, Eigen::VectorXd& values);
 
 }  // namespace ayumi

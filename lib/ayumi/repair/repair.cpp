@@ -10,6 +10,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/repair/infeasibility_report.hpp"
+#include "ayumi/repair/overlapping_feet.hpp"
 #include "ayumi/repair/repair_rounds.hpp"
 #include "ayumi/repair/repair_setup.hpp"
 #include "ayumi/repair/repair_state.hpp"
@@ -32,6 +33,7 @@ void set_up(RepairState& state) {
   take(state, nothing_moves.track(Eigen::VectorXd()));
   state.as_given = state.result;
   state.flight = flight_is_at_fault(state.result.check);
+  if (state.options.generate) return;
   const double finest = policy::knots::kFewestSamples * state.series.dt;
   state.spec.spacing =
       std::min(state.spec.spacing, spacing_of_faults(state.series, state.result.check, finest));
@@ -46,6 +48,7 @@ RepairStatus status_of(const RepairState& state) {
 void give_reasons(RepairState& state) {
   RepairResult& result = state.result;
   result.causes = infeasibility_report(state.model, result.series, result.check, state.options);
+  if (state.overlap) result.reasons.push_back(words_of(*state.overlap));
   const size_t count = result.causes.size();
   const size_t named = std::min(count, policy::infeasible::kMostReasons);
   for (size_t i = 0; i < named; ++i) result.reasons.push_back(result.causes[i].text);
@@ -74,6 +77,7 @@ void conclude(RepairState& state) {
   state.result.status = status_of(state);
   if (state.result.status != RepairStatus::repaired && !state.result.partial) give_reasons(state);
   measure_change(state);
+  if (state.options.on_check) state.options.on_check(state.result.check);
 }
 
 void require_knot_spacing(const RepairOptions& options, double dt) {
@@ -88,18 +92,19 @@ RepairResult repair(const RobotModel& model, const CommandSeries& series,
                     const RepairOptions& options, const Progress& progress) {
   require_knot_spacing(options, series.dt);
   RepairState state = repair_state(model, series, options, progress);
-  if (state.result.check.consistent) {
+  if (state.result.check.consistent && !options.generate) {
     state.result.status = RepairStatus::already_consistent;
     return state.result;
   }
   set_up(state);
-  if (locked_out(state.spec, state.result.check))
+  state.overlap = overlapping_feet(model, series, state.result.before);
+  if (state.overlap || locked_out(state.spec, state.result.check))
     state.status = NlpStatus::infeasible;
   else
     solve_rounds(state);
   const bool solved_any = state.result.work.rounds > 0;
   if (solved_any && !state.result.check.consistent && !state.result.partial) solve_relaxed(state);
-  if (solved_any && is_done(state) && !state.flight) tighten(state);
+  if (solved_any && is_done(state) && !state.flight && !options.generate) tighten(state);
   conclude(state);
   return state.result;
 }

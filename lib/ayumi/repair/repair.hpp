@@ -8,6 +8,7 @@
 // repair/nlp/nlp.hpp.
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -24,6 +25,13 @@
 #include "ayumi/repair/weighted_change.hpp"
 
 namespace ayumi {
+
+/// Control points at random: joints and base rotation within +-size [rad], the base within a tenth
+/// of it [m].
+struct RandomStart {
+  double size = 0;  ///< 0: the search starts as usual
+  std::uint64_t seed = 0;
+};
 
 struct RepairOptions {
   CheckOptions check;
@@ -42,7 +50,15 @@ struct RepairOptions {
   /// safe_margin().
   std::optional<double> zmp_margin;
   int max_iterations = repair_policy::rounds::kMostIterations;  ///< of Ipopt in each round
-  bool mumps = false;  ///< linear systems by MUMPS, to compare
+  double most_work = repair_policy::rounds::kMostWork;          ///< for each second of the motion
+  bool mumps = false;        ///< linear systems by MUMPS, to compare
+  RandomStart random_start;  ///< of the first program, to see how little depends on the start
+  /// The series is a plan (sample_plan) and no motion yet: the feet are moved where it has them,
+  /// and the axes of the COG that count stay near it.
+  struct Generation {
+    std::array<bool, 3> cog = {};  ///< x, y, z
+  };
+  std::optional<Generation> generate = {};
   /// Called with the check of the motion as it is given, and of every motion found after that: what
   /// is still wrong with it is what the repair works on. See remaining_errors().
   std::function<void(const ConsistencyReport& check)> on_check = {};
@@ -65,11 +81,12 @@ struct InfeasibilityCause {
   std::string text;        ///< the whole in words
 };
 
-/// Work of the solver, over all rounds. The seconds differ from run to run.
+/// Work of the solver, over all rounds. Only the seconds differ from run to run.
 struct RepairWork {
   int rounds = 0, iterations = 0;
   int variables = 0, constraints = 0;               ///< of the last round
   int jacobian_nonzeros = 0, hessian_nonzeros = 0;  ///< of the last round
+  double amount = 0;                                ///< NlpSolution::work; it is limited
   double function_seconds = 0;                      ///< in functions and derivatives
   double solver_seconds = 0;                        ///< in Ipopt itself
 };

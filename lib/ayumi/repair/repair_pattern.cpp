@@ -27,4 +27,17 @@ RepairResult repair(const RobotModel& model, const Pattern& pattern, const Comma
   return repair(model, sample(model, plain, {.dt = series.dt}, progress), options, progress);
 }
 
+RepairResult generate(const RobotModel& model, const Pattern& pattern, const CommandSeries& plan,
+                      const RepairOptions& options, const Progress& progress) {
+  RepairOptions how = options;
+  how.generate.emplace();
+  for (const Keyframe& key : pattern.keyframes) {
+    how.generate->cog[0] |= key.cog_x.has_value();
+    how.generate->cog[1] |= key.cog_y.has_value();
+    how.generate->cog[2] |= key.cog_height.has_value();
+  }
+  if (pattern.table && !pattern.table->cog.empty()) how.generate->cog = {true, true, true};
+  return repair(model, plan, how, progress);
+}
+
 }  // namespace ayumi

@@ -15,4 +15,9 @@ RepairOptions preferred_options(const Pattern& pattern);
 RepairResult repair(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
                     const RepairOptions& options, const Progress& progress = {});
 
+/// A motion for the plan of a pattern (sample_plan) alone: the same program finds all joints. The
+/// axes of the COG that the pattern has keys of are goals.
+RepairResult generate(const RobotModel& model, const Pattern& pattern, const CommandSeries& plan,
+                      const RepairOptions& options, const Progress& progress = {});
+
 }  // namespace ayumi

@@ -38,6 +38,7 @@ bool has_full_margin(const ConsistencyReport& report) {
 bool is_over(const RepairState& state, const RoundMemory& memory) {
   if (memory.round >= policy::rounds::kMost || memory.unsolved >= policy::rounds::kMostUnsolved)
     return true;
+  if (memory.round > 0 && work_left(state, policy::rounds::kWorkForReasons) <= 0) return true;
   if (memory.round > 0) return is_done(state);
   return state.result.check.consistent && has_full_margin(state.result.check);
 }
@@ -48,7 +49,9 @@ void choose_windows(RepairState& state, RoundMemory& memory) {
   for (const Finding& f : now)
     if (f.severity == Severity::error && memory.round > 0)
       state.spec.extra_times.insert(state.spec.extra_times.end(), {f.begin, f.at, f.end});
-  state.spec.windows = windows_around(memory.findings, memory.pad);
+  state.spec.windows = state.options.generate
+                           ? std::vector<TimeWindow>{{0, state.series.duration()}}
+                           : windows_around(memory.findings, memory.pad);
   add_near_pairs(state.model, state.result.series, state.collisions, state.spec.near_pairs);
 }
 

@@ -160,6 +160,7 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   spec.kept_times = kept_times(options.locked_windows, series);
   spec.weights = weight_factors(model, options.joint_weights);
   spec.trust = options.trust;
+  spec.threads = options.check.threads;
   spec.tolerance = tolerances(options.check, model, series);
   spec.profile = options.check.profile;
   spec.friction = options.check.friction;
@@ -169,6 +170,11 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   spec.zmp_margin = std::min(spec.safe_margin, least + policy::kFirstBackoff.zmp);
   spec.swing_goals = options.safety > 0;
   if (!spec.swing_goals) spec.safe_margin = spec.zmp_margin;
+  if (options.generate) {
+    spec.planned_feet = true;
+    spec.planned_cog = options.generate->cog;
+    spec.swing_goals = false;  // the plan says how high and where
+  }
   return spec;
 }
 

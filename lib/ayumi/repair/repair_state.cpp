@@ -47,6 +47,11 @@ bool is_done(const RepairState& state) {
   return state.result.check.consistent && state.result.constraint_violation <= policy::rounds::kMet;
 }
 
+double work_left(const RepairState& state, double kept_back) {
+  const double most = state.options.most_work * state.series.duration();
+  return (1 - kept_back) * most - state.result.work.amount;
+}
+
 NlpOptions nlp_options(RepairState& state, bool warm) {
   NlpOptions options;
   options.max_iterations = state.options.max_iterations;
@@ -63,6 +68,7 @@ void note_work(RepairState& state, const Nlp& nlp, const NlpSolution& solution) 
   RepairWork& work = result.work;
   ++work.rounds;
   work.iterations += solution.iterations;
+  work.amount += solution.work;
   work.variables = static_cast<int>(nlp.start.size());
   work.constraints = static_cast<int>(nlp.constraint_lower.size());
   work.jacobian_nonzeros = nlp.jacobian.size();
@@ -85,26 +91,90 @@ bool is_next_start(const RepairState& state, double violation) {
          state.result.check.summary[FindingKind::self_collision] > 0;
 }
 
+// Calls use(key, row) for every row of the program.
+template <class Use>
+void for_rows(const CorrectionProblem& problem, const Use& use) {
+  for (const RowBlock& block : problem.blocks())
+    for (int line = 0; line < block.rows(); ++line)
+      use(std::tuple(problem.points()[static_cast<size_t>(block.point)].sample, block.kind,
+                     block.item, line),
+          block.row + line);
+}
+
+void keep_multipliers(RepairState& state, const VectorXd& multipliers) {
+  state.multipliers.clear();
+  for_rows(*state.problem, [&](const auto& key, int row) {
+    if (multipliers[row] != 0) state.multipliers[key] = multipliers[row];
+  });
+}
+
+VectorXd kept_multipliers(const RepairState& state) {
+  VectorXd multipliers = VectorXd::Zero(state.problem->constraint_count());
+  for_rows(*state.problem, [&](const auto& key, int row) {
+    if (const auto found = state.multipliers.find(key); found != state.multipliers.end())
+      multipliers[row] = found->second;
+  });
+  return multipliers;
+}
+
+// The start of a program: a warm one is near its solution, and known where multipliers of the last
+// program go with it.
+struct Start {
+  bool warm = false, known = false;
+};
+
+Start start_of(const RepairState& state, const Nlp& hard) {
+  if (state.spec.initial.size() == 0) return {};
+  const bool known = !state.multipliers.empty();
+  const double near = known ? policy::rounds::kNearKnown : policy::rounds::kNearlyMet;
+  const bool warm = violation_at_start(hard) < near;
+  return {warm, warm && known};
+}
+
+// Solves the program from hard.start, with its soft goals relaxed, and keeps its multipliers.
+NlpSolution solve_relaxing_goals(RepairState& state, Nlp& hard, const std::string& stage,
+                                 double tolerance) {
+  const Start start = start_of(state, hard);
+  NlpOptions options = nlp_options(state, start.warm);
+  if (start.known) {
+    options.start_barrier = state.barrier;
+    hard.start_multipliers = kept_multipliers(state);
+  }
+  options.most_work = work_left(state, policy::rounds::kWorkForReasons);
+  if (!state.flight) options.tolerance = tolerance;
+  if (!state.flight && state.result.work.rounds == 0)
+    options.max_iterations = std::min(options.max_iterations, policy::rounds::kBeforeFinerKnots);
+  const Slacks slacks = soft_goal_slacks(*state.problem, state.series.dt, state.options.safety,
+                                         options.start_barrier);
+  const Nlp nlp = slacks.price.size() > 0 ? relaxed(hard, slacks) : hard;
+  const NlpSolution solution = solve(nlp, options, state.progress, stage);
+  note_work(state, nlp, solution);
+  if (solution.multipliers.size() > 0)
+    keep_multipliers(state, unrelaxed_multipliers(hard, slacks, solution.multipliers));
+  state.barrier =
+      std::clamp(tolerance, policy::solver::kKnownBarrier, policy::solver::kWarmBarrier);
+  return solution;
+}
+
 }  // namespace
 
 void solve_program(RepairState& state, const std::string& stage, double tolerance) {
   CorrectionSpec& spec = state.spec;
-  const bool first = state.result.work.rounds == 0, guessed = spec.initial.size() > 0;
+  const bool first = state.result.work.rounds == 0;
   if (!first) spec.seen.push_back(&state.earlier.emplace_back(state.result.series));
   const CorrectionProblem& problem = state.problem.emplace(state.model, state.series, spec);
   Nlp hard = problem.nlp();
-  if (!guessed)
-    hard.start =
-        initial_guess(problem, hard, state.model, state.series, state.result.before.findings);
-  const bool warm = guessed && violation_at_start(hard) < policy::rounds::kNearlyMet;
-  NlpOptions options = nlp_options(state, warm);
-  const Nlp nlp =
-      with_soft_goals(problem, hard, state.series.dt, state.options.safety, options.start_barrier);
-  if (!state.flight) options.tolerance = tolerance;
-  if (!state.flight && first)
-    options.max_iterations = std::min(options.max_iterations, policy::rounds::kBeforeFinerKnots);
-  const NlpSolution solution = solve(nlp, options, state.progress, stage);
-  note_work(state, nlp, solution);
+  const VectorXd usual =
+      spec.initial.size() > 0 || state.options.generate
+          ? hard.start
+          : initial_guess(problem, hard, state.model, state.series, state.result.before.findings);
+  const bool at_random = first && state.options.random_start.size > 0;
+  hard.start = at_random ? random_start(problem, state.options.random_start) : usual;
+  NlpSolution solution = solve_relaxing_goals(state, hard, stage, tolerance);
+  if (at_random && solution.status != NlpStatus::solved) {  // a start that leads nowhere is dropped
+    hard.start = usual;
+    solution = solve_relaxing_goals(state, hard, stage, tolerance);
+  }
   state.status = solution.status;
   state.objective = solution.objective;
   take(state, problem.track(solution.x.head(problem.variable_count())));

@@ -4,13 +4,16 @@
 // infeasibility_report.
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "ayumi/repair/correction_problem.hpp"
+#include "ayumi/repair/overlapping_feet.hpp"
 #include "ayumi/repair/repair.hpp"
 
 namespace ayumi {
@@ -30,8 +33,13 @@ struct RepairState {
   std::optional<CorrectionProblem> problem = {};  ///< of the last program
   NlpStatus status = NlpStatus::failed;           ///< of the last program
   double objective = 0;                           ///< of the last program
+  double barrier = 0;                             ///< with which the last program ended, about
   std::deque<CommandSeries> earlier = {};         ///< results of earlier rounds, named by `spec`
   Eigen::VectorXd least_violating = {};           ///< of the last program
+
+  /// Of the rows of the last program that are not 0, by sample, kind, item and line: the next
+  /// program has most of these rows again.
+  std::map<std::tuple<int, const RowKind*, int, int>, double> multipliers = {};
 
   // The result so far.
   CorrectionTrack track = {};  ///< of the result, every control point
@@ -39,6 +47,7 @@ struct RepairState {
   RepairResult as_given = {};                   ///< the motion itself, with its own COG and ZMP
   std::optional<CorrectionTrack> passing = {};  ///< an earlier result that passes the check
   bool relaxation_cut_short = false;            ///< by its limit of iterations
+  std::optional<OverlappingFeet> overlap = {};  ///< planned, so that nothing can be solved
 };
 
 /// The state before the first round, with the check of the motion as it is given.
@@ -61,6 +70,9 @@ void solve_program(RepairState& state, const std::string& stage, double toleranc
 
 /// Solver options, with those of a warm start from a point that violates little.
 NlpOptions nlp_options(RepairState& state, bool warm);
+
+/// The work that may still be done, with a share of the whole kept back; below 0: it is used up.
+double work_left(const RepairState& state, double kept_back);
 
 /// Adds the work of one solution to the result.
 void note_work(RepairState& state, const Nlp& nlp, const NlpSolution& solution);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ayumi/motion/differentiate.hpp"
 
@@ -63,20 +64,31 @@ struct PassingResult {
 };
 
 // Takes the result itself, or the first motion between it and the passing one that passes, at most
-// a share of the way back. False where there is none; the result is then unchanged.
+// a share of the way back. False where there is none; the result is then unchanged. Where the
+// farthest of these motions does not pass, the others are not tried: they are less far back.
 bool take_first_passing(RepairState& state, const PassingResult& passing, double most_back) {
-  const CorrectionTrack wanted = state.track;
   auto passes = [&] {
     return state.result.check.consistent && (!passing.as_table || table_passes(state));
   };
   if (passes()) return true;
-  for (double share = policy::tighten::kFirstBack; share <= most_back;
+  const CorrectionTrack wanted = state.track;
+  RepairResult result = state.result;
+  take(state, between(wanted, passing.track, most_back));
+  if (!passes()) {
+    state.result = std::move(result);
+    state.track = wanted;
+    return false;
+  }
+  const CorrectionTrack farthest = state.track;
+  result = state.result;
+  for (double share = policy::tighten::kFirstBack; share < most_back;
        share *= policy::tighten::kBackFactor) {
     take(state, between(wanted, passing.track, share));
     if (passes()) return true;
   }
-  take(state, wanted);
-  return false;
+  state.result = std::move(result);
+  state.track = farthest;
+  return true;
 }
 
 void set_limits_of_the_check(RepairState& state) {
@@ -92,6 +104,10 @@ void solve_at_the_limits(RepairState& state, const PassingResult& passing) {
       std::clamp(policy::tighten::kTolerance * state.objective, policy::tighten::kLeastTolerance,
                  policy::tighten::kMostTolerance);
   for (int round = 0; round < policy::tighten::kMostRounds; ++round) {
+    if (work_left(state, policy::rounds::kWorkForReasons) <= 0) {
+      state.status = NlpStatus::iteration_limit;
+      return;
+    }
     solve_program(state, "repair, least change", tolerance);
     if (state.status != NlpStatus::solved || state.result.check.consistent) return;
     const bool last = round + 1 == policy::tighten::kMostRounds;

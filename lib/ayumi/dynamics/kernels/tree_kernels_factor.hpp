@@ -66,32 +66,63 @@ inline void store_across(const Tile& tile, double* out, int stride) {
   store_four(out + 3 * stride, __builtin_shufflevector(b, d, 2, 3, 6, 7));
 }
 
+// One tile of a product, and two of them below each other, whose sums do not wait for each other.
+inline void tile_of(const double* x, int a, const double* y, int b, int depth, Tile& sum) {
+  for (int t = 0; t < depth; ++t, x += a, y += b) {
+    const Four v = load_four(x);
+    sum.c0 += v * y[0];
+    sum.c1 += v * y[1];
+    sum.c2 += v * y[2];
+    sum.c3 += v * y[3];
+  }
+}
+inline void tiles_of(const double* x, int a, const double* y, int b, int depth, Tile& sum,
+                     Tile& below) {
+  for (int t = 0; t < depth; ++t, x += a, y += b) {
+    const Four v = load_four(x), w = load_four(x + 4);
+    sum.c0 += v * y[0];
+    below.c0 += w * y[0];
+    sum.c1 += v * y[1];
+    below.c1 += w * y[1];
+    sum.c2 += v * y[2];
+    below.c2 += w * y[2];
+    sum.c3 += v * y[3];
+    below.c3 += w * y[3];
+  }
+}
+
+inline void store_tile(const Tile& sum, double* to, int stride) {
+  store_four(to, sum.c0);
+  store_four(to + stride, sum.c1);
+  store_four(to + 2 * stride, sum.c2);
+  store_four(to + 3 * stride, sum.c3);
+}
+
 // out(i, j) = sum over t of A(t, i) B(t, j) for i < rows, j < columns; A and B have `depth` lines
 // of a and b numbers (multiples of four), the columns of `out` are `stride` apart.
 void gram(const double* A, int a, const double* B, int b, int depth, int rows, int columns,
           double* out, int stride) {
   // With itself and filled up to fours, half of the product is enough.
   const bool half = A == B && rows == columns && (rows & 3) == 0;
+  constexpr bool kTwo = sizeof(Wide) == sizeof(Four);  // else there are too few registers
   for (int j = 0; j < columns; j += 4)
     for (int i = half ? j : 0; i < rows; i += 4) {
-      Tile sum = {};
-      const double *x = A + i, *y = B + j;
-      for (int t = 0; t < depth; ++t, x += a, y += b) {
-        const Four v = load_four(x);
-        sum.c0 += v * y[0];
-        sum.c1 += v * y[1];
-        sum.c2 += v * y[2];
-        sum.c3 += v * y[3];
-      }
       double* to = out + j * stride + i;
+      Tile sum = {};
+      if (kTwo && !half && i + 8 <= rows && j + 4 <= columns) {
+        Tile below = {};
+        tiles_of(A + i, a, B + j, b, depth, sum, below);
+        store_tile(sum, to, stride);
+        store_tile(below, to + 4, stride);
+        i += 4;
+        continue;
+      }
+      tile_of(A + i, a, B + j, b, depth, sum);
       if (i + 4 > rows || j + 4 > columns) {
         store_part(sum, rows - i, columns - j, to, stride);
         continue;
       }
-      store_four(to, sum.c0);
-      store_four(to + stride, sum.c1);
-      store_four(to + 2 * stride, sum.c2);
-      store_four(to + 3 * stride, sum.c3);
+      store_tile(sum, to, stride);
       if (half && i > j) store_across(sum, out + i * stride + j, stride);
     }
 }

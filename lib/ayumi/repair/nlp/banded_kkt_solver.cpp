@@ -17,6 +17,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <map>
 #include <mutex>
 #include <numeric>
@@ -36,6 +37,9 @@ using Eigen::VectorXd;
 // band.
 constexpr int kSlack = -1;  // has a single neighbour
 constexpr int kRow = -2;    // has slacks and places for neighbours
+
+// Of the solve that runs on this thread. Definition.
+thread_local const kernels::Kernels* kernels_in_use = &kernels::best_kernels();
 
 struct Nonzeros {
   int count;
@@ -248,40 +252,141 @@ void eliminate_slacks(const Factors& f) {
   for (int p = f.band.places; p < f.band.columns(); ++p) f.at(p, p) = 1;
 }
 
+// Lines of numbers for the kernels, each filled up to fours with zeros.
+struct Lines {
+  std::vector<double> numbers;
+  int length = 0;
+
+  void resize(int count, int entries) {
+    length = (entries + 3) / 4 * 4;
+    numbers.assign(static_cast<size_t>(count) * length, 0.0);
+  }
+  double* line(int i) { return numbers.data() + static_cast<Index>(i) * length; }
+};
+
+// Columns of a symmetric product that are made at once. Chosen: they fit the first cache.
+constexpr int kTogether = 8;
+
+// Calls use(j, column) for the columns j of the symmetric product of lines A and B; column[i - j]
+// is its entry (i, j), i >= j.
+template <class Use>
+void for_product(const kernels::Kernels& kernels, Lines& A, Lines& B, int depth, int size,
+                 std::vector<double>& scratch, const Use& use) {
+  scratch.resize(static_cast<size_t>(kTogether) * A.length);
+  for (int j = 0; j < size; j += kTogether) {
+    const int columns = std::min(kTogether, size - j);
+    kernels.gram(A.line(0) + j, A.length, B.line(0) + j, B.length, depth, size - j, columns,
+                 scratch.data(), A.length);
+    for (int k = 0; k < columns; ++k) use(j + k, scratch.data() + k * (A.length + 1));
+  }
+}
+
+// Places that follow one another.
+struct Run {
+  int first, end;  // of the group's places
+};
+
+// Fills the runs of places; false where a place is there twice.
+bool find_runs(const Group& g, std::vector<Run>& runs) {
+  runs.clear();
+  bool once = true;
+  for (int p = 0; p < g.places; ++p) {
+    if (p > 0 && g.place[p] == g.place[p - 1] + 1) {
+      ++runs.back().end;
+      continue;
+    }
+    once = once && (p == 0 || g.place[p] != g.place[p - 1]);
+    runs.push_back({p, p + 1});
+  }
+  return once;
+}
+
 // Adds  -v v' / pivot  of every row.
 void eliminate_rows(const Factors& f) {
-  MatrixXd scaled, sum;
+  const kernels::Kernels& kernels = *kernels_in_use;
+  Lines lines, scaled;
+  std::vector<double> scratch;
+  std::vector<Run> runs;
   f.for_groups([&](const Group& g) {
     for (int k = 0; k < g.rows * g.places; ++k) g.values[k] = f.values[g.nonzero[k]];
-    const Map<MatrixXd> v = g.matrix();
-    scaled = v;
-    for (int r = 0; r < g.rows; ++r) scaled.row(r) /= -f.pivot[g.row[r]];
-    sum.resize(g.places, g.places);
-    if (g.places < 8)
-      sum.noalias() = scaled.transpose().lazyProduct(v);
-    else
-      sum.triangularView<Eigen::Lower>() = scaled.transpose() * v;
-    for (int j = 0; j < g.places; ++j) {
-      double* column = &f.at(0, g.place[j]);
-      column[g.place[j]] += sum(j, j);
-      for (int i = j + 1; i < g.places; ++i)  // a nonzero in parts meets itself twice
-        column[g.place[i]] += g.place[i] == g.place[j] ? 2 * sum(i, j) : sum(i, j);
+    lines.resize(g.rows, g.places);
+    scaled.resize(g.rows, g.places);
+    for (int r = 0; r < g.rows; ++r) {
+      const double factor = -1 / f.pivot[g.row[r]];
+      double *line = lines.line(r), *other = scaled.line(r);
+      for (int p = 0; p < g.places; ++p) {
+        line[p] = g.values[r + static_cast<Index>(p) * g.rows];
+        other[p] = factor * line[p];
+      }
     }
+    const bool once = find_runs(g, runs);
+    const auto add = [&](int j, const double* sum) {
+      double* column = &f.at(0, g.place[j]);
+      if (!once) {
+        column[g.place[j]] += sum[0];
+        for (int i = j + 1; i < g.places; ++i)  // a nonzero in parts meets itself twice
+          column[g.place[i]] += g.place[i] == g.place[j] ? 2 * sum[i - j] : sum[i - j];
+        return;
+      }
+      for (const Run& run : runs) {
+        const int first = std::max(run.first, j);
+        if (first >= run.end) continue;
+        double* to = column + g.place[first];
+        const double* from = sum + (first - j);
+        for (int i = 0; i < run.end - first; ++i) to[i] += from[i];
+      }
+    };
+    for_product(kernels, lines, scaled, g.rows, g.places, scratch, add);
   });
 }
 
+// The factor of a panel's own block as a path whose rows are those of the block from the last to
+// the first: the kernel then solves forwards.
+struct PanelPath {
+  static constexpr int kPanel = Band::kPanel;
+  std::array<int, kPanel> parent, depth, offset;
+  std::array<double, kPanel * kPanel> rows;
+  std::array<double, kPanel> inverse;
+
+  explicit PanelPath(const Block& own) {
+    for (int k = 0; k < kPanel; ++k) {
+      parent[k] = k - 1;
+      depth[k] = k;
+      offset[k] = k * kPanel;
+      const int t = kPanel - 1 - k;
+      inverse[k] = 1 / own(t, t);
+      for (int s = 0; s < k; ++s) rows[k * kPanel + s] = own(kPanel - 1 - s, t);
+    }
+  }
+
+  void solve(const kernels::Kernels& kernels, Lines& lines) const {
+    kernels.solve_path({kPanel, parent.data(), depth.data(), offset.data()}, rows.data(),
+                       inverse.data(), kPanel - 1, lines.length, lines.line(0));
+  }
+};
+
 bool factor_band(const Factors& f) {
+  const kernels::Kernels& kernels = *kernels_in_use;
   const int count = f.band.columns(), panel = Band::kPanel;
+  Lines below;
+  std::vector<double> scratch;
   for (int j = 0; j < count; j += panel) {
     Block own = f.block(j, j, panel, panel);
     Eigen::Ref<MatrixXd, 0, Eigen::OuterStride<>> in_place = own;
     if (Eigen::LLT<decltype(in_place)>(in_place).info() != Eigen::Success) return false;
     const int after = j + panel, rows = std::min(f.band.width, count - after);
     if (rows <= 0) continue;
-    Block below = f.block(after, j, rows, panel);
-    own.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
-    Block rest = f.block(after, after, rows, rows);
-    rest.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+    below.resize(panel, rows);
+    for (int t = 0; t < panel; ++t)
+      std::copy_n(&f.at(after, j + t), rows, below.line(panel - 1 - t));
+    PanelPath(own).solve(kernels, below);
+    for (int t = 0; t < panel; ++t)
+      std::copy_n(below.line(panel - 1 - t), rows, &f.at(after, j + t));
+    const auto subtract = [&](int k, const double* sum) {
+      double* column = &f.at(after + k, after + k);
+      for (int i = 0; i < rows - k; ++i) column[i] -= sum[i];
+    };
+    for_product(kernels, below, below, panel, rows, scratch, subtract);
   }
   return true;
 }
@@ -477,14 +582,16 @@ void leave_place() {
 
 }  // namespace
 
-BandedKktScope::BandedKktScope(bool wanted)
-    : outer_(serves_this_thread), active_(wanted && hold_place()) {
+BandedKktScope::BandedKktScope(bool wanted, const kernels::Kernels& kernels)
+    : outer_(serves_this_thread), outer_kernels_(kernels_in_use), active_(wanted && hold_place()) {
   serves_this_thread = active_;
+  kernels_in_use = &kernels;
 }
 
 BandedKktScope::~BandedKktScope() {
   if (active_) leave_place();
   serves_this_thread = outer_;
+  kernels_in_use = outer_kernels_;
 }
 
 BandedKktPause::BandedKktPause() : outer_(serves_this_thread) { serves_this_thread = false; }

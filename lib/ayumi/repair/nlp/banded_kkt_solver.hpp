@@ -16,13 +16,16 @@
 // thread or from within a callback, is passed on to the HSL library. A place that the host program
 // has filled (with an HSL library that is loaded, or with LSL_setMA27) is left alone.
 
+#include "ayumi/dynamics/kernels/tree_kernels.hpp"
+
 namespace ayumi {
 
 /// While it lives, Ipopt's linear solver "ma27" is this solver on the thread that made it.
 /// Thread-safe; scopes of one thread may be nested.
 class BandedKktScope {
  public:
-  explicit BandedKktScope(bool wanted);  ///< `wanted` false: the scope does nothing
+  /// `wanted` false: the scope does nothing. All kernels give the same bits.
+  BandedKktScope(bool wanted, const kernels::Kernels& kernels);
   ~BandedKktScope();
   BandedKktScope(const BandedKktScope&) = delete;
   BandedKktScope& operator=(const BandedKktScope&) = delete;
@@ -31,7 +34,9 @@ class BandedKktScope {
   bool active() const { return active_; }
 
  private:
-  bool outer_, active_;
+  bool outer_;
+  const kernels::Kernels* outer_kernels_;
+  bool active_;
 };
 
 /// While it lives, the thread that made it is not served: for callbacks, which may run other

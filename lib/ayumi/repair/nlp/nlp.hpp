@@ -32,6 +32,9 @@ struct SparsePattern {
 struct Nlp {
   Eigen::VectorXd start, lower, upper;  ///< of the variables
   Eigen::VectorXd constraint_lower, constraint_upper;
+  /// Multipliers of the constraints near the solution, where they are known; else empty. Those of
+  /// the bounds of variables follow from the gradient.
+  Eigen::VectorXd start_multipliers;
   SparsePattern jacobian, hessian;
 
   std::function<double(const Eigen::VectorXd& x)> objective;
@@ -57,7 +60,10 @@ struct NlpOptions {
   double start_barrier = repair_policy::solver::kStartBarrier;
   double start_push = repair_policy::solver::kStartPush;
   double constraint_tolerance = repair_policy::solver::kConstraintTolerance;  ///< of g, unscaled
-  bool mumps = false;  ///< for the linear systems of any program
+  bool mumps = false;          ///< for the linear systems of any program
+  bool plain_kernels = false;  ///< linear systems without the widest vectors; the same bits
+  /// The solution ends with the status iteration_limit when its work reaches this.
+  double most_work = kNoBound;
   /// Where not null: updated with the point of least violation seen, for work that is stopped.
   Eigen::VectorXd* least_violating = nullptr;
 };
@@ -67,9 +73,13 @@ enum class NlpStatus { solved, infeasible, iteration_limit, failed };
 struct NlpSolution {
   NlpStatus status = NlpStatus::failed;
   Eigen::VectorXd x;
+  Eigen::VectorXd multipliers;  ///< of the constraints
   int iterations = 0;
   double objective = 0;
-  double violation = 0;         ///< largest violation of a constraint or bound
+  double violation = 0;  ///< largest violation of a constraint or bound
+  /// Evaluations and iterations, each times the nonzeros of the program and what it takes for each
+  /// of them: the same for the same program, on every machine and for any number of threads.
+  double work = 0;
   double function_seconds = 0;  ///< processor time in the functions of the program
   double solver_seconds = 0;    ///< processor time in Ipopt itself
 };
