@@ -299,16 +299,15 @@ TEST(BadStarts, EndAtTheSameMotion) {
   }
 }
 
-// A repair that would take more than its work ends with reasons, whatever the machine does.
+// A repair whose work is used up ends with the motion that passed so far, on every machine.
 TEST(Repair, EndsWithinItsWork) {
   const CommandSeries series = zmp_outside();
   const RepairResult whole = repair(limited_biped(), series);
   RepairOptions options;
   options.most_work = 0.2 * whole.work.amount / series.duration();
   const RepairResult r = repair(limited_biped(), series, options);
-  EXPECT_EQ(r.status, RepairStatus::not_converged);
+  EXPECT_EQ(r.status, RepairStatus::repaired);
   EXPECT_LT(r.work.amount, 0.4 * whole.work.amount);  // the iteration that reaches it is finished
-  EXPECT_FALSE(r.reasons.empty());
 }
 
 TEST(Repair, SameBytesForAnyNumberOfThreads) {
