@@ -31,7 +31,7 @@ constexpr size_t kShownMissing = 10;
 /// five panels of five cells are as wide as a screen.
 constexpr size_t kMostColumns = 5;
 /// Largest number of runs of a cell, in units of those without a failure. Chosen: a robot that
-/// fails with a fifth of the permitted probability of 10 % is then certified with a probability of
+/// fails with a fifth of the permitted probability of 15 % is then certified with a probability of
 /// about 90 %, and a cell that fails costs at most so much.
 constexpr long kMostRuns = 4;
 
@@ -357,7 +357,7 @@ void add_gaits(CLI::App& app, Context& context) {
       ->type_name("NAME");
   command->add_option("--controller", gaits.controller, "Controller (default: dtad).")
       ->type_name("NAME");
-  gaits.study.failure = 0.1;
+  gaits.study.failure = 0.15;
   command->add_option("--failure", gaits.study.failure, "Failure probability to be shown.")
       ->check(number_within(1e-6, 0.5).description(""))
       ->type_name("P")

@@ -10,7 +10,7 @@ namespace ayumi {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using StudyJson = nlohmann::ordered_json;
 
 // Chosen: the ranges of robots/hoap1/uncertainty.json that are not measured there. Half or twice of
 // a range changes what a certificate says of the robot; so every one is printed as assumed.
@@ -25,8 +25,9 @@ double tidy(double value) { return 1e-4 * std::round(1e4 * value); }
 }  // namespace
 
 std::string assumed_study_text(const RobotModel& robot) {
-  Json quantities = Json::array();
-  const auto add = [&](Json quantity, const char* distribution, Json values, const char* why) {
+  StudyJson quantities = StudyJson::array();
+  const auto add = [&](StudyJson quantity, const char* distribution, StudyJson values,
+                       const char* why) {
     quantity[distribution] = std::move(values);
     quantity["source"] = std::string("assumed: ") + why;
     quantities.push_back(std::move(quantity));
@@ -66,13 +67,13 @@ std::string assumed_study_text(const RobotModel& robot) {
         "beside the bias of the model");
   add({{"what", "sensor_latency"}}, "uniform", {0, tidy(sensors.latency + kMoreLatency)},
       "none to 2 ms more than the model has");
-  const Json factor = {{"name", "mass of the robot"},
-                       {"source", "assumed: all parts are weighed on the same scales"}};
-  const Json study = {
+  const StudyJson factor = {{"name", "mass of the robot"},
+                            {"source", "assumed: all parts are weighed on the same scales"}};
+  const StudyJson study = {
       {"format", "ayumi.study/1"},
       {"name", robot.name() + ", assumed"},
       {"units", {{"angle", "deg"}}},
-      {"uncertainty", {{"factors", Json::array({factor})}, {"quantities", quantities}}}};
+      {"uncertainty", {{"factors", StudyJson::array({factor})}, {"quantities", quantities}}}};
   return study.dump(1) + "\n";
 }
 
