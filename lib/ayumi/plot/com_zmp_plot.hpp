@@ -9,6 +9,7 @@
 
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/plot/drawing.hpp"
+#include "ayumi/render/frames.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
@@ -24,6 +25,7 @@ struct LociOptions {
   const RobotModel* model = nullptr;       ///< of the runs; with it a panel of the ZMP margin
   std::vector<int> joints = {};            ///< dofs with a panel of their angle; needs the model
   std::vector<int> speeds = {};            ///< dofs with a panel of their speed; needs the model
+  Frame frame = Frame::world;              ///< of places, where the robot is known
   std::string profile = {};                ///< whose speed limits are drawn; empty: the default
   bool command = true, reference = true;   ///< what is commanded; the reference ZMP
   /// Leave out panels in which the runs differ by less than can be seen, and name them below.
