@@ -10,6 +10,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "run_robot.hpp"
 
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 
 struct PlotOptions {
   std::vector<std::string> inputs;
-  std::string output, robot;
+  std::string output, robot, frame = "world";
   std::vector<std::string> logs;
   LociOptions loci;
   bool top = false;
@@ -83,8 +84,10 @@ std::optional<RobotModel> robot_at_hand(const LabelledLog& entry, const PlotOpti
   return robot_of_log(context, options.robot, entry.log, entry.label);
 }
 
-void plot(const PlotOptions& options, Context& context) {
-  refuse_overwriting(context, options.output);
+void plot(const PlotOptions& asked, Context& context) {
+  refuse_overwriting(context, asked.output);
+  PlotOptions options = asked;
+  options.loci.frame = frame_of(options.frame);
   const std::vector<LabelledLog> logs = logs_of(options);
   std::vector<LociRun> runs;
   for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});
@@ -93,11 +96,14 @@ void plot(const PlotOptions& options, Context& context) {
   if (options.top) {
     write_support_plot(robot_of_log(context, options.robot, logs.back().log, logs.back().label),
                        runs, options.output, options.loci);
-    series = {"COG x, y [m]", "ZMP x, y [m]", "footholds [m]"};
+    series = {"COG x, y [mm]", "ZMP x, y [mm]", "footholds [mm]"};
   } else {
     const std::optional<RobotModel> model = robot_at_hand(logs.back(), options, context);
     LociOptions loci = options.loci;
     if (model) loci.model = &*model;
+    if (!model && loci.frame == Frame::foot)
+      fail(ErrorCode::usage,
+           "--frame foot: the robot of the run is not known; name it with --robot");
     write_loci(runs, options.output, loci);
     series = loci_series(loci);
   }
@@ -128,6 +134,11 @@ void add_plot(CLI::App& app, Context& context) {
   command->add_option("--to", options->loci.end, "Last time [s] (default: the end).");
   command->add_option("--title", options->loci.title, "Heading of the picture.");
   command->add_option("--width", options->loci.width, "Width in pixels.")->capture_default_str();
+  command
+      ->add_option("--frame", options->frame,
+                   "Frame of places: world, or foot (the middle of the supporting sole).")
+      ->check(one_of(frame_names()).description(""))
+      ->capture_default_str();
   command->add_option("--robot", options->robot,
                       "Robot to use in place of the one that the run names.");
   command->footer(

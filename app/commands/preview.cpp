@@ -11,6 +11,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/render/frames.hpp"
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/render/log_reading.hpp"
 #include "ayumi/render/snapshots.hpp"
@@ -27,7 +28,8 @@ namespace fs = std::filesystem;
 
 struct PreviewOptions {
   std::vector<std::string> inputs;
-  std::string output, log, robot, ghost, sheet, size = "1280x720", camera = "follow";
+  std::string output, log, robot, ghost, sheet, size, camera = "follow";
+  std::string frame = "world";
   std::string format = "mp4";
   std::vector<std::string> hide, show;
   ClipOptions clip;
@@ -45,6 +47,7 @@ constexpr std::pair<const char*, bool OverlayOptions::*> kMarks[] = {
     {"push", &OverlayOptions::push},
     {"trails", &OverlayOptions::trails},
     {"heat", &OverlayOptions::heat},
+    {"scale", &OverlayOptions::scale},
     {"caption", &OverlayOptions::caption}};
 
 void switch_marks(const std::string& option, const std::vector<std::string>& names, bool on,
@@ -84,7 +87,11 @@ int thread_count(const Context& context) {
 
 void settle(PreviewOptions& options, const Context& context) {
   ClipOptions& clip = options.clip;
-  parse_size(options.size, clip.picture);
+  // A snapshot is as upright as a robot.
+  parse_size(!options.size.empty() ? options.size
+             : options.strip > 0   ? "320x480"
+                                   : "1280x720",
+             clip.picture);
   switch_marks("--hide", options.hide, false, clip.overlay);
   switch_marks("--show", options.show, true, clip.overlay);
   clip.camera.mode = camera_mode(options.camera);
@@ -127,8 +134,11 @@ ClipSummary write_glb(const RobotModel& model, const SimulationLog& log, const f
 /// One run to one file. `clip` as settled, but for its number of threads.
 ClipSummary draw_run(const PreviewOptions& options, const std::string& input, const fs::path& path,
                      int threads, const Context& context, const Progress& progress) {
-  const SimulationLog log = log_of(context, input, options.log);
+  const Frame frame = frame_of(options.frame);
+  SimulationLog log = log_of(context, input, options.log);
   const RobotModel model = robot_of_log(context, options.robot, log, input, {.meshes = true});
+  require_level_ground(log, frame);
+  log = in_frame(model, std::move(log), frame);
   PreviewOptions own = options;
   own.clip.threads = threads;
   own.clip.overwrite = context.force;
@@ -147,6 +157,7 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
     own.clip.ghost.name =
         elsewhere ? fs::path(options.ghost).lexically_normal().stem().string() : options.ghost;
   }
+  if (ghost && ghost->joints == log.joints) ghost = in_frame(model, std::move(*ghost), frame);
   if (ghost) own.clip.ghost.log = &*ghost;
   if (path.extension() == ".glb")
     return write_glb(model, log, path, own, ghost ? &*ghost : nullptr);
@@ -192,8 +203,9 @@ void preview_one(const PreviewOptions& options, Context& context) {
 
 /// A tile of the contact sheet: the instant worth showing, named after its run.
 Image sheet_tile(const PreviewOptions& options, const std::string& input, const Context& context) {
-  const SimulationLog log = log_of(context, input, options.log);
+  SimulationLog log = log_of(context, input, options.log);
   const RobotModel model = robot_of_log(context, options.robot, log, input, {.meshes = true});
+  log = in_frame(model, std::move(log), frame_of(options.frame));
   ClipOptions clip = options.clip;
   clip.picture.width = 480;
   clip.picture.height = 270;
@@ -229,8 +241,9 @@ void preview(PreviewOptions options, Context& context) {
 
 void add_picture_options(CLI::App& command, PreviewOptions& options) {
   ClipOptions& clip = options.clip;
-  command.add_option("--size", options.size, "Size in pixels.")
-      ->capture_default_str()
+  command
+      .add_option("--size", options.size,
+                  "Size in pixels, of --strip that of one snapshot (default: 1280x720; 320x480).")
       ->type_name("WxH");
   command.add_option("--fps", clip.fps, "Frames per second.")->capture_default_str();
   command.add_option("--speed", clip.speed, "Playing speed; 0.25 is four times slower.")
@@ -252,6 +265,11 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
   command.add_option("--camera", options.camera, "Camera: follow, fixed or orbit.")
       ->check(one_of({"follow", "fixed", "orbit"}).description(""))
       ->capture_default_str();
+  command
+      .add_option("--frame", options.frame,
+                  "Frame of the picture: world, or foot (the supporting foot stands still).")
+      ->check(one_of(frame_names()).description(""))
+      ->capture_default_str();
   command.add_option("--zoom", clip.camera.zoom, "Magnification; 2 is twice as large.")
       ->capture_default_str();
   command
@@ -262,8 +280,9 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
   for (const auto& [name, list, what] :
        {std::tuple{"--hide", &options.hide,
                    "Leave marks out: cog, zmp, ref-zmp, support, "
-                   "forces, push, trails, heat, caption or all."},
-        {"--show", &options.show, "Draw marks; heat shows joints near their limits in red."}})
+                   "forces, push, trails, heat, scale, caption or all."},
+        {"--show", &options.show,
+         "Draw marks; heat shows joints near a limit in amber, at it in red."}})
     command.add_option(name, *list, what)->delimiter(',')->allow_extra_args(false);
   command.add_option("--title", clip.title, "Text at the beginning of the caption.");
   command.add_flag("--draft", options.draft, "Draw faster, without antialiasing.");

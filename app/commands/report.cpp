@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ReportCommand {
-  std::string input, output, robot, push;
+  std::string input, output, robot, push, frame = "world";
   ReportOptions report;
   double max_megabytes = 8;
   bool no_replay = false;
@@ -36,6 +36,7 @@ void report_run(ReportCommand options, Context& context) {
     fail(ErrorCode::usage, "--max-size: the size must be above 0 and at most 1000 MB");
   options.report.max_bytes = static_cast<size_t>(1e6 * options.max_megabytes);
   options.report.replay = !options.no_replay;
+  options.report.frame = frame_of(options.frame);
   const RunFolder run = read_run(options.input);
   ReportInput input = report_input(run, options.input);
   const std::string push =
@@ -77,6 +78,11 @@ void add_report(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option("--rate", options->report.rate, "Postures per second of the replay.")
       ->check(number_within(1.0, 1000.0))
+      ->capture_default_str();
+  command
+      ->add_option("--frame", options->frame,
+                   "Frame of curves and replay: world, or foot (the supporting foot stands still).")
+      ->check(one_of(frame_names()).description(""))
       ->capture_default_str();
   command->add_flag("--no-replay", options->no_replay, "Leave the replay out.");
   command->footer(

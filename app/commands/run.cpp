@@ -274,7 +274,8 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
 }
 
 void MainJob::draw(const RobotModel& model, const std::string& title) {
-  const SimulationLog& closed = judged_log();
+  // Pictures show the plan where the robot is; curves do so by themselves.
+  const SimulationLog closed = in_frame(model, judged_log(), Frame::world);
   const std::vector<LociRun> runs = {{"open loop", &folder_.logs.at("open_loop")},
                                      {name_of(closed.controller.value()), &closed}};
   LociOptions loci;
@@ -286,8 +287,8 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
   }
   StripOptions strip;
   strip.clip.title = title;
-  strip.clip.picture.width = 640;
-  strip.clip.picture.height = 480;
+  strip.clip.picture.width = 400;
+  strip.clip.picture.height = 600;
   write_strip(model, closed, output_->file("snapshots.png"), strip);
   note_file("snapshots.png");
   say("plot", "loci.svg, loci.png, snapshots.png");

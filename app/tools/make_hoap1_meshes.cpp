@@ -108,8 +108,9 @@ LinkMesh foot() {
 LinkMesh shoulder_pitch() {
   LinkMesh mesh;
   mesh.motor("silver", Axis::y, {0, 0, 0}, 20, -19, -4);
-  mesh.box("grey", Axis::z, {-14, -18, -24}, {14, -6, 12}, 4);
-  mesh.box("blue", Axis::z, {-17, -18, -54}, {17, 14, -20}, 6);
+  // A fork that holds the roll motor from both ends, close to the axis wherever the arm points.
+  mesh.box("blue", Axis::z, {-14, -18, -25}, {14, 14, -17}, 4);
+  mesh.box("blue", Axis::z, {-14, -18, 16}, {14, 14, 24}, 4);
   return mesh;
 }
 

@@ -64,7 +64,7 @@ void bind_picture(py::module_& m) {
       py::arg("height") = 720, py::arg("view") = "iso", py::arg("zoom") = 1.0,
       py::arg("title") = "",
       "The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', "
-      "'back' or 'top'; `width` and `height` in pixels.");
+      "'back', 'top', 'ortho-side' or 'ortho-front'; `width` and `height` in pixels.");
   m.def(
       "strip",
       [](const RobotModel& robot, const Log& log, const std::vector<double>& times, int count,
@@ -79,7 +79,7 @@ void bind_picture(py::module_& m) {
         return png([&] { return draw_strip(robot, log.data(), options); });
       },
       py::arg("robot"), py::arg("log"), py::kw_only(), py::arg("times") = std::vector<double>(),
-      py::arg("count") = 8, py::arg("columns") = 4, py::arg("width") = 640, py::arg("height") = 480,
+      py::arg("count") = 8, py::arg("columns") = 4, py::arg("width") = 400, py::arg("height") = 600,
       py::arg("view") = "iso", py::arg("zoom") = 1.0, py::arg("title") = "",
       "Snapshots side by side as the bytes of a PNG file, at `times` [s] or at `count` instants "
       "that Ayumi chooses.");

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "ayumi/base/error.hpp"
@@ -51,8 +52,8 @@ TEST(Loci, NamesWhatItShows) {
   const Drawing drawing = draw_loci(runs.both(), {});
   for (const char* wanted :
        {"sway", "command", "open loop (fell at 0.60 s)", "DTAD (stands)",
-        "reference ZMP and f_z of DTAD", "COG x [m]", "COG y [m]", "COG z [m]", "ZMP x [m]",
-        "ZMP y [m]", "f_z [N]", "time [s]", "push 0.4 N s at 0.3 s", "both", "left"})
+        "reference ZMP and f_z of DTAD", "COG x [mm]", "COG y [mm]", "COG z [mm]", "ZMP x [mm]",
+        "ZMP y [mm]", "f_z [N]", "time [s]", "push 0.4 N s at 0.3 s", "both", "left"})
     EXPECT_TRUE(has(drawing, wanted)) << wanted;
   EXPECT_EQ(loci_series({}).size(), 6u);
   EXPECT_EQ(loci_series({.cog = false}).size(), 3u);
@@ -89,8 +90,8 @@ TEST(Loci, OnlyWhatDiffersIsDrawnWithJointsAndLimits) {
   const Drawing drawing = draw_loci({{"before", &runs.standing}, {"after", &moved}}, options);
   EXPECT_TRUE(has(drawing, runs.model.dofs()[0].name + " [deg]") ||
               has(drawing, runs.model.dofs()[0].name + " [mm]"));
-  EXPECT_TRUE(has(drawing, "COG x [m]"));
-  EXPECT_FALSE(has(drawing, "COG y [m]"));
+  EXPECT_TRUE(has(drawing, "COG x [mm]"));
+  EXPECT_FALSE(has(drawing, "COG y [mm]"));
   EXPECT_FALSE(has(drawing, "command"));
   EXPECT_TRUE(has(drawing, "The same in all: COG y, COG z, ZMP x, ZMP y, f_z.")) << [&] {
     std::string all;
@@ -125,7 +126,7 @@ TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   options.model = &runs.model;
   const Drawing drawing = draw_loci({{"open loop", &runs.falling}}, options);
   const std::vector<std::string> all = texts(drawing);
-  const auto margin = std::find(all.begin(), all.end(), "margin [m]");
+  const auto margin = std::find(all.begin(), all.end(), "margin [mm]");
   ASSERT_NE(margin, all.end());
   // The numbers of an axis come before its name or after it, those of the panel below further on.
   double most = 0;
@@ -137,7 +138,7 @@ TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
     most = std::max(most, std::abs(value));
   }
   EXPECT_GE(numbers, 2) << *(margin - 1);
-  EXPECT_LT(most, 0.2);
+  EXPECT_LT(most, 200);
   EXPECT_TRUE(
       has(drawing,
           "The axes fit the command and the time before the fall; the curves of a fall end at the "
@@ -187,16 +188,157 @@ TEST(Loci, FilesAreTheSameEveryTimeAndValid) {
 TEST(Loci, SupportPlotHasOneScaleAndBothFeet) {
   const TwoRuns runs;
   const Drawing drawing = draw_support(runs.model, runs.both(), {});
-  EXPECT_TRUE(has(drawing, "L"));
-  EXPECT_TRUE(has(drawing, "R"));
-  EXPECT_TRUE(has(drawing, "x [m]"));
+  EXPECT_TRUE(has(drawing, "1 L 0.00 s"));
+  EXPECT_TRUE(has(drawing, "2 R 0.00 s"));
+  EXPECT_TRUE(has(drawing, "x [mm]"));
   // A sole is 0.09 x 0.05 m.
   for (const auto& item : drawing.items)
     if (const auto* path = std::get_if<DrawnPath>(&item))
-      if (path->closed && path->fill[3] > 0 && path->points.size() == 4) {
+      if (path->closed && path->fill[3] > 0 && path->fill[3] < 0.5 && path->points.size() == 4) {
         const Eigen::Vector2d size = (path->points[2] - path->points[0]).cwiseAbs();
         EXPECT_NEAR(size.x() / size.y(), 1.8, 1e-6);
       }
+}
+
+Eigen::AlignedBox2d box_of(const DrawnText& text) {
+  const double wide = text_width(text.text, text.size, text.bold);
+  const double left = text.position.x() - (text.anchor == TextAnchor::left     ? 0
+                                           : text.anchor == TextAnchor::center ? 0.5 * wide
+                                                                               : wide);
+  return {Eigen::Vector2d(left, text.position.y() - 0.75 * text.size),
+          Eigen::Vector2d(left + wide, text.position.y())};
+}
+
+/// Whether any two words that are read from left to right lie over each other.
+std::string words_over_each_other(const Drawing& drawing) {
+  std::vector<DrawnText> all;
+  for (const auto& item : drawing.items)
+    if (const auto* text = std::get_if<DrawnText>(&item); text && !text->upwards)
+      all.push_back(*text);
+  for (size_t i = 0; i < all.size(); ++i)
+    for (size_t j = 0; j < i; ++j)
+      if (box_of(all[i]).intersects(box_of(all[j]))) return all[j].text + " | " + all[i].text;
+  return "";
+}
+
+// Steps that lie over each other, on the spot and in a circle: every foothold has its number and
+// time, and the labels stand apart.
+TEST(Loci, FootholdsAreNumberedAndTheirLabelsStandApart) {
+  TwoRuns runs;
+  for (const double stride : {0.0, 0.03, -0.2}) {
+    SimulationLog log = runs.standing;
+    for (size_t k = 0; k < log.samples.size(); ++k) {
+      const size_t step = k / 50;
+      log.samples[k].planned_contact = {step % 2 == 0, step % 2 == 1};
+      log.samples[k].state.base.position = {stride * double(step), 0.02, 0.3};
+      log.samples[k].state.theta.setZero();
+    }
+    const Drawing drawing = draw_support(runs.model, {{"DTAD", &log}}, {});
+    for (int n = 1; n <= 10; ++n)
+      EXPECT_TRUE(has(drawing, std::to_string(n) + (n % 2 == 1 ? " L " : " R ") +
+                                   std::to_string((n - 1) / 10) + "." +
+                                   std::to_string((n - 1) % 10) + "0 s"))
+          << n << " " << stride;
+    EXPECT_EQ(words_over_each_other(drawing), "") << stride;
+  }
+}
+
+// A motion of the joints alone leaves COG and ZMP where they are: the joints are what is seen.
+TEST(Loci, ShowWhatMovesMost) {
+  TwoRuns runs;
+  SimulationLog log = runs.standing;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    SimulationSample& s = log.samples[k];
+    s.state.theta.setZero();
+    s.state.theta[1] = 0.6 * std::sin(0.01 * double(k));
+    s.state.theta[2] = 0.2 * std::cos(0.02 * double(k));
+    s.state.theta[4] = 0.6 * std::sin(0.01 * double(k)) + 0.001;  // as the first
+    s.state.theta[3] = 0.01 * std::sin(0.3 * double(k));          // too little
+  }
+  LociOptions options;
+  options.model = &runs.model;
+  const Drawing drawing = draw_loci({{"DTAD", &log}}, options);
+  const std::vector<Dof>& dofs = runs.model.dofs();
+  EXPECT_TRUE(has(drawing, "moves most [deg]"));
+  EXPECT_TRUE(has(drawing, dofs[1].name + ", " + dofs[4].name) ||
+              has(drawing, dofs[4].name + ", " + dofs[1].name));
+  EXPECT_TRUE(has(drawing, dofs[2].name));
+  EXPECT_FALSE(has(drawing, dofs[3].name));
+  EXPECT_EQ(loci_series(options).front(), "moves most [deg]");
+  for (SimulationSample& s : log.samples)
+    s.state.base.attitude = Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitX());
+  log.samples.front().state.base.attitude.setIdentity();
+  EXPECT_TRUE(has(draw_loci({{"DTAD", &log}}, options), "trunk roll"));
+}
+
+/// Points of lines of a drawing with that width of the stroke.
+std::vector<Eigen::Vector2d> points_of(const Drawing& drawing, double width) {
+  std::vector<Eigen::Vector2d> points;
+  for (const auto& item : drawing.items)
+    if (const auto* path = std::get_if<DrawnPath>(&item); path && path->width == width)
+      points.insert(points.end(), path->points.begin(), path->points.end());
+  return points;
+}
+
+// However short a landing is, its force is drawn up to the top, with its value.
+TEST(Loci, LandingForcesAreDrawnToTheirTop) {
+  TwoRuns runs;
+  for (const double force : {300.0, 5000.0}) {
+    SimulationLog log = runs.standing;
+    log.samples[200].fz = force;
+    log.samples[400].fz = 0.9 * force;
+    const Drawing drawing =
+        draw_loci({{"DTAD", &log}}, {.cog = false, .zmp = false, .command = false});
+    EXPECT_TRUE(has(drawing, std::to_string(int(force)) + " N"));
+    EXPECT_TRUE(has(drawing, std::to_string(int(std::lround(0.9 * force))) + " N"));
+    double top = INFINITY, frame = INFINITY;
+    for (const Eigen::Vector2d& p : points_of(drawing, 1.6)) top = std::min(top, p.y());
+    for (const auto& item : drawing.items)
+      if (const auto* path = std::get_if<DrawnPath>(&item); path && path->closed)
+        for (const Eigen::Vector2d& p : path->points) frame = std::min(frame, p.y());
+    EXPECT_GT(top, frame + 2) << "not cut off at the frame";
+  }
+  for (const std::string& text : texts(draw_loci({{"DTAD", &runs.standing}}, {})))
+    EXPECT_FALSE(text.ends_with(" N")) << text << ": nothing lands";
+}
+
+TEST(Loci, ThereIsNoZmpInFlight) {
+  TwoRuns runs;
+  SimulationLog log = runs.standing;
+  for (size_t k = 200; k < 300; ++k) {
+    log.samples[k].fz = 0;
+    log.samples[k].planned_contact = {false, false};
+  }
+  LociOptions options{.cog = false, .fz = false};
+  const Drawing drawing = draw_loci({{"DTAD", &log}}, options);
+  const double left = 78, right = options.width - 18;                       // of the panels
+  const auto time = [&](double x) { return (x - left) / (right - left); };  // of one second
+  for (const double width : {1.6, 1.3, 1.1})
+    for (const Eigen::Vector2d& p : points_of(drawing, width))
+      EXPECT_FALSE(p.y() > 60 && time(p.x()) > 0.401 && time(p.x()) < 0.597)
+          << width << ", below the legend";
+}
+
+// A telephone is 360 pixels wide: all is inside, apart, and no letter smaller than 11.
+TEST(Loci, NarrowDrawingsCanBeRead) {
+  TwoRuns runs;
+  runs.standing.provenance.pattern = "a_walk_with_a_rather_long_name_of_its_file.json";
+  LociOptions options;
+  options.model = &runs.model;
+  for (const double width : {340.0, 358.0, 600.0}) {
+    options.width = width;
+    for (const Drawing& drawing :
+         {draw_loci(runs.both(), options), draw_support(runs.model, runs.both(), options)}) {
+      EXPECT_EQ(words_over_each_other(drawing), "") << width;
+      for (const auto& item : drawing.items)
+        if (const auto* text = std::get_if<DrawnText>(&item)) {
+          EXPECT_GE(text->size, 11) << text->text;
+          if (text->upwards) continue;
+          EXPECT_GE(box_of(*text).min().x(), 0) << text->text;
+          EXPECT_LE(box_of(*text).max().x(), width) << text->text;
+        }
+    }
+  }
 }
 
 std::string message_of(const std::vector<LociRun>& runs, const LociOptions& options) {

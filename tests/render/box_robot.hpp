@@ -116,6 +116,7 @@ inline OverlayOptions no_marks() {
           .forces = false,
           .push = false,
           .trails = false,
+          .scale = false,
           .caption = false};
 }
 

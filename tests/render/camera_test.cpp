@@ -89,6 +89,62 @@ TEST(CameraPath, EveryNamedViewHoldsTheRobotWhole) {
   }
 }
 
+// Parallel lines stay parallel: a metre is as long near as far, and heights are straight down.
+TEST(CameraPath, TheOrthographicSideViewMeasures) {
+  const CameraPath path({.view = "ortho-side"}, walk(), 0.01, 0.48, 1.6);
+  const Camera camera = path.at(1);
+  const auto at = [&](double x, double y, double z) {
+    return project(camera, 160, 100, {x, y, z});
+  };
+  const double metre = 100 / camera.parallel_height;
+  for (const double y : {-0.3, 0.0, 0.4}) {
+    EXPECT_NEAR(at(0.2, y, 0.1).x() - at(0.0, y, 0.1).x(), 0.2 * metre, 1e-9);
+    EXPECT_NEAR(at(0.1, y, 0.0).y() - at(0.3, y, 0.4).y(), 0.4 * metre, 1e-9);
+  }
+  EXPECT_GT(at(0, 0.4, 0).z(), at(0, -0.3, 0).z()) << "and still knows what is nearer";
+}
+
+// A squat and a jump do not move the camera; a fall and stairs do, so that the robot stays in
+// sight.
+TEST(CameraPath, FollowsAFallAndStairs) {
+  const auto height_at = [](double end, CameraMode mode) {
+    std::vector<Vector3d> cog;
+    for (int k = 0; k <= 400; ++k) cog.emplace_back(0, 0, 0.25 + (end - 0.25) * k / 400);
+    return CameraPath({.mode = mode}, cog, 0.01, 0.48, 1.6).at(4).target.z();
+  };
+  const double level = height_at(0.25, CameraMode::follow);
+  EXPECT_EQ(height_at(0.2, CameraMode::follow), level);
+  EXPECT_EQ(height_at(0.3, CameraMode::follow), level);
+  EXPECT_LT(height_at(0.05, CameraMode::follow), level - 0.08);
+  EXPECT_GT(height_at(0.6, CameraMode::follow), level + 0.15);
+  EXPECT_EQ(height_at(0.05, CameraMode::fixed), level);
+}
+
+TEST(CameraPath, FramedPointsAreJustWithinThePicture) {
+  for (const std::string& view : view_names())
+    for (const double aspect : {0.5, 1.0, 2.5}) {
+      const Camera camera = CameraPath({.view = view}, walk(), 0.01, 0.48, aspect).at(2);
+      const Eigen::Matrix3d axes = view_matrix(camera).topLeftCorner<3, 3>();
+      std::vector<Vector3d> points, offsets;
+      for (int i = 0; i < 40; ++i) {
+        points.push_back(camera.target + Vector3d(0.3 * std::sin(i), 0.2 * std::cos(3 * i) + 0.1,
+                                                  0.25 * std::sin(2.3 * i) - 0.05));
+        offsets.push_back(axes * (points.back() - camera.target));
+      }
+      const Camera moved = framed(camera, framing(camera, aspect, offsets, 0.9));
+      Eigen::AlignedBox2d box;
+      for (const Vector3d& p : points)
+        box.extend(Eigen::Vector2d(project(moved, 1000, 1000, p).head<2>()));
+      // `project` of a square picture: its width is what the aspect makes of it.
+      const double half_x = 500 * aspect;
+      const Eigen::Vector2d reach((box.max().x() - 500) / half_x, (box.max().y() - 500) / 500);
+      const Eigen::Vector2d back((500 - box.min().x()) / half_x, (500 - box.min().y()) / 500);
+      EXPECT_NEAR(std::max(reach.maxCoeff(), back.maxCoeff()), 0.9, 1e-6) << view << aspect;
+      EXPECT_NEAR(reach.x(), back.x(), 0.15) << "about in the middle";
+      EXPECT_NEAR(reach.y(), back.y(), 0.15);
+    }
+}
+
 TEST(CameraPath, AnUnknownViewIsNamed) {
   try {
     CameraPath({.view = "sid"}, {Vector3d::Zero()}, 0.01, 0.48, 1.6);

@@ -38,8 +38,8 @@ TEST_F(Commands, PlotDrawsAllLogsOfARun) {
   const Output made = ayumi({"plot", "run", "-o", "a.svg", "--json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const auto json = nlohmann::json::parse(made.out);
-  EXPECT_EQ(json.at("series").size(), 7u);
-  EXPECT_EQ(json.at("series").at(5), "margin [m]");
+  EXPECT_EQ(json.at("series").size(), 8u);
+  EXPECT_EQ(json.at("series").at(6), "margin [mm]");
   EXPECT_EQ(json.at("runs"), nlohmann::json({"open loop", "closed loop, dtad"}));
   EXPECT_NE(contents(folder / "a.svg").find("closed loop, dtad (stands)"), std::string::npos);
   EXPECT_EQ(ayumi({"plot", "run", "-o", "b.png", "--top"}).exit_code, 0);

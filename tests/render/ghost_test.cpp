@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/render/clip.hpp"
 #include "tests/render/box_robot.hpp"
 
@@ -77,7 +78,11 @@ TEST(Heat, RisesTowardsTheNearestLimit) {
   };
   EXPECT_EQ(heat_of(1), 0);
   s.state.theta[1] = -1.9;
-  EXPECT_NEAR(heat_of(1), 3 * 0.95 - 2, 1e-5);
+  EXPECT_NEAR(heat_of(1), 0.75, 1e-5) << "a quarter of the last tenth of its range is left";
+  s.state.theta[1] = 1.5;
+  EXPECT_EQ(heat_of(1), 0) << "a tenth is not reached yet";
+  s.state.theta[1] = 2;
+  EXPECT_EQ(heat_of(1), 1);
   s.state.dtheta[2] = 4;
   EXPECT_NEAR(heat_of(2), 3 * 0.8 - 2, 1e-5);
   s.torque[3] = -7;
@@ -92,6 +97,49 @@ TEST(Heat, RisesTowardsTheNearestLimit) {
     sample.torque[2] = 5;
   }
   EXPECT_GT(changed(cold, ClipRenderer(model, log, hot).frame(0)).first, 50);
+}
+
+// Whatever the home posture is, even with joints at their limits.
+TEST(Heat, TheHomePostureIsCold) {
+  for (const char* robot : {"hoap1", "humanoid30"}) {
+    const RobotModel model = load_robot(std::string(AYUMI_SOURCE_DIR) + "/robots/" + robot);
+    SimulationSample s;
+    s.state = model.rest_state();
+    for (const float heat : joint_heat(model, "", s)) EXPECT_EQ(heat, 0) << robot;
+  }
+  RobotDescription d = box_robot().description();
+  for (JointDescription& joint : d.joints) joint.lower = 0;
+  const RobotModel at_limit(d);
+  SimulationSample s;
+  s.state = at_limit.rest_state();
+  for (const float heat : joint_heat(at_limit, "", s)) EXPECT_EQ(heat, 0);
+  s.state.theta[1] = 1.95;
+  EXPECT_GT(joint_heat(at_limit, "", s)[size_t(at_limit.dofs()[1].body)], 0.5);
+}
+
+// A ghost in the robot's own posture is hidden by it, but for a few pixels of outlines: of about
+// 4000 that it has.
+TEST(Ghost, HasNoSpeckleWhereItCoincides) {
+  const RobotModel model = box_robot();
+  SimulationLog log = box_run(model);
+  SimulationLog other = log;
+  for (SimulationSample& s : other.samples) s.state.base.position.x() += 1e-4;  // a servo's sag
+  ClipOptions with = bare();
+  for (const std::string& view : view_names()) {
+    with.camera.view = view;
+    with.ghost.log = nullptr;
+    const Image alone = ClipRenderer(model, log, with).frame(0.5);
+    with.ghost.log = &log;
+    EXPECT_LT(changed(alone, ClipRenderer(model, log, with).frame(0.5)).first, 25) << view;
+    with.ghost.log = &other;
+    EXPECT_LT(changed(alone, ClipRenderer(model, log, with).frame(0.5)).first, 25) << view;
+  }
+}
+
+TEST(Ghost, HasAHueOfItsOwn) {
+  const Eigen::Vector4f tint = Exposure{}.tint;
+  EXPECT_GT(tint[0], tint[1] + 0.3f) << "orange, on a robot of blue and silver";
+  EXPECT_GT(tint[1], tint[2] + 0.3f);
 }
 
 TEST(Surface, TooFineIsSimplifiedAndSaidSo) {

@@ -88,6 +88,52 @@ async function withScript(tab) {
   expect(requests.length === 0, "requests: " + requests.join(" "));
 }
 
+/// What is seen of an element in the window, and how large the smallest letters of the curves are.
+const seen = (tab) => tab.run(`
+  const box = (e) => { const b = e.getBoundingClientRect();
+    return { left: b.left, right: b.right, top: b.top, bottom: b.bottom }; };
+  const svgs = [...document.querySelectorAll("#loci svg")].filter((e) => e.getClientRects().length);
+  const letters = svgs.flatMap((svg) => [...svg.querySelectorAll("text")].map((text) =>
+    Number(text.getAttribute("font-size")) * svg.getBoundingClientRect().width /
+      svg.viewBox.baseVal.width));
+  return { stage: box(document.getElementById("stage")), curves: box(svgs[0]), plots: svgs.length,
+    letters: Math.min(...letters), wide: document.documentElement.scrollWidth,
+    window: { width: innerWidth, height: innerHeight } };`);
+
+/// The same page in windows of several sizes: the scene stays in sight while curves are read.
+async function inWindows(tab) {
+  for (const [width, height] of [[390, 844], [360, 640], [820, 1180], [1280, 800], [1920, 1080]]) {
+    const name = width + "x" + height;
+    await tab.tool("Emulation.setDeviceMetricsOverride",
+      { width, height, deviceScaleFactor: 1, mobile: width < 500 });
+    await tab.load(address);
+    await until(() => tab.run("return document.documentElement.dataset.replay"), 30);
+    const top = await seen(tab);
+    expect(top.plots === 2, name + ": one layout of the curves, of " + top.plots + " plots");
+    expect(top.letters >= 10.99, name + ": letters of " + top.letters + " pixels");
+    expect(top.wide <= width, name + ": the page is " + top.wide + " wide");
+    await tab.run("document.querySelectorAll('#loci figure svg').forEach((e) => { " +
+      "if (e.getClientRects().length) window.last = e; }); " +
+      "scrollTo(0, window.last.getBoundingClientRect().top + scrollY - innerHeight / 2);");
+    const below = await seen(tab);
+    expect(below.stage.top >= -1 && below.stage.bottom <= below.window.height + 1,
+      name + ": beside the last curves the scene is at " + JSON.stringify(below.stage));
+    if (width >= 1280) expect(below.stage.right <= below.curves.left, name + ": side by side");
+    else expect(below.stage.bottom - below.stage.top < 0.5 * height, name + ": room for curves");
+    await tab.shoot("page-" + name + ".png");
+    const event = await tab.run(`
+      const link = [...document.querySelectorAll("#events [data-time]")].at(-1);
+      link.click();
+      return { wanted: Number(link.dataset.time), time: window.ayumiReplay.time };`);
+    expect(Math.abs(event.wanted - event.time) < 1e-9, name + ": a click on an event leads to " +
+      event.time);
+    const after = await seen(tab);
+    expect(after.stage.top >= -1 && after.stage.top < after.window.height,
+      name + ": and the scene is in sight");
+  }
+  await tab.tool("Emulation.clearDeviceMetricsOverride", {});
+}
+
 /// The page with its scripts held back, as a dark one.
 async function withoutScript(tab) {
   await tab.tool("Emulation.setScriptExecutionDisabled", { value: true });
@@ -116,6 +162,7 @@ try {
   driving = await startDriver(driver, shot);
   const tab = await driving.open();
   await withScript(tab);
+  await inWindows(tab);
   await withoutScript(tab);
   await tab.end();
 } catch (error) {

@@ -73,9 +73,75 @@ TEST(Report, ShowsFindingsRepairAndThresholds) {
   const std::string html = make_report(made.model, made.input).html;
   for (const char* words :
        {"Verdict: not good", "<span class=\"bad\">inconsistent</span>", "move the ZMP inwards",
-        "0.300 (0.20 to 0.40)", "l_knee has no room", "step of l_knee at 0.100 s", "0.83+",
+        "0.300</a> (0.20 to 0.40)", "l_knee has no room", "step of l_knee at 0.100 s", "0.83+",
         "<td class=\"number\">90</td>", "<td class=\"number\">0.75</td>"})
     EXPECT_NE(html.find(words), std::string::npos) << words;
+}
+
+// Lengths in mm and angles in deg wherever they stand, with three digits.
+TEST(Report, HasOneUnitPerQuantity) {
+  Made made;
+  ConsistencyReport check;
+  check.findings.push_back({.kind = FindingKind::support_margin,
+                            .worst = -0.0123456,
+                            .limit = 0.002,
+                            .unit = "m",
+                            .where = "left foot",
+                            .hint = ""});
+  check.findings.push_back({.kind = FindingKind::joint_position,
+                            .worst = 1.2345,
+                            .limit = 1.0,
+                            .unit = "rad",
+                            .where = "knee",
+                            .hint = ""});
+  made.input.results.check = check;
+  made.closed.result.max_slip = 0.0012345;
+  made.closed.result.max_tilt = 0.2;
+  ReportOptions plain;
+  plain.replay = false;
+  const std::string html = make_report(made.model, made.input, plain).html;
+  for (const char* words : {">-12.3 mm<", ">2 mm<", ">70.7 deg<", ">57.3 deg<", ">1.23<", ">11.5<",
+                            "COG x [mm]", "x [mm]"})
+    EXPECT_NE(html.find(words), std::string::npos) << words;
+}
+
+TEST(Report, OnlyWhatIsGoodIsGreen) {
+  Made made;
+  made.closed.result.outcome = Outcome::unsettled;
+  made.input.results.check = ConsistencyReport{};
+  made.input.results.check->consistent = false;
+  made.input.results.repair = RepairNote{"repaired", 0.1, 0.02, 17, {}};
+  made.input.results.safety = ExportNote{true, 0.2, "l_knee", {}};
+  ReportOptions plain;
+  plain.replay = false;
+  const std::string bad = make_report(made.model, made.input, plain).html;
+  EXPECT_EQ(bad.find("class=\"good\""), std::string::npos);
+  EXPECT_NE(bad.find("inconsistent as written, and was repaired"), std::string::npos);
+  made.closed.result.outcome = Outcome::stands;
+  const std::string good = make_report(made.model, made.input, plain).html;
+  EXPECT_NE(good.find("<span class=\"good\">stands</span>"), std::string::npos);
+}
+
+// Every phase and law of a study, whatever directions it has.
+TEST(Report, ShowsThePushMap) {
+  Made made;
+  for (const char* phase : {"left foot", "standing"})
+    for (const double direction : {0.0, 2.1, 4.2})
+      for (const char* law : {"dtad", "viip"})
+        made.input.thresholds.push_back({phase, law, 0.5, direction, 0.83, 0.21, 1.1, false});
+  ReportOptions plain;
+  plain.replay = false;
+  const std::string html = make_report(made.model, made.input, plain).html;
+  const size_t map = html.find("Largest survivable impulse by phase and direction");
+  ASSERT_NE(map, std::string::npos);
+  const std::string drawn = html.substr(map, html.find("</svg>", map) - map);
+  for (const char* words : {"left foot", "standing", "dtad", "viip", "open loop"})
+    EXPECT_NE(drawn.find(words), std::string::npos) << words;
+}
+
+TEST(Report, TimesOfEventsTakeTheReplayThere) {
+  EXPECT_NE(whole_page().html.find("<a href=\"#stage\" data-time=\"0.300\">0.300</a>"),
+            std::string::npos);
 }
 
 TEST(Report, KeepsItsSizeAndSaysWhatItLeftOut) {

@@ -20,18 +20,21 @@ using Eigen::Vector4f;
 using Value = std::function<double(const SimulationSample&)>;
 
 constexpr double kGap = 12;          // between panels [pixel]
+constexpr double kSmallText = 11;    // the smallest that is read on a screen [pixel]
 constexpr double kBeforeFall = 0.5;  // so long before a fall it does not show yet [s]
 
 struct PanelPlan {
-  std::string name;     ///< with unit
-  Value run;            ///< of every run
-  Value command;        ///< of the last run; the command is the same for all; empty: none
-  Value reference;      ///< of the last run; empty: none
-  double least = 0;     ///< span of the axis at least
-  bool spikes = false;  ///< landings may exceed the range
-  double seen = 0;      ///< runs that differ by less differ in nothing that matters
+  std::string name;  ///< with unit
+  Value run;         ///< of every run
+  Value command;     ///< of the last run; the command is the same for all; empty: none
+  Value reference;   ///< of the last run; empty: none
+  double least = 0;  ///< span of the axis at least
+  double seen = 0;   ///< runs that differ by less differ in nothing that matters
   std::vector<double> limits = {};  ///< drawn where they are within the range
   bool limits_in_view = false;      ///< the range reaches to the limits
+  bool peaks = false;               ///< the tops of landings get their values
+  /// In place of the runs: curves of the last one, each with its name.
+  std::vector<std::pair<std::string, Value>> named = {};
 };
 
 constexpr double kDegree = M_PI / 180;
@@ -71,8 +74,96 @@ PanelPlan torque_panel(const RobotModel& model, const std::string& profile, int 
   return panel;
 }
 
+// Lengths of plots, tables and the report's readout are in millimetres.
+constexpr double kMillimetre = 1e-3;
+
 Value component(Eigen::Vector3d SimulationSample::*quantity, int index) {
-  return [quantity, index](const SimulationSample& s) { return (s.*quantity)[index]; };
+  return
+      [quantity, index](const SimulationSample& s) { return (s.*quantity)[index] / kMillimetre; };
+}
+
+/// No number where `is_there` says so: in flight there is no ZMP, although the log holds the last.
+Value where(const std::function<bool(const SimulationSample&)>& is_there, const Value& value) {
+  return [=](const SimulationSample& s) { return is_there(s) ? value(s) : std::nan(""); };
+}
+
+bool is_loaded(const SimulationSample& s) { return s.fz > 0; }
+bool is_supported(const SimulationSample& s) {
+  return s.planned_contact[0] || s.planned_contact[1];
+}
+
+// ---- what moves most
+
+constexpr size_t kMostMoved = 3;      // curves, so that they can be told apart
+constexpr double kLeastMoved = 0.5;   // [deg] what moves less rests
+constexpr double kMovedShare = 0.25;  // of the largest move, below which a curve is left out
+constexpr double kSameCurve = 0.03;   // curves that differ by less of their range are one
+const Vector4f kMovedColors[kMostMoved] = {
+    {0.42f, 0.20f, 0.60f, 1}, {0.62f, 0.38f, 0.06f, 1}, {0.00f, 0.47f, 0.55f, 1}};
+
+struct MovedCurve {
+  std::string name;
+  Value value;
+  std::vector<double> values = {};
+  double low = 0, high = 0;
+};
+
+/// Angle of the trunk about x, y or z, the others being small [deg].
+Value trunk_angle(int axis) {
+  return [axis](const SimulationSample& s) {
+    const Eigen::Matrix3d r = s.state.base.attitude.toRotationMatrix();
+    const double angle[] = {std::atan2(r(2, 1), r(2, 2)),
+                            std::atan2(-r(2, 0), std::hypot(r(2, 1), r(2, 2))),
+                            std::atan2(r(1, 0), r(0, 0))};
+    return angle[axis] / kDegree;
+  };
+}
+
+/// The angles that move most over the time shown, before a fall, in the last run; joints that move
+/// alike are one curve.
+PanelPlan moved_panel(const RobotModel& model, const SimulationLog& log, const Interval& time) {
+  std::vector<MovedCurve> curves;
+  for (const auto& [axis, name] :
+       {std::pair{1, "trunk pitch"}, {0, "trunk roll"}, {2, "trunk yaw"}})
+    curves.push_back({name, trunk_angle(axis)});
+  for (Eigen::Index i = 0; i < model.dof_count(); ++i)
+    if (const Dof& dof = model.dofs()[static_cast<size_t>(i)]; !dof.prismatic)
+      curves.push_back(
+          {dof.name, [i](const SimulationSample& s) { return s.state.theta[i] / kDegree; }});
+  const double end = has_fallen(log) ? std::min(time.high, log.result.fell_at) : time.high;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const double t = static_cast<double>(k) * log.dt;
+    if (t >= time.low - 1e-9 && t <= end + 1e-9)
+      for (MovedCurve& curve : curves) curve.values.push_back(curve.value(log.samples[k]));
+  }
+  for (MovedCurve& curve : curves)
+    if (!curve.values.empty()) {
+      const auto [low, high] = std::minmax_element(curve.values.begin(), curve.values.end());
+      curve.low = *low;
+      curve.high = *high;
+    }
+  const auto range = [](const MovedCurve& curve) { return curve.high - curve.low; };
+  std::stable_sort(curves.begin(), curves.end(),
+                   [&](const MovedCurve& a, const MovedCurve& b) { return range(a) > range(b); });
+  std::vector<MovedCurve> shown;
+  for (MovedCurve& curve : curves) {
+    if (range(curve) < std::max(kLeastMoved, kMovedShare * range(curves.front()))) break;
+    const auto twin = std::find_if(shown.begin(), shown.end(), [&](const MovedCurve& other) {
+      double most = 0;
+      for (size_t k = 0; k < curve.values.size(); ++k)
+        most = std::max(most, std::abs(curve.values[k] - other.values[k]));
+      return most <= kSameCurve * range(other);
+    });
+    if (twin != shown.end())
+      twin->name += ", " + curve.name;
+    else if (shown.size() < kMostMoved)
+      shown.push_back(std::move(curve));
+  }
+  PanelPlan panel;
+  panel.name = "moves most [deg]";
+  panel.least = 1;
+  for (MovedCurve& curve : shown) panel.named.emplace_back(curve.name, curve.value);
+  return panel;
 }
 
 /// Distance, seen from above, of the ZMP inside the hull of the soles planned down, where they
@@ -84,7 +175,8 @@ Value zmp_margin(const RobotModel& model) {
          support_corners(model, body_poses(model, s.state), s.planned_contact))
       corners.push_back(corner.head<2>());
     const ConvexPolygon support(std::move(corners));
-    return support.empty() ? std::nan("") : support.margin(s.zmp.head<2>());
+    return support.empty() || !is_loaded(s) ? std::nan("")
+                                            : support.margin(s.zmp.head<2>()) / kMillimetre;
   };
 }
 
@@ -102,24 +194,26 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
   }
   if (options.cog)
     for (int i = 0; i < 3; ++i)
-      panels.push_back({std::string("COG ") + axis[i] + " [m]",
+      panels.push_back({std::string("COG ") + axis[i] + " [mm]",
                         component(&S::cog, i),
                         component(&S::command_cog, i),
                         {},
-                        0.01,
-                        false,
-                        2e-4});
+                        10,
+                        0.2});
   if (options.zmp)
     for (int i = 0; i < 2; ++i)
-      panels.push_back({std::string("ZMP ") + axis[i] + " [m]", component(&S::zmp, i),
-                        component(&S::command_zmp, i), component(&S::reference_zmp, i), 0.02, false,
-                        5e-4});
+      panels.push_back({std::string("ZMP ") + axis[i] + " [mm]",
+                        where(is_loaded, component(&S::zmp, i)),
+                        where(is_supported, component(&S::command_zmp, i)),
+                        where(is_supported, component(&S::reference_zmp, i)), 20, 0.5});
   if (options.zmp && options.model && options.model->has_soles())
-    panels.push_back({"margin [m]", zmp_margin(*options.model), {}, {}, 0.02, false});
-  if (options.fz)
+    panels.push_back({"margin [mm]", zmp_margin(*options.model), {}, {}, 20});
+  if (options.fz) {
     panels.push_back({"f_z [N]", [](const S& s) { return s.fz; },
                       [](const S& s) { return s.command_fz; },
-                      [](const S& s) { return s.reference_fz; }, 10, true, 0.1});
+                      [](const S& s) { return s.reference_fz; }, 10, 0.1});
+    panels.back().peaks = true;
+  }
   for (PanelPlan& panel : panels) {
     if (!options.command) panel.command = {};
     if (!options.reference) panel.reference = {};
@@ -159,6 +253,16 @@ std::vector<double> values_before_falls(const PanelPlan& panel, const std::vecto
 Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
                      const Interval& time) {
   std::vector<double> values;
+  for (const auto& [name, value] : panel.named)
+    extend(values, series(*runs.back().log, value,
+                          {time.low, has_fallen(*runs.back().log)
+                                         ? std::min(time.high, runs.back().log->result.fell_at)
+                                         : time.high}));
+  if (!panel.named.empty() && !values.empty()) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const double span = std::max(*high - *low, panel.least);
+    return {*low - 0.1 * span, *high + 0.35 * span};  // names stand on top
+  }
   extend(values, series(*runs.back().log, panel.command, time));
   for (const LociRun& run : runs)
     if (!has_fallen(*run.log)) extend(values, series(*run.log, panel.run, time));
@@ -167,9 +271,8 @@ Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
   if (values.empty()) values = values_before_falls(panel, runs, time);
   if (panel.limits_in_view) values.insert(values.end(), panel.limits.begin(), panel.limits.end());
   if (values.empty()) return {0, panel.least > 0 ? panel.least : 1};
-  std::sort(values.begin(), values.end());
-  const size_t skip = panel.spikes ? values.size() / 500 : 0;
-  Interval range = {values[skip], values[values.size() - 1 - skip]};
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  Interval range = {*low, *high};
   const double missing = std::max(0.0, panel.least - range.span()) / 2;
   const bool standing = std::any_of(runs.begin(), runs.end(),
                                     [](const LociRun& run) { return !has_fallen(*run.log); });
@@ -215,10 +318,10 @@ void draw_phases(Drawing& drawing, const Axes& axes, const std::vector<Phase>& l
                                            : right ? std::vector<std::string>{"right", "R", ""}
                                                    : std::vector<std::string>{"flight", "F", ""};
     for (const std::string& word : words) {
-      if (text_width(word, 10) + 2 > to - from) continue;
+      if (text_width(word, kSmallText) + 2 > to - from) continue;
       drawing.items.push_back(DrawnText{.position = {(from + to) / 2, axes.top - 4},
                                         .text = word,
-                                        .size = 10,
+                                        .size = kSmallText,
                                         .anchor = TextAnchor::center,
                                         .color = {0.4f, 0.4f, 0.44f, 1}});
       break;
@@ -230,18 +333,20 @@ void draw_phases(Drawing& drawing, const Axes& axes, const std::vector<Phase>& l
 
 void draw_pushes(Drawing& drawing, const Axes& axes, const std::vector<PushRecord>& list,
                  bool names) {
+  double taken = 0;  // by words, from the left
   for (const PushRecord& push : list) {
     const double x = axes.px(push.begin), bottom = axes.top + axes.height;
     drawing.items.push_back(
         DrawnPath{.points = {{x, axes.top}, {x, bottom}}, .stroke = kPushColor, .width = 1.4});
     if (!names) continue;
-    const bool leftward = x > axes.left + 0.8 * axes.width;
-    drawing.items.push_back(
-        DrawnText{.position = {x + (leftward ? -4 : 4), axes.top - 17},
-                  .text = "push " + push_text(push) + " at " + text::brief(push.begin) + " s",
-                  .size = 11.5,
-                  .anchor = leftward ? TextAnchor::right : TextAnchor::left,
-                  .color = kPushColor});
+    const std::string words = "push " + push_text(push) + " at " + text::brief(push.begin) + " s";
+    const double wide = text_width(words, 11.5);
+    const bool leftward = x + 4 + wide > axes.left + axes.width;
+    const double from = leftward ? x - 4 - wide : x + 4;
+    if (from < taken) continue;  // two words over each other say nothing
+    taken = from + wide + 6;
+    drawing.items.push_back(DrawnText{
+        .position = {from, axes.top - 17}, .text = words, .size = 11.5, .color = kPushColor});
   }
 }
 
@@ -255,9 +360,80 @@ std::string range_note(const std::vector<LociRun>& runs) {
          "; the curves of a fall end at the edge of the axes. A cross marks the fall.";
 }
 
+void draw_named(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
+                const SimulationLog& log) {
+  double x = axes.left + 8, y = axes.top + 14;
+  for (size_t i = 0; i < panel.named.size(); ++i) {
+    const auto& [name, value] = panel.named[i];
+    const LineStyle style = {.color = kMovedColors[i], .width = 1.6};
+    draw_line(drawing, axes, series(log, value, axes.x), style);
+    const double wide = text_width(name, kSmallText);
+    if (x > axes.left + 8 && x + wide > axes.left + axes.width) {
+      x = axes.left + 8;
+      y += 1.3 * kSmallText;
+    }
+    drawing.items.push_back(
+        DrawnText{.position = {x, y}, .text = name, .size = kSmallText, .color = style.color});
+    x += wide + 16;
+  }
+}
+
+/// The tops of a force that is well above what it mostly is, the highest first.
+std::vector<Vector2d> force_peaks(const std::vector<Vector2d>& force) {
+  // A top is so many times the middle value, and the highest of so long before and after. Chosen:
+  // a landing is above twice the weight, a walk below 1.4 times; feet land 0.2 s apart at least.
+  // What is lower than a share of the highest is no top of its own.
+  constexpr double kHigh = 1.5, kApart = 0.15, kShare = 0.2;
+  std::vector<double> values;
+  extend(values, force);
+  if (values.empty()) return {};
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2),
+                   values.end());
+  const double highest = *std::max_element(values.begin(), values.end());
+  const double least = std::max(kHigh * values[values.size() / 2], kShare * highest);
+  std::vector<Vector2d> tops;
+  for (const Vector2d& point : force)
+    if (std::isfinite(point.y()) && point.y() > std::max(least, 1e-9)) tops.push_back(point);
+  std::stable_sort(tops.begin(), tops.end(),
+                   [](const Vector2d& a, const Vector2d& b) { return a.y() > b.y(); });
+  std::vector<Vector2d> kept;
+  for (const Vector2d& point : tops)
+    if (std::all_of(kept.begin(), kept.end(),
+                    [&](const Vector2d& k) { return std::abs(k.x() - point.x()) > kApart; }))
+      kept.push_back(point);
+  return kept;
+}
+
+/// Values at the tops of the forces of runs that stand, as far as the words have room.
+void draw_peaks(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
+                const std::vector<LociRun>& runs) {
+  std::vector<Eigen::AlignedBox2d> taken;
+  for (size_t i = 0; i < runs.size(); ++i) {
+    if (has_fallen(*runs[i].log)) continue;
+    for (const Vector2d& top : force_peaks(series(*runs[i].log, panel.run, axes.x))) {
+      const std::string words = text::fixed(top.y(), 0) + " N";
+      const double wide = text_width(words, kSmallText);
+      const double right = axes.left + axes.width;
+      const double x =
+          axes.px(top.x()) + 4 + wide > right ? axes.px(top.x()) - 4 - wide : axes.px(top.x()) + 4;
+      const double y = std::max(axes.py(top.y()) + 4, axes.top + kSmallText + 2);
+      const Eigen::AlignedBox2d box(Vector2d(x, y - kSmallText), Vector2d(x + wide, y));
+      if (std::any_of(taken.begin(), taken.end(),
+                      [&](const auto& other) { return other.intersects(box); }))
+        continue;
+      taken.push_back(box);
+      drawing.items.push_back(DrawnText{.position = {x, y},
+                                        .text = words,
+                                        .size = kSmallText,
+                                        .color = run_style(i, runs.size()).color});
+    }
+  }
+}
+
 void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
                 const std::vector<LociRun>& runs) {
   const SimulationLog& last = *runs.back().log;
+  if (!panel.run) return draw_named(drawing, axes, panel, last);
   if (panel.reference)
     draw_line(drawing, axes, series(last, panel.reference, axes.x), kReferenceStyle);
   for (const double limit : panel.limits)
@@ -272,6 +448,7 @@ void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
                  style.color);
   }
   draw_line(drawing, axes, series(last, panel.command, axes.x), kCommandStyle);
+  if (panel.peaks) draw_peaks(drawing, axes, panel, runs);
 }
 
 double largest_difference(const PanelPlan& panel, const std::vector<LociRun>& runs,
@@ -305,12 +482,40 @@ std::string leave_out_equal(std::vector<PanelPlan>& panels, const std::vector<Lo
   return "The same in all: " + text::join(names, ", ") + ".";
 }
 
+/// A sentence in lines of at most that width.
+std::vector<std::string> lines_of(const std::string& sentence, double width) {
+  std::vector<std::string> lines = {""};
+  for (size_t at = 0; at < sentence.size();) {
+    const size_t end = std::min(sentence.find(' ', at), sentence.size());
+    const std::string word = sentence.substr(at, end - at);
+    std::string& line = lines.back();
+    if (line.empty())
+      line = word;
+    else if (text_width(line + " " + word, kSmallText) <= width)
+      line += " " + word;
+    else
+      lines.push_back(word);
+    at = end + 1;
+  }
+  return lines;
+}
+
+/// Whether there is a panel of what moves most: where the robot is known and no joint is asked for.
+bool shows_moved(const LociOptions& options) {
+  return options.model && options.joints.empty() && options.speeds.empty() &&
+         !options.only_differences;
+}
+
 }  // namespace
 
-Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) {
-  const Interval time = time_range(runs, options);
+Drawing draw_loci(const std::vector<LociRun>& as_logged, const LociOptions& options) {
+  const Interval time = time_range(as_logged, options);
+  const FramedRuns framed(options.model, as_logged, options.frame);
+  const std::vector<LociRun>& runs = framed.runs;
   std::vector<PanelPlan> panels = plan_panels(options);
   if (panels.empty()) fail(ErrorCode::usage, "plot: every panel is switched off");
+  if (shows_moved(options))
+    panels.insert(panels.begin(), moved_panel(*options.model, *runs.back().log, time));
   const std::string same =
       options.only_differences ? leave_out_equal(panels, runs, time) : std::string();
   Drawing drawing = start_drawing(runs, options, "Loci against time");
@@ -340,11 +545,13 @@ Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options) 
   drawing.height = top + 34;
   for (const std::string& note : {same, range_note(runs)}) {
     if (note.empty()) continue;
-    drawing.items.push_back(DrawnText{.position = {kLeft, drawing.height + 10},
-                                      .text = note,
-                                      .size = 11,
-                                      .color = {0.35f, 0.35f, 0.38f, 1}});
-    drawing.height += drawing.height > top + 34 ? 16 : 22;
+    for (const std::string& line : lines_of(note, drawing.width - kLeft - kRight)) {
+      drawing.items.push_back(DrawnText{.position = {kLeft, drawing.height + 10},
+                                        .text = line,
+                                        .size = kSmallText,
+                                        .color = {0.35f, 0.35f, 0.38f, 1}});
+      drawing.height += drawing.height > top + 34 ? 16 : 22;
+    }
   }
   return drawing;
 }
@@ -356,6 +563,7 @@ void write_loci(const std::vector<LociRun>& runs, const std::filesystem::path& p
 
 std::vector<std::string> loci_series(const LociOptions& options) {
   std::vector<std::string> names;
+  if (shows_moved(options)) names.emplace_back("moves most [deg]");
   for (const PanelPlan& panel : plan_panels(options)) names.push_back(panel.name);
   return names;
 }

@@ -9,6 +9,7 @@
 
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/plot/drawing.hpp"
+#include "ayumi/render/frames.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
@@ -27,6 +28,7 @@ struct LociOptions {
   std::vector<int> torques = {};           ///< dofs with a panel of their torque; needs the model
   std::string profile = {};                ///< whose limits are drawn; empty: the default
   bool limits_in_view = false;             ///< panels of joints reach to the limits of the joint
+  Frame frame = Frame::world;              ///< of places, where the robot is known
   bool command = true, reference = true;   ///< what is commanded; the reference ZMP
   /// Leave out panels in which the runs differ by less than can be seen, and name them below.
   bool only_differences = false;

@@ -71,12 +71,24 @@ std::string legend_name(const LociRun& run) {
               : std::string(result.outcome == Outcome::stands ? " (stands)" : " (unsettled)"));
 }
 
+FramedRuns::FramedRuns(const RobotModel* model, const std::vector<LociRun>& as_logged,
+                       Frame frame) {
+  logs.reserve(as_logged.size());
+  for (const LociRun& run : as_logged) {
+    logs.push_back(model && run.log->joints == model->dof_names()
+                       ? in_frame(*model, *run.log, frame)
+                       : *run.log);
+    runs.push_back({run.label, &logs.back()});
+  }
+}
+
 double draw_legend(Drawing& drawing, const Legend& entries, double top) {
   double x = kLeft, y = top;
   for (const auto& [name, style] : entries) {
     const double wide = 34 + text_width(name, kLegend) + 22;
-    if (x > kLeft && x + wide > drawing.width - kRight) {
-      x = kLeft;
+    const double left = kLeft + wide > drawing.width ? 8.0 : kLeft;
+    if (x > left && x + wide - 22 > drawing.width - 8) {
+      x = left;
       y += 1.6 * kLegend;
     }
     drawing.items.push_back(DrawnPath{.points = {{x, y}, {x + 28, y}},
@@ -113,8 +125,12 @@ Drawing start_drawing(const std::vector<LociRun>& runs, const LociOptions& optio
   for (const LociRun& run : runs)
     drawing.description.append(" ").append(legend_name(run)).append(";");
   drawing.description.back() = '.';
+  // A long title begins at the edge, and in smaller letters where that is not enough.
+  const double wide = text_width(drawing.title, 16, true);
+  const double left = kLeft + wide > drawing.width - kRight ? 8.0 : kLeft;
+  const double size = std::clamp(16 * (drawing.width - left - 8) / std::max(1.0, wide), 11.0, 16.0);
   drawing.items.push_back(
-      DrawnText{.position = {kLeft, 24}, .text = drawing.title, .size = 16, .bold = true});
+      DrawnText{.position = {left, 24}, .text = drawing.title, .size = size, .bold = true});
   return drawing;
 }
 

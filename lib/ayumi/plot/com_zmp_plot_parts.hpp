@@ -32,6 +32,15 @@ Interval time_range(const std::vector<LociRun>& runs, const LociOptions& options
 /// Pushes of all runs in that time; the same push in several runs once.
 std::vector<PushRecord> all_pushes(const std::vector<LociRun>& runs, const Interval& time);
 
+/// Runs with their places in one frame.
+struct FramedRuns {
+  std::vector<SimulationLog> logs;
+  std::vector<LociRun> runs;  ///< of those logs
+
+  /// As they are without a model. Throws as in_frame().
+  FramedRuns(const RobotModel* model, const std::vector<LociRun>& as_logged, Frame frame);
+};
+
 /// "closed loop (stands)"
 std::string legend_name(const LociRun& run);
 

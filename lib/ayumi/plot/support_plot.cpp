@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/base/text.hpp"
 #include "ayumi/plot/com_zmp_plot_parts.hpp"
 #include "ayumi/render/robot_surface.hpp"
 
@@ -13,8 +14,11 @@ using Eigen::Vector3d;
 
 struct PlacedSole {
   Side side;
-  std::vector<Vector2d> corners;
+  std::vector<Vector2d> corners;  ///< [mm]
+  double begin = 0, end = 0;      ///< while it is planned down [s]
 };
+
+constexpr double kMillimetre = 1e-3;
 
 /// The soles where the plan puts them down, at the middle of each planned contact.
 std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& log,
@@ -36,14 +40,19 @@ std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& 
         const Sole& sole = model.sole(side);
         const Eigen::Isometry3d frame =
             body_poses(model, middle.state)[size_t(sole.body)] * sole.frame;
-        PlacedSole foothold = {side, {}};
+        PlacedSole foothold = {
+            side, {}, static_cast<double>(begin) * log.dt, static_cast<double>(end) * log.dt};
         for (const Vector2d& corner : sole.polygon)
-          foothold.corners.push_back((frame * Vector3d(corner.x(), corner.y(), 0)).head<2>());
+          foothold.corners.push_back((frame * Vector3d(corner.x(), corner.y(), 0)).head<2>() /
+                                     kMillimetre);
         out.push_back(foothold);
       }
       begin = end;
     }
   }
+  // In the order in which they are put down.
+  std::stable_sort(out.begin(), out.end(),
+                   [](const PlacedSole& a, const PlacedSole& b) { return a.begin < b.begin; });
   return out;
 }
 
@@ -52,8 +61,15 @@ std::vector<Vector2d> path_of(const SimulationLog& log, const Interval& time,
   std::vector<Vector2d> points;
   for (size_t k = 0; k < log.samples.size(); ++k) {
     const double t = static_cast<double>(k) * log.dt;
-    if (t >= time.low - 1e-9 && t <= time.high + 1e-9)
-      points.push_back((log.samples[k].*quantity).head<2>());
+    if (t < time.low - 1e-9 || t > time.high + 1e-9) continue;
+    const SimulationSample& s = log.samples[k];
+    const bool planned = s.planned_contact[0] || s.planned_contact[1];
+    const bool there = quantity == &SimulationSample::zmp             ? s.fz > 0
+                       : quantity == &SimulationSample::reference_zmp ? planned
+                                                                      : true;
+    const double none = std::nan("");  // of the ZMP in flight
+    points.push_back(there ? Vector2d((s.*quantity).head<2>() / kMillimetre)
+                           : Vector2d(none, none));
   }
   return points;
 }
@@ -67,19 +83,23 @@ Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const I
   for (const LociRun& run : runs)
     for (const auto quantity : {&SimulationSample::cog, &SimulationSample::zmp})
       if (!has_fallen(*run.log))
-        for (const Vector2d& point : path_of(*run.log, time, quantity)) box.extend(point);
+        for (const Vector2d& point : path_of(*run.log, time, quantity))
+          if (point.allFinite()) box.extend(point);
   for (const Vector2d& point : path_of(*runs.back().log, time, &SimulationSample::command_cog))
     box.extend(point);
   const Vector2d middle = box.center();
-  const Vector2d half = 0.55 * box.sizes().cwiseMax(0.1);
+  Vector2d half = 0.55 * box.sizes().cwiseMax(100);
+  // Labels of footholds find room around them [pixel].
+  constexpr double kRoom = 26;
+  half += Vector2d(kRoom, kRoom) * 2 * half.x() / (drawing.width - kLeft - kRight);
   Axes axes;
   axes.left = kLeft;
   axes.top = top;
   axes.width = drawing.width - kLeft - kRight;
   axes.x = {middle.x() - half.x(), middle.x() + half.x()};
   axes.height = std::clamp(axes.width * half.y() / half.x(), 160.0, axes.width);
-  const double metres = axes.height / axes.width * half.x();
-  if (metres < half.y()) {
+  const double reached = axes.height / axes.width * half.x();
+  if (reached < half.y()) {
     const double wider = half.y() * axes.width / axes.height;
     axes.x = {middle.x() - wider, middle.x() + wider};
   }
@@ -88,36 +108,87 @@ Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const I
   return axes;
 }
 
+Eigen::Vector4f color_of(Side side) {
+  return side == Side::left ? Eigen::Vector4f(0.20f, 0.45f, 0.75f, 1)
+                            : Eigen::Vector4f(0.72f, 0.42f, 0.05f, 1);
+}
+
 void draw_foothold(Drawing& drawing, const Axes& axes, const PlacedSole& foot) {
-  const Eigen::Vector4f color = foot.side == Side::left ? Eigen::Vector4f(0.20f, 0.45f, 0.75f, 1)
-                                                        : Eigen::Vector4f(0.80f, 0.50f, 0.10f, 1);
-  DrawnPath outline = {.closed = true, .stroke = color, .fill = color, .width = 1.2};
+  DrawnPath outline = {.closed = true, .stroke = color_of(foot.side), .width = 1.2};
+  outline.fill = outline.stroke;
   outline.fill[3] = 0.08f;
-  Vector2d middle = Vector2d::Zero();
-  for (const Vector2d& corner : foot.corners) {
+  for (const Vector2d& corner : foot.corners)
     outline.points.push_back(axes.at(corner.x(), corner.y()));
-    middle += outline.points.back() / static_cast<double>(foot.corners.size());
-  }
   drawing.items.push_back(outline);
-  // In the outer corner of the toes, away from the loci.
-  const double outwards = foot.side == Side::left ? -1 : 1;
-  const Vector2d corner = *std::max_element(
-      outline.points.begin(), outline.points.end(), [&](const Vector2d& a, const Vector2d& b) {
-        return a.x() + outwards * a.y() < b.x() + outwards * b.y();
-      });
-  drawing.items.push_back(DrawnText{.position = corner + 0.13 * (middle - corner) + Vector2d(0, 4),
-                                    .text = foot.side == Side::left ? "L" : "R",
-                                    .size = 12,
-                                    .anchor = TextAnchor::center,
-                                    .bold = true,
-                                    .color = color});
+}
+
+/// Numbers in the order of landing, foot and time, each joined to its foothold by a line. A label
+/// stands where it covers no other and as few soles as can be, near its own.
+void label_footholds(Drawing& drawing, const Axes& axes, const std::vector<PlacedSole>& feet) {
+  constexpr double kText = 11, kPad = 2, kTurns = 24;
+  std::vector<Eigen::AlignedBox2d> taken, soles;
+  for (const PlacedSole& foot : feet) {
+    Eigen::AlignedBox2d box;
+    for (const Vector2d& corner : foot.corners) box.extend(axes.at(corner.x(), corner.y()));
+    soles.push_back(box);
+  }
+  const Eigen::AlignedBox2d frame(Vector2d(axes.left, axes.top),
+                                  Vector2d(axes.left + axes.width, axes.top + axes.height));
+  for (size_t i = 0; i < feet.size(); ++i) {
+    const PlacedSole& foot = feet[i];
+    const std::string words = std::to_string(i + 1) + (foot.side == Side::left ? " L " : " R ") +
+                              text::fixed(foot.begin, 2) + " s";
+    const Vector2d half(0.5 * text_width(words, kText) + kPad, 0.5 * kText + kPad);
+    const Vector2d middle = soles[i].center();
+    const double outwards = foot.side == Side::left ? -M_PI / 2 : M_PI / 2;  // on the paper
+    double best = INFINITY;
+    Eigen::AlignedBox2d place;
+    for (double away = 0.5 * soles[i].sizes().minCoeff(); away < axes.width; away += 0.7 * kText) {
+      for (int turn = 0; turn < kTurns; ++turn) {
+        const double angle = outwards + 2 * M_PI * turn / kTurns;
+        const Vector2d at = middle + away * Vector2d(std::cos(angle), std::sin(angle));
+        const Eigen::AlignedBox2d box(at - half, at + half);
+        if (!frame.contains(box)) continue;
+        if (std::any_of(taken.begin(), taken.end(),
+                        [&](const auto& other) { return other.intersects(box); }))
+          continue;
+        const auto covered = std::count_if(soles.begin(), soles.end(),
+                                           [&](const auto& sole) { return sole.intersects(box); });
+        const double turned = std::abs(std::remainder(angle - outwards, 2 * M_PI));
+        const double price = away + 30.0 * static_cast<double>(covered) + 20 * turned;
+        if (price < best) {
+          best = price;
+          place = box;
+        }
+      }
+      if (away > best) break;
+    }
+    if (!std::isfinite(best)) continue;  // more footholds than the plot has room for
+    taken.push_back(place);
+    drawing.items.push_back(
+        DrawnPath{.points = {middle, place.center()}, .stroke = color_of(foot.side), .width = 0.6});
+    drawing.items.push_back(
+        DrawnPath{.points = {place.min(), Vector2d(place.max().x(), place.min().y()), place.max(),
+                             Vector2d(place.min().x(), place.max().y())},
+                  .closed = true,
+                  .stroke = color_of(foot.side),
+                  .fill = {1, 1, 1, 0.9f},
+                  .width = 0.6});
+    drawing.items.push_back(DrawnText{.position = place.center() + Vector2d(0, 0.36 * kText),
+                                      .text = words,
+                                      .size = kText,
+                                      .anchor = TextAnchor::center,
+                                      .color = color_of(foot.side)});
+  }
 }
 
 }  // namespace
 
-Drawing draw_support(const RobotModel& model, const std::vector<LociRun>& runs,
+Drawing draw_support(const RobotModel& model, const std::vector<LociRun>& as_logged,
                      const LociOptions& options) {
-  const Interval time = time_range(runs, options);
+  const Interval time = time_range(as_logged, options);
+  const FramedRuns framed(&model, as_logged, options.frame);
+  const std::vector<LociRun>& runs = framed.runs;
   Drawing drawing = start_drawing(runs, options, "COG and ZMP from above");
   Legend entries;
   for (size_t i = 0; i < runs.size(); ++i) {
@@ -133,7 +204,7 @@ Drawing draw_support(const RobotModel& model, const std::vector<LociRun>& runs,
   const std::vector<PlacedSole> feet = footholds(model, last, time);
   const double top = draw_legend(drawing, entries, 44) + 12;
   const Axes axes = make_axes(drawing, runs, time, feet, top);
-  draw_axes(drawing, axes, "y [m]", true);
+  draw_axes(drawing, axes, "y [mm]", true);
   for (const PlacedSole& foot : feet) draw_foothold(drawing, axes, foot);
   for (size_t i = 0; i < runs.size(); ++i) {
     draw_line(drawing, axes, path_of(*runs[i].log, time, &SimulationSample::zmp),
@@ -143,9 +214,10 @@ Drawing draw_support(const RobotModel& model, const std::vector<LociRun>& runs,
   }
   draw_line(drawing, axes, path_of(last, time, &SimulationSample::reference_zmp), kReferenceStyle);
   draw_line(drawing, axes, path_of(last, time, &SimulationSample::command_cog), kCommandStyle);
+  label_footholds(drawing, axes, feet);
   drawing.items.push_back(
       DrawnText{.position = {axes.left + axes.width / 2, axes.top + axes.height + 36},
-                .text = "x [m]",
+                .text = "x [mm]",
                 .size = 13,
                 .anchor = TextAnchor::center});
   drawing.height = axes.top + axes.height + 48;

@@ -1,6 +1,7 @@
 #include "ayumi/render/camera.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
@@ -15,14 +16,23 @@ using Eigen::Vector3d;
 struct NamedView {
   const char* name;
   double azimuth, elevation;  ///< of the camera seen from the robot; x forward, y left [rad]
+  bool parallel = false;
 };
 constexpr NamedView kViews[] = {{"front", 0.0, 0.14},
                                 {"side", -1.5707963267948966, 0.14},
                                 {"iso", -0.87, 0.30},
                                 {"back", 3.141592653589793, 0.14},
-                                {"top", -1.5707963267948966, 1.5}};
+                                {"top", -1.5707963267948966, 1.5},
+                                {"ortho-side", -1.5707963267948966, 0.0, true},
+                                {"ortho-front", 0.0, 0.0, true}};
 
 constexpr double kFieldOfView = 0.5;  // [rad] so narrow that lengths can be compared
+
+// The height of the picture's middle stays while the COG is between these shares of its first
+// height, so that a squat or a jump is seen as one; beyond, the camera goes down with a fall and up
+// with stairs. Chosen: the deepest squat of the patterns lowers the COG to 0.78 of its height, the
+// highest jump raises it to 1.2, and a fallen robot's COG is below 0.4.
+constexpr double kLowestStance = 0.75, kHighestJump = 1.3;
 
 }  // namespace
 
@@ -41,10 +51,18 @@ Matrix4d view_matrix(const Camera& camera) {
 }
 
 Matrix4d projection_matrix(const Camera& camera, double aspect) {
-  const double scale = 1 / std::tan(camera.field_of_view / 2);
+  const bool parallel = camera.parallel_height > 0;
+  const double scale =
+      parallel ? 2 / camera.parallel_height : 1 / std::tan(camera.field_of_view / 2);
   Matrix4d projection = Matrix4d::Zero();
   projection(0, 0) = scale / aspect;
   projection(1, 1) = scale;
+  if (parallel) {
+    projection(2, 2) = -2 / (camera.far - camera.near);
+    projection(2, 3) = -(camera.far + camera.near) / (camera.far - camera.near);
+    projection(3, 3) = 1;
+    return projection;
+  }
   projection(2, 2) = -(camera.far + camera.near) / (camera.far - camera.near);
   projection(2, 3) = -2 * camera.far * camera.near / (camera.far - camera.near);
   projection(3, 2) = -1;
@@ -52,9 +70,58 @@ Matrix4d projection_matrix(const Camera& camera, double aspect) {
 }
 
 Vector3d project(const Camera& camera, int width, int height, const Vector3d& point) {
-  const Eigen::Vector4d clip =
-      projection_matrix(camera, double(width) / height) * view_matrix(camera) * point.homogeneous();
-  return {(clip.x() / clip.w() + 1) / 2 * width, (1 - clip.y() / clip.w()) / 2 * height, clip.w()};
+  const Eigen::Vector4d seen = view_matrix(camera) * point.homogeneous();
+  const Eigen::Vector4d clip = projection_matrix(camera, double(width) / height) * seen;
+  return {(clip.x() / clip.w() + 1) / 2 * width, (1 - clip.y() / clip.w()) / 2 * height, -seen.z()};
+}
+
+// With D the distance, b how far a point is nearer and k the tangent of half the view: a point is
+// within the picture where |r - shift| <= k (D - b). Both edges touch a point at the D that is the
+// span of r + k b and r - k b over 2 k.
+Framing framing(const Camera& camera, double aspect, const std::vector<Vector3d>& offsets,
+                double share) {
+  const bool parallel = camera.parallel_height > 0;
+  const double tangent = share * std::tan(camera.field_of_view / 2);
+  const std::array<double, 2> k = {tangent * aspect, tangent};
+  Framing result;
+  if (offsets.empty()) {
+    result.distance = parallel ? camera.parallel_height : (camera.eye - camera.target).norm();
+    return result;
+  }
+  const auto edges = [&](int axis, double distance) {  // where the shift must be
+    Eigen::Vector2d between(-INFINITY, INFINITY);
+    for (const Vector3d& p : offsets) {
+      const double reach = parallel ? 0.5 * share * distance * (axis == 0 ? aspect : 1.0)
+                                    : k[static_cast<size_t>(axis)] * (distance - p.z());
+      between[0] = std::max(between[0], p[axis] - reach);
+      between[1] = std::min(between[1], p[axis] + reach);
+    }
+    return between;
+  };
+  for (const int axis : {0, 1}) {
+    const Eigen::Vector2d at_zero = edges(axis, 0);
+    const double gained = parallel ? share * (axis == 0 ? aspect : 1.0)
+                                   : 2 * k[static_cast<size_t>(axis)];  // by each metre of distance
+    result.distance = std::max(result.distance, (at_zero[0] - at_zero[1]) / gained);
+  }
+  result.right = edges(0, result.distance).mean();
+  result.up = edges(1, result.distance).mean();
+  return result;
+}
+
+Camera framed(const Camera& camera, const Framing& framing) {
+  Camera moved = camera;
+  const Eigen::Matrix3d axes = view_matrix(camera).topLeftCorner<3, 3>().transpose();
+  moved.target += framing.right * axes.col(0) + framing.up * axes.col(1);
+  if (camera.parallel_height > 0) {
+    moved.eye += moved.target - camera.target;
+    moved.parallel_height = framing.distance;
+    return moved;
+  }
+  moved.eye = moved.target + framing.distance * axes.col(2);
+  moved.near = 0.05 * framing.distance;
+  moved.far = 60 * framing.distance;
+  return moved;
 }
 
 const std::vector<std::string>& view_names() {
@@ -81,6 +148,7 @@ CameraPath::CameraPath(const CameraOptions& options, std::vector<Vector3d> cog, 
   require(!cog.empty() && dt > 0 && height > 0 && aspect > 0, "a camera path needs a motion");
   azimuth_ = view->azimuth;
   elevation_ = view->elevation;
+  parallel_ = view->parallel;
   sums_.push_back(Vector3d::Zero());
   Eigen::AlignedBox3d box;
   for (const Vector3d& point : cog) {
@@ -105,8 +173,13 @@ Camera CameraPath::at(double t) const {
   camera.target = options_.mode == CameraMode::fixed
                       ? center_
                       : mean(t - options_.smoothing, t + options_.smoothing);
-  // The height of the picture's middle stays, so that a fall or a jump is seen as one.
-  camera.target.z() = center_.z() * 0.92;
+  const double first = center_.z();
+  const double beyond =
+      options_.mode == CameraMode::fixed
+          ? 0.0
+          : camera.target.z() -
+                std::clamp(camera.target.z(), kLowestStance * first, kHighestJump * first);
+  camera.target.z() = 0.92 * first + beyond;
   // The robot takes two thirds of the height; a path that is wide moves the fixed camera away.
   const double tall = 1.5 * height_;
   const double wide = (1.2 * height_ + reach_) / std::max(aspect_, 0.1);
@@ -118,6 +191,7 @@ Camera CameraPath::at(double t) const {
                                                    std::sin(elevation_));
   camera.near = 0.05 * distance;
   camera.far = 60 * distance;
+  if (parallel_) camera.parallel_height = std::max(tall, wide) / options_.zoom;
   return camera;
 }
 

@@ -67,6 +67,30 @@ double robot_height(const std::vector<BodySurface>& surface, const RobotModel& m
   return std::max({1e-3, box.sizes().maxCoeff(), around_cog});
 }
 
+/// Of each body, the points farthest in 26 directions.
+std::vector<std::vector<Vector3d>> outlines(const std::vector<BodySurface>& surface) {
+  std::vector<std::vector<Vector3d>> all;
+  for (const BodySurface& body : surface) {
+    std::vector<Vector3d> points;
+    for (int code = 0; code < 27; ++code) {
+      const Eigen::Vector3f along(float(code % 3) - 1, float(code / 3 % 3) - 1,
+                                  float(code / 9) - 1);
+      if (along.isZero()) continue;
+      float most = -INFINITY;
+      Eigen::Vector3f farthest = Eigen::Vector3f::Zero();
+      for (const Triangles* part : parts_of(body))
+        for (const RenderVertex& vertex : part->vertices)
+          if (along.dot(vertex.position) > most) {
+            most = along.dot(vertex.position);
+            farthest = vertex.position;
+          }
+      if (most > -INFINITY) points.emplace_back(farthest.cast<double>());
+    }
+    all.push_back(std::move(points));
+  }
+  return all;
+}
+
 /// The robot's surface, simplified where it is too fine; `notes` says so.
 std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOptions& options,
                                        std::vector<std::string>& notes) {
@@ -104,6 +128,10 @@ CameraPath make_path(const SimulationLog& log, const ClipOptions& options, doubl
 std::string verdict_text(const SimulationResult& result) {
   if (result.outcome == Outcome::fell) return "fell at " + text::fixed(result.fell_at, 2) + " s";
   return result.outcome == Outcome::stands ? "stands" : "unsettled";
+}
+
+std::string law_name(const ControllerType& law) {
+  return law == ControllerKind::none ? std::string("open loop") : std::string(name_of(law));
 }
 
 /// Name without folder and extension.
@@ -279,6 +307,8 @@ ClipRenderer::ClipRenderer(const RobotModel& model, const SimulationLog& log,
       pushes_(pushes(log)),
       surface_(drawn_surface(model, options, notes_)),
       height_(robot_height(surface_, model, log)),
+      outline_(outlines(surface_)),
+      verdict_at_(verdict_instant(log)),
       bumps_(rising_bumps(model, log)),
       renderer_(surface_, options.picture, scenery_of(log)),
       path_(make_path(log, options, height_)) {
@@ -301,7 +331,7 @@ Scene ClipRenderer::scene_at(double t, Overlay& overlay) const {
   const SimulationSample sample = sample_at(log_, t);
   Scene scene;
   scene.poses = body_poses(model_, sample.state);
-  scene.camera = path_.at(t);
+  scene.camera = framing_ ? framed(path_.at(t), *framing_) : path_.at(t);
   scene.ground = ground_at(log_, t);
   scene.floor = floor_at(log_, t);
   scene.bumps = make_bumps(bumps_, log_.world.height, t);
@@ -315,7 +345,43 @@ Scene ClipRenderer::scene_at(double t, Overlay& overlay) const {
 Image ClipRenderer::frame(double t) {
   Overlay overlay;
   const Scene scene = scene_at(t, overlay);
-  return finished(scene, overlay, t);
+  Image image = finished(scene, overlay, t);
+  if (options_.overlay.caption) write_caption(image, t);
+  return image;
+}
+
+Image ClipRenderer::tile(double t) {
+  Overlay overlay;
+  const Scene scene = scene_at(t, overlay);
+  overlay.labels.clear();  // the corner says it
+  Image image = finished(scene, overlay, t);
+  if (!options_.overlay.caption) return image;
+  const double size = std::clamp(image.height / 30.0, 9.0, 54.0);
+  const std::string event = instant_text(log_, t);
+  draw_text(image, 0.4 * size, 1.1 * size,
+            text::fixed(t, 2) + " s" + (event.empty() ? "" : "  " + event),
+            {.size = size, .bold = !event.empty(), .plate = {1, 1, 1, 0.72f}});
+  return image;
+}
+
+void ClipRenderer::frame_robot(const std::vector<double>& times) {
+  // How much of a picture the robot takes, which leaves room for the line of text.
+  constexpr double kShare = 0.88;
+  framing_.reset();
+  std::vector<Vector3d> offsets;
+  Camera camera;
+  for (const double t : times) {
+    camera = path_.at(t);
+    const Eigen::Matrix3d axes = view_matrix(camera).topLeftCorner<3, 3>();
+    const std::vector<Eigen::Isometry3d> poses = body_poses(model_, sample_at(log_, t).state);
+    for (size_t i = 0; i < poses.size(); ++i)
+      for (const Vector3d& point : outline_[i])
+        offsets.emplace_back(axes * (poses[i] * point - camera.target));
+  }
+  const double aspect = double(options_.picture.width) / options_.picture.height;
+  Framing found = framing(camera, aspect, offsets, kShare);
+  found.distance /= options_.camera.zoom;
+  framing_ = found;
 }
 
 Image ClipRenderer::exposures(const std::vector<double>& times) {
@@ -328,7 +394,9 @@ Image ClipRenderer::exposures(const std::vector<double>& times) {
     scene.exposures.push_back({body_poses(model_, sample_at(log_, times[i]).state),
                                Eigen::Vector4f::Zero(), 0.25 + 0.5 * share});
   }
-  return finished(scene, overlay, times.back());
+  Image image = finished(scene, overlay, times.back());
+  if (options_.overlay.caption) write_caption(image, times.back());
+  return image;
 }
 
 Image ClipRenderer::finished(const Scene& scene, const Overlay& overlay, double t) {
@@ -345,30 +413,38 @@ Image ClipRenderer::finished(const Scene& scene, const Overlay& overlay, double 
     // Between the lines of text above and below.
     const double y = std::clamp(at.y(), std::min(2.6 * size, 0.5 * image.height),
                                 std::max(image.height - 2.6 * size, 0.5 * image.height));
-    if (at.z() > 0) draw_text(image, at.x(), y, label.text, style);
+    const double half = 0.5 * drawn_width(label.text, style), most = image.width - half;
+    const double x = std::clamp(at.x(), std::min(half, most), std::max(half, most));
+    if (at.z() > 0) draw_text(image, x, y, label.text, style);
   }
-  if (options_.overlay.caption) write_caption(image, t);
+  if (options_.overlay.scale && scene.camera.parallel_height > 0)
+    write_scale(image, scene.camera, t);
   return image;
 }
 
-void ClipRenderer::write_caption(Image& image, double t) const {
-  const double size = std::clamp(image.height / 36.0, 9.0, 54.0), margin = 0.6 * size;
+double ClipRenderer::write_title(Image& image, double top, double size, double t) const {
+  const double margin = 0.6 * size, y = top + margin + 0.7 * size;
   const TextStyle plain = {.size = size, .plate = {1, 1, 1, 0.72f}};
   TextStyle bold = plain;
   bold.bold = true;
   const std::string title =
       options_.title.empty() ? plain_name(log_.provenance.pattern) : options_.title;
   double x = margin;
-  const double top = margin + 0.7 * size, bottom = image.height - top;
-  x += draw_text(image, x, top, title, bold);
-  if (log_.controller) x += draw_text(image, x, top, name_of(*log_.controller), plain);
-  draw_text(image, x, top, "t = " + text::fixed(t, 3) + " s", plain);
-  TextStyle verdict = bold;
-  verdict.anchor = TextAnchor::right;
-  verdict.color = log_.result.outcome == Outcome::stands ? Eigen::Vector4f(0.02f, 0.40f, 0.25f, 1)
-                                                         : Eigen::Vector4f(0.70f, 0.08f, 0.08f, 1);
-  if (log_.controller)  // a plan neither stands nor falls
-    draw_text(image, image.width - margin, top, verdict_text(log_.result), verdict);
+  x += draw_text(image, x, y, title, bold);
+  if (log_.controller) x += draw_text(image, x, y, law_name(*log_.controller), plain);
+  if (!framing_) draw_text(image, x, y, "t = " + text::fixed(t, 3) + " s", plain);
+  if (log_.controller && t >= verdict_at_ - 1e-9) {  // a plan neither stands nor falls
+    TextStyle verdict = bold;
+    verdict.anchor = TextAnchor::right;
+    verdict.color = log_.result.outcome == Outcome::stands
+                        ? Eigen::Vector4f(0.02f, 0.40f, 0.25f, 1)
+                        : Eigen::Vector4f(0.70f, 0.08f, 0.08f, 1);
+    draw_text(image, image.width - margin, y, verdict_text(log_.result), verdict);
+  }
+  return 2 * margin + 1.4 * size;
+}
+
+double ClipRenderer::write_legend(Image* image, int width, double top, double size) const {
   struct Entry {
     bool shown;
     std::string text;
@@ -377,23 +453,73 @@ void ClipRenderer::write_caption(Image& image, double t) const {
   using namespace overlay_color;
   const OverlayOptions& on = options_.overlay;
   const bool ghost = options_.ghost.command || options_.ghost.log;
-  const std::array<Entry, 8> entries = {
+  const std::array<Entry, 9> entries = {
       {{on.cog, "● COG", kCog},
        {on.zmp, "● ZMP", kZmp},
        {on.reference_zmp, "○ ref ZMP", kReferenceZmp},
        {on.support, "▭ support", kSupport},
        {on.forces, "↑ foot force", kForce},
        {on.push && !pushes_.empty(), "→ push", kPush},
-       {on.heat, "■ joint near a limit", {1, 0.2f, 0, 1}},
-       {ghost, "▒ " + (options_.ghost.command ? "command" : options_.ghost.name), kSupport}}};
-  x = margin;
+       {on.heat, "■ joint near a limit of angle, speed or torque", heat_color(0)},
+       {on.heat, "■ joint at it", heat_color(1)},
+       {ghost, "▒ " + (options_.ghost.command ? "command" : options_.ghost.name),
+        Exposure{}.tint}}};
+  const double margin = 0.6 * size, line = 1.7 * size;
+  double x = margin, y = top + 0.5 * line;
   for (const Entry& entry : entries) {
     if (!entry.shown) continue;
-    TextStyle style = plain;
-    style.size = 0.8 * size;
+    TextStyle style = {.size = size, .plate = {1, 1, 1, 0.72f}};
     style.color = entry.color;
     style.color.head<3>() *= 0.75f;  // dark enough to be read on the plate
-    x += draw_text(image, x, bottom, entry.text, style);
+    style.color[3] = 1;
+    const int wide = drawn_width(entry.text, style);
+    if (x > margin && x + wide > width - margin) {
+      x = margin;
+      y += line;
+    }
+    if (image) draw_text(*image, x, y, entry.text, style);
+    x += wide;
+  }
+  return x > margin ? y + 0.5 * line - top : 0;
+}
+
+void ClipRenderer::write_caption(Image& image, double t) const {
+  const double size = std::clamp(image.height / 36.0, 9.0, 54.0);
+  write_title(image, 0, size, t);
+  const double tall = write_legend(nullptr, image.width, 0, 0.8 * size);
+  write_legend(&image, image.width, image.height - tall - 0.5 * size, 0.8 * size);
+}
+
+void ClipRenderer::write_scale(Image& image, const Camera& camera, double t) const {
+  const double size = std::clamp(image.height / 40.0, 9.0, 40.0);
+  const Eigen::Isometry3d ground = ground_at(log_, t);
+  const Vector3d n = ground.linear().col(2);
+  // The ground below the middle of the picture, along gravity.
+  Vector3d below = camera.target;
+  below.z() -= n.dot(camera.target - ground.translation()) / n.z();
+  const double pixel = camera.parallel_height / image.height;  // [m]
+  const double foot = project(camera, image.width, image.height, below).y();
+  double step = 1;  // [m] the smallest of 1, 2, 5 with at least three lines of text between marks
+  for (const double next : {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001})
+    if (next / pixel >= 3 * size) step = next;
+  const auto line = [&](double y, int from, int to, double share) {
+    const int row = static_cast<int>(std::lround(y));
+    if (row < 0 || row >= image.height) return;
+    for (int x = std::max(0, from); x < std::min(image.width, to); ++x)
+      for (int c = 0; c < 3; ++c) {
+        std::uint8_t& value = image.pixel(x, row)[c];
+        value = static_cast<std::uint8_t>(std::lround(value * (1 - share)));
+      }
+  };
+  const double margin = 0.6 * size, top = margin + 2.4 * size;  // below the title
+  const bool millimetres = step < 0.01;
+  for (int k = 0; foot - k * step / pixel > top; ++k) {
+    const double y = foot - k * step / pixel;
+    line(y, 0, image.width, k == 0 ? 0.45 : 0.12);
+    line(y, 0, static_cast<int>(margin), 0.8);
+    const std::string number =
+        millimetres ? text::fixed(1e3 * k * step, 0) + " mm" : text::fixed(k * step, 2) + " m";
+    if (y < image.height - 2 * size) draw_text(image, margin, y, number, {.size = size});
   }
 }
 

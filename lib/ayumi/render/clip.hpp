@@ -2,6 +2,7 @@
 // A run as a clip, a single picture or a folder of frames. Nothing is simulated again.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,15 @@ class ClipRenderer {
   /// or a log of another robot.
   ClipRenderer(const RobotModel& model, const SimulationLog& log, const ClipOptions& options);
   Image frame(double t);
+  /// One of several on a sheet: time and event are written in a corner, and nothing else.
+  Image tile(double t);
+  /// From now on pictures are framed alike, so that the robot at these instants fills them.
+  void frame_robot(const std::vector<double>& times);
+  /// A sheet's lines: title, controller and verdict; the marks with their meanings, over as many
+  /// lines as they need. `size` of the letters [pixel]; (left, top) to the right edge. They return
+  /// the height they take [pixel]; nothing is drawn without an image.
+  double write_title(Image& image, double top, double size, double t) const;
+  double write_legend(Image* image, int width, double top, double size) const;
   /// Several instants in one picture: the last in full, the others lighter the earlier they are.
   Image exposures(const std::vector<double>& times);
   const std::vector<std::string>& notes() const { return notes_; }
@@ -63,8 +73,11 @@ class ClipRenderer {
   ClipOptions options_;
   std::vector<PushRecord> pushes_;
   std::vector<std::string> notes_;
-  std::vector<BodySurface> surface_;  ///< until the renderer has it
-  double height_;                     ///< of the robot [m]
+  std::vector<BodySurface> surface_;                   ///< until the renderer has it
+  double height_;                                      ///< of the robot [m]
+  std::vector<std::vector<Eigen::Vector3d>> outline_;  ///< farthest points of each body, its frame
+  std::optional<Framing> framing_;
+  double verdict_at_;  ///< [s]
   std::vector<RisingBump> bumps_;
   Renderer renderer_;
   CameraPath path_;
@@ -73,6 +86,7 @@ class ClipRenderer {
   void add_ghost(double t, Scene& scene) const;
   Image finished(const Scene& scene, const Overlay& overlay, double t);
   void write_caption(Image& image, double t) const;
+  void write_scale(Image& image, const Camera& camera, double t) const;
 };
 
 /// Writes by the name of `path`: .mp4, .webm, .gif: a clip whose frame k shows begin + k speed/fps;

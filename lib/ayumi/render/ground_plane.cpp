@@ -39,6 +39,10 @@ Eigen::Matrix4d flattening(const GroundRectangle& plane, const Vector3d& sun) {
 }
 
 double horizon_height(const Camera& camera, const Vector3d& normal, const Matrix4f& to_clip) {
+  if (camera.parallel_height > 0) {  // the ground is seen on edge
+    const Eigen::Vector4f clip = to_clip * camera.target.cast<float>().homogeneous();
+    return clip.y() - 2 * normal.dot(camera.target) / camera.parallel_height;
+  }
   const Vector3d ahead = camera.target - camera.eye;
   const Vector3d level = ahead - normal * normal.dot(ahead);
   if (level.norm() < 1e-3 * ahead.norm()) return 1;

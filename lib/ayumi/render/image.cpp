@@ -106,6 +106,10 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   write_file(path, encode_png(image));
 }
 
+int drawn_width(const std::string& text, const TextStyle& style) {
+  return text.empty() ? 0 : cairo_image_surface_get_width(render_text(text, style).get());
+}
+
 int draw_text(Image& image, double x, double y, const std::string& text, const TextStyle& style) {
   if (text.empty()) return 0;
   const SurfacePointer surface = render_text(text, style);

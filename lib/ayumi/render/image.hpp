@@ -34,6 +34,9 @@ struct TextStyle {
   Eigen::Vector4f plate = {1.0f, 1.0f, 1.0f, 0.0f};   ///< box behind the text; alpha 0: none
 };
 
+/// Width that draw_text takes for it [pixel].
+int drawn_width(const std::string& text, const TextStyle& style);
+
 /// Writes one line of text; (x, y) is its anchor on the vertical middle of the line [pixel]. Parts
 /// outside the picture are left out. Returns the width it takes [pixel].
 int draw_text(Image& image, double x, double y, const std::string& text, const TextStyle& style);

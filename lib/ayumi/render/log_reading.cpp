@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -35,19 +36,189 @@ std::vector<FlightRecord> stretches(const SimulationLog& log, const std::array<b
   return result;
 }
 
-/// Instants evenly spaced over a walk may meet every other step only: one on the same foot as the
-/// instant before it moves to the middle of a step on the other foot within `reach` [s].
-void alternate_feet(const SimulationLog& log, double reach, std::vector<double>& times) {
-  for (size_t i = 1; i + 1 < times.size(); ++i) {
-    const std::array<bool, 2> before = sample_at(log, times[i - 1]).planned_contact;
-    if (before[0] == before[1] || sample_at(log, times[i]).planned_contact != before) continue;
-    double nearest = times[i] + reach;
-    for (const FlightRecord& step : stretches(log, {before[1], before[0]})) {
-      const double middle = 0.5 * (step.begin + step.end);
-      if (std::abs(middle - times[i]) < std::abs(nearest - times[i])) nearest = middle;
+/// An instant that a picture should show, the higher its weight the sooner.
+struct Candidate {
+  double t = 0;       ///< [s]
+  double weight = 0;  ///< of postures the size of the move [rad]; events have more
+};
+
+// Weights of events, above every posture: a joint moves by less than 10 rad.
+constexpr double kPushWeight = 400, kFallWeight = 300, kApexWeight = 200, kStepWeight = 0.05;
+
+// A move of a joint that is worth a picture [rad], and the share of the largest move of the run.
+// Chosen: 3 degrees can just be seen in a picture of 400 pixels; at half, servo errors count, at
+// twice, a nod is missed.
+constexpr double kSeenMove = 0.05, kSeenShare = 0.15;
+
+// An extreme that is held counts when it is reached, within this share of the move. Chosen: in a
+// quintic between rests 2 % of the way are left at four fifths of the time.
+constexpr double kReached = 0.02;
+
+/// Instants at which a curve turns back or comes to rest after a move of at least `least`, each
+/// with the size of that move.
+void add_turns(const std::vector<double>& values, double dt, size_t first, double least,
+               std::vector<Candidate>& out) {
+  if (values.empty()) return;
+  size_t low = 0, high = 0, from = 0;  // extremes since the last turn, and that turn
+  int direction = 0;
+  const auto turn = [&](size_t at) {
+    const double move = std::min(10.0, std::abs(values[at] - values[from]));  // below every event
+    size_t reached = from;
+    while (reached < at && std::abs(values[reached] - values[at]) > kReached * move) ++reached;
+    // Where it began, it has been seen.
+    const bool back = std::abs(values[at] - values[0]) < 0.3 * move;
+    out.push_back({static_cast<double>(first + reached) * dt, back ? 0.5 * move : move});
+    from = at;
+  };
+  for (size_t k = 1; k < values.size(); ++k) {
+    if (values[k] > values[high]) high = k;
+    if (values[k] < values[low]) low = k;
+    if (direction >= 0 && values[high] - values[k] > least) {
+      if (direction > 0)
+        turn(high);
+      else
+        from = high;
+      direction = -1;
+      low = k;
+    } else if (direction <= 0 && values[k] - values[low] > least) {
+      if (direction < 0)
+        turn(low);
+      else
+        from = low;
+      direction = 1;
+      high = k;
     }
-    if (std::abs(nearest - times[i]) < reach) times[i] = nearest;
   }
+  // What it comes to and stays at.
+  if (direction != 0) turn(direction > 0 ? high : low);
+}
+
+/// Postures of the ticks from `first` to before `last` in which joints, the trunk or the COG turn.
+std::vector<Candidate> turning_postures(const SimulationLog& log, size_t first, size_t last) {
+  std::vector<std::vector<double>> curves;
+  const auto add = [&](const auto& value) {
+    std::vector<double> curve;
+    for (size_t k = first; k < last; ++k) curve.push_back(value(log.samples[k]));
+    curves.push_back(std::move(curve));
+  };
+  for (Eigen::Index i = 0; i < log.samples.front().state.theta.size(); ++i)
+    add([i](const SimulationSample& s) { return s.state.theta[i]; });
+  // The COG against half its height above the ground, as if that were a joint's arm.
+  const double height = std::max(1e-3, log.samples.front().cog.z() - log.world.height);
+  add([&](const SimulationSample& s) { return 2 * s.cog.z() / height; });
+  for (const int axis : {0, 1})  // the lean of the trunk
+    add([axis](const SimulationSample& s) {
+      return (s.state.base.attitude * Eigen::Vector3d::UnitZ())[axis];
+    });
+  double most = 0;
+  for (const auto& curve : curves) {
+    if (curve.empty()) continue;
+    const auto [low, high] = std::minmax_element(curve.begin(), curve.end());
+    most = std::max(most, *high - *low);
+  }
+  std::vector<Candidate> out;
+  for (const auto& curve : curves)
+    add_turns(curve, log.dt, first, std::max(kSeenMove, kSeenShare * most), out);
+  return out;
+}
+
+/// The tick nearest to a time.
+size_t tick_at(const SimulationLog& log, double t) {
+  const double last = static_cast<double>(log.samples.size() - 1);
+  return static_cast<size_t>(std::clamp(std::round(t / log.dt), 0.0, last));
+}
+
+/// When the COG is highest in a flight, in the middle of what the samples cannot tell apart [s].
+double apex_of(const SimulationLog& log, const FlightRecord& flight) {
+  const size_t first = tick_at(log, flight.begin), last = tick_at(log, flight.end - log.dt);
+  size_t low = first, high = first;
+  for (size_t k = first; k <= last; ++k) {
+    if (log.samples[k].cog.z() > log.samples[high].cog.z() + 1e-9) low = high = k;
+    if (log.samples[k].cog.z() > log.samples[low].cog.z() - 1e-9) high = k;
+  }
+  return 0.5 * static_cast<double>(low + high + (high == last ? 1 : 0)) * log.dt;
+}
+
+/// Takes candidates by weight, none nearer to another than `apart`, until there are `count` times;
+/// events may be as near as they are. Of those that weigh about the same it takes first what stands
+/// on other feet than the nearest time taken, then what is farthest from it.
+void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t count, double apart,
+          std::vector<double>& times) {
+  // Weights of the same power of this are alike. Chosen: the steps of a walk differ by less.
+  constexpr double kAlike = 1.25;
+  // The largest moves may be so near to each other and to the ends [s]. Chosen: half of the time of
+  // a quick step.
+  constexpr double kShortest = 0.2;
+  double heaviest = 0;
+  for (const Candidate& c : candidates)
+    if (c.weight < kApexWeight) heaviest = std::max(heaviest, c.weight);
+  while (times.size() < count) {
+    const Candidate* best = nullptr;
+    std::tuple<double, bool, double> most;
+    for (const Candidate& c : candidates) {
+      double away = INFINITY, nearest = c.t;
+      for (const double t : times)
+        if (std::abs(t - c.t) < away) away = std::abs((nearest = t) - c.t);
+      const double gap = c.weight >= kApexWeight         ? 1e-6
+                         : kAlike * c.weight >= heaviest ? std::min(apart, kShortest)
+                                                         : apart;
+      if (away < gap) continue;
+      const bool other = log.samples[tick_at(log, c.t)].planned_contact !=
+                         log.samples[tick_at(log, nearest)].planned_contact;
+      const std::tuple value(std::floor(std::log(c.weight) / std::log(kAlike)), other, away);
+      if (best && value <= most) continue;
+      best = &c;
+      most = value;
+    }
+    if (!best) return;
+    times.push_back(best->t);
+  }
+}
+
+/// Fills with the middle of the longest gap, again and again.
+void fill(size_t count, std::vector<double>& times) {
+  std::sort(times.begin(), times.end());
+  while (times.size() < count) {
+    size_t widest = 0;
+    for (size_t i = 1; i + 1 < times.size(); ++i)
+      if (times[i + 1] - times[i] > times[widest + 1] - times[widest] + 1e-9) widest = i;
+    times.insert(times.begin() + static_cast<std::ptrdiff_t>(widest) + 1,
+                 0.5 * (times[widest] + times[widest + 1]));
+  }
+}
+
+/// The part of a run around its pushes or flights [s]; all of it where it has none, or where the
+/// robot moves more elsewhere.
+FlightRecord shown_part(const SimulationLog& log) {
+  // The push before the flights and the landing after them [s].
+  constexpr double kBefore = 0.25, kAfter = 0.35;
+  // From a push to the end of what it causes, and after a fall [s].
+  constexpr double kRecovery = 1.25;
+  // A move elsewhere is shown as well where it is so much larger. Chosen: steps of one walk differ
+  // by less; a kick moves the knee by twice as much as the steps around it.
+  constexpr double kLarger = 1.5;
+  const std::vector<FlightRecord> flown = flights(log);
+  const std::vector<PushRecord> pushed = pushes(log);
+  FlightRecord part = {0, duration(log)};
+  if (!flown.empty()) {
+    part.begin = std::max(part.begin, flown.front().begin - kBefore);
+    part.end = std::min(part.end, flown.back().end + kAfter);
+  } else if (!pushed.empty()) {
+    part.begin = std::max(part.begin, pushed.front().begin - kBefore);
+    const double last = std::max(pushed.back().end, log.result.fell_at);
+    part.end = std::min(part.end, last + kRecovery);
+  }
+  const auto largest = [&](size_t first, size_t last) {
+    double most = kSeenMove;
+    for (const Candidate& c : turning_postures(log, first, last)) most = std::max(most, c.weight);
+    return most;
+  };
+  const size_t begin = tick_at(log, part.begin), end = tick_at(log, part.end);
+  const double inside = kLarger * largest(begin, end);
+  if (largest(0, begin) > inside) part.begin = 0;
+  if (log.result.outcome != Outcome::fell && largest(end, log.samples.size()) > inside)
+    part.end = duration(log);
+  return part;
 }
 
 }  // namespace
@@ -156,40 +327,80 @@ double telling_instant(const SimulationLog& log) {
 }
 
 std::vector<double> telling_instants(const SimulationLog& log, int count) {
-  // The push before the flights and the landing after them [s].
-  constexpr double kBefore = 0.25, kAfter = 0.35;
-  // From a push to the end of what it causes, and after a fall [s].
-  constexpr double kRecovery = 1.25;
+  if (count < 1) return {};
+  if (count == 1) return {telling_instant(log)};
+  const auto wanted = static_cast<size_t>(count);
+  const FlightRecord part = shown_part(log);
   const std::vector<FlightRecord> flown = flights(log);
-  const std::vector<PushRecord> pushed = pushes(log);
-  double begin = 0, end = duration(log);
-  if (flown.empty() && !pushed.empty()) {
-    begin = std::max(begin, pushed.front().begin - kBefore);
-    const double last = std::max(pushed.back().end, log.result.fell_at);
-    end = std::min(end, last + kRecovery);
-  } else if (!flown.empty()) {
-    begin = std::max(begin, flown.front().begin - kBefore);
-    end = std::min(end, flown.back().end + kAfter);
-  }
-  std::vector<double> times;
-  for (int i = 0; i < count; ++i)
-    times.push_back(begin + (end - begin) * i / std::max(1, count - 1));
-  if (flown.empty() && pushed.empty())
-    alternate_feet(log, 0.5 * (end - begin) / std::max(1, count - 1), times);
-  const auto show = [&](const auto& records) {
-    if (2 * static_cast<int>(records.size()) > count) return;
-    for (const auto& record : records) {
-      const double middle = 0.5 * (record.begin + record.end);
-      *std::min_element(times.begin(), times.end(), [&](double a, double b) {
-        return std::abs(a - middle) < std::abs(b - middle);
-      }) = middle;
-    }
+  std::vector<Candidate> candidates;
+  const auto within = [&](double t) { return t >= part.begin && t <= part.end; };
+  const auto add = [&](double t, double weight) {
+    if (within(t)) candidates.push_back({t, weight});
   };
-  if (flown.empty())
-    show(pushed);
-  else
-    show(flown);
+  for (const PushRecord& push : pushes(log))
+    add(0.5 * (push.begin + std::min(push.end, part.end)), kPushWeight);
+  if (log.result.outcome == Outcome::fell) add(log.result.fell_at, kFallWeight);
+  for (const FlightRecord& flight : flown) add(apex_of(log, flight), kApexWeight);
+  const size_t events = candidates.size();
+  const bool fell = log.result.outcome == Outcome::fell;
+  const size_t first = tick_at(log, part.begin);
+  const size_t last = tick_at(log, fell ? log.result.fell_at : part.end) + 1;
+  for (const Candidate& c : turning_postures(log, first, std::max(first, last)))
+    candidates.push_back(c);
+  // Of a walk, the middle of every step.
+  for (const std::array<bool, 2> feet : {std::array{true, false}, std::array{false, true}})
+    for (const FlightRecord& step : stretches(log, feet)) {
+      const double middle = 0.5 * (step.begin + step.end);
+      const bool alone =
+          std::none_of(candidates.begin() + static_cast<std::ptrdiff_t>(events), candidates.end(),
+                       [&](const Candidate& c) { return c.t >= step.begin && c.t <= step.end; });
+      if (alone) add(middle, kStepWeight);
+    }
+  std::vector<double> times;
+  if (wanted <= events) {
+    take(log, candidates, wanted, 0, times);
+  } else {
+    times = {part.begin};
+    if (wanted > std::max<size_t>(2, 1 + events) && part.end > part.begin)
+      times.push_back(part.end);
+    // Nearer to each other, pictures hardly differ.
+    take(log, candidates, wanted, 0.4 * (part.end - part.begin) / std::max(1, count - 1), times);
+    if (times.size() < wanted && times.size() == 1) times.push_back(part.end);
+    if (times.size() > 1) fill(wanted, times);
+  }
+  std::sort(times.begin(), times.end());
+  while (times.size() < wanted) times.push_back(part.end);
   return times;
+}
+
+std::string instant_text(const SimulationLog& log, double t) {
+  const double half = 0.5 * log.dt + 1e-9;
+  if (log.result.outcome == Outcome::fell && std::abs(t - log.result.fell_at) <= half)
+    return "falls";
+  for (const PushRecord& push : pushes(log))
+    if (t >= push.begin - 1e-9 && t < push.end) return "push " + push_text(push);
+  for (const FlightRecord& flight : flights(log))
+    if (std::abs(t - apex_of(log, flight)) <= half) return "apex";
+  return "";
+}
+
+double verdict_instant(const SimulationLog& log) {
+  // What differs by less from the end stands as it will stand. Chosen: 2 mm of 0.25 m and 1 degree
+  // are less than a picture shows.
+  constexpr double kPlace = 0.008, kAngle = M_PI / 180;
+  const double last = duration(log);
+  if (log.result.outcome == Outcome::fell) return log.result.fell_at;
+  if (log.result.outcome != Outcome::stands) return last;
+  const SimulationSample& end = log.samples.back();
+  size_t k = log.samples.size() - 1;
+  for (; k > 0; --k) {
+    const SimulationSample& s = log.samples[k - 1];
+    const bool same = s.planned_contact == end.planned_contact && s.push_force.isZero(0) &&
+                      (s.cog - end.cog).norm() <= kPlace * std::abs(end.cog.z()) &&
+                      (s.state.theta - end.state.theta).cwiseAbs().maxCoeff() <= kAngle;
+    if (!same) break;
+  }
+  return static_cast<double>(k) * log.dt;
 }
 
 }  // namespace ayumi

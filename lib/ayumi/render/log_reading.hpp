@@ -56,8 +56,18 @@ std::vector<FlightRecord> flights(const SimulationLog& log);
 /// middle of the first flight, else that of the run [s].
 double telling_instant(const SimulationLog& log);
 
-/// `count` instants worth showing [s], evenly spaced over the run, or over its flights and a little
-/// around them, whose middles are among them where there are enough; of a walk on both feet.
+/// `count` instants worth showing [s], in the order of time: begin and end, pushes, the fall, the
+/// apex of each flight, then postures in which joints or the COG turn back or come to rest, the
+/// larger their move the sooner, and what fills the longest gaps; of a walk on both feet. They lie
+/// around pushes or flights, unless the robot moves more elsewhere.
 std::vector<double> telling_instants(const SimulationLog& log, int count);
+
+/// What happens at an instant: "push 1.1 N s", "apex", "falls"; empty for nothing special.
+std::string instant_text(const SimulationLog& log, double t);
+
+/// From when on it is so what the verdict says [s]: the fall, or the instant from which on a robot
+/// that stands keeps its posture, its place and its contacts. Its end where it does not come to
+/// rest.
+double verdict_instant(const SimulationLog& log);
 
 }  // namespace ayumi

@@ -57,7 +57,14 @@ void add_trail(Triangles& target, const SimulationLog& log, double t, const Over
     if (t - age < 0) continue;
     const auto index =
         std::min(log.samples.size() - 1, static_cast<size_t>(std::llround((t - age) / log.dt)));
-    const Vector3d point = plane.drop(log.samples[index].*quantity, layer);
+    const SimulationSample& sample = log.samples[index];
+    if (quantity == &SimulationSample::zmp && sample.fz <= 0) {  // there is none in flight
+      add_band(target, points, colors, plane.normal, 0.006 * plane.size);
+      points.clear();
+      colors.clear();
+      continue;
+    }
+    const Vector3d point = plane.drop(sample.*quantity, layer);
     if (!points.empty() && (point - points.back()).norm() < 1e-5) {
       colors.back() = faded(color, 1 - age / options.trail);
       continue;
@@ -107,6 +114,24 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
     add_arrow(overlay.triangles, tail, tip, 0.014 * size, faded(overlay_color::kPush, opacity));
     overlay.labels.push_back({tail + Vector3d::UnitZ() * (0.08 * size), push_text(push), opacity});
   }
+}
+
+/// 2/3 where a joint begins to be near a limit of its range, 1 at the limit; less where it is not.
+double position_use(const Dof& dof, double theta, double home) {
+  // The part of the range that is near a limit. Chosen: a tenth is 10 to 20 degrees of most joints;
+  // at half a warning comes late, at twice deep knees are always warm.
+  constexpr double kNear = 0.1;
+  double use = 0;
+  for (const double side : {-1.0, 1.0}) {
+    const double limit = side < 0 ? dof.lower : dof.upper;
+    const double left = side * (limit - theta), at_home = std::max(0.0, side * (limit - home));
+    const double near = std::min(kNear * (dof.upper - dof.lower), at_home / 3);
+    use = std::max(use, left <= 0 && at_home > 0 ? 1.0
+                        : near > 0               ? 1 - left / (3 * near)
+                        : left < 0               ? 1.0
+                                                 : 0.0);
+  }
+  return use;
 }
 
 // What the robot's files say: where the soles are, about which axes joints turn by positive angles
@@ -168,6 +193,7 @@ std::vector<float> joint_heat(const RobotModel& model, const std::string& profil
   const std::vector<std::string> known = model.profile_names();
   const bool has = std::find(known.begin(), known.end(), profile) != known.end();
   const ActuatorLimits& limits = model.limits(has ? profile : "");
+  const Eigen::VectorXd home = model.rest_state().theta;
   std::vector<float> heat;
   for (const Body& body : model.bodies()) {
     double use = 0;
@@ -175,7 +201,7 @@ std::vector<float> joint_heat(const RobotModel& model, const std::string& profil
     if (i >= 0) {
       const Dof& dof = model.dofs()[size_t(i)];
       if (dof.limited && dof.upper > dof.lower)
-        use = std::abs(2 * sample.state.theta[i] - dof.upper - dof.lower) / (dof.upper - dof.lower);
+        use = position_use(dof, sample.state.theta[i], home[i]);
       if (sample.state.dtheta.size() > i)
         use = std::max(use, std::abs(sample.state.dtheta[i]) / limits.speed[i]);
       if (sample.torque.size() > i)
@@ -202,7 +228,7 @@ Overlay make_overlay(const RobotModel& model, const SimulationLog& log,
     add_trail(target, log, t, options, plane, &SimulationSample::zmp, overlay_color::kZmp, 4);
   if (options.model) add_model(target, model, poses, plane);
   if (options.cog) add_cog(target, sample.cog, plane);
-  if (options.reference_zmp)
+  if (options.reference_zmp && (sample.planned_contact[0] || sample.planned_contact[1]))
     add_ring(target, plane.drop(sample.reference_zmp, 6), plane.normal, 0.026 * height,
              0.036 * height, overlay_color::kReferenceZmp);
   if (options.zmp && sample.fz > 0)

@@ -22,7 +22,8 @@ struct OverlayOptions {
   bool push = true;           ///< arrow with its value
   bool trails = true;         ///< of COG (on the ground) and ZMP
   bool model = false;         ///< outlines of the soles, axes of the joints, arrow ahead
-  bool heat = false;          ///< bodies whose joint is near a limit in red
+  bool heat = false;          ///< bodies whose joint is near a limit in amber, at it in red
+  bool scale = true;          ///< heights in a parallel view
   bool caption = true;        ///< line of text and legend of the marks
   double trail = 2.0;         ///< length of the trails [s]
   double push_hold = 0.6;     ///< a push is shown at least this long from its start [s]
@@ -59,7 +60,10 @@ std::vector<Eigen::Vector3d> support_corners(
     const Eigen::Isometry3d& ground = Eigen::Isometry3d::Identity());
 
 /// How near the joint of each body is to its limits of position, speed and torque, by body: 0 up to
-/// two thirds of the nearest limit, 1 at it. `profile` by name; the default one where unknown.
+/// two thirds of the limit of speed or torque and outside the last tenth of the range, 1 at the
+/// limit. Where the home posture is near a limit, the joint is near it from a third of that
+/// distance on, so that nothing is near a limit at home. `profile` by name; the default one where
+/// unknown.
 std::vector<float> joint_heat(const RobotModel& model, const std::string& profile,
                               const SimulationSample& sample);
 

@@ -11,8 +11,8 @@
 // Order of a frame: the robot's shadow as coverage seen along the sun, read back, blurred and given
 // back as a small texture; then robot, scenery, ground, sky, shadow, exposures, overlay. An
 // exposure is drawn twice, first into the depth alone, so that only its nearest surface shines
-// through. What an overlay hides behind the robot is drawn first and faintly, then its visible
-// part.
+// through. It lies a little behind where it is: what coincides with it is seen, without speckle.
+// What an overlay hides behind the robot is drawn first and faintly, then its visible part.
 //
 // Ground, sky and shadow have no edges that samples would smooth (the grid smooths its own lines).
 // An antialiased frame is drawn with samples only where something else is, then resolved into the
@@ -29,13 +29,37 @@ constexpr int kSamples = 4;                // per pixel, where edges are smoothe
 
 const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
 
-/// From amber to red as the heat rises.
+/// How far exposures lie behind where they are, as a share of the camera's distance. Chosen: about
+/// 5 mm on a robot of 0.5 m, more than a servo sags; at half, soles and command still mix, at
+/// twice, a ghost that stands out by less than 1 cm is hidden.
+constexpr double kBehind = 0.007;
+
+/// The projection with `steps` times kBehind more of depth.
+Matrix4f pushed_back(const Scene& scene, const Matrix4f& view_projection, size_t steps) {
+  const Camera& camera = scene.camera;
+  const double away = (camera.eye - camera.target).norm();
+  const double step = kBehind * away * double(steps), range = camera.far - camera.near;
+  // By how much the depth of OpenGL grows there.
+  const double deeper = camera.parallel_height > 0
+                            ? 2 * step / range
+                            : 2 * camera.far * camera.near / range * step / (away * (away + step));
+  Matrix4f moved = view_projection;
+  moved.row(2) += static_cast<float>(deeper) * view_projection.row(3);
+  return moved;
+}
+
+/// Of a body: its own colour where it is cold.
 Eigen::Vector4f heat_tint(float heat) {
-  const float h = std::clamp(heat, 0.0f, 1.0f);
-  return {1.0f, 0.62f * (1 - h), 0.02f, h > 0 ? 0.35f + 0.65f * h : 0.0f};
+  Eigen::Vector4f tint = heat_color(heat);
+  tint[3] = heat > 0 ? 0.35f + 0.65f * std::min(heat, 1.0f) : 0.0f;
+  return tint;
 }
 
 }  // namespace
+
+Eigen::Vector4f heat_color(float heat) {
+  return {1.0f, 0.62f * (1 - std::clamp(heat, 0.0f, 1.0f)), 0.02f, 1.0f};
+}
 
 Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOptions& chosen,
                        const Scenery& on_floor)
@@ -198,8 +222,17 @@ void Renderer::Parts::draw_scenery(const Scene& scene, const Matrix4f& flatten, 
   gl.UseProgram(solid);
 }
 
-void Renderer::Parts::draw_exposures(const Scene& scene) {
-  for (const Exposure& exposure : scene.exposures) {
+void Renderer::Parts::set_view(const Matrix4f& view_projection) {
+  for (const GLuint program : {textured, solid}) {
+    gl.UseProgram(program);
+    gl.set(program, "view_projection", view_projection);
+  }
+}
+
+void Renderer::Parts::draw_exposures(const Scene& scene, const Matrix4f& view_projection) {
+  for (size_t i = 0; i < scene.exposures.size(); ++i) {
+    const Exposure& exposure = scene.exposures[i];
+    set_view(pushed_back(scene, view_projection, scene.exposures.size() - i));
     const auto tint = [&](size_t) { return exposure.tint; };
     gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     draw_bodies(exposure.poses, exposure.opacity, tint);
@@ -208,6 +241,7 @@ void Renderer::Parts::draw_exposures(const Scene& scene) {
     draw_bodies(exposure.poses, exposure.opacity, tint);
     gl.Disable(GL_BLEND);
   }
+  set_view(view_projection);
 }
 
 void Renderer::Parts::draw_overlay(const Scene& scene) {
@@ -252,6 +286,7 @@ Image Renderer::render(const Scene& scene) {
   const Vector3d sun = sun_behind(scene.camera, Vector3d::UnitZ());
   // A plane that the sun only grazes would carry a shadow without end.
   const bool with_shadow = p.options.ground && p.options.shadow && !box.isEmpty() &&
+                           scene.camera.parallel_height <= 0 &&
                            scene.ground.linear().col(2).dot(sun) > 0.2;
   const Vector3d none = Vector3d::Zero();
   const GroundRectangle plane =
@@ -282,7 +317,7 @@ Image Renderer::render(const Scene& scene) {
   p.draw_plane(scene, setting);
   p.draw_sky(scene, setting);
   p.draw_shadow(setting);
-  p.draw_exposures(scene);
+  p.draw_exposures(scene, view_projection);
   p.draw_overlay(scene);
   if (p.options.antialias) p.resolve(edges);
   return p.read();

@@ -24,10 +24,14 @@ struct RenderOptions {
 
 /// The robot once more, translucent: a ghost, or an earlier instant.
 struct Exposure {
-  std::vector<Eigen::Isometry3d> poses;                 ///< one per body, world
-  Eigen::Vector4f tint = {0.16f, 0.42f, 0.85f, 0.75f};  ///< sRGB, and its share of the colour
-  double opacity = 0.35;
+  std::vector<Eigen::Isometry3d> poses;  ///< one per body, world
+  /// sRGB, and its share of the colour. Of no robot's covers and no mark.
+  Eigen::Vector4f tint = {0.93f, 0.45f, 0.05f, 0.85f};
+  double opacity = 0.40;
 };
+
+/// Colour of a joint by Scene::heat, from amber to red.
+Eigen::Vector4f heat_color(float heat);
 
 /// What stands on the ground from beginning to end.
 struct Scenery {

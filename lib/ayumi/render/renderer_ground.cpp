@@ -108,7 +108,7 @@ void Renderer::Parts::place(GLuint program, const Setting& setting, const Eigen:
 }
 
 void Renderer::Parts::draw_plane(const Scene& scene, const Setting& setting) {
-  if (!options.ground) return;
+  if (!options.ground || scene.camera.parallel_height > 0) return;
   const double distance = (scene.camera.eye - scene.camera.target).norm();
   place(ground, setting, middle_of_plane(scene.camera, setting.plane), kPlaneReach * distance,
         kWholePlane);
@@ -122,7 +122,7 @@ void Renderer::Parts::draw_plane(const Scene& scene, const Setting& setting) {
 
 void Renderer::Parts::draw_sky(const Scene& scene, const Setting& setting) {
   const double distance = (scene.camera.eye - scene.camera.target).norm();
-  const bool covers = options.ground && hole.isZero();
+  const bool covers = options.ground && hole.isZero() && scene.camera.parallel_height <= 0;
   const double bottom =
       covers ? ground_height(scene.camera, double(options.width) / options.height, setting.plane,
                              middle_of_plane(scene.camera, setting.plane), kPlaneReach * distance) -

@@ -59,7 +59,8 @@ struct Renderer::Parts {
   template <typename Tint>
   void draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity, const Tint& tint);
   void draw_scenery(const Scene& scene, const Eigen::Matrix4f& flatten, bool with_shadow);
-  void draw_exposures(const Scene& scene);
+  void set_view(const Eigen::Matrix4f& view_projection);
+  void draw_exposures(const Scene& scene, const Eigen::Matrix4f& view_projection);
   PixelBox with_edges(const Scene& scene, const Eigen::Matrix4f& view_projection) const;
   void draw_around(const PixelBox& inner, const Scene& scene, const Setting& setting);
   void place(GLuint program, const Setting& setting, const Eigen::Vector2d& at, double reach,

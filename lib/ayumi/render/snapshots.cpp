@@ -14,6 +14,22 @@ void paste(const Image& tile, Image& sheet, int left, int top) {
     std::copy_n(tile.pixel(0, y), 3 * tile.width, sheet.pixel(left, top + y));
 }
 
+/// The sheet below one title and above one legend.
+Image with_lines(const Image& tiled, int tile_height, const ClipRenderer& renderer, double end) {
+  const double size = std::clamp(tile_height / 22.0, 10.0, 54.0);
+  Image blank{tiled.width, static_cast<int>(3 * size), {}};
+  blank.rgb.assign(3 * static_cast<size_t>(blank.width) * static_cast<size_t>(blank.height), 255);
+  const int head = static_cast<int>(std::ceil(renderer.write_title(blank, 0, size, end)));
+  const double legend = renderer.write_legend(nullptr, tiled.width, 0, 0.85 * size);
+  Image sheet{tiled.width, head + tiled.height, {}};
+  if (legend > 0) sheet.height += static_cast<int>(std::ceil(legend + 0.6 * size));
+  sheet.rgb.assign(3 * static_cast<size_t>(sheet.width) * static_cast<size_t>(sheet.height), 255);
+  renderer.write_title(sheet, 0, size, end);
+  paste(tiled, sheet, 0, head);
+  renderer.write_legend(&sheet, sheet.width, head + tiled.height + 0.3 * size, 0.85 * size);
+  return sheet;
+}
+
 }  // namespace
 
 Image draw_sheet(const std::vector<Image>& tiles, int columns) {
@@ -43,10 +59,13 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
     clip.camera.mode = CameraMode::fixed;
     return ClipRenderer(model, log, clip).exposures(times);
   }
+  clip.camera.smoothing = 0;  // every picture has the robot in its middle
   ClipRenderer renderer(model, log, clip);
+  renderer.frame_robot(times);
   std::vector<Image> tiles;
-  for (const double t : times) tiles.push_back(renderer.frame(t));
-  return draw_sheet(tiles, options.columns);
+  for (const double t : times) tiles.push_back(renderer.tile(t));
+  const Image tiled = draw_sheet(tiles, options.columns);
+  return clip.overlay.caption ? with_lines(tiled, tiles.front().height, renderer, last) : tiled;
 }
 
 void write_strip(const RobotModel& model, const SimulationLog& log,

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "ayumi/base/text.hpp"
+
 namespace ayumi::html {
 
 std::string base64(const std::string& bytes) {
@@ -68,6 +70,11 @@ std::string table(const Table& table) {
     out += "</tr>\n";
   }
   return out + "</table></div>\n";
+}
+
+std::string time_link(double t) {
+  const std::string words = text::fixed(t, 3);
+  return "<a href=\"#stage\" data-time=\"" + words + "\">" + words + "</a>";
 }
 
 std::string section(const std::string& id, const std::string& title, const std::string& contents) {

@@ -24,6 +24,9 @@ struct Table {
 /// The first cell of a row is its heading.
 std::string table(const Table& table);
 
+/// A time [s] with three digits, which takes the replay there.
+std::string time_link(double t);
+
 /// <section id=...><h2>title</h2>contents</section>
 std::string section(const std::string& id, const std::string& title, const std::string& contents);
 

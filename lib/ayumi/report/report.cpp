@@ -44,21 +44,38 @@ std::string inline_svg(const Drawing& drawing) {
   return svg.substr(svg.find("<svg"));
 }
 
-std::string loci_section(const RobotModel& model, const ReportInput& input) {
+// Widths for which curves are laid out [pixel]: of half a window of 1280, and of a telephone of 360
+// within its margins. Letters of 11 pixels stay that large there.
+constexpr double kWideCurves = 600, kNarrowCurves = 326;
+
+/// Curves against time and from above, for one width.
+std::string curves(const RobotModel& model, const ReportInput& input, double width,
+                   const std::string& kind) {
   const std::vector<LociRun> runs = loci_runs(input);
   LociOptions options;
   options.title = input.title;
   options.model = &model;
+  options.width = width;
   const Drawing time = draw_loci(runs, options);
   const Interval range = plot::time_range(runs, options);
-  std::string out = "<figure id=\"loci-time\" data-time-axis=\"" + text::exact(plot::kLeft) + " " +
-                    text::exact(time.width - plot::kRight) + " " + text::exact(range.low) + " " +
-                    text::exact(range.high) + "\">\n" + inline_svg(time) +
-                    "<figcaption>COG, ZMP and ground force against time; drag in the plot to move "
-                    "the replay.</figcaption></figure>\n";
-  out += "<figure>\n" + inline_svg(draw_support(model, runs, options)) +
-         "<figcaption>The ground from above, with the footholds.</figcaption></figure>\n";
-  return html::section("loci", "Loci", out);
+  double top = time.height;  // of the panels, where the cursor begins
+  for (const auto& item : time.items)
+    if (const auto* path = std::get_if<DrawnPath>(&item); path && path->closed)
+      for (const Eigen::Vector2d& point : path->points) top = std::min(top, point.y());
+  return "<div class=\"" + kind + "\">\n<figure data-time-axis=\"" + text::exact(plot::kLeft) +
+         " " + text::exact(time.width - plot::kRight) + " " + text::exact(range.low) + " " +
+         text::exact(range.high) + " " + text::exact(top) + "\">\n" + inline_svg(time) +
+         "<figcaption>Joints that move most, COG, ZMP and ground force against time; drag in the "
+         "plot to move the replay.</figcaption></figure>\n<figure>\n" +
+         inline_svg(draw_support(model, runs, options)) +
+         "<figcaption>The ground from above, with the footholds: number, foot and time of "
+         "landing.</figcaption></figure>\n</div>\n";
+}
+
+std::string loci_section(const RobotModel& model, const ReportInput& input) {
+  return html::section("loci", "Curves",
+                       curves(model, input, kWideCurves, "wide-curves") +
+                           curves(model, input, kNarrowCurves, "narrow-curves"));
 }
 
 std::string picture(const Image& image, const std::string& words) {
@@ -82,15 +99,14 @@ std::string poster(const RobotModel& model, const ReportInput& input) {
 std::string snapshots_section(const RobotModel& model, const ReportInput& input) {
   StripOptions options;
   options.clip.title = input.title;
-  options.clip.picture.width = 480;
-  options.clip.picture.height = 360;
+  options.clip.picture.width = 320;
+  options.clip.picture.height = 480;
   const Image strip = draw_strip(model, *input.runs.back().log, options);
   return html::section(
       "snapshots", "Snapshots",
       "<figure>" +
           picture(strip, "Eight snapshots of the " + html::name_of(input.runs.back()) +
-                             ", evenly spaced over its " +
-                             text::fixed(duration(*input.runs.back().log), 2) + " s") +
+                             ": its pushes, its extreme postures, and what is between them") +
           "</figure>\n");
 }
 
@@ -159,7 +175,8 @@ std::string page(const RobotModel& model, const ReportInput& input, const Pieces
           escaped(input.title) + "</h1>\n<p class=\"soft\">" + escaped(model.name()) + ", " +
           text::fixed(model.mass(), 2) + " kg, " + std::to_string(model.dof_count()) + " joints; " +
           text::fixed(duration(*input.runs.back().log), 2) + " s</p></header>\n<main>\n";
-  std::string scene = "<figure><div id=\"stage\">" + pieces.poster + "</div></figure>\n";
+  std::string scene =
+      "<figure class=\"scene\"><div id=\"stage\">" + pieces.poster + "</div></figure>\n";
   std::string script;
   if (plan.with_replay) {
     const ReplayData data = make_replay(model, input, plan.replay);
@@ -173,9 +190,10 @@ std::string page(const RobotModel& model, const ReportInput& input, const Pieces
              data_element("replay-model", "text/plain", html::base64(data.model)) + "<script>\n" +
              std::string(kReplayScript) + "</script>\n";
   }
-  return head + html::verdict_section(input) +
+  // The scene stays in sight beside the curves, or above them where the window is narrow.
+  return head + html::verdict_section(input) + "<div id=\"watch\">\n" +
          html::section("replay", plan.with_replay ? "Replay" : "Picture", scene) + pieces.loci +
-         html::findings_section(input) + html::thresholds_section(input) +
+         "</div>\n" + html::findings_section(input) + html::thresholds_section(input) +
          html::comparison_section(input) + (plan.with_snapshots ? pieces.snapshots : "") +
          html::events_section(input) + html::provenance_section(input, caps) + "</main>\n" +
          script + "</body>\n</html>\n";
@@ -224,9 +242,17 @@ std::vector<std::string> caps_of(const Plan& plan, const ReportOptions& options,
 
 bool has_replay() { return !kReplayScript.empty(); }
 
-Report make_report(const RobotModel& model, const ReportInput& input, const ReportOptions& options,
-                   const Progress& progress) {
-  if (input.runs.empty()) fail(ErrorCode::usage, "a report needs a simulated run");
+Report make_report(const RobotModel& model, const ReportInput& as_logged,
+                   const ReportOptions& options, const Progress& progress) {
+  if (as_logged.runs.empty()) fail(ErrorCode::usage, "a report needs a simulated run");
+  std::vector<SimulationLog> logs;
+  logs.reserve(as_logged.runs.size());
+  ReportInput input = as_logged;
+  for (ReportRun& run : input.runs) {
+    require_level_ground(*run.log, options.frame);
+    logs.push_back(in_frame(model, *run.log, options.frame));
+    run.log = &logs.back();
+  }
   const double last = duration(*input.runs.back().log);
   Plan plan;
   plan.with_replay = options.replay && has_replay();

@@ -10,6 +10,7 @@
 #include "ayumi/identify/compare.hpp"
 #include "ayumi/io/run/run_results.hpp"
 #include "ayumi/model/robot_model.hpp"
+#include "ayumi/render/frames.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
@@ -33,6 +34,7 @@ struct ReportOptions {
   double rate = 50;               ///< of the replay [Hz]
   size_t max_triangles = 60'000;  ///< of the robot in the replay
   bool replay = true;
+  Frame frame = Frame::world;  ///< of all places
 };
 
 struct Report {

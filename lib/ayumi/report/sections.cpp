@@ -6,19 +6,32 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/plot/compare_plot.hpp"
+#include "ayumi/plot/push_map.hpp"
 #include "ayumi/render/log_reading.hpp"
 #include "ayumi/report/html.hpp"
 
 namespace ayumi::html {
 namespace {
 
-std::string degrees(double radians) { return text::fixed(radians * 180 / M_PI, 1); }
-std::string millimetres(double metres) { return text::fixed(1e3 * metres, 1); }
+/// Three significant digits, and whole numbers above.
+std::string three_digits(double value) {
+  return std::abs(value) >= 999.5 ? text::fixed(value, 0) : text::brief(value, 3);
+}
+
+std::string degrees(double radians) { return three_digits(radians * 180 / M_PI); }
+std::string millimetres(double metres) {
+  // What is less than a hundredth of a millimetre is none.
+  return std::abs(metres) < 5e-6 ? "0" : three_digits(1e3 * metres);
+}
 std::string percent(double ratio) { return text::fixed(100 * ratio, 0); }
 
-std::string marked(bool good, const std::string& words) {
-  return std::string("<span class=\"") + (good ? "good" : "bad") + "\">" + escaped(words) +
-         "</span>";
+enum class Tone { good, neutral, bad };
+
+/// Only what is good is green.
+std::string marked(Tone tone, const std::string& words) {
+  if (tone == Tone::neutral) return escaped(words);
+  return std::string("<span class=\"") + (tone == Tone::good ? "good" : "bad") + "\">" +
+         escaped(words) + "</span>";
 }
 
 std::string outcome_words(const SimulationResult& result) {
@@ -27,7 +40,7 @@ std::string outcome_words(const SimulationResult& result) {
 }
 
 std::string outcome_cell(const SimulationResult& result) {
-  return marked(result.outcome == Outcome::stands, outcome_words(result));
+  return marked(result.outcome == Outcome::stands ? Tone::good : Tone::bad, outcome_words(result));
 }
 
 /// "pushed with 1.1 N s at 3 s"
@@ -56,13 +69,13 @@ Table run_table(const ReportInput& input) {
   return table;
 }
 
-std::string export_words(const ExportNote& note) {
+std::string export_words(const ExportNote& note, bool good) {
   if (note.safe)
-    return "<p>" + marked(true, "The joint table is safe to replay") + ": its largest step is " +
-           percent(note.max_step_ratio) + " % of the limit (" + escaped(note.worst_joint) +
-           ").</p>\n";
+    return "<p>" + marked(good ? Tone::good : Tone::neutral, "The joint table is safe to replay") +
+           ": its largest step is " + percent(note.max_step_ratio) + " % of the limit (" +
+           escaped(note.worst_joint) + ").</p>\n";
   std::string words =
-      "<p>" + marked(false, "The joint table is not safe to replay") + ":</p>\n<ul>";
+      "<p>" + marked(Tone::bad, "The joint table is not safe to replay") + ":</p>\n<ul>";
   for (const std::string& violation : note.violations)
     words += "<li>" + escaped(violation) + "</li>";
   return words + "</ul>\n";
@@ -107,7 +120,11 @@ std::string repair_words(const RepairNote& note) {
 }
 
 std::string figure(double value, const std::string& unit) {
-  return std::isfinite(value) ? text::brief(value) + " " + escaped(unit) : "not known";
+  if (!std::isfinite(value)) return "not known";
+  // One unit for each quantity: lengths in mm, angles in deg, as in curves and tables.
+  if (unit == "m") return millimetres(value) + " mm";
+  if (unit.starts_with("rad")) return degrees(value) + " deg" + escaped(unit.substr(3));
+  return three_digits(value) + (unit == "1" ? "" : " " + escaped(unit));
 }
 
 Table finding_table(const ConsistencyReport& check) {
@@ -115,13 +132,13 @@ Table finding_table(const ConsistencyReport& check) {
                  {"kind", "severity", "where", "when [s]", "worst", "limit", "what to do"},
                  {}};
   for (const Finding& f : check.findings)
-    table.rows.push_back({escaped(name_of(f.kind)),
-                          f.severity == Severity::error ? marked(false, ayumi::name_of(f.severity))
-                                                        : ayumi::name_of(f.severity),
-                          escaped(f.where),
-                          text::fixed(f.at, 3) + " (" + text::fixed(f.begin, 2) + " to " +
-                              text::fixed(f.end, 2) + ")",
-                          figure(f.worst, f.unit), figure(f.limit, f.unit), escaped(f.hint)});
+    table.rows.push_back(
+        {escaped(name_of(f.kind)),
+         f.severity == Severity::error ? marked(Tone::bad, ayumi::name_of(f.severity))
+                                       : ayumi::name_of(f.severity),
+         escaped(f.where),
+         time_link(f.at) + " (" + text::fixed(f.begin, 2) + " to " + text::fixed(f.end, 2) + ")",
+         figure(f.worst, f.unit), figure(f.limit, f.unit), escaped(f.hint)});
   return table;
 }
 
@@ -149,19 +166,66 @@ std::string verdict_section(const ReportInput& input) {
   std::string out = "<p class=\"verdict\">The " + escaped(name_of(judged)) + " " +
                     outcome_cell(result) + escaped(push_words(*judged.log));
   if (input.results.check)
-    out += "; the pattern is " +
-           marked(consistent || repaired, consistent ? "consistent"
-                                          : repaired ? "inconsistent as written, and was repaired"
-                                                     : "inconsistent");
+    out += "; the pattern is " + marked(consistent ? Tone::good
+                                        : repaired ? Tone::neutral
+                                                   : Tone::bad,
+                                        consistent ? "consistent"
+                                        : repaired ? "inconsistent as written, and was repaired"
+                                                   : "inconsistent");
   out += ".</p>\n" + table(run_table(input));
   if (input.results.repair) out += repair_words(*input.results.repair);
   if (input.results.safety) {
-    out += export_words(*input.results.safety);
+    out += export_words(*input.results.safety, stands);
     out += source_of_tables(*input.runs.back().log);
   }
   return section("verdict",
                  stands && (consistent || repaired) ? "Verdict: good" : "Verdict: not good", out);
 }
+
+namespace {
+
+/// The map of thresholds that a study found, in its order.
+PushMap threshold_map(const std::vector<PushThreshold>& thresholds) {
+  PushMap map;
+  map.title = "Largest survivable impulse by phase and direction";
+  const auto position = [](std::vector<std::string>& names, const std::string& name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at != names.end()) return static_cast<size_t>(at - names.begin());
+    names.push_back(name);
+    return names.size() - 1;
+  };
+  for (const PushThreshold& t : thresholds) position(map.laws, t.controller);
+  std::vector<double> at;
+  for (const PushThreshold& t : thresholds) {
+    size_t p = 0;
+    while (p < map.phases.size() &&
+           (map.phases[p].name != t.phase || std::abs(at[p] - t.at) > 1e-9))
+      ++p;
+    if (p == map.phases.size()) {
+      map.phases.push_back({t.phase, {}, {}, std::vector<PushMapCurve>(map.laws.size() + 1)});
+      at.push_back(t.at);
+    }
+    PushMapPhase& phase = map.phases[p];
+    const auto same = [&](double angle) { return std::abs(angle - t.direction) < 1e-9; };
+    const auto known = std::find_if(phase.direction.begin(), phase.direction.end(), same);
+    const auto i = static_cast<size_t>(known - phase.direction.begin());
+    if (known == phase.direction.end()) {
+      phase.direction.push_back(t.direction);
+      phase.bound.push_back(t.bound);
+      for (PushMapCurve& curve : phase.curves) {
+        curve.impulse.push_back(0);
+        curve.capped.push_back(false);
+      }
+      phase.curves[0].impulse[i] = t.open_loop;
+    }
+    PushMapCurve& curve = phase.curves[position(map.laws, t.controller) + 1];
+    curve.impulse[i] = t.impulse;
+    curve.capped[i] = t.capped;
+  }
+  return map;
+}
+
+}  // namespace
 
 std::string findings_section(const ReportInput& input) {
   if (!input.results.check) return "";
@@ -185,7 +249,11 @@ std::string thresholds_section(const ReportInput& input) {
                          text::fixed(t.impulse, 2) + (t.capped ? "+" : ""),
                          text::fixed(t.open_loop, 2), text::fixed(t.bound, 2),
                          t.bound > 0 ? text::fixed(t.impulse / t.bound, 2) : "none"});
-  return section("thresholds", "Push thresholds", table(rows));
+  const std::string svg = to_svg(draw_push_map(threshold_map(input.thresholds)));
+  return section("thresholds", "Push thresholds",
+                 "<figure class=\"wide natural\" tabindex=\"0\" role=\"region\" "
+                 "aria-label=\"Push map\">" +
+                     svg.substr(svg.find("<svg")) + "</figure>\n" + table(rows));
 }
 
 std::string comparison_section(const ReportInput& input) {
@@ -221,7 +289,7 @@ std::string comparison_section(const ReportInput& input) {
 std::string events_section(const ReportInput& input) {
   Table rows = {"Events of the " + name_of(input.runs.back()), {"time [s]", "kind", "what"}, {}};
   for (const SimulationEvent& event : input.runs.back().log->events)
-    rows.rows.push_back({text::fixed(event.t, 3), escaped(event.kind), escaped(event.text)});
+    rows.rows.push_back({time_link(event.t), escaped(event.kind), escaped(event.text)});
   if (rows.rows.empty()) return "";
   return section("events", "Events", table(rows));
 }

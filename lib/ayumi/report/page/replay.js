@@ -28,11 +28,11 @@ const shown = (mark) => byId("mark-" + mark).checked;
 
 function drawCursors() {
   return [...document.querySelectorAll("[data-time-axis]")].map((figure) => {
-    const [left, right, from, to] = figure.dataset.timeAxis.split(" ").map(Number);
+    const [left, right, from, to, top] = figure.dataset.timeAxis.split(" ").map(Number);
     const svg = figure.querySelector("svg");
     const line = document.createElementNS("http://www.w3.org/2000/svg", "line");
     line.setAttribute("class", "cursor");
-    line.setAttribute("y1", "40");
+    line.setAttribute("y1", String(top));
     line.setAttribute("y2", String(svg.viewBox.baseVal.height - 28));
     svg.append(line);
     const xOf = (t) => left + (right - left) * (t - from) / (to - from);
@@ -46,7 +46,11 @@ function drawCursors() {
 }
 
 const cursors = drawCursors();
-const millimetres = (value) => (1000 * value).toFixed(1);
+/// Three digits, whole numbers above.
+const digits = (value) => value.toFixed(Math.abs(value) < 9.995 ? 2 : Math.abs(value) < 99.95 ? 1 : 0);
+const millimetres = (value) => digits(1000 * value);
+const place = (name, row, axes) => axes.map((axis) => millimetres(row[columns[name + "." + axis]]))
+  .join(", ") + " mm";
 
 function showValues(t, row, push) {
   for (const { line, xOf } of cursors) {
@@ -59,9 +63,9 @@ function showValues(t, row, push) {
   const support = feet.length === 2 ? "both feet" : feet.length ? feet[0] + " foot" : "flight";
   scrub.setAttribute("aria-valuetext", t.toFixed(2) + " seconds, " + support);
   byId("readout").textContent = "t " + t.toFixed(3) + " s · " + support + " · COG " +
-    ["x", "y", "z"].map((axis) => millimetres(row[columns["cog." + axis]])).join(", ") +
-    " mm · ZMP " + ["x", "y"].map((axis) => millimetres(row[columns["zmp." + axis]])).join(", ") +
-    " mm · f_z " + row[columns.fz].toFixed(1) + " N";
+    place("cog", row, ["x", "y", "z"]) + " · ZMP " +
+    (row[columns.fz] > 0 ? place("zmp", row, ["x", "y"]) : "none") +
+    " · f_z " + digits(row[columns.fz]) + " N";
   byId("push-now").textContent = push ? "push " + push.text : "";
 }
 
@@ -80,6 +84,14 @@ function connect(replay) {
     svg.addEventListener("pointerdown", go);
     svg.addEventListener("pointermove", go);
   }
+  document.addEventListener("click", (event) => {
+    const link = event.target.closest("[data-time]");
+    if (!link) return;
+    event.preventDefault();
+    replay.play(false);
+    replay.show(Number(link.dataset.time));
+    byId("stage").scrollIntoView({ block: "nearest" });
+  });
   replay.renderer.domElement.addEventListener("keydown", (event) => {
     const step = event.shiftKey ? 0.1 : 1 / config.rate;
     const jump = { ArrowLeft: -step, ArrowRight: step }[event.key];

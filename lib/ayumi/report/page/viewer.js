@@ -12,7 +12,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { clampTime, convexHull, sampleAt } from "./series.js";
 
 const colors = { cog: 0xd9a312, zmp: 0xd6261f, reference: 0x0d4dbf, support: 0x1a73cc,
-  force: 0x0d8c59, push: 0xc7409e, ghost: 0x2f7fd0 };
+  force: 0x0d8c59, push: 0xc7409e, ghost: 0xed730d };
 
 // ---- marks
 
@@ -220,14 +220,22 @@ export class Viewer {
     const actor = { name, ghost, move, root: new Group() };
     actor.root.rotation.x = Math.PI / 2;
     actor.root.add(model);
+    const depths = [];
     model.traverse((part) => {
       if (!part.isMesh) return;
       part.castShadow = !ghost;
-      if (ghost) part.material = new MeshLambertMaterial({ color: colors.ghost, transparent: true,
-        opacity: 0.28, depthWrite: false,
-        // Where a ghost and the robot are at the same place, the robot is seen, without speckle.
-        polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 8 });
+      if (!ghost) return;
+      // A ghost lies a little behind where it is: what coincides with it is seen, without speckle.
+      const behind = { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 400,
+        transparent: true };
+      part.material = new MeshLambertMaterial({ color: colors.ghost, opacity: 0.4, ...behind });
+      part.renderOrder = 2;
+      // Its depth comes first, so that only its nearest surface shines through.
+      const depth = new Mesh(part.geometry, new MeshBasicMaterial({ colorWrite: false, ...behind }));
+      depth.renderOrder = 1;
+      depths.push([part, depth]);
     });
+    for (const [part, depth] of depths) part.add(depth);
     actor.root.visible = !ghost;
     this.scene.add(actor.root);
     this.actors.push(actor);
@@ -349,6 +357,10 @@ export class Viewer {
       this.vector(side + "_force", row), 0.5 * size / this.config.weight));
     this.placeSupport(row, plane);
     for (const mark of m.forces) mark.visible = mark.visible && this.hooks.shown("forces");
+    // In flight there is no ZMP, although the row holds the last.
+    const planned = ["left", "right"].some((side) => row[this.columns[side + "_planned"]] > 0.5);
+    m.zmp.visible = row[this.columns.fz] > 0 && this.hooks.shown("zmp");
+    m.reference.visible = planned && this.hooks.shown("ref-zmp");
   }
 
   placePush(push, row) {
@@ -389,8 +401,6 @@ export class Viewer {
   switchMarks(ghosts) {
     const m = this.marks;
     m.cog.visible = this.hooks.shown("cog");
-    m.zmp.visible = this.hooks.shown("zmp");
-    m.reference.visible = this.hooks.shown("ref-zmp");
     for (const actor of this.actors) actor.root.visible = !actor.ghost || ghosts.includes(actor.name);
     this.show(this.time);
   }
