@@ -190,7 +190,7 @@ LoopModel stance_loop(Stance& stance, int axis, const LoopModel& like) {
     const double asked = stance.actuators.servo[static_cast<size_t>(j)].kp * P[j];
     torque.row(6 + j) << asked, asked * lead[j];
   }
-  input.bottomRows(n) = M.solve(torque);
+  input.bottomRows(n) = solve_symmetric(M, MatrixXd(torque));
   discretize(motion, input, loop);
 
   // The estimator puts the middle of the loaded sole where the plan has it.

@@ -80,7 +80,7 @@ constexpr double kHipDamping = 1e-3;
 
 constexpr char kTooFast = 1, kTooFar = 2;  // Definition: what a servo target was held to, as bits
 
-Vector3d rotation_between(const Matrix3d& from, const Matrix3d& to) {
+Vector3d turn_between(const Matrix3d& from, const Matrix3d& to) {
   return log_rotation(Eigen::Quaterniond(Matrix3d(to * from.transpose())));
 }
 
@@ -191,8 +191,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   // Motion of the planned anchor, as the rigid motion it gives to the whole robot.
   const Vector3d anchor_velocity =
       (next.feet[a].translation() - command.feet[a].translation()) / dt;
-  const Vector3d anchor_rate =
-      rotation_between(command.feet[a].linear(), next.feet[a].linear()) / dt;
+  const Vector3d anchor_rate = turn_between(command.feet[a].linear(), next.feet[a].linear()) / dt;
   auto carried = [&](const Vector3d& point) -> Vector3d {
     return anchor_velocity + anchor_rate.cross(point - command.feet[a].translation());
   };
@@ -218,8 +217,8 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
                     carried(foot.translation());
   u.segment<3>(6) =
       length *
-      (rotation_between(command.feet[f].linear(), next.feet[f].linear()) / dt +
-       options.foot_rate * rotation_between(foot.linear(), command.feet[f].linear()) - anchor_rate);
+      (turn_between(command.feet[f].linear(), next.feet[f].linear()) / dt +
+       options.foot_rate * turn_between(foot.linear(), command.feet[f].linear()) - anchor_rate);
 
   // Trunk: attitude and angular velocity of the commanded posture.
   const int trunk = model.trunk_body();
@@ -236,7 +235,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   if (!options.turn.lean.isZero(0)) commanded = exp_rotation(options.turn.lean) * commanded;
   commanded_rate += options.turn.lean_rate;
   u.tail<3>() = length * (commanded_rate - anchor_rate +
-                          options.trunk_rate * rotation_between(data.rotation[trunk], commanded));
+                          options.trunk_rate * turn_between(data.rotation[trunk], commanded));
 
   // (22): the commanded rates, zero in (28), and the pull towards the posture.
   work.bias = command.state.dtheta + options.posture_rate * (command.state.theta - reference.theta);
