@@ -9,6 +9,9 @@
 
 namespace ayumi {
 
+/// Lengths in plots and in the tables and the readout of reports are in millimetres [m].
+inline constexpr double kMillimetre = 1e-3;
+
 struct Interval {
   double low = 0, high = 1;
   double span() const { return high - low; }

@@ -74,9 +74,6 @@ PanelPlan torque_panel(const RobotModel& model, const std::string& profile, int 
   return panel;
 }
 
-// Lengths of plots, tables and the report's readout are in millimetres.
-constexpr double kMillimetre = 1e-3;
-
 Value component(Eigen::Vector3d SimulationSample::*quantity, int index) {
   return
       [quantity, index](const SimulationSample& s) { return (s.*quantity)[index] / kMillimetre; };
@@ -282,13 +279,13 @@ Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
 
 // ---- support phases
 
-struct Phase {
+struct SupportSpan {
   double begin, end;
   std::array<bool, 2> contact;
 };
 
-std::vector<Phase> phases(const SimulationLog& log, const Interval& time) {
-  std::vector<Phase> out;
+std::vector<SupportSpan> phases(const SimulationLog& log, const Interval& time) {
+  std::vector<SupportSpan> out;
   for (size_t k = 0; k < log.samples.size(); ++k) {
     const double t = static_cast<double>(k) * log.dt;
     if (t < time.low - 1e-9 || t > time.high + 1e-9) continue;
@@ -301,8 +298,9 @@ std::vector<Phase> phases(const SimulationLog& log, const Interval& time) {
   return out;
 }
 
-void draw_phases(Drawing& drawing, const Axes& axes, const std::vector<Phase>& list, bool names) {
-  for (const Phase& phase : list) {
+void draw_phases(Drawing& drawing, const Axes& axes, const std::vector<SupportSpan>& list,
+                 bool names) {
+  for (const SupportSpan& phase : list) {
     const bool left = phase.contact[0], right = phase.contact[1];
     const double from = axes.px(phase.begin), to = axes.px(phase.end);
     const double bottom = axes.top + axes.height;
@@ -520,7 +518,7 @@ Drawing draw_loci(const std::vector<LociRun>& as_logged, const LociOptions& opti
       options.only_differences ? leave_out_equal(panels, runs, time) : std::string();
   Drawing drawing = start_drawing(runs, options, "Loci against time");
   const std::vector<PushRecord> pushed = all_pushes(runs, time);
-  const std::vector<Phase> supports = phases(*runs.back().log, time);
+  const std::vector<SupportSpan> supports = phases(*runs.back().log, time);
   std::string reference;
   if (options.reference && options.zmp) reference = "reference ZMP";
   if (options.reference && options.fz)

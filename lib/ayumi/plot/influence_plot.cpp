@@ -14,9 +14,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector4f;
 
-constexpr double kRow = 22, kTop = 84, kEdge = 16;  // height of a row, of the head, margin [pixel]
-constexpr double kPanelWidth = 280, kGap = 40;      // of the two panels [pixel]
-constexpr double kTextSize = 11;                    // [pixel]
+constexpr double kRow = 22, kTop = 84, kEdge = 16;   // height of a row, of the head, margin [pixel]
+constexpr double kPanelWidth = 280, kPanelGap = 40;  // of the two panels [pixel]
+constexpr double kTextSize = 11;                     // [pixel]
 const Vector4f kLine = {0.86f, 0.87f, 0.89f, 1}, kGrey = {0.42f, 0.44f, 0.48f, 1};
 const Vector4f kWorse = {0.86f, 0.45f, 0.10f, 1}, kBetter = {0.08f, 0.33f, 0.68f, 1};
 
@@ -57,7 +57,7 @@ Drawing draw_influences(const std::string& title, const std::vector<ValueInfluen
   }
   const std::vector<double> ticks = nice_ticks({0, std::max(most, 1e-6)}, 4);
   most = std::max(most, ticks.back());
-  const double left = kEdge + names + 14, right = left + kPanelWidth + kGap;
+  const double left = kEdge + names + 14, right = left + kPanelWidth + kPanelGap;
   const double bottom = kTop + kRow * static_cast<double>(rows.size());
   Drawing drawing;
   drawing.width = std::max(right + kPanelWidth + kEdge, 2 * kEdge + text_width(title, 15, true));

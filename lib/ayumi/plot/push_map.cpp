@@ -20,7 +20,7 @@ constexpr double kPhaseName = 26, kRemark = 20;  // heights of lines of text [pi
 constexpr size_t kColumns = 3, kMostLaws = 4;    // of panels; as many laws as colours
 constexpr int kCircleSteps = 72;                 // corners of a ring, one every 5 degrees
 
-const Vector4f kGrid = {0.86f, 0.87f, 0.89f, 1}, kQuiet = {0.42f, 0.44f, 0.48f, 1};
+const Vector4f kMapGrid = {0.86f, 0.87f, 0.89f, 1}, kQuiet = {0.42f, 0.44f, 0.48f, 1};
 const Vector4f kBound = {0.35f, 0.37f, 0.42f, 1}, kBoundFill = {0.35f, 0.37f, 0.42f, 0.08f};
 const Vector4f kOpen = {0.86f, 0.45f, 0.10f, 1};
 const Vector4f kLaws[kMostLaws] = {{0.08f, 0.33f, 0.68f, 1},
@@ -55,13 +55,13 @@ void draw_grid(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
   for (const double ring : rings) {
     if (ring <= 0) continue;
     DrawnPath path = circle(panel.center, kRadius * ring / panel.most, kCircleSteps);
-    path.stroke = kGrid;
+    path.stroke = kMapGrid;
     drawing.items.push_back(path);
   }
   for (const double direction : phase.direction) {
     DrawnPath path;
     path.points = {panel.center, panel.at(direction, panel.most)};
-    path.stroke = kGrid;
+    path.stroke = kMapGrid;
     drawing.items.push_back(path);
   }
   for (const double ring : rings)

@@ -18,8 +18,6 @@ struct PlacedSole {
   double begin = 0, end = 0;      ///< while it is planned down [s]
 };
 
-constexpr double kMillimetre = 1e-3;
-
 /// The soles where the plan puts them down, at the middle of each planned contact.
 std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& log,
                                   const Interval& time) {
