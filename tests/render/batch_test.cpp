@@ -72,7 +72,8 @@ TEST_F(Batch, FurtherFormats) {
   EXPECT_EQ(contents(folder / "a.glb").substr(0, 4), "glTF");
   const Output strip = ayumi({"preview", "run", "-o", "s.png", "--size", "64x36", "--strip", "3",
                               "--columns", "3", "--json"});
-  EXPECT_EQ(Json::parse(strip.out).at("size"), Json({192, 36}));
+  EXPECT_EQ(Json::parse(strip.out).at("size").at(0), 192);
+  EXPECT_GT(Json::parse(strip.out).at("size").at(1), 36) << "with a title and a legend";
   EXPECT_EQ(Json::parse(strip.out).at("frames"), 3) << "snapshots";
   const Output many = ayumi(
       {"preview", "run", "-o", "e.png", "--size", "64x36", "--exposures", "3", "--show", "heat"});
