@@ -27,7 +27,7 @@ constexpr int kApplication = 0x4159554d;
 /// read.
 constexpr int kFormat = 1;
 /// How long a reader waits for a writer [ms]. Chosen: a commit takes some ms.
-constexpr int kPatience = 10000;
+constexpr int kLockPatience = 10000;
 
 /// A prepared statement.
 class Statement {
@@ -165,7 +165,7 @@ void ResultsDatabase::execute(const std::string& sql) const {
 void ResultsDatabase::open(int flags) {
   if (sqlite3_open_v2(file_.c_str(), &database_, flags | SQLITE_OPEN_NOMUTEX, nullptr) != SQLITE_OK)
     complain("the file cannot be opened");
-  sqlite3_busy_timeout(database_, kPatience);
+  sqlite3_busy_timeout(database_, kLockPatience);
   sqlite3_extended_result_codes(database_, 0);
 }
 

@@ -52,7 +52,7 @@ constexpr size_t kMostRanges = 5000;
 constexpr long kDefaultArray = 1000;
 /// How long Slurm may not answer before the engine gives up [s]. Chosen: a restart of a controller
 /// takes less than a minute.
-constexpr double kPatience = 600;
+constexpr double kLongestSilence = 600;
 /// Times between two looks at the queue [s]. Chosen: a look costs the controller some ms.
 constexpr double kShortestPoll = 0.5, kLongestPoll = 10;
 /// Time between two attempts to submit what Slurm refused while it has other tasks [s]. Chosen:
@@ -471,7 +471,7 @@ class Engine {
       if (!refused_since_) refused_since_ = refused_;
       // A limit or a restart of the controller may end; at the very first, the user waits for an
       // answer.
-      if (out_.empty() && (!submitted_ || seconds_since(*refused_since_) > kPatience))
+      if (out_.empty() && (!submitted_ || seconds_since(*refused_since_) > kLongestSilence))
         fail(ErrorCode::bad_file, "--engine slurm: sbatch refused the job: " + why +
                                       "; rows that are done are kept in " +
                                       results_.file().string());
@@ -656,7 +656,7 @@ class Engine {
         find_lost(*queue);
         take_lost();
         submit();
-      } else if (seconds_since(answered_) > kPatience) {
+      } else if (seconds_since(answered_) > kLongestSilence) {
         fail(ErrorCode::bad_file, "--engine slurm: Slurm does not answer any more (" + trouble +
                                       "); rows that arrived are kept. Run the same command again "
                                       "to go on");
