@@ -9,6 +9,7 @@
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample_plan.hpp"
 #include "ayumi/repair/correction_problem.hpp"
+#include "ayumi/repair/policy.hpp"
 #include "ayumi/repair/repair_pattern.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/random_robot.hpp"
@@ -304,7 +305,8 @@ TEST(Repair, EndsWithinItsWork) {
   const CommandSeries series = zmp_outside();
   const RepairResult whole = repair(limited_biped(), series);
   RepairOptions options;
-  options.most_work = 0.2 * whole.work.amount / series.duration();
+  options.most_work = 0.2 * whole.work.amount /
+                      std::max(series.duration(), repair_policy::rounds::kShortestForWork);
   const RepairResult r = repair(limited_biped(), series, options);
   EXPECT_EQ(r.status, RepairStatus::repaired);
   EXPECT_LT(r.work.amount, 0.4 * whole.work.amount);  // the iteration that reaches it is finished

@@ -336,10 +336,14 @@ inline constexpr int kBeforeFinerKnots = 50;
 /// less than 5 % from half to twice. Test: none.
 inline constexpr double kTolerance = 1e-3;
 /// Work of all programs of a repair (NlpSolution::work) for each second of the motion, at most.
-/// Measured: 1.3e-8 s of processor time for each, so that the programs end within 1.2 s for each
+/// Measured: 1.3e-8 s of processor time for each, so that the programs end within 2 s for each
 /// second of motion; checks and what is said of a failure come on top. Test:
 /// Repair.EndsWithinItsWork.
-inline constexpr double kMostWork = 9e7;
+inline constexpr double kMostWork = 1.5e8;
+/// Shorter motions may take the work of one so long [s]. Reason: the search for the reasons of a
+/// failure does not become shorter with the motion. Chosen: 10 s of processor time. Test:
+/// CheckRepair.TheParameterThatWouldDoIsNamed.
+inline constexpr double kShortestForWork = 5;
 /// Share of it that is left for the search for the reasons. Chosen: that search has fewer
 /// iterations than two rounds. Test: none.
 inline constexpr double kWorkForReasons = 0.15;

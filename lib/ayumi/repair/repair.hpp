@@ -50,7 +50,8 @@ struct RepairOptions {
   /// safe_margin().
   std::optional<double> zmp_margin;
   int max_iterations = repair_policy::rounds::kMostIterations;  ///< of Ipopt in each round
-  double most_work = repair_policy::rounds::kMostWork;          ///< for each second of the motion
+  /// For each second of the motion, and for five seconds at least.
+  double most_work = repair_policy::rounds::kMostWork;
   bool mumps = false;        ///< linear systems by MUMPS, to compare
   RandomStart random_start;  ///< of the first program, to see how little depends on the start
   /// The series is a plan (sample_plan) and no motion yet: the feet are moved where it has them,

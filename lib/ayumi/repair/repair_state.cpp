@@ -48,7 +48,8 @@ bool is_done(const RepairState& state) {
 }
 
 double work_left(const RepairState& state, double kept_back) {
-  const double most = state.options.most_work * state.series.duration();
+  const double most =
+      state.options.most_work * std::max(state.series.duration(), policy::rounds::kShortestForWork);
   return (1 - kept_back) * most - state.result.work.amount;
 }
 
