@@ -1,5 +1,6 @@
 # cmake -DSCRATCH= -DCOMPILER= -DEIGEN= -P every_header_compiles.cmake
 # Every installed header alone, then all of them in one file, in this order and in the opposite one.
+cmake_minimum_required(VERSION 3.25)
 set(include ${SCRATCH}/stage/include)
 file(GLOB_RECURSE headers RELATIVE ${include} ${include}/*.hpp)
 list(LENGTH headers count)

@@ -874,7 +874,7 @@ def parse_pattern(text: str, path: Union[str, PathLike[str]] = 'pattern.json', s
     """Reads a pattern from the text of a file. Messages call this file `path`, and files that the text names are looked for beside `path`."""
 
 def picture(robot: Robot, log: Log, *, at: float = 0.0, width: int = 1280, height: int = 720, view: str = 'iso', zoom: float = 1.0, title: str = '') -> bytes:
-    """The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', 'back' or 'top'; `width` and `height` in pixels."""
+    """The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', 'back', 'top', 'ortho-side' or 'ortho-front'; `width` and `height` in pixels."""
 
 def push(task: Task, *, controllers: list[str] = [], gains: dict[str, float] = {}, times: list[float] = [], directions: int = 8, step: float = 0.06, cap: float = 2.4, replicas: int = 2, duration: float = 0.02, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> PushStudy:
     """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the pattern's when none is named). `times` [s] in place of the default phases; `step` and `cap` as multiples of the capture bound; `replicas`: small variations of every push, all of which must be survived; `duration` of a push [s]; `threads`: 0 for all, results do not depend on it."""
@@ -909,7 +909,7 @@ def squat_pattern(robot: Robot, *, depth: Optional[float] = None, period: Option
 def stand_pattern(robot: Robot, duration: float) -> Pattern:
     """Standing in the home posture for `duration` s."""
 
-def strip(robot: Robot, log: Log, *, times: list[float] = [], count: int = 8, columns: int = 4, width: int = 640, height: int = 480, view: str = 'iso', zoom: float = 1.0, title: str = '') -> bytes:
+def strip(robot: Robot, log: Log, *, times: list[float] = [], count: int = 8, columns: int = 4, width: int = 400, height: int = 600, view: str = 'iso', zoom: float = 1.0, title: str = '') -> bytes:
     """Snapshots side by side as the bytes of a PNG file, at `times` [s] or at `count` instants that Ayumi chooses."""
 
 def support_plot(robot: Robot, logs: dict[str, Log], *, title: str = '', scale: float = 1.5) -> bytes:
