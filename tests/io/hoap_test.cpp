@@ -195,7 +195,8 @@ TEST(Hoap, RowsOfRadiansHaveTheSignsOfTheEncoders) {
     EXPECT_NEAR(motion.motion.theta(39, robot.find_dof(knee)), 0.69, 1e-6) << knee;
   std::string said;
   for (const std::string& line : motion.filled) said += line + "\n";
-  EXPECT_NE(said.find("have the signs of the encoders, so the angles of r_hip_pitch, "), std::string::npos)
+  EXPECT_NE(said.find("have the signs of the encoders, so the angles of r_hip_pitch, "),
+            std::string::npos)
       << said;
   EXPECT_EQ(said.find("exceed the position limits"), std::string::npos) << said;
   const ImportedMotion other = read_motion_rows(bytes, "kick.csv", robot, {.encoder_signs = false});

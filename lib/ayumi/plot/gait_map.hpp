@@ -13,7 +13,7 @@ namespace ayumi {
 
 struct GaitMapCell {
   std::optional<double> margin = {};  ///< of the ZMP [m]; none: the cell is missing
-  char mark = ' ';               ///< of a missing cell, one of GaitMap::marks
+  char mark = ' ';                    ///< of a missing cell, one of GaitMap::marks
 };
 
 /// Transitions between two neighbours of a panel.
