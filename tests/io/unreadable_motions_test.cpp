@@ -111,6 +111,7 @@ std::pair<size_t, size_t> middle_number(const std::string& text) {
     return std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.' || text[i] == '-';
   };
   size_t begin = text.find_first_of(",[ \"", text.size() / 2);
+  if (begin == std::string::npos) begin = 0;
   while (begin + 1 < text.size() && !digit(begin)) ++begin;
   size_t end = begin;
   while (end < text.size() && (digit(end) || text[end] == 'e')) ++end;
