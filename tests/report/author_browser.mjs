@@ -41,7 +41,10 @@ async function openPage(driver_, width, height) {
   await tab.load(address);
   const state = await until(() => tab.run("return document.documentElement.dataset.author"), 60);
   expect(state === "ready", "the page says " + state);
-  tab.version = () => tab.run("return Number(document.documentElement.dataset.version)");
+  /// The version that the page shows, once it shows all of the state that it has.
+  tab.version = () => until(() => tab.run(`const page = window.ayumiAuthor.page;
+    const shown = Number(document.documentElement.dataset.version);
+    return !page.loading && shown === page.state.version ? shown : null;`));
   tab.after = async (doing) => {
     const before = await tab.version();
     await doing();
