@@ -50,22 +50,56 @@ bool is_of_the_walk(const Error& error) {
 
 std::string share_words(double share) { return text::brief(100 * share, 3) + " %"; }
 
-Json figures_json(const ConsistencyReport& report) {
-  return {{"zmp_margin_m", report.summary[FindingKind::support_margin]},
-          {"joint_speed_ratio", report.summary[FindingKind::joint_speed]},
-          {"joint_torque_ratio", report.summary[FindingKind::joint_torque]}};
+/// Why a walk of the library is missing; thrown where it is found.
+struct Missing {
+  std::string stage;  ///< "generate", "repair", "loop", "simulate", "certify"
+  std::string reason;
+};
+
+/// The entry `head` and what `work` adds to it, which may throw Missing.
+template <typename Work>
+GaitResult gait_result(Json head, const Work& work) {
+  GaitResult result;
+  result.json = std::move(head);
+  result.json.update(Json{{"status", "missing"}, {"stage", nullptr}, {"reason", nullptr}});
+  try {
+    work(result);
+  } catch (const Missing& missing) {
+    result.json["stage"] = missing.stage;
+    result.json["reason"] = missing.reason;
+  }
+  return result;
+}
+
+/// What `generate` makes; an error about the walk itself is the reason why it is missing.
+template <typename Generate>
+auto generated(const Generate& generate) {
+  try {
+    return generate();
+  } catch (const Error& error) {
+    if (!is_of_the_walk(error)) throw;
+    throw Missing{"generate", error.what()};
+  }
 }
 
 }  // namespace
 
-/// A walk that passes the check, or the reason why there is none.
+/// A walk that passes the check.
 struct GaitMaker::Made {
-  std::optional<Task> task;
+  Task task;
   ConsistencyReport report = {};
   double moved = 0;  ///< largest change of a joint by a repair [rad]
   bool repaired = false;
-  std::string stage = {}, reason = {};  ///< "generate", "check", "repair"
 };
+
+void GaitMaker::add_figures(const Made& walk, Json& json) {
+  const auto& summary = walk.report.summary;
+  json.update(Json{{"zmp_margin_m", summary[FindingKind::support_margin]},
+                   {"joint_speed_ratio", summary[FindingKind::joint_speed]},
+                   {"joint_torque_ratio", summary[FindingKind::joint_torque]}});
+  json["repaired"] = walk.repaired;
+  if (walk.repaired) json["repair_max_joint_rad"] = walk.moved;
+}
 
 GaitMaker::GaitMaker(RobotModel model, const GaitOptions& options)
     : model_(std::move(model)), options_(options) {
@@ -142,20 +176,13 @@ WalkParameters GaitMaker::walk(const GaitCell& cell, int steps) const {
 }
 
 GaitMaker::Made GaitMaker::made(Pattern pattern, const Progress& progress) const {
-  Made result;
   pattern.robot = options_.robot;
   pattern.profile = options_.profile;
   pattern.controller = controller_;
   pattern.file.clear();
-  try {
-    result.task = make_task(std::move(pattern), model_, profile_, progress, 1);
-  } catch (const Error& error) {
-    if (!is_of_the_walk(error)) throw;
-    result.stage = "generate";
-    result.reason = error.what();
-    return result;
-  }
-  Task& task = *result.task;
+  Made result{.task = generated(
+                  [&] { return make_task(std::move(pattern), model_, profile_, progress, 1); })};
+  Task& task = result.task;
   const Judgement judged = judge(task);
   result.report = judged.report;
   if (judged.good()) return result;
@@ -163,10 +190,9 @@ GaitMaker::Made GaitMaker::made(Pattern pattern, const Progress& progress) const
   wishes.check = check_options(task);
   const RepairResult repaired = repair(task.robot, task.pattern, task.series, wishes, progress);
   if (repaired.status != RepairStatus::repaired) {
-    result.stage = "repair";
-    result.reason = judged.reason() + "; the repair ends with " + name_of(repaired.status);
-    if (!repaired.reasons.empty()) result.reason += ": " + repaired.reasons.front();
-    return result;
+    std::string reason = judged.reason() + "; the repair ends with " + name_of(repaired.status);
+    if (!repaired.reasons.empty()) reason += ": " + repaired.reasons.front();
+    throw Missing{"repair", reason};
   }
   task.pattern.correction = repaired.correction;
   task.series = repaired.series;
@@ -176,9 +202,7 @@ GaitMaker::Made GaitMaker::made(Pattern pattern, const Progress& progress) const
   return result;
 }
 
-void GaitMaker::simulate(const Made& walk, Json& json, std::string& stage, std::string& reason,
-                         const Progress& progress) const {
-  const Task& task = *walk.task;
+void GaitMaker::simulate(const Task& task, Json& json, const Progress& progress) const {
   const SimulateOptions options = simulate_options(task);
   Simulator run(task.robot, task.series, options);
   run.keep_samples(false);
@@ -188,11 +212,11 @@ void GaitMaker::simulate(const Made& walk, Json& json, std::string& stage, std::
   json["simulation"] = {{"outcome", name_of(r.outcome)},
                         {"max_cog_error_m", run.largest_errors().cog},
                         {"max_torque_ratio", r.max_torque_ratio}};
-  if (r.outcome == Outcome::stands) return;
-  stage = "simulate";
-  reason = std::string("the simulated robot ") +
-           (r.outcome == Outcome::fell ? "falls at " + text::fixed(r.fell_at, 2) + " s"
-                                       : "does not come to rest");
+  if (r.outcome != Outcome::stands)
+    throw Missing{"simulate",
+                  std::string("the simulated robot ") +
+                      (r.outcome == Outcome::fell ? "falls at " + text::fixed(r.fell_at, 2) + " s"
+                                                  : "does not come to rest")};
 }
 
 namespace {
@@ -207,50 +231,28 @@ ReferenceTrajectory rows_of(const ReferenceTrajectory& table, size_t first, size
 
 }  // namespace
 
-GaitResult GaitMaker::make(const GaitCell& cell, const Progress& progress) const {
-  GaitResult result;
+void GaitMaker::make(const GaitCell& cell, GaitResult& result, const Progress& progress) const {
   Json& json = result.json;
-  json = {{"name", cell.name},
-          {"forward_m_s", cell.forward},
-          {"sideways_m_s", cell.sideways},
-          {"turn_rad_s", cell.turn},
-          {"period_s", cell.period},
-          {"status", "missing"},
-          {"stage", nullptr},
-          {"reason", nullptr}};
-  const auto missing = [&](const std::string& stage, const std::string& reason) {
-    json["stage"] = stage;
-    json["reason"] = reason;
-    return result;
-  };
   const int begin = lead(cell.period);
-  const WalkParameters w = walk(cell, begin + 1 + memory(cell.period));
-  Made walk;
-  try {
-    Pattern pattern = walk_in_parts(model_, {w}, kDecimals);
-    pattern.name = cell.name;
-    walk = made(std::move(pattern), progress);
-  } catch (const Error& error) {
-    if (!is_of_the_walk(error)) throw;
-    return missing("generate", error.what());
-  }
-  if (!walk.reason.empty()) return missing(walk.stage, walk.reason);
-  Task& task = *walk.task;
-  json.update(figures_json(walk.report));
-  json["repaired"] = walk.repaired;
-  if (walk.repaired) json["repair_max_joint_rad"] = walk.moved;
+  Made walked = made(generated([&] {
+                       Pattern pattern = walk_in_parts(
+                           model_, {walk(cell, begin + 1 + memory(cell.period))}, kDecimals);
+                       pattern.name = cell.name;
+                       return pattern;
+                     }),
+                     progress);
+  Task& task = walked.task;
+  add_figures(walked, json);
 
   const MotionPart motion{task.pattern, task.series};
   const LoopGap whole = loop_gap(model_, motion);
   const GaitCycle cycle = gait_cycle(model_, motion, begin);
   const LoopGap& open = whole.closed ? cycle.gap : whole;
   if (!open.closed)
-    return missing("loop", std::string("the end of the ") + (whole.closed ? "cycle" : "walk") +
-                               " does not meet its beginning: " + gap_words(open));
+    throw Missing{"loop", std::string("the end of the ") + (whole.closed ? "cycle" : "walk") +
+                              " does not meet its beginning: " + gap_words(open)};
 
-  std::string stage, reason;
-  simulate(walk, json, stage, reason, progress);
-  if (!reason.empty()) return missing(stage, reason);
+  simulate(task, json, progress);
   json["certificate"] = nullptr;
   if (options_.certify) {
     CertifyOptions study = options_.study;
@@ -261,11 +263,11 @@ GaitResult GaitMaker::make(const GaitCell& cell, const Progress& progress) const
     const Certificate found = certificate(study, cases);
     json["certificate"] = certificate_json(found, study);
     if (!found.outcome.certified)
-      return missing("certify",
-                     std::to_string(found.outcome.failures) + " of " +
-                         std::to_string(found.outcome.runs) +
-                         " runs failed; the robot fails with a probability of at least " +
-                         share_words(found.lower) + " and at most " + share_words(found.upper));
+      throw Missing{"certify", std::to_string(found.outcome.failures) + " of " +
+                                   std::to_string(found.outcome.runs) +
+                                   " runs failed; the robot fails with a probability of at least " +
+                                   share_words(found.lower) + " and at most " +
+                                   share_words(found.upper)};
   }
   json["status"] = options_.certify ? "certified" : "stands";
 
@@ -308,43 +310,34 @@ GaitResult GaitMaker::make(const GaitCell& cell, const Progress& progress) const
                             {"displacement_m", {cycle.displacement.x(), cycle.displacement.y()}},
                             {"turn_rad", cycle.turn},
                             {"gap", gap_json(cycle.gap)}});
-  return result;
 }
 
-GaitResult GaitMaker::change(const GaitCell& from, const GaitCell& to,
-                             const Progress& progress) const {
-  GaitResult result;
+GaitResult GaitMaker::make(const GaitCell& cell, const Progress& progress) const {
+  return gait_result({{"name", cell.name},
+                      {"forward_m_s", cell.forward},
+                      {"sideways_m_s", cell.sideways},
+                      {"turn_rad_s", cell.turn},
+                      {"period_s", cell.period}},
+                     [&](GaitResult& result) { make(cell, result, progress); });
+}
+
+void GaitMaker::change(const GaitCell& from, const GaitCell& to, GaitResult& result,
+                       const Progress& progress) const {
   Json& json = result.json;
-  json = {{"from", from.name},
-          {"to", to.name},
-          {"status", "missing"},
-          {"stage", nullptr},
-          {"reason", nullptr}};
-  const auto missing = [&](const std::string& stage, const std::string& reason) {
-    json["stage"] = stage;
-    json["reason"] = reason;
-    return result;
-  };
   const int steps = lead(from.period);
-  Made walked;
-  try {
-    Pattern pattern = walk_in_parts(
-        model_, {walk(from, steps), walk(to, lead(to.period) + 1 + memory(to.period))}, kDecimals);
-    pattern.name = from.name + " to " + to.name;
-    walked = made(std::move(pattern), progress);
-  } catch (const Error& error) {
-    if (!is_of_the_walk(error)) throw;
-    return missing("generate", error.what());
-  }
-  if (!walked.reason.empty()) return missing(walked.stage, walked.reason);
-  std::string stage, reason;
-  simulate(walked, json, stage, reason, progress);
-  if (!reason.empty()) return missing(stage, reason);
-  const Task& task = *walked.task;
+  Made walked =
+      made(generated([&] {
+             Pattern pattern = walk_in_parts(
+                 model_, {walk(from, steps), walk(to, lead(to.period) + 1 + memory(to.period))},
+                 kDecimals);
+             pattern.name = from.name + " to " + to.name;
+             return pattern;
+           }),
+           progress);
+  const Task& task = walked.task;
+  simulate(task, json, progress);
   json["status"] = "stands";
-  json.update(figures_json(walked.report));
-  json["repaired"] = walked.repaired;
-  if (walked.repaired) json["repair_max_joint_rad"] = walked.moved;
+  add_figures(walked, json);
   const std::string path = "transitions/" + from.name + "_to_" + to.name + ".json";
   const std::string text = pattern_text(task.pattern, {"A walk of a library that changes from " +
                                                        from.name + " to " + to.name + "."});
@@ -353,7 +346,12 @@ GaitResult GaitMaker::change(const GaitCell& from, const GaitCell& to,
   json["pattern_sha256"] = sha256(text);
   const GaitCycle before = gait_cycle(model_, {task.pattern, task.series}, steps);
   json["changes_at_s"] = static_cast<double>(before.begin) * task.series.dt;
-  return result;
+}
+
+GaitResult GaitMaker::change(const GaitCell& from, const GaitCell& to,
+                             const Progress& progress) const {
+  return gait_result({{"from", from.name}, {"to", to.name}},
+                     [&](GaitResult& result) { change(from, to, result, progress); });
 }
 
 }  // namespace ayumi::app

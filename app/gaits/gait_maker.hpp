@@ -64,9 +64,14 @@ class GaitMaker {
 
  private:
   struct Made;
+  // These throw the reason why the walk is missing.
   Made made(Pattern pattern, const Progress& progress) const;
-  void simulate(const Made& walk, nlohmann::ordered_json& json, std::string& stage,
-                std::string& reason, const Progress& progress) const;
+  void simulate(const Task& task, nlohmann::ordered_json& json, const Progress& progress) const;
+  void make(const GaitCell& cell, GaitResult& result, const Progress& progress) const;
+  void change(const GaitCell& from, const GaitCell& to, GaitResult& result,
+              const Progress& progress) const;
+
+  static void add_figures(const Made& walk, nlohmann::ordered_json& json);
 
   RobotModel model_;
   GaitOptions options_;

@@ -11,17 +11,13 @@ namespace ayumi::test {
 
 /// Starts `program arguments…` in `folder`, without streams, and does not wait for it.
 inline pid_t start(const std::vector<std::string>& arguments, const fs::path& folder) {
-  std::vector<std::string> words = {program_under_test()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
+  const ArgumentVector argv(program_under_test(), arguments);
   const pid_t child = ::fork();
   if (child == 0) {
     const int nothing = ::open("/dev/null", O_RDWR);
     if (::chdir(folder.c_str()) != 0 || ::dup2(nothing, 1) < 0 || ::dup2(nothing, 2) < 0)
       ::_exit(126);
-    ::execv(argv[0], argv.data());
+    argv.execute();
     ::_exit(127);
   }
   return child;

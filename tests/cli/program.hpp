@@ -41,6 +41,25 @@ inline std::string program_under_test() {
   return installed ? installed : AYUMI_PROGRAM;
 }
 
+/// `program arguments…` as exec() takes them.
+class ArgumentVector {
+ public:
+  ArgumentVector(const std::string& program, const std::vector<std::string>& arguments)
+      : words_{program} {
+    words_.insert(words_.end(), arguments.begin(), arguments.end());
+    for (std::string& word : words_) pointers_.push_back(word.data());
+    pointers_.push_back(nullptr);
+  }
+  ArgumentVector(const ArgumentVector&) = delete;
+  ArgumentVector& operator=(const ArgumentVector&) = delete;
+  /// Replaces this process by the program; comes back only where that fails.
+  void execute() const { ::execv(pointers_.front(), pointers_.data()); }
+
+ private:
+  std::vector<std::string> words_;
+  std::vector<char*> pointers_;
+};
+
 /// Runs `program arguments…` in `folder`, its streams going to files that are read back.
 inline Output run_program(const std::vector<std::string>& arguments, const fs::path& folder,
                           const std::string& program = program_under_test()) {
@@ -48,12 +67,7 @@ inline Output run_program(const std::vector<std::string>& arguments, const fs::p
       fs::path(testing::TempDir()) / ("ayumi_streams_" + std::to_string(::getpid()));
   fs::create_directories(streams);
   const std::string out = streams / "out", err = streams / "err";
-  std::vector<std::string> words = {program};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-
+  ArgumentVector argv(program, arguments);
   const pid_t child = ::fork();
   if (child == 0) {
     const int out_file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -62,7 +76,7 @@ inline Output run_program(const std::vector<std::string>& arguments, const fs::p
     if (::chdir(folder.c_str()) != 0 || ::dup2(no_input, 0) < 0 || ::dup2(out_file, 1) < 0 ||
         ::dup2(err_file, 2) < 0)
       ::_exit(126);
-    ::execv(argv[0], argv.data());
+    argv.execute();
     ::_exit(127);
   }
   int status = 0;

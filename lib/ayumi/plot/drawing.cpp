@@ -115,6 +115,14 @@ void draw(cairo_t* context, const DrawnText& text) {
 
 }  // namespace
 
+DrawnPath filled_box(const Eigen::Vector2d& corner, const Eigen::Vector2d& opposite,
+                     const Eigen::Vector4f& color) {
+  return {.points = {corner, {opposite.x(), corner.y()}, opposite, {corner.x(), opposite.y()}},
+          .closed = true,
+          .stroke = {0, 0, 0, 0},
+          .fill = color};
+}
+
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {

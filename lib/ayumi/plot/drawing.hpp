@@ -20,6 +20,10 @@ struct DrawnPath {
   std::vector<double> dashes = {};  ///< on, off, ... [pixel]; empty: solid
 };
 
+/// A rectangle between two corners, filled and without a stroke.
+DrawnPath filled_box(const Eigen::Vector2d& corner, const Eigen::Vector2d& opposite,
+                     const Eigen::Vector4f& color);
+
 struct DrawnText {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< anchor on the base line [pixel]
   std::string text;

@@ -26,15 +26,6 @@ const Vector4f kLeastMargin = {0.93f, 0.95f, 0.98f, 1}, kMostMargin = {0.08f, 0.
 const Vector4f kMissingCell = {0.94f, 0.94f, 0.94f, 1}, kBothWays = {0.42f, 0.44f, 0.48f, 1};
 const Vector4f kOneWay = {0.86f, 0.45f, 0.10f, 1};
 
-DrawnPath cell_box(const Vector2d& from, const Vector2d& to, const Vector4f& color) {
-  DrawnPath path;
-  path.closed = true;
-  path.points = {from, {to.x(), from.y()}, to, {from.x(), to.y()}};
-  path.stroke = {0, 0, 0, 0};
-  path.fill = color;
-  return path;
-}
-
 DrawnText map_text(const Vector2d& at, const std::string& text,
                    TextAnchor anchor = TextAnchor::left, const Vector4f& color = kGaitInk) {
   return {.position = at, .text = text, .size = kGaitText, .anchor = anchor, .color = color};
@@ -73,7 +64,7 @@ void draw_cells(Drawing& drawing, const GaitMap& map, const GaitMapPanel& panel,
         cell.margin ? static_cast<float>(std::clamp(*cell.margin / most, 0.0, 1.0)) : 0;
     const Vector4f color =
         cell.margin ? Vector4f((1 - share) * kLeastMargin + share * kMostMargin) : kMissingCell;
-    drawing.items.push_back(cell_box(low, high, color));
+    drawing.items.push_back(filled_box(low, high, color));
     drawing.items.push_back(
         map_text(place.middle(i) + Vector2d(0, 4),
                  cell.margin ? text::fixed(1e3 * *cell.margin, 1) : std::string(1, cell.mark),

@@ -20,15 +20,6 @@ constexpr double kTextSize = 11;                     // [pixel]
 const Vector4f kLine = {0.86f, 0.87f, 0.89f, 1}, kGrey = {0.42f, 0.44f, 0.48f, 1};
 const Vector4f kWorse = {0.86f, 0.45f, 0.10f, 1}, kBetter = {0.08f, 0.33f, 0.68f, 1};
 
-DrawnPath bar(const Vector2d& from, const Vector2d& to, const Vector4f& color) {
-  DrawnPath path;
-  path.closed = true;
-  path.points = {from, {to.x(), from.y()}, to, {from.x(), to.y()}};
-  path.stroke = {0, 0, 0, 0};
-  path.fill = color;
-  return path;
-}
-
 DrawnPath line(const Vector2d& from, const Vector2d& to, const Vector4f& color, double width = 1) {
   DrawnPath path;
   path.points = {from, to};
@@ -69,8 +60,8 @@ Drawing draw_influences(const std::string& title, const std::vector<ValueInfluen
   drawing.items.push_back(words({left, 52}, "rank correlation with the severity of the run"));
   drawing.items.push_back(words({right, 52}, "failure rate in the lower half"));
   drawing.items.push_back(words({right, 68}, "and in the upper half of the values, with interval"));
-  drawing.items.push_back(bar({right - 12, 44}, {right - 4, 52}, kBetter));
-  drawing.items.push_back(bar({right - 12, 60}, {right - 4, 68}, kWorse));
+  drawing.items.push_back(filled_box({right - 12, 44}, {right - 4, 52}, kBetter));
+  drawing.items.push_back(filled_box({right - 12, 60}, {right - 4, 68}, kWorse));
   const double middle = left + 0.5 * kPanelWidth;
   for (const double tick : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
     const double x = middle + 0.5 * kPanelWidth * tick;
@@ -88,9 +79,9 @@ Drawing draw_influences(const std::string& title, const std::vector<ValueInfluen
   for (size_t i = 0; i < rows.size(); ++i) {
     const double y = kTop + kRow * (static_cast<double>(i) + 0.5);
     drawing.items.push_back(words({left - 8, y + 4}, rows[i].name, TextAnchor::right));
-    drawing.items.push_back(bar({middle, y - 6},
-                                {middle + 0.5 * kPanelWidth * rows[i].correlation, y + 6},
-                                rows[i].correlation > 0 ? kWorse : kBetter));
+    drawing.items.push_back(filled_box({middle, y - 6},
+                                       {middle + 0.5 * kPanelWidth * rows[i].correlation, y + 6},
+                                       rows[i].correlation > 0 ? kWorse : kBetter));
     for (size_t half = 0; half < 2; ++half) {
       const double row = y + (half == 0 ? -4 : 4);
       const Vector4f& color = half == 0 ? kBetter : kWorse;
@@ -99,7 +90,8 @@ Drawing draw_influences(const std::string& title, const std::vector<ValueInfluen
                                                  : 0.0;
       const RateInterval& interval = rows[i].rate[half];
       drawing.items.push_back(line({at(interval.low), row}, {at(interval.high), row}, color, 1.4));
-      drawing.items.push_back(bar({at(rate) - 2.5, row - 2.5}, {at(rate) + 2.5, row + 2.5}, color));
+      drawing.items.push_back(
+          filled_box({at(rate) - 2.5, row - 2.5}, {at(rate) + 2.5, row + 2.5}, color));
     }
   }
   return drawing;
