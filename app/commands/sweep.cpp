@@ -93,18 +93,26 @@ void conclude(Context& context, const ResultsDatabase& results, const SweepOutpu
   context.exit_code = all ? 0 : 1;
 }
 
-void remove_results(const fs::path& file) {
+/// The files that SQLite keeps beside a database that is in use.
+void remove_companions(const fs::path& file) {
   std::error_code ignored;
-  for (const char* part : {"", "-wal", "-shm"}) fs::remove(file.string() + part, ignored);
+  for (const char* part : {"-wal", "-shm"}) fs::remove(file.string() + part, ignored);
 }
 
-/// A file that is there as a whole or not at all, also where the program is killed meanwhile.
-void create_results(const fs::path& file, const SweepHead& head) {
+/// A file that is there as a whole or not at all, also where the program is killed meanwhile. It
+/// takes the place of an older one only after the expectations are known to be understood.
+void create_results(const fs::path& file, const SweepHead& head,
+                    const std::vector<std::string>& expect) {
   write_file_with(file, [&](const fs::path& temporary) {
     try {
-      ResultsDatabase(temporary, head).close();
+      ResultsDatabase results(temporary, head);
+      judge_expectations(results, expect);
+      results.close();
+      remove_companions(file);
     } catch (const Error& error) {
-      remove_results(temporary);
+      std::error_code ignored;
+      fs::remove(temporary, ignored);
+      remove_companions(temporary);
       std::string words = error.what();  // in which the user's name stands for the temporary one
       if (const size_t at = words.find(temporary.string()); at != std::string::npos)
         words.replace(at, temporary.string().size(), file.string());
@@ -140,8 +148,10 @@ void run_sweep(Context& context, const SweepCommand& options) {
   const std::vector<bool> asked = asked_cases(options, shard, study.size());
   const SweepHead head = head_of(runner, context.seed);
   const FolderLock lock(options.out + ".lock");
-  if (context.force) remove_results(options.out);
-  if (!fs::exists(options.out)) create_results(options.out, head);
+  if (context.force || !fs::exists(options.out)) {
+    if (options.engine == "slurm") require_slurm();  // before there is an empty file of results
+    create_results(options.out, head, options.outputs.expect);
+  }
   const auto results = std::make_unique<ResultsDatabase>(options.out, ResultsDatabase::Mode::write);
   results->require_study(head);
   judge_expectations(*results, options.outputs.expect);  // a wrong one is refused before the work

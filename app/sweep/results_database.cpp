@@ -174,8 +174,11 @@ ResultsDatabase::ResultsDatabase(const fs::path& file, Mode mode) : file_(file) 
     fail(ErrorCode::bad_file, file.string() + ": there is no such file of sweep results");
   if (!fs::is_regular_file(fs::symlink_status(file)))
     fail(ErrorCode::bad_file, file.string() + ": this is not a regular file");
-  open(mode == Mode::write ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY);
+  // Also for reading: the last one who could write removes the files that SQLite keeps beside a
+  // database. Where the file is write-protected, SQLite opens it for reading.
+  open(SQLITE_OPEN_READWRITE);
   read_head();
+  if (mode == Mode::read) execute("PRAGMA query_only = ON");
   if (mode == Mode::write) execute("PRAGMA synchronous = NORMAL");
 }
 

@@ -394,16 +394,6 @@ class Engine {
   }
 
  private:
-  void require_slurm() const {
-    const CommandResult found = run_command({"sbatch", "--version"});
-    if (found.exit_code != 0)
-      fail(ErrorCode::bad_file,
-           "--engine slurm: the program sbatch cannot be started (" +
-               (found.err.empty() ? "exit code " + std::to_string(found.exit_code)
-                                  : one_line(found.err)) +
-               "); install slurm-client on this machine, or leave --engine out");
-  }
-
   void take_up(const SubmittedArray& array) {
     const std::vector<std::string> lines =
         lines_of(read_file(array_file(folder_, array.number, ".txt")));
@@ -773,6 +763,16 @@ double slurm_seconds(const std::string& time) {
   if (dash == std::string::npos && parts.size() < 3) parts.insert(parts.begin(), 0);
   parts.resize(3);
   return double(((days * 24 + parts[0]) * 60 + parts[1]) * 60 + parts[2]);
+}
+
+void require_slurm() {
+  const CommandResult found = run_command({"sbatch", "--version"});
+  if (found.exit_code != 0)
+    fail(ErrorCode::bad_file,
+         "--engine slurm: the program sbatch cannot be started (" +
+             (found.err.empty() ? "exit code " + std::to_string(found.exit_code)
+                                : one_line(found.err)) +
+             "); install slurm-client on this machine, or leave --engine out");
 }
 
 RunCost run_on_slurm(const Context& context, const CaseRunner& runner, ResultsDatabase& results,

@@ -32,6 +32,9 @@ long chunk_size(double seconds, double setup, long cases, double task_seconds);
 /// A limit of time as sbatch reads it ("30", "2:00:00", "1-12") [s]; 0 where there is none.
 double slurm_seconds(const std::string& time);
 
+/// Throws Error(bad_file), with one line, unless Slurm's programs can be started here.
+void require_slurm();
+
 /// Submits, waits and merges until every case has a row. Tasks of an earlier call that are still
 /// queued are waited for. Throws Error(bad_file) with one line: Slurm is not there, refuses, does
 /// not answer any more, or lost a case too often. Rows that arrived are kept in every case. When

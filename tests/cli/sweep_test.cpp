@@ -210,7 +210,7 @@ TEST(SweepCommand, ACaseIsTheRunOfSimulate) {
 TEST(SweepCommand, OneClearLineForBadInput) {
   const Sweep s;
   ASSERT_EQ(s.sweep({"-o", "good.db"}).exit_code, 0);
-  const std::string good = read_csv(s, "good.db");
+  const std::string good = contents(s.folder / "good.db");
   const auto expect = [&](const Output& out, int code, const std::string& part) {
     EXPECT_EQ(out.exit_code, code) << out.err;
     EXPECT_NE(out.err.find(part), std::string::npos) << out.err;
@@ -253,6 +253,13 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "good.db"}), 3, "another study (the study was another one)");
   ASSERT_EQ(s.sweep({"-o", "other.db"}).exit_code, 0);
   expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file holds");
+  // A wrong expectation makes no file and takes the place of none, and readers leave none.
+  expect(s.sweep({"-o", "y.db", "--expect", "fals == 0"}), 2, "did you mean 'falls'?");
+  EXPECT_FALSE(fs::exists(s.folder / "y.db"));
+  expect(s.sweep({"-o", "good.db", "--force", "--expect", "fals == 0"}), 2, "did you mean");
+  EXPECT_TRUE(contents(s.folder / "good.db") == good);
+  for (const char* const part : {"-wal", "-shm"})
+    EXPECT_FALSE(fs::exists(s.folder / (std::string("good.db") + part)));
 }
 
 // The file may not grow over a limit, as on a full disk: what was committed stays.
@@ -421,6 +428,7 @@ TEST(SweepOnSlurm, AbsentOrRefusing) {
                                 "' sweep study.json --quiet --engine slurm -o n.db"},
                      slurm.s.folder.path(), "/bin/sh"),
          3, "--engine slurm: the program sbatch cannot be started (No such file or directory)");
+  EXPECT_FALSE(fs::exists(slurm.s.folder / "n.db"));
   write(slurm.s.folder / "refuse", "");
   expect(slurm.slurm("-o r.db --pilot 3"), 3,
          "sbatch refused the job: sbatch: error: invalid partition specified: nowhere; rows that "
