@@ -4,6 +4,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "option_checks.hpp"
 
 namespace ayumi::app {
 
@@ -54,11 +55,21 @@ std::string value_of(const CLI::Option& option) {
 // What `ayumi --names` lists for the value of an option or for a word of a command; "" for files
 // and numbers.
 std::string names_kind(const CLI::Option& option) {
-  static const std::map<std::string, std::string> kinds = {
-      {"robot", "robots"},     {"ROBOT", "robots"},     {"profile", "profiles"},
-      {"posture", "postures"}, {"POSTURE", "postures"}, {"gain", "gains"},
-      {"gains", "gains"},      {"joint", "joints"},     {"joints", "joints"},
-      {"lock", "joints"},      {"weight", "joints"}};
+  static const std::map<std::string, std::string> kinds = {{"robot", "robots"},
+                                                           {"ROBOT", "robots"},
+                                                           {"profile", "profiles"},
+                                                           {"posture", "postures"},
+                                                           {"POSTURE", "postures"},
+                                                           {"gain", "gains"},
+                                                           {"gains", "gains"},
+                                                           {"joint", "joints"},
+                                                           {"joints", "joints"},
+                                                           {"lock", "joints"},
+                                                           {"weight", "joints"},
+                                                           {"EQ", "equations"},
+                                                           {"plant", "plants"},
+                                                           {"controller", "controllers"},
+                                                           {"against-controller", "controllers"}};
   const std::string name = option.get_positional() && flags_of(option).empty()
                                ? option.get_name(true)
                            : option.get_lnames().empty() ? ""
@@ -149,6 +160,11 @@ std::string names_below(const CLI::App& app) {
   return text::join(names, " ");
 }
 
+/// The words that may follow a command and are known here; none: those of word_kinds().
+std::string words_after(const Level& level, const CLI::App& app) {
+  return level.words == "help" ? names_below(app) : names_below(*level.app);
+}
+
 std::string bash_completion(const CLI::App& app) {
   std::string text =
       "# Completion of ayumi for bash.\n"
@@ -162,21 +178,27 @@ std::string bash_completion(const CLI::App& app) {
   text += "    '') names='" + names_below(app) + "' ;;\n";
   for (const Level& level : levels_of(app))
     text += "    ' " + level.words + "') flags+=' " + all_flags(*level.app) + "' names='" +
-            names_below(*level.app) + "' kind='" + word_kinds(*level.app) + "' ;;\n";
+            words_after(level, app) + "' kind='" + word_kinds(*level.app) + "' ;;\n";
   text += "  esac\n  case \"$path $before\" in\n";
   for (const Level& level : levels_of(app))
     for (const CLI::Option* option : options_of(*level.app))
       if (takes_value(*option) && !flags_of(*option).empty())
-        for (const std::string& flag : flags_of(*option))
-          text += "    ' " + level.words + " " + flag +
-                  "') kind=" + (names_kind(*option).empty() ? "files" : names_kind(*option)) +
-                  " names= ;;\n";
+        for (const std::string& flag : flags_of(*option)) {
+          const std::string choices = text::join(choices_of(*option), " ");
+          const std::string kind = names_kind(*option);
+          text += "    ' " + level.words + " " + flag + "') kind=" +
+                  (!choices.empty() ? ""
+                   : kind.empty()   ? "files"
+                                    : kind) +
+                  " names='" + choices + "' ;;\n";
+        }
   return text +
          "  esac\n"
          "  if [[ -n $kind && $kind != files && $word != -* ]]; then\n"
          "    names=$(ayumi --names $kind \"${COMP_WORDS[@]:1:COMP_CWORD-1}\" 2>/dev/null)\n"
          "    mapfile -t COMPREPLY < <(compgen -W \"$names\" -- \"$word\")\n"
-         "    [[ $kind == robots* ]] && mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- "
+         "    [[ $kind == robots* || $kind == equations ]] && mapfile -t -O ${#COMPREPLY[@]} "
+         "COMPREPLY < <(compgen -f -- "
          "\"$word\")\n"
          "  elif [[ $word == -* ]]; then\n"
          "    mapfile -t COMPREPLY < <(compgen -W \"$flags\" -- \"$word\")\n"
@@ -189,14 +211,23 @@ std::string bash_completion(const CLI::App& app) {
          "complete -o filenames -F _ayumi ayumi\n";
 }
 
-/// Text between apostrophes, without what _arguments and shells read as their own.
-std::string plain(std::string text) {
-  for (const char* mark : {"'", "[", "]", ":", "\\", "`", "$", "\""})
-    text = replaced(std::move(text), mark, "");
+/// A text between apostrophes of zsh; `marks` are those before which it takes a backslash there.
+std::string zsh_text(std::string text, const std::vector<std::string>& marks) {
+  text = replaced(std::move(text), "\\", "\\\\");
+  for (const std::string& mark : marks) text = replaced(std::move(text), mark, "\\" + mark);
+  text = replaced(std::move(text), "'", "'\\''");
   return replaced(std::move(text), "\n", " ");
 }
 
-std::string zsh_action(const std::string& kind) {
+/// A text between apostrophes of fish.
+std::string fish_text(std::string text) {
+  text = replaced(std::move(text), "\\", "\\\\");
+  text = replaced(std::move(text), "'", "\\'");
+  return replaced(std::move(text), "\n", " ");
+}
+
+std::string zsh_action(const std::string& kind, const std::string& words) {
+  if (!words.empty()) return "(" + words + ")";
   return kind.empty() ? "_files" : "_ayumi_names " + kind;
 }
 
@@ -204,9 +235,11 @@ std::string zsh_options(const CLI::App& app) {
   std::string text;
   for (const CLI::Option* option : options_of(app))
     for (const std::string& flag : flags_of(*option))
-      text += " \\\n        '*" + flag + "[" + plain(option->get_description()) + "]" +
+      text += " \\\n        '*" + flag + "[" +
+              zsh_text(option->get_description(), {"[", "]", ":"}) + "]" +
               (takes_value(*option)
-                   ? ":" + plain(value_of(*option)) + ":" + zsh_action(names_kind(*option))
+                   ? ":" + zsh_text(value_of(*option), {":"}) + ":" +
+                         zsh_action(names_kind(*option), text::join(choices_of(*option), " "))
                    : "") +
               "'";
   return text;
@@ -215,7 +248,7 @@ std::string zsh_options(const CLI::App& app) {
 std::string zsh_names(const CLI::App& app) {
   std::string text;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    text += " '" + command->get_name() + ":" + plain(command->get_description()) + "'";
+    text += " '" + command->get_name() + ":" + zsh_text(command->get_description(), {}) + "'";
   return text;
 }
 
@@ -226,7 +259,7 @@ std::string zsh_completion(const CLI::App& app) {
       "  local -a known\n"
       "  known=(${(f)\"$(ayumi --names $1 ${words[2,CURRENT-1]} 2>/dev/null)\"})\n"
       "  compadd -a known\n"
-      "  [[ $1 == robots* ]] && _files\n"
+      "  [[ $1 == robots* || $1 == equations ]] && _files\n"
       "}\n"
       "_ayumi() {\n  local path= word\n  local -a names\n"
       "  for word in ${words[2,CURRENT-1]}; do\n    case \"$path $word\" in\n";
@@ -243,7 +276,9 @@ std::string zsh_completion(const CLI::App& app) {
               ")\n        _describe command names\n        return\n      fi\n";
     text += "      _arguments -S" + zsh_options(*level.app) +
             (level.words.empty() ? "" : zsh_options(app)) + " \\\n        '*:file:" +
-            zsh_action(level.words.empty() ? "" : word_kinds(*level.app)) + "' ;;\n";
+            (level.words.empty() ? zsh_action("", "")
+                                 : zsh_action(word_kinds(*level.app), words_after(level, app))) +
+            "' ;;\n";
   }
   return text + "  esac\n}\n_ayumi \"$@\"\n";
 }
@@ -259,9 +294,13 @@ std::string fish_options(const CLI::App& app, const std::string& condition) {
     text += "complete -c ayumi" + condition;
     for (const std::string& name : option->get_snames()) text += " -s " + name;
     for (const std::string& name : option->get_lnames()) text += " -l " + name;
-    if (takes_value(*option)) text += " -r";
-    if (!names_kind(*option).empty()) text += fish_names(names_kind(*option));
-    text += " -d '" + plain(option->get_description()) + "'\n";
+    const std::string choices = text::join(choices_of(*option), " ");
+    if (takes_value(*option)) text += choices.empty() ? " -r" : " -x";
+    if (!choices.empty())
+      text += " -a '" + choices + "'";
+    else if (!names_kind(*option).empty())
+      text += fish_names(names_kind(*option));
+    text += " -d '" + fish_text(option->get_description()) + "'\n";
   }
   return text;
 }
@@ -276,10 +315,17 @@ std::string fish_completion(const CLI::App& app) {
       seen += c == ' ' ? std::string("; and __fish_seen_subcommand_from ") : std::string(1, c);
     const std::string within =
         seen.empty() ? "__fish_use_subcommand" : "__fish_seen_subcommand_from " + seen;
+    // A command is offered until one is chosen.
+    const std::string open =
+        level.words.empty() || names_below(*level.app).empty()
+            ? within
+            : within + "; and not __fish_seen_subcommand_from " + names_below(*level.app);
     for (const CLI::App* command : level.app->get_subcommands([](const CLI::App*) { return true; }))
-      text += "complete -c ayumi -f -n '" + within + "' -a " + command->get_name() + " -d '" +
-              plain(command->get_description()) + "'\n";
+      text += "complete -c ayumi -f -n '" + open + "' -a " + command->get_name() + " -d '" +
+              fish_text(command->get_description()) + "'\n";
     if (level.words.empty()) continue;
+    if (level.words == "help")
+      text += "complete -c ayumi -f -n '" + within + "' -a '" + names_below(app) + "'\n";
     text += fish_options(*level.app, " -n '" + within + "'");
     if (const std::string kind = word_kinds(*level.app); !kind.empty())
       text += "complete -c ayumi -n '" + within + "'" + fish_names(kind) + "\n";

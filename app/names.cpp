@@ -12,7 +12,9 @@
 #include "ayumi/control/laws/viip.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/run/run_folder.hpp"
+#include "equations.hpp"
 #include "pattern_input.hpp"
+#include "simulation.hpp"
 
 namespace ayumi::app {
 
@@ -81,6 +83,13 @@ std::set<std::string> names_of(const Context& context, const std::string& kind,
   if (kind == "robots")
     for (const RobotEntry& entry : find_robots(robot_search(context))) names.insert(entry.name);
   if (kind == "gains") names = gain_names();
+  if (kind == "controllers") return {controller_names().begin(), controller_names().end()};
+  if (kind == "plants") {
+    const std::vector<std::string> plants = built_plants();
+    return {plants.begin(), plants.end()};
+  }
+  if (kind == "equations")
+    for (const Equation& equation : equations()) names.insert(std::to_string(equation.number));
   if (kind != "joints" && kind != "postures" && kind != "profiles") return names;
   const Named named = named_by(context, words);
   if (kind == "postures") return posture_names(named);

@@ -2,10 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "ayumi/base/text.hpp"
 
 namespace ayumi::app {
+
+namespace {
+
+// Begins the name of the check; the words follow.
+const std::string kOneOf = "one of|";
+
+}  // namespace
 
 CLI::Validator number_within(double least, double most) {
   const auto plain = [](double x) {
@@ -37,7 +45,22 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
     return "'" + word + "' is not one of " + text::join(words, ", ") +
            text::suggestion(word, words);
   };
-  return {complaint, "{" + text::join(words, ",") + "}"};
+  return {complaint, "{" + text::join(words, ",") + "}", kOneOf + text::join(words, "|")};
+}
+
+std::vector<std::string> choices_of(const CLI::Option& option) {
+  // CLI11 2.1 gives the checks of an option only where it may be changed, and does not count them.
+  auto& changeable = const_cast<CLI::Option&>(option);
+  for (int i = 0;; ++i) try {
+      const std::string& name = changeable.get_validator(i)->get_name();
+      if (!name.starts_with(kOneOf)) continue;
+      std::istringstream each(name.substr(kOneOf.size()));
+      std::vector<std::string> words;
+      for (std::string word; std::getline(each, word, '|');) words.push_back(word);
+      return words;
+    } catch (const CLI::OptionNotFound&) {
+      return {};
+    }
 }
 
 }  // namespace ayumi::app

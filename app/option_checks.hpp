@@ -13,5 +13,7 @@ CLI::Validator whole_number_within(int least, int most);
 
 /// One of these words. CLI::IsMember answers in braces.
 CLI::Validator one_of(const std::vector<std::string>& words);
+/// The words of the one_of() by which the option is checked; none: it has no such check.
+std::vector<std::string> choices_of(const CLI::Option& option);
 
 }  // namespace ayumi::app

@@ -238,7 +238,7 @@ void add_compare(CLI::App& app, Context& context) {
                    "Report of the run with this comparison and the recording as a ghost, .html.")
       ->type_name("F");
   command->add_option("--unit", unit, "Unit of columns whose names are bare joint names.")
-      ->check(CLI::IsMember({"rad", "deg"}))
+      ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
   command
       ->add_option("--rate", options.reading.rate,

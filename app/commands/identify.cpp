@@ -258,15 +258,15 @@ void add_identify(CLI::App& app, Context& context) {
   command
       ->add_option("--per", options.per,
                    "Find one set of constants for each joint, or for each motor type.")
-      ->check(CLI::IsMember({"joint", "type"}))
+      ->check(one_of({"joint", "type"}))
       ->capture_default_str();
   command
       ->add_option("--stand", options.stand,
                    "What carries the robot: its feet on level ground, or a fixture that holds its "
                    "root upright (default: feet if it has soles).")
-      ->check(CLI::IsMember({"auto", "feet", "fixed"}));
+      ->check(one_of({"auto", "feet", "fixed"}));
   command->add_option("--unit", unit, "Unit of columns whose names are bare joint names.")
-      ->check(CLI::IsMember({"rad", "deg"}))
+      ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
   command
       ->add_option("--rate", options.reading.rate,

@@ -301,7 +301,7 @@ void add_sweep(CLI::App& app, Context& context) {
       ->check(number_within(0.01, 1e6).description(""))
       ->type_name("S");
   command->add_option("--engine", options->engine, "What runs the cases: local or slurm.")
-      ->check(CLI::IsMember({"local", "slurm"}).description(""))
+      ->check(one_of({"local", "slurm"}).description(""))
       ->type_name("NAME")
       ->capture_default_str();
   std::vector<CLI::Option*> slurm_options;

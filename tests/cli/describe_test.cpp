@@ -87,6 +87,82 @@ TEST(Names, AreAskedForByEveryCompletion) {
   EXPECT_NE(zsh.find(":_ayumi_names joints'"), std::string::npos);
   EXPECT_NE(zsh.find(":_ayumi_names robots'"), std::string::npos);
   EXPECT_NE(fish.find("-l profile -r -a '(ayumi --names profiles "), std::string::npos);
+  EXPECT_NE(bash.find("' identify --unit') kind= names='rad deg'"), std::string::npos);
+  EXPECT_NE(names({"controllers"}).find("\ndtad\n"), std::string::npos);
+  EXPECT_NE(names({"plants"}).find("\nayumi\n"), std::string::npos);
+  EXPECT_NE(names({"equations"}).find("\n22\n"), std::string::npos);
+}
+
+/// Command lines and a word that completes them, and one that must not.
+struct Completed {
+  std::string line, word, other;
+};
+const std::vector<Completed> kCompleted = {
+    {"ayumi che", "check", "repair"},
+    {"ayumi repair w.json --lock l_kn", "l_knee", "r_knee"},
+    {"ayumi simulate w.json --controller d", "dtad", "viip"},
+    {"ayumi identify hoap1 --unit d", "deg", "rad"},
+    {"ayumi edit mir", "mirror", "loop"},
+    {"ayumi help rep", "repair", "check"},
+    {"ayumi posture draw --robot huma", "humanoid30", "hoap1"},
+    {"ayumi check w", "w.json", "other.csv"}};
+
+/// The folder with w.json, a walk, and the completion for a shell.
+void prepare(const Folder& folder, const std::string& shell, const std::string& file) {
+  write(folder / file, described(shell));
+  write(folder / "w.json", contents(kWalk));
+  write(folder / "other.csv", "t\n");
+}
+std::string program_folder() { return fs::path(program_under_test()).parent_path().string(); }
+bool installed(const std::string& shell) {
+  return std::system((shell + " -c true > /dev/null 2>&1").c_str()) == 0;
+}
+
+TEST(Names, CompleteInFish) {
+  if (!installed("fish")) GTEST_SKIP() << "fish is not installed";
+  const Folder folder;
+  prepare(folder, "fish", "ayumi.fish");
+  for (const Completed& each : kCompleted) {
+    const Output output = run_program(
+        {"HOME=" + folder.path().string(), "PATH=" + program_folder() + ":/usr/bin:/bin", "fish",
+         "-c", "source ayumi.fish; complete -C '" + each.line + "'"},
+        folder.path(), "/usr/bin/env");
+    const std::string lines = "\n" + output.out;
+    EXPECT_NE(lines.find("\n" + each.word), std::string::npos) << each.line << lines << output.err;
+    EXPECT_EQ(lines.find("\n" + each.other), std::string::npos) << each.line << lines;
+  }
+  // A command that is chosen is not offered again.
+  const Output chosen =
+      run_program({"HOME=" + folder.path().string(), "PATH=" + program_folder() + ":/usr/bin:/bin",
+                   "fish", "-c", "source ayumi.fish; complete -C 'ayumi new walk '"},
+                  folder.path(), "/usr/bin/env");
+  EXPECT_EQ(chosen.out.find("squat"), std::string::npos) << chosen.out;
+}
+
+TEST(Names, CompleteInZsh) {
+  if (!installed("zsh")) GTEST_SKIP() << "zsh is not installed";
+  const Folder folder;
+  prepare(folder, "zsh", "_ayumi");
+  // zsh completes at a terminal only, so a second zsh gives one to the first.
+  write(folder / "terminal.zsh", R"(
+    zmodload zsh/zpty
+    zpty shell 'zsh -f -i'
+    zpty -w shell "PS1=; fpath=($PWD \$fpath); autoload -U compinit; compinit -u -d $PWD/dump; bindkey '^I' complete-word; print re''ady"
+    until zpty -r shell line '*ready*'; do :; done
+    zpty -n -w shell "$1"$'\t'
+    # What was completed is typed as a word of this command.
+    zpty -w shell '; print -r -- "end"'
+    out=; repeat 40; do while zpty -rt shell more; do out+=$more; done; [[ $out == *end* ]] && break; sleep 0.1; done
+    print -r -- "$out"
+  )");
+  for (const Completed& each : kCompleted) {
+    const Output output = run_program(
+        {"HOME=" + folder.path().string(), "PATH=" + program_folder() + ":/usr/bin:/bin", "zsh",
+         "-f", "terminal.zsh", each.line},
+        folder.path(), "/usr/bin/env");
+    EXPECT_NE(output.out.find(each.word), std::string::npos)
+        << each.line << output.out << output.err;
+  }
 }
 
 TEST(Names, CompleteInBash) {
