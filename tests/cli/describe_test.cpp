@@ -150,15 +150,13 @@ TEST(Names, CompleteInZsh) {
     zpty -w shell "PS1=; fpath=($PWD \$fpath); autoload -U compinit; compinit -u -d $PWD/dump; bindkey '^I' complete-word; print re''ady"
     until zpty -r shell line '*ready*'; do :; done
     zpty -n -w shell "$1"$'\t'
-    # What was completed is typed as a word of this command.
-    zpty -w shell '; print -r -- "end"'
-    out=; repeat 40; do while zpty -rt shell more; do out+=$more; done; [[ $out == *end* ]] && break; sleep 0.1; done
+    out=; repeat 100; do while zpty -rt shell more; do out+=$more; done; [[ $out == *$2* ]] && break; sleep 0.1; done
     print -r -- "$out"
   )");
   for (const Completed& each : kCompleted) {
     const Output output = run_program(
         {"HOME=" + folder.path().string(), "PATH=" + program_folder() + ":/usr/bin:/bin", "zsh",
-         "-f", "terminal.zsh", each.line},
+         "-f", "terminal.zsh", each.line, each.word},
         folder.path(), "/usr/bin/env");
     EXPECT_NE(output.out.find(each.word), std::string::npos)
         << each.line << output.out << output.err;
