@@ -228,7 +228,8 @@ std::string fish_text(std::string text) {
 
 std::string zsh_action(const std::string& kind, const std::string& words) {
   if (!words.empty()) return "(" + words + ")";
-  return kind.empty() ? "_files" : "_ayumi_names " + kind;
+  // With a space before it, _arguments adds no arguments of its own.
+  return kind.empty() ? "_files" : " _ayumi_names " + kind;
 }
 
 std::string zsh_options(const CLI::App& app) {
@@ -261,11 +262,12 @@ std::string zsh_completion(const CLI::App& app) {
       "  compadd -a known\n"
       "  [[ $1 == robots* || $1 == equations ]] && _files\n"
       "}\n"
-      "_ayumi() {\n  local path= word\n  local -a names\n"
-      "  for word in ${words[2,CURRENT-1]}; do\n    case \"$path $word\" in\n";
+      "# The variable path of zsh is the search path of programs.\n"
+      "_ayumi() {\n  local command= word\n  local -a names\n"
+      "  for word in ${words[2,CURRENT-1]}; do\n    case \"$command $word\" in\n";
   for (const Level& level : levels_of(app))
-    text += "      ' " + level.words + "') path=' " + level.words + "' ;;\n";
-  text += "    esac\n  done\n  case $path in\n";
+    text += "      ' " + level.words + "') command=' " + level.words + "' ;;\n";
+  text += "    esac\n  done\n  case $command in\n";
   std::vector<Level> levels = levels_of(app);
   levels.insert(levels.begin(), {"", &app});
   for (const Level& level : levels) {

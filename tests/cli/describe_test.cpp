@@ -84,8 +84,8 @@ TEST(Names, AreAskedForByEveryCompletion) {
   EXPECT_NE(bash.find("' repair --lock') kind=joints"), std::string::npos);
   EXPECT_NE(bash.find("' run --gain') kind=gains"), std::string::npos);
   EXPECT_NE(bash.find("' edit ramp --posture') kind=postures"), std::string::npos);
-  EXPECT_NE(zsh.find(":_ayumi_names joints'"), std::string::npos);
-  EXPECT_NE(zsh.find(":_ayumi_names robots'"), std::string::npos);
+  EXPECT_NE(zsh.find(": _ayumi_names joints'"), std::string::npos);
+  EXPECT_NE(zsh.find(": _ayumi_names robots'"), std::string::npos);
   EXPECT_NE(fish.find("-l profile -r -a '(ayumi --names profiles "), std::string::npos);
   EXPECT_NE(bash.find("' identify --unit') kind= names='rad deg'"), std::string::npos);
   EXPECT_NE(names({"controllers"}).find("\ndtad\n"), std::string::npos);
