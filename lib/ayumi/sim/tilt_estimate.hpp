@@ -1,5 +1,5 @@
 #pragma once
-// The attitude that an inertial unit computes from its gyro and accelerometer. docs/theory.md,
+// The attitude that an inertial unit computes from its gyro and accelerometer. docs/theory_plant.md,
 // "Tilt".
 
 #include <Eigen/Geometry>
