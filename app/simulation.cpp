@@ -42,7 +42,7 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
 
 void add_unstable_flag(CLI::App& command, bool& allowed) {
   command.add_flag("--allow-unstable", allowed,
-                   "Run gains although their loop is unstable (a demonstration).");
+                   "Simulate also with gains that make the loop unstable (a demonstration).");
 }
 
 void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool allowed) {

@@ -108,9 +108,10 @@ void print_certificate(const Context& context, const Certificate& c, const Known
       return std::isfinite(value) ? text::brief(factor * value, 3) + unit
                                   : std::string("no bound (a run fell)");
     };
-    context.print("  " + in_percent(1 - options.failure) + " of all runs stay below, each with " +
-                  confidence + ": COG error " + figure(c.largest.cog_error, 1e3, " mm") +
-                  ", torque " + figure(c.largest.torque, 100, " % of the limit") + ", foot tilt " +
+    context.print("  " + in_percent(1 - options.failure) +
+                  " of all runs keep each of these bounds, with " + confidence + ": COG error " +
+                  figure(c.largest.cog_error, 1e3, " mm") + ", torque " +
+                  figure(c.largest.torque, 100, " % of the limit") + ", foot tilt " +
                   figure(c.largest.foot_tilt, 180 / std::numbers::pi, " deg") + "\n");
   }
 }
@@ -342,7 +343,8 @@ void add_certify(CLI::App& app, Context& context) {
       ->add_option("--study", options->study,
                    "Study file with the uncertainty (default: the pattern's, or the robot's).")
       ->type_name("F");
-  command->add_option("--failure", certify.failure, "Failure probability to be shown.")
+  command
+      ->add_option("--failure", certify.failure, "Largest failure probability that is certified.")
       ->check(number_within(1e-6, 0.5).description(""))
       ->type_name("P")
       ->capture_default_str();
@@ -358,7 +360,7 @@ void add_certify(CLI::App& app, Context& context) {
       ->type_name("N");
   command->add_flag(
       "--all", certify.all,
-      "Make all --runs, even after the verdict is known, to see which values matter.");
+      "Do not stop at the verdict: make as many runs as --runs says, to see which values matter.");
   command
       ->add_option("-o,--out", options->out,
                    "Results as JSON; run again with the same file to go on.")

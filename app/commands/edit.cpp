@@ -328,7 +328,7 @@ void edit_key(Context& context, const EditCommand& options) {
          "edit key: say what to do with the keyframe: --to T or --by S moves it; with --copy, the "
          "keyframe stays and a copy is moved; --mirror exchanges left and right");
   if (key.copy && !key.to)
-    fail(ErrorCode::usage, "edit key: a copy needs its time: --to T or --by S");
+    fail(ErrorCode::usage, "edit key: --copy needs the time of the copy: give --to T or --by S");
   const Task input = load(context, options);
   const Pattern edited = with_key_edited(input.robot, input.pattern, key);
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
@@ -341,7 +341,7 @@ void edit_key(Context& context, const EditCommand& options) {
 void ramp(Context& context, const EditCommand& options) {
   if (options.ramps.in <= 0 && options.ramps.out <= 0)
     fail(ErrorCode::usage,
-         "edit ramp: both --from and --back are 0; set at least one of them above 0 s");
+         "edit ramp: both --in and --back are 0; set at least one of them above 0 s");
   const Task input = load(context, options);
   const Pattern edited = ramped(input.robot, {input.pattern, input.series}, options.ramps,
                                 table_beside(options.out).string());
@@ -390,7 +390,7 @@ void add_edit(CLI::App& app, Context& context) {
       "  ayumi edit bake walk.json -o baked.json\n"
       "  ayumi edit concat step.json walk.json -o both.json\n"
       "  ayumi edit blend squat.json sway.json --over 0.8 -o both.json\n"
-      "  ayumi edit ramp imported.json --from 1.5 --back 1.5 -o from_home.json\n"
+      "  ayumi edit ramp imported.json --in 1.5 --back 1.5 -o from_home.json\n"
       "  ayumi edit loop squat.json --times 3 -o squats.json\n"
       "  ayumi edit alternate step.json --times 6 -o walk.json\n"
       "  ayumi edit key wave.json --at 1.5 --to 3.5 --copy --mirror -o both_arms.json");

@@ -299,8 +299,8 @@ void make_gaits(Context& context, GaitsCommand command) {
   if (options.certify)
     context.print("  each walk fails with a probability of at most " +
                   text::brief(100 * options.study.failure, 3) + " %, with " +
-                  text::brief(100 * options.study.confidence, 3) + " % confidence, under " +
-                  maker.study().file + "\n");
+                  text::brief(100 * options.study.confidence, 3) +
+                  " % confidence, for the uncertainty in " + maker.study().file + "\n");
   context.print("  written to " + command.out +
                 ": index.json, map.svg, map.png, patterns, walks, " + "cycles" +
                 (options.transitions ? ", transitions" : "") + "\n");
@@ -340,7 +340,8 @@ void add_gaits(CLI::App& app, Context& context) {
     command->add_option(name, words, what)->type_name("LIST");
   };
   add_axis("--forward", options->forward, "Speeds forward [m/s] (default: around the usual walk).");
-  add_axis("--sideways", options->sideways, "Speeds to the left [m/s] (default: the same).");
+  add_axis("--sideways", options->sideways,
+           "Speeds to the left [m/s] (default: around the usual walk).");
   add_axis("--turn", options->turn, "Turning rates to the left [deg/s] (default: -8, 0 and 8).");
   add_axis("--period", options->period, "Times of one step [s] (default: that of new walk).");
   command
@@ -358,7 +359,9 @@ void add_gaits(CLI::App& app, Context& context) {
   command->add_option("--controller", gaits.controller, "Controller (default: dtad).")
       ->type_name("NAME");
   gaits.study.failure = 0.15;
-  command->add_option("--failure", gaits.study.failure, "Failure probability to be shown.")
+  command
+      ->add_option("--failure", gaits.study.failure,
+                   "Largest failure probability that is certified.")
       ->check(number_within(1e-6, 0.5).description(""))
       ->type_name("P")
       ->capture_default_str();
@@ -369,7 +372,8 @@ void add_gaits(CLI::App& app, Context& context) {
   command
       ->add_option(
           "--runs", gaits.study.most,
-          "Largest number of runs of a cell (default: four times those without a failure).")
+          "Largest number of runs of a cell (default: four times the number that is enough if no "
+          "run fails).")
       ->check(whole_number_within(1, 100000000).description(""))
       ->type_name("N");
   command

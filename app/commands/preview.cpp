@@ -242,8 +242,10 @@ void preview(PreviewOptions options, Context& context) {
 void add_picture_options(CLI::App& command, PreviewOptions& options) {
   ClipOptions& clip = options.clip;
   command
-      .add_option("--size", options.size,
-                  "Size in pixels, of --strip that of one snapshot (default: 1280x720; 320x480).")
+      .add_option(
+          "--size", options.size,
+          "Size in pixels; with --strip, the size of one snapshot (default: 1280x720; with --strip "
+          "320x480).")
       ->type_name("WxH");
   command.add_option("--fps", clip.fps, "Frames per second.")->capture_default_str();
   command.add_option("--speed", clip.speed, "Playing speed; 0.25 is four times slower.")

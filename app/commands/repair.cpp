@@ -433,8 +433,8 @@ void add_repair(CLI::App& app, Context& context) {
   command
       ->add_option(
           "--trust", options.trust,
-          "Where posture, COG and ZMP disagree: the quantity that is kept, and that the other two "
-          "are adapted to: posture, cog or zmp (default: that of the pattern, otherwise posture).")
+          "Quantity that is kept where posture, COG and ZMP disagree; the other two are adapted to "
+          "it (default: that of the pattern, otherwise posture).")
       ->check(one_of({"posture", "cog", "zmp"}))
       ->type_name("QUANTITY");
   command->add_flag("--baked", options.baked, "Write a dense table in place of a correction.");

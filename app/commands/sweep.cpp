@@ -295,9 +295,10 @@ void add_sweep(CLI::App& app, Context& context) {
   command->add_option("--cases", options->cases, "Run only these cases, for example 0-99,120.")
       ->type_name("LIST");
   command
-      ->add_option("--case-limit", options->case_limit,
-                   "Most processor time of one case [s]; one that takes more is recorded as one "
-                   "that could not be run.")
+      ->add_option(
+          "--case-limit", options->case_limit,
+          "Largest processor time of a case [s]. A case that takes more is recorded as one "
+          "that could not be run.")
       ->check(number_within(0.01, 1e6).description(""))
       ->type_name("S");
   command->add_option("--engine", options->engine, "What runs the cases: local or slurm.")
@@ -311,8 +312,8 @@ void add_sweep(CLI::App& app, Context& context) {
   SlurmOptions& slurm = options->slurm;
   for_slurm(command->add_option("--partition", slurm.partition, "Passed on to sbatch."), "NAME");
   for_slurm(command->add_option("--time", slurm.time,
-                                "Limit of the time of a task, passed on to sbatch; a task is made "
-                                "to take half of it at most."),
+                                "Time limit of a task, passed on to sbatch. Tasks are planned to "
+                                "take at most half of this time."),
             "TIME");
   for_slurm(command->add_option("--memory", slurm.memory, "Passed on to sbatch as --mem."), "SIZE");
   for_slurm(command
@@ -323,8 +324,8 @@ void add_sweep(CLI::App& app, Context& context) {
             "OPTION");
   for_slurm(command
                 ->add_option("--chunk", slurm.chunk,
-                             "Cases of a task (default: as many as take --task-seconds in a "
-                             "pilot run).")
+                             "Number of cases in a task (default: as many as take "
+                             "--task-seconds, by the times of the pilot run).")
                 ->check(whole_number_within(1, 1000000).description("")),
             "N");
   for_slurm(
@@ -332,13 +333,13 @@ void add_sweep(CLI::App& app, Context& context) {
           ->check(number_within(0.1, 1e6).description(""))
           ->capture_default_str(),
       "S");
-  for_slurm(command->add_option("--pilot", slurm.pilot, "Cases of the pilot run.")
+  for_slurm(command->add_option("--pilot", slurm.pilot, "Number of cases in the pilot run.")
                 ->check(whole_number_within(1, 1000).description(""))
                 ->capture_default_str(),
             "N");
   for_slurm(command
                 ->add_option("--attempts", slurm.attempts,
-                             "How often a case is submitted whose task was lost.")
+                             "How many times in all a case is submitted if its tasks are lost.")
                 ->check(whole_number_within(1, 100).description(""))
                 ->capture_default_str(),
             "N");

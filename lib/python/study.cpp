@@ -87,7 +87,7 @@ void bind_push(py::module_& m) {
           [](const PyPushStudy& s) {
             return push_summary_lines(s.cases, s.options, s.task->task->series);
           },
-          "One line for each law, and for walking and standing.")
+          "One line for each law walking, and one for each law standing.")
       .def(
           "picture",
           [](const PyPushStudy& s, double scale) {

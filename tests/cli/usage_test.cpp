@@ -1,6 +1,9 @@
 // What every call of the program has in common: help, version, mistakes, exit codes.
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 
 #include "tests/cli/program.hpp"
 
@@ -32,6 +35,48 @@ TEST_F(Usage, HelpOfACommandBeginsWithExamples) {
   const size_t example = help.out.find("ayumi inspect hoap1"), options = help.out.find("--json");
   ASSERT_NE(example, std::string::npos) << help.out;
   EXPECT_LT(example, options);
+}
+
+// An example that names an option of the past would be pasted and refused.
+TEST_F(Usage, ExamplesOfTheHelpUseOptionsThatExist) {
+  const std::string all = ayumi({"--help"}).out;
+  std::map<std::vector<std::string>, std::string> helps;
+  const auto help_of = [&](const std::vector<std::string>& command) -> const std::string& {
+    const auto [found, missing] = helps.try_emplace(command);
+    if (!missing) return found->second;
+    std::vector<std::string> arguments = command;
+    arguments.push_back("--help");
+    return found->second = ayumi(arguments).out;
+  };
+  int options = 0;
+  const std::regex listed("\n  ([a-z]+) +[a-z]");
+  for (std::sregex_iterator c(all.begin(), all.end(), listed), end; c != end; ++c) {
+    const std::string page = help_of({(*c)[1].str()});
+    std::istringstream lines(page.substr(0, page.find("Usage:")));
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("  ayumi ")) continue;
+      std::istringstream words(line);
+      std::string program, command, kind, word;
+      words >> program >> command >> kind;
+      // The help of a kind does not repeat that of its command, which has the word SUBCOMMAND.
+      const bool has_kinds =
+          help_of({command}).find("SUBCOMMAND") != std::string::npos &&
+          help_of({command, kind}).find("Usage: ayumi " + command + " " + kind) !=
+              std::string::npos;
+      const std::string& own = has_kinds ? help_of({command, kind}) : help_of({command});
+      words.clear();
+      words.str(line);
+      while (words >> word) {
+        if (!word.starts_with("--")) continue;
+        const std::string option = word.substr(0, word.find('='));
+        ++options;
+        EXPECT_TRUE(own.find(option + " ") != std::string::npos ||
+                    all.find(option + " ") != std::string::npos)
+            << line << ": " << option;
+      }
+    }
+  }
+  EXPECT_GT(options, 60);
 }
 
 // A switch that turns something off is shown as it is typed.

@@ -52,8 +52,8 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
   const std::string a = counts_row(2090), b = counts_row(2091);
   EXPECT_EQ(recording_error(""), "m.csv: the file is empty");
   EXPECT_EQ(recording_error(a + "\n" + b + "\r\n" + a + "\n"),
-            "m.csv:2: this line ends with CR LF, those before with LF; the file may be put "
-            "together from two, so give it one kind of line end");
+            "m.csv:2: this line ends with CR LF, those before with LF; the file may "
+            "consist of two parts from different files: use one kind of line end");
   EXPECT_EQ(recording_error(a + "\n" + b.substr(0, 20) + "\n"),
             "m.csv:2: 9 columns, but the rows before have 22");
   EXPECT_EQ(recording_error(a + "\nnan" + b.substr(1) + "\n"),

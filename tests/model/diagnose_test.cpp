@@ -81,7 +81,8 @@ TEST(Diagnose, NamesAsymmetry) {
 TEST(Diagnose, NamesAnEncoderWhoseSignDisagrees) {
   const std::string text =
       findings([](auto& r) { r.encoders.at("l_knee").counts_per_degree = 209; });
-  EXPECT_TRUE(mentions(text, "joints l_knee/r_knee", "may be wrong: on the 9 other pairs"));
+  EXPECT_TRUE(mentions(text, "joints l_knee/r_knee",
+                       "the same direction here, but in opposite directions on the 9 other pairs"));
 }
 
 TEST(Diagnose, NamesMissingAndPlaceholderLimits) {

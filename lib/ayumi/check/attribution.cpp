@@ -231,7 +231,7 @@ const Where kNearFlight = {"within 5 samples of that flight", [](const Scene& sc
                              return std::vector<Interval>{
                                  around(flight_around(scene.motion, scene.window(i)), kEdgeReach)};
                            }};
-const Where kPhases = {"in its phase, and in the foot's swing or flight beside that phase",
+const Where kPhases = {"in its phase or in an adjacent swing or flight of that foot",
                        [](const Scene& scene, int i) {
                          return std::vector<Interval>{
                              around(moved_phases(scene.motion, scene.of(i)), kDifferenceReach)};
@@ -292,13 +292,13 @@ Interval held_around(const Scene& scene, const FindingWindow& w, int dof) {
 const Condition kAlways = {"always", [](Scene&, int, int, const Interval&) { return true; }};
 
 const Condition kNotAskedFor = {
-    "the effect is not a ZMP outside the support that the command itself asks for",
+    "the effect is not a ZMP that the command itself puts outside the support",
     [](Scene& scene, int, int j, const Interval&) {
       return !is_asked_for(scene.motion, scene.of(j));
     }};
 
 const Condition kLargerOfOneFoot = {
-    "cause and effect are displacements of the same foot, and the cause is the larger one",
+    "both are displacements of the same foot, and the cause is larger",
     [](Scene& scene, int i, int j, const Interval&) {
       const double cause = std::abs(scene.of(i).value), effect = std::abs(scene.of(j).value);
       return same_item(scene, i, j) && (cause != effect ? cause > effect : i < j);
@@ -310,18 +310,14 @@ const Condition kJointOfLeg = {"the joint is one of a leg",
                                }};
 
 const Condition kTouchesByAngle = {
-    "the bodies overlap by at most 15 mm, and they would not overlap if all joints kept their "
-    "limits; or the joint is between the two bodies, they overlap only while this joint has a "
-    "wrong angle, and they are not an arm and the trunk",
-    [](Scene& scene, int i, int j, const Interval&) {
+    "the angle makes the bodies overlap", [](Scene& scene, int i, int j, const Interval&) {
       return touches_by_limits(scene.motion, scene.of(j)) ||
              (hangs_on(scene.motion, scene.of(j), scene.of(i).item) &&
               wrong_angle_around(scene.motion, scene.window(i)).contains(scene.window(j)));
     }};
 
 const Condition kRateOfAngle = {
-    "cause and effect are of the same joint; if the effect is a jump, another jump must undo this "
-    "jump",
+    "both are of the same joint; if the effect is a jump, another jump undoes it",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& v = scene.of(j);
       if (!same_item(scene, i, j)) return false;
@@ -341,10 +337,7 @@ const Condition kInsideInterval = {"the effect begins and ends there",
                                    }};
 
 const Condition kJumpThereAndBack = {
-    "the joint jumps where the cause begins or ends, and jumps back at the other end; or the joint "
-    "jumps there and belongs to the leg of the cause, and the foot is in its place before and "
-    "after the cause",
-    [](Scene& scene, int i, int j, const Interval& interval) {
+    "the joint jumps with the foot", [](Scene& scene, int i, int j, const Interval& interval) {
       const FindingWindow& w = scene.window(i);
       const Violation& v = scene.of(j);
       if (!is_jump(scene, j, w.first) && !is_jump(scene, j, w.last + 1)) return false;
@@ -354,8 +347,7 @@ const Condition kJumpThereAndBack = {
     }};
 
 const Condition kHeldJoint = {
-    "the joint is between the two bodies, and its jump is undone by another jump; one of these "
-    "two jumps is the last one before the overlap or the first one after it",
+    "the joint jumps into the overlap or out of it",
     [](Scene& scene, int i, int j, const Interval&) {
       const int dof = scene.of(j).item;
       if (!sets_distance(scene.motion, scene.of(i), dof)) return false;
@@ -409,18 +401,15 @@ const Condition kOfFlight = {
              around(scene.window(i), kDifferenceReach).touches(scene.window(j));
     }};
 
-const Condition kUncountedFoot = {
-    "a foot stands on the ground at a time at which the plan has no contact of this foot",
-    [](Scene& scene, int, int j, const Interval&) {
-      return uncounted_foot_stands(scene.motion, scene.of(j).sample);
-    }};
+const Condition kUncountedFoot = {"a foot stands on the ground without a planned contact",
+                                  [](Scene& scene, int, int j, const Interval&) {
+                                    return uncounted_foot_stands(scene.motion, scene.of(j).sample);
+                                  }};
 
-const Condition kSlowerPace = {
-    "the same slower pace removes cause and effect; or the effect is computed from differences of "
-    "samples across a jump, and it is not a rate of a joint",
-    [](Scene& scene, int i, int j, const Interval&) {
-      return slower_pace_removes(scene.motion, scene.of(i), scene.of(j));
-    }};
+const Condition kSlowerPace = {"the speed explains both",
+                               [](Scene& scene, int i, int j, const Interval&) {
+                                 return slower_pace_removes(scene.motion, scene.of(i), scene.of(j));
+                               }};
 
 const Condition kTorqueOfLeg = {"the joint is one of a leg",
                                 [](Scene& scene, int, int j, const Interval&) {

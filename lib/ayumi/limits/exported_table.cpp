@@ -145,7 +145,7 @@ Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   return {refused_text(motion, v) + " moves " +
               text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) + " % further in " +
-              text::brief(1e3 * motion.series.dt, 3) + " ms than the motor follows: move " +
+              text::brief(1e3 * motion.series.dt, 3) + " ms than the motor can follow: move " +
               motion.model.dofs()[v.item].name + " more slowly, or accelerate it more gently here",
           kOrRepair};
 }
@@ -158,7 +158,7 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
                              : dof.prismatic       ? text::brief(1e3 * beyond, 3) + " mm"
                                              : text::brief(beyond * 180 / EIGEN_PI, 3) + " deg";
   return {refused_text(motion, v) + " is " + amount + " beyond its range: move " + dof.name +
-              " back by as much, or let it turn round more gently",
+              " back by as much, or let it reverse its direction more gently",
           kOrRepair};
 }
 
@@ -171,8 +171,8 @@ Advice rest_advice(const JudgedMotion& motion, const FindingWindow& window) {
 }
 
 std::string step_infeasibility(const Finding& f, double violation) {
-  return "the servo target of " + f.where + " steps by " + ratio_text(violation) +
-         " of what `export` accepts";
+  return "the servo target of " + f.where + " changes by " + ratio_text(violation) +
+         " times the step that `export` accepts";
 }
 
 std::string table_position_infeasibility(const Finding& f, double) {

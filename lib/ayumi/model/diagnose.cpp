@@ -329,12 +329,14 @@ class Doctor {
     }
     const size_t conform = opposite.size(), against = same.size();
     if (conform == 0 || against == 0) return;
-    warn("joints", text::join(conform >= against ? same : opposite, ", "),
-         "one of the two encoder signs may be wrong: on the " +
-             std::to_string(std::max(conform, against)) +
-             " other pairs of joints, the left and the right sign are equal if they are opposite "
-             "here, and opposite if they are equal here; test each of these joints alone before "
-             "you replay a table");
+    const bool are_same_here = conform >= against;
+    warn("joints", text::join(are_same_here ? same : opposite, ", "),
+         std::string("one of the two encoder signs may be wrong: in a symmetric movement, the left "
+                     "and the right count change in ") +
+             (are_same_here ? "the same direction here, but in opposite directions"
+                            : "opposite directions here, but in the same direction") +
+             " on the " + std::to_string(std::max(conform, against)) +
+             " other pairs of joints; test each of these joints alone before you replay a table");
   }
 
   void compare_links(const Link& left, const Link& right) {

@@ -36,8 +36,8 @@ struct PushMap {
 /// What a push study has beside the laws: "open loop", or "no feedback" for VIIP's pendulum.
 std::string push_baseline(const CommandSeries& series);
 
-/// One line for each law, and for walking and standing: its worst and mean limit in capture bounds
-/// beside those of the baseline.
+/// One line for each law walking, and one for each law standing: its worst and mean limit in
+/// capture bounds beside those of the baseline.
 std::vector<std::string> push_summary_lines(const std::vector<PushCase>& cases,
                                             const PushOptions& push, const CommandSeries& series);
 

@@ -124,8 +124,9 @@ void require_level_ground(const SimulationLog& log, Frame frame) {
   if (!world.slope.isZero(0) || !world.blocks.empty() || !world.fields.empty() ||
       !world.patches.empty() || bump || floor_moves(log))
     fail(ErrorCode::usage,
-         "frame foot: the ground of this run is not a plane that rests, and would jump at every "
-         "step; take the frame world");
+         "frame foot: the ground of this run is not a level plane at rest, so it would jump at "
+         "every "
+         "step of the robot in this frame; take the frame world");
 }
 
 }  // namespace ayumi

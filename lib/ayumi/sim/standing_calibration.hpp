@@ -2,7 +2,7 @@
 // Offsets of the ankles' encoders, estimated while the robot stands before its motion. A sole whose
 // ankle reads wrongly stands on an edge, because stiff servos hold what is read. The ankles then
 // turn until every sole bears inside and the soles are level by the IMU; what they have turned is
-// what their encoders read in excess. docs/theory.md, "Encoders that are off".
+// what their encoders read in excess. docs/theory_plant.md, "Encoders that are off".
 
 #include <array>
 

@@ -102,7 +102,9 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
   for (const ExternalWrench& w : input.wrenches)
     if (!(sound(w.force) && sound(w.torque) && sound(w.point) && w.body >= -1 &&
           w.body < static_cast<int>(model.bodies().size())))
-      complain("an external force is not a finite number below 1e6 on a body");
+      complain(
+          "an external force must consist of finite numbers below 1e6 and act on a body of the "
+          "robot");
   if (!input.joints.empty() && static_cast<int>(input.joints.size()) != model.dof_count())
     complain("faults of " + std::to_string(input.joints.size()) + " joints for " + count);
   for (size_t j = 0; j < input.joints.size(); ++j)

@@ -1,6 +1,6 @@
 #pragma once
-// The attitude that an inertial unit computes from its gyro and accelerometer. docs/theory.md,
-// "Tilt".
+// The attitude that an inertial unit computes from its gyro and accelerometer.
+// docs/theory_plant.md, "Tilt".
 
 #include <Eigen/Geometry>
 

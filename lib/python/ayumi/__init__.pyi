@@ -401,7 +401,7 @@ class PushStudy:
 
     @property
     def summary(self) -> list[str]:
-        """One line for each law, and for walking and standing."""
+        """One line for each law walking, and one for each law standing."""
 
     def picture(self, scale: float = 1.5) -> bytes:
         """The limits from above as the bytes of a PNG file."""

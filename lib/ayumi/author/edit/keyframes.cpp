@@ -149,14 +149,15 @@ void require_moved_together(const Isometry3d& shift, const Pattern& pattern) {
 
 Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, bool close) {
   if (times < 2 || times > 1000)
-    fail(ErrorCode::usage, "the pattern and its image can follow each other 2 to 1000 times, not " +
-                               std::to_string(times) + " times");
-  refuse_viip_phases(pattern, "alternated with its image");
+    fail(ErrorCode::usage,
+         "the pattern and its mirror image can follow each other 2 to 1000 times, not " +
+             std::to_string(times) + " times");
+  refuse_viip_phases(pattern, "alternated with its mirror image");
   if (pattern.table || pattern.correction)
     fail(ErrorCode::bad_pattern,
          in_file(pattern, pattern.table ? "table" : "correction") +
-             ": only a pattern of keys can alternate with its image, because each step begins "
-             "where the last one has ended");
+             ": only a pattern without a table and a correction can alternate with its mirror "
+             "image, because each step begins where the last one has ended");
   const bool foot_keys =
       std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(),
                   [](const Keyframe& key) { return key.feet[0] || key.feet[1]; });

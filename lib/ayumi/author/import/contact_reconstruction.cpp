@@ -363,14 +363,14 @@ CutEnds cut_ends(const RobotModel& model, const RawMotion& motion) {
                     last = movement_at(model, motion, rows - 2);
   cut.begin = !first.empty();
   cut.end = !last.empty();
-  const std::string remedy =
-      " there, and its torques have a peak; --ramp S, such as 0.5, lets the motion ";
+  const std::string peak =
+      ", so its torques have a peak at this time; --ramp S, such as 0.5, lets the motion ";
   if (cut.begin)
     cut.words.push_back("the recording begins while the robot moves (" + first +
-                        "), but a robot is at rest" + remedy + "begin slowly");
+                        "); a robot that plays it starts from rest" + peak + "begin slowly");
   if (cut.end)
     cut.words.push_back("the recording ends while the robot moves (" + last +
-                        "), but a robot stops" + remedy + "end slowly");
+                        "); a robot that plays it stops at once" + peak + "end slowly");
   return cut;
 }
 

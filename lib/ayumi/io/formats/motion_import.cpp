@@ -297,7 +297,7 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
     notes.push_back("unknown joints, left out: " + shortened(unknown) +
                     (unknown.size() == 1 ? text::suggestion(unknown[0], missing) : ""));
   if (!extra.empty())
-    notes.push_back("extra joints, which do not move by themselves on this robot, left out: " +
+    notes.push_back("extra joints, which do not move independently on this robot, left out: " +
                     shortened(extra));
   if (!missing.empty())
     notes.push_back("missing joints, which keep their angles of the home posture: " +

@@ -420,12 +420,13 @@ void find_soles(RobotGuess& guess) {
   const bool collisions = std::any_of(
       model.links().begin(), model.links().end(),
       [&](const Link& link) { return link.body == feet[0].body && !link.collisions.empty(); });
-  guess.sole_reason = {
-      "hull of everything of the foot's " +
-          std::string(collisions ? "collision shapes" : "visual shapes") +
-          " that touches the ground within 1 mm, with at most " + std::to_string(kMostCorners) +
-          " corners from the inside",
-      "the outline of the foot where it touches the ground; when in doubt, make it smaller"};
+  guess.sole_reason = {"hull of everything of the foot's " +
+                           std::string(collisions ? "collision shapes" : "visual shapes") +
+                           " that is at most 1 mm above the ground, with at most " +
+                           std::to_string(kMostCorners) + " corners from the inside",
+                       "that this is the outline of the part of the foot that touches the ground; "
+                       "when in doubt, make "
+                       "the outline smaller"};
 }
 
 // ---- home posture

@@ -65,11 +65,12 @@ void require_one_line_end(const std::string& bytes, const std::string& file) {
     ++line;
     (at > 0 && bytes[at - 1] == '\r' ? with : without) = true;
     if (with && without)
-      complain(file, line,
-               std::string("this line ends with ") +
-                   (bytes[at - 1] == '\r' ? "CR LF, those before with LF"
-                                          : "LF, those before with CR LF") +
-                   "; the file may be put together from two, so give it one kind of line end");
+      complain(
+          file, line,
+          std::string("this line ends with ") +
+              (bytes[at - 1] == '\r' ? "CR LF, those before with LF"
+                                     : "LF, those before with CR LF") +
+              "; the file may consist of two parts from different files: use one kind of line end");
   }
 }
 
