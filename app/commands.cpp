@@ -103,7 +103,7 @@ void add_global_options(CLI::App& app, Context& context) {
            std::fputs(described(app, kind, version()).c_str(), stdout);
            throw CLI::Success();
          },
-         "Print the manual page (man) or the completion of a shell (bash, zsh, fish).")
+         "Print the manual page (man) or the script for shell completion (bash, zsh, fish).")
       ->type_name("KIND")
       ->trigger_on_parse()
       ->group("");

@@ -366,7 +366,7 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 }
 
 std::string words_of(const TableServo& servo) {
-  if (servo.content == "ideal") return "the plain posture (--servo ideal)";
+  if (servo.content == "ideal") return "joint angles, not servo targets (--servo ideal)";
   const bool one = servo.lag.find(' ') == std::string::npos;
   return "the targets are ahead of the posture by the lag of the servos" +
          (one ? " (" + servo.lag + " s)" : "") +
@@ -694,7 +694,7 @@ void add_export(CLI::App& app, Context& context) {
   command
       ->add_option(
           "--servo", options->servo,
-          "What the targets are: ideal (the plain posture), lead (ahead of it by the lag of the "
+          "What the targets are: ideal (the joint angles), lead (ahead of them by the lag of the "
           "profile's servos; default) or lead+sag (which also compensates for the sag under load).")
       ->check(one_of({"ideal", "lead", "lead+sag"}));
   command->footer(

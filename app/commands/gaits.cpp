@@ -383,7 +383,7 @@ void add_gaits(CLI::App& app, Context& context) {
   command->add_flag("--uncertified", options->uncertified,
                     "Simulate each walk once, without uncertainty.");
   command->add_flag("--no-transitions", options->without_transitions,
-                    "Leave out the walks between neighbours.");
+                    "Leave out the walks that change from a cell to its neighbour.");
   command->callback([options, &context] { make_gaits(context, *options); });
 }
 

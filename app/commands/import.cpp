@@ -198,8 +198,8 @@ void add_import(CLI::App& app, Context& context) {
       ->type_name("HZ");
   command
       ->add_option("--signs", signs,
-                   "For rows of radians in device order: whether the signs of the angles are those "
-                   "of the robot's encoders or those of the joints.")
+                   "For rows of radians in the order of the motor numbers: whether their signs are "
+                   "those of the robot's encoders or those of the joints.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_flag("--order", options.import.by_order,

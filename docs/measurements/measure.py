@@ -211,8 +211,9 @@ def latency_walking():
     for name, source, world, robots, words in [
         ("`hoap1_walk`, DTAD", "hoap1_walk", {}, None, []),
         ("the same with `damp=0`", "hoap1_walk", {}, None, gain("damp=0")),
-        ("the same on ground that rises by 3°", "hoap1_walk", {"ground": {"pitch": -3}}, None, []),
-        ("the same on soles of 60 kN/m", "hoap1_walk", {}, softer_soles(6e4), []),
+        ("`hoap1_walk`, DTAD, on ground that rises by 3°", "hoap1_walk", {"ground": {"pitch": -3}}, None,
+         []),
+        ("`hoap1_walk`, DTAD, on soles of 60 kN/m", "hoap1_walk", {}, softer_soles(6e4), []),
         ("`hoap1_viip_step` without its push, VIIP", "hoap1_viip_step", {}, None, []),
         ("the same with `damp=0`", "hoap1_viip_step", {}, None, gain("damp=0")),
         ("`humanoid30_walk` without its push, DTAD", "humanoid30_walk", {}, None, []),
@@ -685,7 +686,7 @@ FAULTS = [
     ("stance foot displaced by 5 mm", "slip",
      thrown(1.4, 2.3, 0.3, "l_hip_pitch", "l_ankle_pitch"), []),
     ("contact 60 ms too early", "contact", early_contact, []),
-    ("0.65 of its time", "squeezed", squeezed, []),
+    ("whole motion played in 0.65 of its time", "squeezed", squeezed, []),
     ("ground of friction 0.10", "friction", slippery, []),
     ("COG moved by 15 mm, `--trust cog`", "cog", moved_cog, ["--trust", "cog"]),
 ]

@@ -292,7 +292,7 @@ Interval held_around(const Scene& scene, const FindingWindow& w, int dof) {
 const Condition kAlways = {"always", [](Scene&, int, int, const Interval&) { return true; }};
 
 const Condition kNotAskedFor = {
-    "the effect is not a ZMP that the command itself puts outside the support",
+    "always, except for a ZMP that is outside the support because the commanded ZMP is outside",
     [](Scene& scene, int, int j, const Interval&) {
       return !is_asked_for(scene.motion, scene.of(j));
     }};
@@ -389,10 +389,11 @@ const Condition kBeyondFlight = {"the COG error lasts more than 3 samples longer
                                             scene.motion.flies(off.last - kDifferenceReach));
                                  }};
 
-const Condition kHoldsInFreeFlight = {"the torque is within its limit when the robot falls freely",
-                                      [](Scene& scene, int, int j, const Interval&) {
-                                        return holds_in_free_flight(scene.motion, scene.of(j));
-                                      }};
+const Condition kHoldsInFreeFlight = {
+    "the torque would be within its limit if the robot fell freely in this flight",
+    [](Scene& scene, int, int j, const Interval&) {
+      return holds_in_free_flight(scene.motion, scene.of(j));
+    }};
 
 const Condition kOfFlight = {
     "the effect begins and ends there, or is within 3 samples of the cause",
