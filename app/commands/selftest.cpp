@@ -79,15 +79,15 @@ std::string push_text(const Context& context) {
 
 const std::array<Job, 5> kJobs = {{
     {"walk", "a walk with a push and DTAD", walk_text,
-     "82bd1b3cea30842b16bfdf1a8eec90a49b3053fed5193ffd6f86c7abaaeabbbd"},
+     "b85a65b57f9deb14cf022e7febdbf8f1c1bcda7057a1c3d7089e6654753b58cb"},
     {"jump", "a jump", jump_text,
-     "eb2c0d523397e26363bb3d9e6cef2e3abcd0f390902744b868c0b7ca76da2159"},
+     "ea27236241866226941566b0efade3521e0f6b51f665ce7a7cdbd59957174ce0"},
     {"viip", "a walk by VIIP", viip_text,
-     "45ef27b221213c0bcb7815058518454858d916e0627385cecd6e7c483c136afa"},
+     "08ac56ce28463020b300632a1dfcf315e4def685bf7b1fd785fa9dedb2562f58"},
     {"repair", "a repaired walk", repair_text,
      "25d4131c5e871d06919d81441e1aab94eed84262cbf7fdef7be675d9fbc6c33d"},
     {"push", "limits of pushes", push_text,
-     "0bcf10d7962e156ad391cb66afce103f989daec720ee909b72e3ec6195b0f6a7"},
+     "5181e963759c6b637825136580062876f621d1596d5ee58ae8a4e1e2abed2885"},
 }};
 
 void compare(Context& context) {
