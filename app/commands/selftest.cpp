@@ -79,15 +79,15 @@ std::string push_text(const Context& context) {
 
 const std::array<Job, 5> kJobs = {{
     {"walk", "a walk with a push and DTAD", walk_text,
-     "b85a65b57f9deb14cf022e7febdbf8f1c1bcda7057a1c3d7089e6654753b58cb"},
+     "f275829135f2879bcf5371dcfc94eb16f1e39d77b88526c6fe1d698cc3b417f3"},
     {"jump", "a jump", jump_text,
-     "ea27236241866226941566b0efade3521e0f6b51f665ce7a7cdbd59957174ce0"},
+     "4d9896d840c6d8774e4b592a5b56155bd4d4524cc7aa045c653f04ac35fdacd0"},
     {"viip", "a walk by VIIP", viip_text,
-     "08ac56ce28463020b300632a1dfcf315e4def685bf7b1fd785fa9dedb2562f58"},
+     "5b88faaa3ee066259cf44d7c072c2abcd5c6074bfd41303823fb75635feca26c"},
     {"repair", "a repaired walk", repair_text,
      "25d4131c5e871d06919d81441e1aab94eed84262cbf7fdef7be675d9fbc6c33d"},
     {"push", "limits of pushes", push_text,
-     "5181e963759c6b637825136580062876f621d1596d5ee58ae8a4e1e2abed2885"},
+     "0bcf10d7962e156ad391cb66afce103f989daec720ee909b72e3ec6195b0f6a7"},
 }};
 
 void compare(Context& context) {
