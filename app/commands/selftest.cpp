@@ -79,11 +79,11 @@ std::string push_text(const Context& context) {
 
 const std::array<Job, 5> kJobs = {{
     {"walk", "a walk with a push and DTAD", walk_text,
-     "82bd1b3cea30842b16bfdf1a8eec90a49b3053fed5193ffd6f86c7abaaeabbbd"},
+     "f275829135f2879bcf5371dcfc94eb16f1e39d77b88526c6fe1d698cc3b417f3"},
     {"jump", "a jump", jump_text,
-     "eb2c0d523397e26363bb3d9e6cef2e3abcd0f390902744b868c0b7ca76da2159"},
+     "4d9896d840c6d8774e4b592a5b56155bd4d4524cc7aa045c653f04ac35fdacd0"},
     {"viip", "a walk by VIIP", viip_text,
-     "45ef27b221213c0bcb7815058518454858d916e0627385cecd6e7c483c136afa"},
+     "5b88faaa3ee066259cf44d7c072c2abcd5c6074bfd41303823fb75635feca26c"},
     {"repair", "a repaired walk", repair_text,
      "25d4131c5e871d06919d81441e1aab94eed84262cbf7fdef7be675d9fbc6c33d"},
     {"push", "limits of pushes", push_text,

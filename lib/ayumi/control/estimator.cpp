@@ -5,6 +5,7 @@
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/math/heading.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -92,8 +93,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   // Heading has no absolute measurement in the plan frame: it is that of the planned stance foot.
   const int stance = static_cast<int>(e.stance);
   const Isometry3d sole_in_base = sole_pose(*model_, data_, e.stance);
-  const double yaw =
-      matrix_to_rpy(feet[stance].linear()).z() - matrix_to_rpy(R * sole_in_base.linear()).z();
+  const double yaw = heading_of(feet[stance].linear()) - heading_of(R * sole_in_base.linear());
   const Matrix3d turn = elementary::turn_matrix(yaw, Vector3d::UnitZ());
   s.base.attitude = Quaterniond(Matrix3d(turn * R)).normalized();
   s.base_angular_velocity = turn * w;

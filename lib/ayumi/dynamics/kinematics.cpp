@@ -1,5 +1,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 
+#include <array>
+
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -86,29 +88,41 @@ MatrixXd body_jacobian(const RobotModel& model, const RobotData& data, int body,
 
 namespace {
 
+/// Joints whose angles go through the kernel at once. Definition: a workspace, no limit.
+constexpr size_t kJointsAtOnce = 8;
+
 /// Attitude (in link axes) and origin of a body in the base, by its own chain alone.
 void carry_to(const RobotState& state, const RobotData& data, int body, Matrix3d& R, Vector3d& p) {
-  if (body == 0) {
+  std::array<int, kJointsAtOnce> chain;  // the last joints, from the body inwards
+  std::array<double, kJointsAtOnce> q, s, c;
+  size_t count = 0;
+  for (; body > 0 && count < kJointsAtOnce; ++count) {
+    const kernels::Link& link = data.links[static_cast<size_t>(body)];
+    chain[count] = body;
+    q[count] = link.ratio * state.theta[link.dof] + link.offset;
+    body = link.parent;
+  }
+  data.kernels->sine_cosine(q.data(), s.data(), c.data(), static_cast<int>(count));
+  if (body > 0) {
+    carry_to(state, data, body, R, p);
+  } else {
     R.setIdentity();
     p.setZero();
-    return;
   }
-  const kernels::Link& link = data.links[static_cast<size_t>(body)];
-  carry_to(state, data, link.parent, R, p);
-  p += R * Eigen::Map<const Vector3d>(link.r);
-  if (link.turned)
-    R = (R * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(link.E)).eval();
-  const double q = link.ratio * state.theta[link.dof] + link.offset;
-  if (link.prismatic) {
-    p += q * R.col(link.axis);
-    return;
+  while (count-- > 0) {
+    const kernels::Link& link = data.links[static_cast<size_t>(chain[count])];
+    p += R * Eigen::Map<const Vector3d>(link.r);
+    if (link.turned)
+      R = (R * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(link.E)).eval();
+    if (link.prismatic) {
+      p += q[count] * R.col(link.axis);
+      continue;
+    }
+    const int a = (link.axis + 1) % 3, b = (link.axis + 2) % 3;
+    const Vector3d x = R.col(a), y = R.col(b);
+    R.col(a) = c[count] * x + s[count] * y;
+    R.col(b) = c[count] * y - s[count] * x;
   }
-  double s = 0, c = 0;
-  data.kernels->sine_cosine(&q, &s, &c, 1);
-  const int a = (link.axis + 1) % 3, b = (link.axis + 2) % 3;
-  const Vector3d x = R.col(a), y = R.col(b);
-  R.col(a) = c * x + s * y;
-  R.col(b) = c * y - s * x;
 }
 
 }  // namespace

@@ -7,6 +7,24 @@ namespace ayumi {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+// The bodies but the root, those with fewer joints to it first: limbs then take turns, and what one
+// of them waits for is computed for the others.
+std::vector<size_t> outwards(const std::vector<Body>& bodies) {
+  std::vector<int> joints(bodies.size(), 0);
+  std::vector<size_t> order;
+  for (size_t i = 1; i < bodies.size(); ++i) {
+    joints[i] = joints[static_cast<size_t>(bodies[i].parent)] + 1;
+    order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return joints[a] < joints[b]; });
+  return order;
+}
+
+}  // namespace
+
 TreeCholesky::TreeCholesky(const RobotModel& model, const kernels::Kernels& kernels)
     : kernels_(&kernels) {
   const int n = model.velocity_count();
@@ -19,7 +37,7 @@ TreeCholesky::TreeCholesky(const RobotModel& model, const kernels::Kernels& kern
     parent_.push_back(c - 1);
     place_[static_cast<size_t>(c)] = c;
   }
-  for (size_t i = 1; i < bodies.size(); ++i) {
+  for (const size_t i : outwards(bodies)) {
     int& place = place_[static_cast<size_t>(6 + bodies[i].dof)];
     if (place >= 0) {
       mimic = true;

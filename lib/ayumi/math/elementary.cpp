@@ -2,8 +2,9 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
+
+#include "ayumi/math/elementary_parts.hpp"
 
 namespace ayumi::elementary {
 
@@ -11,82 +12,21 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-// Adding and subtracting it rounds to a whole number: 1.5 * 2^52, whose last bit is worth one.
-constexpr double kRound = 6755399441055744.0;
+using parts::kLog2;
+using parts::kLog2Low;
+using parts::kRound;
+using parts::product;
+using parts::quick_sum;
+using parts::sum;
+using Pair = parts::Pair<double>;
 
-// A number as the sum of two, the second far smaller.
-struct Pair {
-  double high = 0, low = 0;
-};
-Pair sum(double a, double b) {  // exact
-  const double s = a + b, part = s - a;
-  return {s, (a - (s - part)) + (b - part)};
-}
-Pair quick_sum(double a, double b) {  // exact where |a| >= |b|
-  const double s = a + b;
-  return {s, b - (s - a)};
-}
-Pair split(double a) {
-  const double c = 134217729.0 * a;  // 2^27 + 1
-  const double high = c - (c - a);
-  return {high, a - high};
-}
-Pair product(double a, double b) {  // exact (Dekker)
-  const double p = a * b;
-  const Pair x = split(a), y = split(b);
-  return {p, ((x.high * y.high - p) + x.high * y.low + x.low * y.high) + x.low * y.low};
-}
-
-// x - k pi/2 with |.| <= pi/4, and k mod 4.
-struct Reduced {
-  Pair rest;
-  int quadrant = 0;
-};
-Reduced reduced(double x) {
-  // pi/2 in three parts; the first two have 33 bits and so multiply k to 2^20 exactly.
-  constexpr double kFirst = 0x1.921fb544p0, kSecond = 0x1.0b4611a6p-34,
-                   kThird = 0x1.3198a2e037073p-69;
-  constexpr double kMost = 1e9;
+parts::Reduced<double> reduced(double x) {
+  constexpr double kLeast = 0.78, kMost = 1e9;
+  if (std::abs(x) < kLeast) return {{x, 0}, 0};  // below pi/4, of which nothing is taken off
   // Angles beyond any meaning: reduced by the double nearest to 2 pi, exactly and everywhere alike.
   if (std::abs(x) > kMost) x = std::fmod(x, 6.283185307179586);
-  const double shifted = x * 0.63661977236758134308 + kRound;
-  const double k = shifted - kRound;
-  const Pair first = product(k, kFirst), second = product(k, kSecond);
-  // k to 2^30: the products are exact as pairs.
-  const Pair a = sum(x - first.high, -first.low);
-  const Pair b = sum(a.high, -second.high);
-  const double low = a.low + b.low - second.low - k * kThird;
-  const auto whole = static_cast<std::int64_t>(k);
-  return {quick_sum(b.high, low), static_cast<int>(whole & 3)};
+  return parts::reduced(x);
 }
-
-// Taylor's series on |x| <= pi/4, with a small rest of the argument.
-double sine_of(const Pair& r) {
-  const double x = r.high, z = x * x;
-  double s = -1.0 / 1307674368000.0 + z * (1.0 / 355687428096000.0);
-  s = 1.0 / 6227020800.0 + z * s;
-  s = -1.0 / 39916800.0 + z * s;
-  s = 1.0 / 362880.0 + z * s;
-  s = -1.0 / 5040.0 + z * s;
-  s = 1.0 / 120.0 + z * s;
-  s = -1.0 / 6.0 + z * s;
-  return x + (x * z * s + r.low * (1 - 0.5 * z));
-}
-double cosine_of(const Pair& r) {
-  const double x = r.high, z = x * x;
-  double c = 1.0 / 20922789888000.0 - z * (1.0 / 6402373705728000.0);
-  c = -1.0 / 87178291200.0 + z * c;
-  c = 1.0 / 479001600.0 + z * c;
-  c = -1.0 / 3628800.0 + z * c;
-  c = 1.0 / 40320.0 + z * c;
-  c = -1.0 / 720.0 + z * c;
-  c = 1.0 / 24.0 + z * c;
-  const double half = 0.5 * z, most = 1 - half;
-  return most + (((1 - most) - half) + (z * z * c - x * r.low));
-}
-
-// log 2 in two parts; the first has 33 bits.
-constexpr double kLog2 = 0x1.62e42feep-1, kLog2Low = 0x1.a39ef35793c76p-33;
 
 // exp(r.high + r.low) on |r| <= log(2)/2.
 double exp_of(const Pair& r) {
@@ -97,7 +37,7 @@ double exp_of(const Pair& r) {
         1.0 / 5040.0, 1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0})
     s = inverse + x * s;
   const double most = 0.5 * x * x + x * x * x * s;
-  const Pair one = quick_sum(1, x);
+  const Pair one = quick_sum(1.0, x);
   return one.high + (one.low + (most + r.low * (1 + x + most)));
 }
 
@@ -116,24 +56,11 @@ double exp_of_pair(const Pair& x) {
 Pair log_pair(double x) {
   int exponent = 0;
   double m = std::frexp(x, &exponent);  // in [1/2, 1)
-  if (m < 0.70710678118654752) {
+  if (m < parts::kRootHalf) {
     m *= 2;
     --exponent;
   }
-  // log m = 2 atanh(s), s = f / (2 + f), with f = m - 1 exact.
-  const double f = m - 1, below = 2 + f;
-  const double s = f / below;
-  // What the division left: f - s (2 + f), of which 2 + f is itself rounded.
-  const Pair back = product(s, below);
-  const double rest = (((f - back.high) - back.low) - s * (f - (below - 2))) / below;
-  const double z = s * s;
-  double t = 2.0 / 21 + z * (2.0 / 23);
-  for (const double term :
-       {2.0 / 19, 2.0 / 17, 2.0 / 15, 2.0 / 13, 2.0 / 11, 2.0 / 9, 2.0 / 7, 2.0 / 5, 2.0 / 3})
-    t = term + z * t;
-  const double k = exponent;
-  const Pair a = sum(k * kLog2, 2 * s);
-  return quick_sum(a.high, a.low + (s * z * t + (2 * rest + k * kLog2Low)));
+  return parts::log_of(m, static_cast<double>(exponent));
 }
 
 // atan(k / 8) for k = 0 to 8.
@@ -181,15 +108,15 @@ Pair minus(const Pair& a, const Pair& b) {
 double sin(double x) {
   if (!std::isfinite(x)) return kNan;
   if (std::abs(x) < 1e-8) return x;
-  const Reduced r = reduced(x);
-  const double value = r.quadrant % 2 ? cosine_of(r.rest) : sine_of(r.rest);
+  const parts::Reduced<double> r = reduced(x);
+  const double value = r.quadrant % 2 ? parts::cosine_of(r.rest) : parts::sine_of(r.rest);
   return r.quadrant >= 2 ? -value : value;
 }
 
 double cos(double x) {
   if (!std::isfinite(x)) return kNan;
-  const Reduced r = reduced(x);
-  const double value = r.quadrant % 2 ? sine_of(r.rest) : cosine_of(r.rest);
+  const parts::Reduced<double> r = reduced(x);
+  const double value = r.quadrant % 2 ? parts::sine_of(r.rest) : parts::cosine_of(r.rest);
   return r.quadrant == 1 || r.quadrant == 2 ? -value : value;
 }
 
@@ -215,7 +142,7 @@ double log10(double x) {
 
 double log1p(double x) {
   if (!(x > -1) || x == kInfinity) return log(1 + x);
-  const Pair u = sum(1, x);
+  const Pair u = sum(1.0, x);
   return log(u.high) + u.low / u.high;
 }
 

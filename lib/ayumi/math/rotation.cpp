@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/math/heading.hpp"
 
 namespace ayumi {
 
@@ -39,8 +40,7 @@ Eigen::Vector3d matrix_to_rpy(const Eigen::Matrix3d& rotation) {
   const double pitch =
       elementary::atan2(-rotation(2, 0), elementary::hypot(rotation(0, 0), rotation(1, 0)));
   const double roll = elementary::atan2(rotation(2, 1), rotation(2, 2));
-  const double yaw = elementary::atan2(rotation(1, 0), rotation(0, 0));
-  return {roll, pitch, yaw};
+  return {roll, pitch, heading_of(rotation)};
 }
 
 }  // namespace ayumi

@@ -6,6 +6,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/math/heading.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -75,7 +76,7 @@ Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
     const Isometry3d r = sole_pose(model, data, side);
     plan += p.translation();
     real += r.translation();
-    const double yaw = matrix_to_rpy(r.linear()).z() - matrix_to_rpy(p.linear()).z();
+    const double yaw = heading_of(r.linear()) - heading_of(p.linear());
     sine += elementary::sin(yaw);
     cosine += elementary::cos(yaw);
     ++count;

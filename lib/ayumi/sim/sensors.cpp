@@ -1,6 +1,7 @@
 #include "ayumi/sim/sensors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
@@ -17,6 +18,9 @@ namespace {
 /// 400 readings are 0.4 s, for which the robot holds its first posture. Figures change by less than
 /// 5 % from half to twice.
 constexpr double kRestRoot = 20;
+
+/// Load cells whose noise is drawn at once. Definition: a workspace; results do not depend on it.
+constexpr size_t kNumbersAtOnce = 4;
 
 }  // namespace
 
@@ -77,10 +81,14 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
     FootLoad& load = m.feet[side];
     load.fz = 0;
     Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+    std::array<double, kNumbersAtOnce> numbers;
     for (size_t i = 0; i < cells.size(); ++i) {
       double f = (to_sole * cells[i].force).z();
       if (noise_) {
-        f += s.force_noise * random_.normal();
+        if (i % kNumbersAtOnce == 0)
+          random_.normals(numbers.data(),
+                          static_cast<int>(std::min(kNumbersAtOnce, cells.size() - i)));
+        f += s.force_noise * numbers[i % kNumbersAtOnce];
         if (s.force_resolution > 0) f = std::round(f / s.force_resolution) * s.force_resolution;
       }
       f = std::max(f + fault.force, 0.0);
@@ -92,7 +100,10 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
 }
 
 Vector3d Sensors::noise(double sigma) {
-  return Vector3d(sigma * random_.normal(), sigma * random_.normal(), sigma * random_.normal());
+  Vector3d numbers;
+  random_.normals(numbers.data(), 3);
+  // The published tables were made with z drawn first.
+  return sigma * numbers.reverse();
 }
 
 Vector3d Sensors::specific_force(const RobotData& truth, const Eigen::Quaterniond& attitude) {

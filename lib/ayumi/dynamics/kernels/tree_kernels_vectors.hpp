@@ -155,17 +155,29 @@ inline void sines_and_cosines(const double* angle, double* sine, double* cosine,
   for (int first = 0; first < count; first += kLanes) {
     const int left = count - first < kLanes ? count - first : kLanes;
     Wide q{}, s, c;
-    __builtin_memcpy(&q, angle + first, sizeof(double) * static_cast<unsigned long>(left));
+#pragma GCC unroll 4
+    for (int k = 0; k < kLanes; ++k) q[k] = angle[first + (k < left ? k : 0)];
     if (__builtin_expect(any_large(q), 0))
       far_sine_cosine(q, s, c);
     else
       sine_cosine(q, s, c);
-    __builtin_memcpy(sine + first, &s, sizeof(double) * static_cast<unsigned long>(left));
-    __builtin_memcpy(cosine + first, &c, sizeof(double) * static_cast<unsigned long>(left));
+#pragma GCC unroll 4
+    for (int k = 0; k < kLanes; ++k) {
+      if (k == left) break;
+      sine[first + k] = s[k];
+      cosine[first + k] = c[k];
+    }
   }
 }
 
 // Several joints of one state, or one joint of several states, go through the series at once.
+// One joint's place among those that go through the series at once: a lane of one state, or all
+// lanes of several states. Not by way of memory, where a vector is late that was stored by numbers.
+inline void put_lane(Wide& all, int lane, double x) { all[lane] = x; }
+inline void put_lane(Wide& all, int, const Wide& x) { all = x; }
+inline void get_lane(const Wide& all, int lane, double& x) { x = all[lane]; }
+inline void get_lane(const Wide& all, int, Wide& x) { x = all; }
+
 template <typename T>
 inline void find_joints(const Tree& tree, const Job& job, Joint<T>* joints) {
   constexpr int kLanes = static_cast<int>(sizeof(Wide) / sizeof(T));
@@ -175,23 +187,23 @@ inline void find_joints(const Tree& tree, const Job& job, Joint<T>* joints) {
   }
   for (int first = 1; first < tree.count; first += kLanes) {
     const int last = tree.count - 1;
-    T angle[kLanes], s[kLanes], c[kLanes];
     bool large = false;
+    Wide all{}, sines, cosines;
+#pragma GCC unroll 4
     for (int k = 0; k < kLanes; ++k) {
-      angle[k] = joints[first + k <= last ? first + k : last].q;
-      large = large || any_large(angle[k]);
+      const T angle = joints[first + k <= last ? first + k : last].q;
+      put_lane(all, k, angle);
+      large |= any_large(angle);
     }
-    Wide all, sines, cosines;
-    __builtin_memcpy(&all, angle, sizeof all);
     if (__builtin_expect(large, 0))
       far_sine_cosine(all, sines, cosines);
     else
       sine_cosine(all, sines, cosines);
-    __builtin_memcpy(s, &sines, sizeof s);
-    __builtin_memcpy(c, &cosines, sizeof c);
-    for (int k = 0; k < kLanes && first + k <= last; ++k) {
-      joints[first + k].s = s[k];
-      joints[first + k].c = c[k];
+#pragma GCC unroll 4
+    for (int k = 0; k < kLanes; ++k) {
+      if (first + k > last) break;
+      get_lane(sines, k, joints[first + k].s);
+      get_lane(cosines, k, joints[first + k].c);
     }
   }
 }

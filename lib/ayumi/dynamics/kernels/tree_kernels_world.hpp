@@ -4,6 +4,8 @@
 //   a_i = a_p + alpha_p x r + w_p x (w_p x r),    f = m (a_c + g z),  n = I alpha + w x I w + c x
 //   f, tau = s . (n_subtree - p x f_subtree).
 // A prismatic joint adds s ddq + 2 w_p x s dq to a_i in place of the angular terms.
+// Most bodies stand next to their parent. What goes from one to the other then stays in registers:
+// a number that has just been stored is late when it is loaded again.
 
 namespace {
 
@@ -27,11 +29,13 @@ struct Frame {
   Four p;
 };
 
-// A body from the frame its joint starts from (in link axes; it becomes the body's); returns its
-// first moment.
+// A body from the frame its joint starts from, which becomes the body's (both in link axes);
+// returns its first moment.
 template <int K>
-inline Four place_body(const Link& link, const Joint<double>& joint, Columns R, Four p,
-                       Frame& frame, const Bodies& bodies, int i) {
+inline Four place_body(const Link& link, const Joint<double>& joint, Frame& frame,
+                       const Bodies& bodies, int i) {
+  Columns R = frame.R;
+  Four p = frame.p;
   store_three(bodies.axis + 3 * i, link.along * R.c[K]);
   if (link.prismatic)
     p += joint.q * R.c[K];
@@ -65,21 +69,23 @@ void body_positions(const Tree& tree, const Job& job, const Bodies& bodies, doub
   const Four center = times_four(frames[0].R, com[0], com[1], com[2]);
   store_three(bodies.com, center);
   Four sum = tree.links[0].mass * center;
+  Frame frame = frames[0];
   for (int i = 1; i < tree.count; ++i) {
     const Link& link = tree.links[i];
-    const Frame& up = frames[link.parent];
-    Columns R = up.R;
-    const Four p = up.p + times_four(R, link.r[0], link.r[1], link.r[2]);
+    if (link.parent != i - 1) frame = frames[link.parent];
+    Columns& R = frame.R;
+    frame.p += times_four(R, link.r[0], link.r[1], link.r[2]);
     if (link.turned)
       R = {{times_four(R, link.E[0], link.E[3], link.E[6]),
             times_four(R, link.E[1], link.E[4], link.E[7]),
             times_four(R, link.E[2], link.E[5], link.E[8])}};
     if (link.axis == 0)
-      sum += place_body<0>(link, joints[i], R, p, frames[i], bodies, i);
+      sum += place_body<0>(link, joints[i], frame, bodies, i);
     else if (link.axis == 1)
-      sum += place_body<1>(link, joints[i], R, p, frames[i], bodies, i);
+      sum += place_body<1>(link, joints[i], frame, bodies, i);
     else
-      sum += place_body<2>(link, joints[i], R, p, frames[i], bodies, i);
+      sum += place_body<2>(link, joints[i], frame, bodies, i);
+    frames[i] = frame;
   }
   store_three(moment, sum);
 }
@@ -92,9 +98,11 @@ void body_velocities(const Tree& tree, const Job& job, const Bodies& bodies, dou
   for (int i = 1; i < tree.count; ++i) {
     const Link& link = tree.links[i];
     const Four p = load_three(bodies.position + 3 * i);
-    w = load_three(bodies.angular_velocity + 3 * link.parent);
-    v = load_three(bodies.velocity + 3 * link.parent) +
-        cross_four(w, p - load_three(bodies.position + 3 * link.parent));
+    if (link.parent != i - 1) {
+      w = load_three(bodies.angular_velocity + 3 * link.parent);
+      v = load_three(bodies.velocity + 3 * link.parent);
+    }
+    v += cross_four(w, p - load_three(bodies.position + 3 * link.parent));
     const Four rate = link.drive * job.dtheta[link.dof] * load_three(bodies.axis + 3 * i);
     (link.prismatic ? v : w) += rate;
     store_three(bodies.angular_velocity + 3 * i, w);
@@ -211,44 +219,53 @@ struct Loaded {
 void newton_euler(const Tree& tree, const Job& job, const Bodies& bodies) {
   auto* loads = reinterpret_cast<Loaded*>(bodies.scratch);
   const double falling[3] = {job.input[0], job.input[1], job.input[2] + tree.gravity};
-  loads[0].a = load_three(falling);
-  loads[0].alpha = load_three(job.input + 3);
+  Four a = load_three(falling), alpha = load_three(job.input + 3);
   for (int i = 0; i < tree.count; ++i) {
     const Link& link = tree.links[i];
     Loaded& t = loads[i];
     const Four p = load_three(bodies.position + 3 * i);
     if (i > 0) {
-      const Loaded& up = loads[link.parent];
+      if (link.parent != i - 1) {
+        a = loads[link.parent].a;
+        alpha = loads[link.parent].alpha;
+      }
       const Four wp = load_three(bodies.angular_velocity + 3 * link.parent);
       const Four r = p - load_three(bodies.position + 3 * link.parent);
       const Four axis = link.drive * load_three(bodies.axis + 3 * i);
       const Four rate = job.dtheta[link.dof] * axis, drate = job.input[6 + link.dof] * axis;
-      t.a = up.a + cross_four(up.alpha, r) + cross_four(wp, cross_four(wp, r));
-      t.alpha = up.alpha;
+      a = a + cross_four(alpha, r) + cross_four(wp, cross_four(wp, r));
       if (link.prismatic)
-        t.a += drate + 2.0 * cross_four(wp, rate);
+        a += drate + 2.0 * cross_four(wp, rate);
       else
-        t.alpha += drate + cross_four(wp, rate);
+        alpha += drate + cross_four(wp, rate);
     }
+    t.a = a;
+    t.alpha = alpha;
     const Four w = load_three(bodies.angular_velocity + 3 * i);
     const Four com = load_three(bodies.com + 3 * i), c = com - p;
     const Columns I = turned(load_columns(bodies.rotation + 9 * i), link.about_com);
-    t.f = link.mass * (t.a + cross_four(t.alpha, c) + cross_four(w, cross_four(w, c)));
-    t.n = times_four(I, t.alpha) + cross_four(w, times_four(I, w)) + cross_four(com, t.f);
+    t.f = link.mass * (a + cross_four(alpha, c) + cross_four(w, cross_four(w, c)));
+    t.n = times_four(I, alpha) + cross_four(w, times_four(I, w)) + cross_four(com, t.f);
   }
   for (int j = 0; j < tree.dofs; ++j) job.output[6 + j] = 0;
+  Four f = loads[tree.count - 1].f, n = loads[tree.count - 1].n;
   for (int i = tree.count - 1; i > 0; --i) {
     const Link& link = tree.links[i];
-    const Loaded& t = loads[i];
     const Four axis = load_three(bodies.axis + 3 * i);
-    const Four felt =
-        link.prismatic ? t.f : t.n - cross_four(load_three(bodies.position + 3 * i), t.f);
+    const Four felt = link.prismatic ? f : n - cross_four(load_three(bodies.position + 3 * i), f);
     job.output[6 + link.dof] += link.drive * dot_four(axis, felt);
-    loads[link.parent].f += t.f;
-    loads[link.parent].n += t.n;
+    if (link.parent == i - 1) {
+      f = loads[i - 1].f + f;
+      n = loads[i - 1].n + n;
+      continue;
+    }
+    loads[link.parent].f += f;
+    loads[link.parent].n += n;
+    f = loads[i - 1].f;
+    n = loads[i - 1].n;
   }
-  store_three(job.output, loads[0].f);
-  store_three(job.output + 3, loads[0].n);
+  store_three(job.output, f);
+  store_three(job.output + 3, n);
 }
 
 // Adds what a unit velocity of the base (lines 0 to 5) and of each joint gives a point that

@@ -10,6 +10,7 @@
 #include "ayumi/sim/plant/contact_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ayumi {
 
@@ -108,6 +109,82 @@ void ContactRows::fill_jacobian(const Block& block, const std::vector<ActiveCont
     data.kernels->contact_lines({p.data(), contact.to_contact.data()}, chain, block.width,
                                 J + 3 * i);
   }
+}
+
+bool ContactRows::all_stick() const {
+  if (linked_) return false;
+  for (size_t i = 0; i < count_; ++i) {
+    const Vector3d l = impulse(i);
+    if (l[0] > 0 && !inside_cone(l, solver_.friction()[i])) return false;
+  }
+  return true;
+}
+
+// Lines of J' times the root of the stiffness: their product with themselves is J' J/R.
+void ContactRows::add_springs(const RobotData& data, const TreeCholesky& factor,
+                              std::vector<double>& matrix, VectorXd& x) {
+  for (const Block& block : blocks_) {
+    const int lines = factor.depth(block.last) + 1, width = (lines + 3) / 4 * 4;
+    const int* on = factor.path(block.last);
+    const auto most = 3 * block.count;
+    springs_.resize(std::max(springs_.size(), most * static_cast<size_t>(width)));
+    pull_.resize(std::max(pull_.size(), most));
+    int rows = 0;
+    for (size_t i = 0; i < block.count; ++i) {
+      const size_t contact = block.first + i;
+      if (!(impulse(contact)[0] > 0)) continue;
+      const double root = std::sqrt(1 / compliance_[contact]);
+      for (int k = 0; k < 3; ++k) pull_[static_cast<size_t>(rows + k)] = -root * shift_[contact][k];
+      double* to = &springs_[static_cast<size_t>(rows * width)];
+      const double* from = &J_[block.begin] + 3 * i;
+      for (int t = 0; t < lines; ++t, ++to, from += block.width) {
+        to[0] = root * from[0];
+        to[width] = root * from[1];
+        to[2 * width] = root * from[2];
+      }
+      for (int t = lines; t < width; ++t, ++to) to[0] = to[width] = to[2 * width] = 0;
+      rows += 3;
+    }
+    if (rows == 0) continue;
+    const auto room = static_cast<size_t>(width * (width + 1));
+    gram_.resize(std::max(gram_.size(), room));
+    data.kernels->gram(springs_.data(), width, springs_.data(), width, rows, width, width,
+                       gram_.data(), width);
+    double* on_path = gram_.data() + width * width;
+    std::fill_n(on_path, width, 0.0);
+    data.kernels->multiply_add(springs_.data(), width, rows, width, pull_.data(), on_path);
+    for (int t = 0; t < lines; ++t) {
+      double* row = &matrix[static_cast<size_t>(factor.row_begin(on[t]))];
+      const double* entry = gram_.data() + t * width;
+      for (int s = 0; s <= t; ++s) row[s] += entry[s];
+      x[on[t]] += on_path[t];
+    }
+  }
+}
+
+bool ContactRows::take_springs(const RobotData& data, const TreeCholesky& factor,
+                               const VectorXd& change, ContactSolution& solution) {
+  solution = {.iterations = 1};
+  rates_change_.assign(3 * count_, 0.0);
+  for (const Block& block : blocks_) {
+    const auto rows = static_cast<Eigen::Index>(3 * block.count);
+    Eigen::Map<VectorXd>(&rates_change_[3 * block.first], rows) =
+        times_path(block, &J_[block.begin], change, data, factor).head(rows);
+  }
+  for (size_t i = 0; i < count_; ++i) {
+    Eigen::Map<Vector3d> u(&rates_change_[3 * i]);
+    u += shift_[i];
+    if (impulse(i)[0] > 0) {
+      u *= -1 / compliance_[i];  // now the impulse
+      if (!(u[0] > 0 && inside_cone(u, solver_.friction()[i]))) return false;
+    } else {
+      solution.residual = std::max(solution.residual, -u[0]);
+      if (solution.residual > kContactTolerance) return false;
+      u.setZero();
+    }
+  }
+  solver_.impulse() = Eigen::Map<const VectorXd>(rates_change_.data(), rates_change_.size());
+  return true;
 }
 
 ContactSolution ContactRows::solve(const RobotData& data, const TreeCholesky& factor, VectorXd& x) {

@@ -1,7 +1,8 @@
 #pragma once
-// The contacts of a step as a problem for the ContactSolver: Jacobians J of the contact points,
-// Y = L^-T J' with the factor L of the step's matrix, the Delassus matrix A = Y' Y + compliance and
-// the right side b. docs/theory_plant.md, (P2) and (P3).
+// The contacts of a step, as springs in its matrix where all that press stick, else as a problem
+// for the ContactSolver: Jacobians J of the contact points, Y = L^-T J' with the factor L of the
+// step's matrix, the Delassus matrix A = Y' Y + compliance and the right side b.
+// docs/theory_plant.md, (P2) and (P3).
 
 #include <Eigen/Dense>
 #include <vector>
@@ -21,6 +22,20 @@ class ContactRows {
   /// the generalised velocity at its start.
   void set(const std::vector<ActiveContact>& contacts, const RobotData& data,
            const TreeCholesky& factor, const Eigen::VectorXd& before, double dt);
+
+  /// Whether every contact that pressed last pressed inside its cone, on the ground.
+  bool all_stick() const;
+
+  /// Puts these contacts, as they were in the last solve, into the rows of the step's matrix as
+  /// springs that pull both ways, and into the right side `x` in the order of places. The others
+  /// stay open.
+  void add_springs(const RobotData& data, const TreeCholesky& factor, std::vector<double>& matrix,
+                   Eigen::VectorXd& x);
+
+  /// Takes the impulses of the springs, `change` being the solved change of velocity in the order
+  /// of places. False, and the impulses are as before, where a contact does not obey its law.
+  bool take_springs(const RobotData& data, const TreeCholesky& factor,
+                    const Eigen::VectorXd& change, ContactSolution& solution);
 
   /// Solves the contacts with the factor L of the step's matrix. `x` holds L^-T times the right
   /// side of the free motion, in the order of places, and receives L^-T J' times the impulses.
@@ -82,7 +97,7 @@ class ContactRows {
   std::vector<double> rates_before_, rates_;  // three per contact [m/s]
   ContactSolver solver_;
   // Workspace.
-  std::vector<double> gram_, product_;
+  std::vector<double> gram_, product_, springs_, pull_, rates_change_;
   Eigen::VectorXd placed_;
 };
 

@@ -35,10 +35,6 @@ constexpr double kConeRounding = 1e-14;
 /// Chosen: 1e-9 of the impulse of a weight of 1 N in a step of 1 ms. No measured case changes from
 /// half to twice (constants.md).
 constexpr double kNoImpulse = 1e-12;
-/// Relative distance from the cone from which on an impulse is inside it. Chosen: far above
-/// kConeRounding, so that an impulse on the cone is not inside it. No measured case changes from
-/// half to twice (constants.md).
-constexpr double kConeMargin = 1e-9;
 /// Tangential speed below which a contact on the cone sticks, where the direction of the slip is
 /// lost to rounding [m/s]. Chosen: 1/100 of kContactTolerance. No measured case changes from half
 /// to twice (constants.md).
@@ -90,12 +86,6 @@ Vector3d solve_three(const Matrix3d& D, const Vector3d& r) {
   const double y1 = r[1] - l10 * r[0], y2 = r[2] - l20 * r[0] - l21 * y1;
   const double x2 = c * y2, x1 = b * y1 - l21 * x2;
   return {a * r[0] - l10 * x1 - l20 * x2, x1, x2};
-}
-
-/// True when the impulse of a closed contact is inside the cone by more than rounding.
-bool inside_cone(const Vector3d& l, double mu) {
-  const double most = mu * l[0] * (1 - kConeMargin);
-  return l.tail<2>().squaredNorm() < most * most;
 }
 
 Vector3d solve_one(const Matrix3d& D, const Vector3d& r, double mu) {

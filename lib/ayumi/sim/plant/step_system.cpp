@@ -116,24 +116,37 @@ bool StepSystem::solve(JointLaws& joints, const RobotData& data, const VectorXd&
   return true;
 }
 
-// change_ holds L^-T times the right side, then also the impulses of the contacts, then v+ - v.
 bool StepSystem::solve_once(JointLaws& joints, const RobotData& data, const VectorXd& theta,
                             double dt) {
-  std::vector<double>& system = factor_.rows();
-  system = mass_;
   velocity_ = impulse_;
   joints.add(theta, joint_rates_before(), dt, velocity_.data() + 6, diagonal_);
-  for (size_t j = 0; j < diagonal_.size(); ++j) system[joint_diagonal_[j]] += diagonal_[j];
-  if (!factor_.factor_rows()) return false;
-  for (int k = 0; k < change_.size(); ++k) change_[k] = velocity_[factor_.column_at(k)];
-  factor_.solve_upper(change_);
   solution_ = {};
-  if (contact_count_ > 0) solution_ = rows_.solve(data, factor_, change_);
-  factor_.solve_lower(change_);
+  bool solved = false;
+  if (contact_count_ > 0 && rows_.all_stick()) {
+    if (!solve_change(data, Contacts::springs)) return false;
+    solved = rows_.take_springs(data, factor_, change_, solution_);
+  }
+  if (!solved && !solve_change(data, Contacts::rows)) return false;
   for (int k = 0; k < change_.size(); ++k) {
     const int c = factor_.column_at(k);
     velocity_[c] = before_[c] + change_[k];
   }
+  return true;
+}
+
+// change_ holds the right side, then L^-T times it, then also the impulses of the contacts, then
+// v+ - v.
+bool StepSystem::solve_change(const RobotData& data, Contacts contacts) {
+  std::vector<double>& system = factor_.rows();
+  system = mass_;
+  for (size_t j = 0; j < diagonal_.size(); ++j) system[joint_diagonal_[j]] += diagonal_[j];
+  for (int k = 0; k < change_.size(); ++k) change_[k] = velocity_[factor_.column_at(k)];
+  if (contacts == Contacts::springs) rows_.add_springs(data, factor_, system, change_);
+  if (!factor_.factor_rows()) return false;
+  factor_.solve_upper(change_);
+  if (contacts == Contacts::rows && contact_count_ > 0)
+    solution_ = rows_.solve(data, factor_, change_);
+  factor_.solve_lower(change_);
   return true;
 }
 

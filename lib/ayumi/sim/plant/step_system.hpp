@@ -91,6 +91,8 @@ class StepSystem {
                   double dt);
   bool solve_once(JointLaws& joints, const RobotData& data, const Eigen::VectorXd& theta,
                   double dt);
+  enum class Contacts { springs, rows };
+  bool solve_change(const RobotData& data, Contacts contacts);
 
   TreeCholesky factor_;
   std::vector<double> mass_;            // rows of the mass matrix with rotors

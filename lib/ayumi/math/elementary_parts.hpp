@@ -1,0 +1,123 @@
+#pragma once
+// The series behind the elementary functions, for one number T or for several side by side (a
+// vector of the compiler's): the same operations in the same order, so that both give the same
+// bits.
+
+#include <bit>
+#include <cstdint>
+
+namespace ayumi::elementary::parts {
+
+// Adding and subtracting it rounds to a whole number: 1.5 * 2^52, whose last bit is worth one.
+constexpr double kRound = 6755399441055744.0;
+
+// A number as the sum of two, the second far smaller.
+template <typename T>
+struct Pair {
+  T high{}, low{};
+};
+template <typename T>
+Pair<T> sum(T a, T b) {  // exact
+  const T s = a + b, part = s - a;
+  return {s, (a - (s - part)) + (b - part)};
+}
+template <typename T>
+Pair<T> quick_sum(T a, T b) {  // exact where |a| >= |b|
+  const T s = a + b;
+  return {s, b - (s - a)};
+}
+template <typename T>
+Pair<T> split(T a) {
+  const T c = 134217729.0 * a;  // 2^27 + 1
+  const T high = c - (c - a);
+  return {high, a - high};
+}
+template <typename T, typename U>
+Pair<T> product(T a, U b) {  // exact (Dekker)
+  const T p = a * b;
+  const Pair<T> x = split(a);
+  const Pair<U> y = split(b);
+  return {p, ((x.high * y.high - p) + x.high * y.low + x.low * y.high) + x.low * y.low};
+}
+
+// x - k pi/2 with |.| <= pi/4, and k mod 4, by the bits of a sum with kRound.
+template <typename T>
+struct Reduced {
+  Pair<T> rest;
+  decltype(T{} < T{}) quadrant{};
+};
+template <>
+struct Reduced<double> {
+  Pair<double> rest;
+  int quadrant = 0;
+};
+inline int low_bits(double x) { return static_cast<int>(std::bit_cast<std::int64_t>(x) & 3); }
+template <typename T>
+auto low_bits(T x) {
+  return std::bit_cast<decltype(x < x)>(x) & 3;
+}
+template <typename T>
+Reduced<T> reduced(T x) {
+  // pi/2 in three parts; the first two have 33 bits and so multiply k to 2^20 exactly.
+  constexpr double kFirst = 0x1.921fb544p0, kSecond = 0x1.0b4611a6p-34,
+                   kThird = 0x1.3198a2e037073p-69;
+  const T shifted = x * 0.63661977236758134308 + kRound;
+  const T k = shifted - kRound;
+  const Pair<T> first = product(k, kFirst), second = product(k, kSecond);
+  // k to 2^30: the products are exact as pairs.
+  const Pair<T> a = sum<T>(x - first.high, -first.low);
+  const Pair<T> b = sum<T>(a.high, -second.high);
+  const T low = a.low + b.low - second.low - k * kThird;
+  return {quick_sum(b.high, low), low_bits(shifted)};
+}
+
+// Taylor's series on |x| <= pi/4, with a small rest of the argument.
+template <typename T>
+T sine_of(const Pair<T>& r) {
+  const T x = r.high, z = x * x;
+  T s = -1.0 / 1307674368000.0 + z * (1.0 / 355687428096000.0);
+  s = 1.0 / 6227020800.0 + z * s;
+  s = -1.0 / 39916800.0 + z * s;
+  s = 1.0 / 362880.0 + z * s;
+  s = -1.0 / 5040.0 + z * s;
+  s = 1.0 / 120.0 + z * s;
+  s = -1.0 / 6.0 + z * s;
+  return x + (x * z * s + r.low * (1.0 - 0.5 * z));
+}
+template <typename T>
+T cosine_of(const Pair<T>& r) {
+  const T x = r.high, z = x * x;
+  T c = 1.0 / 20922789888000.0 - z * (1.0 / 6402373705728000.0);
+  c = -1.0 / 87178291200.0 + z * c;
+  c = 1.0 / 479001600.0 + z * c;
+  c = -1.0 / 3628800.0 + z * c;
+  c = 1.0 / 40320.0 + z * c;
+  c = -1.0 / 720.0 + z * c;
+  c = 1.0 / 24.0 + z * c;
+  const T half = 0.5 * z, most = 1.0 - half;
+  return most + (((1.0 - most) - half) + (z * z * c - x * r.low));
+}
+
+// log 2 in two parts; the first has 33 bits.
+constexpr double kLog2 = 0x1.62e42feep-1, kLog2Low = 0x1.a39ef35793c76p-33;
+constexpr double kRootHalf = 0.70710678118654752;
+
+// log(m 2^k) as a pair, for m from the root of 1/2 to that of 2.
+template <typename T>
+Pair<T> log_of(T m, T k) {
+  // log m = 2 atanh(s), s = f / (2 + f), with f = m - 1 exact.
+  const T f = m - 1.0, below = 2.0 + f;
+  const T s = f / below;
+  // What the division left: f - s (2 + f), of which 2 + f is itself rounded.
+  const Pair<T> back = product(s, below);
+  const T rest = (((f - back.high) - back.low) - s * (f - (below - 2.0))) / below;
+  const T z = s * s;
+  T t = 2.0 / 21 + z * (2.0 / 23);
+  for (const double term :
+       {2.0 / 19, 2.0 / 17, 2.0 / 15, 2.0 / 13, 2.0 / 11, 2.0 / 9, 2.0 / 7, 2.0 / 5, 2.0 / 3})
+    t = term + z * t;
+  const Pair<T> a = sum<T>(k * kLog2, 2.0 * s);
+  return quick_sum<T>(a.high, a.low + (s * z * t + (2.0 * rest + k * kLog2Low)));
+}
+
+}  // namespace ayumi::elementary::parts
