@@ -113,6 +113,27 @@ TEST(Identify, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.delay.upper, four.delay.upper);
 }
 
+// What a servo may be behind is a named limit; half of it is told in one line.
+TEST(Identify, SaysThatTheRecordingMayBeShifted) {
+  const SyntheticServo servo = soft();
+  const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
+  const RobotModel model(pendulum_robot(servo));
+  RecordedMotion motion = recorded(theta, kNoise, kCount, 1, excitation);
+  EXPECT_EQ(identify(model, motion, held_root(), "m.csv").caution, "");
+  const Eigen::MatrixXd old = motion.measured.theta;
+  constexpr Eigen::Index kLate = 15;
+  motion.measured.theta.topRows(kLate).setConstant(old(0, 0));
+  motion.measured.theta.bottomRows(old.rows() - kLate) = old.topRows(old.rows() - kLate);
+  EXPECT_NE(
+      identify(model, motion, held_root(), "m.csv")
+          .caution.find("ms is the lag of the servos in the robot's file: make sure that both "
+                        "files begin at the same time"),
+      std::string::npos);
+  IdentifyOptions strict = held_root();
+  strict.longest_lag = 0.01;
+  EXPECT_THROW(identify(model, motion, strict, "m.csv"), Error);
+}
+
 std::string answer_error(const std::function<void(RecordedMotion&)>& spoil) {
   const SyntheticServo servo = soft();
   static const Eigen::VectorXd theta = simulated_angles(soft(), 6, excitation);
@@ -120,7 +141,7 @@ std::string answer_error(const std::function<void(RecordedMotion&)>& spoil) {
   RecordedMotion motion = recorded(theta, kNoise, kCount, 1, excitation);
   spoil(motion);
   try {
-    require_answer(model, motion.command, motion.measured, 0.1, "m.csv");
+    require_answer(model, motion.command, motion.measured, 0.03, "m.csv");
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_file);
     return error.what();
@@ -140,7 +161,16 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
          m.measured.theta.topRows(800).setConstant(old(0, 0));
          m.measured.theta.bottomRows(old.rows() - 800) = old.topRows(old.rows() - 800);
        }),
-       "ms behind their command; the recording is shifted");
+       "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
+       "recording is shifted");
+  // 50 ms are no lag of a servo either.
+  said(answer_error([](RecordedMotion& m) {
+         const Eigen::MatrixXd old = m.measured.theta;
+         m.measured.theta.topRows(50).setConstant(old(0, 0));
+         m.measured.theta.bottomRows(old.rows() - 50) = old.topRows(old.rows() - 50);
+       }),
+       "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
+       "recording is shifted");
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(5901, 1); }),
        "m.csv: lasts 5.900 s, but its command lasts 6.000 s");
   said(answer_error([](RecordedMotion& m) { m.measured.theta *= -1; }),

@@ -30,10 +30,9 @@ constexpr double kLoadCutoff = 50;
 // friction change it, and the noise of an encoder beyond this frequency does not become a torque.
 constexpr double kSagCutoff = 15;
 
-// Load of a standing leg above this frequency [Hz], and its share of the largest load of the joint
-// above which it is not known well. Chosen: slower than a step; at a tenth, the delays of a
-// simulated robot are 0.5 ms wrong.
-constexpr double kQuickLoad = 5, kQuickShare = 0.05;
+// Share of the quick load of a standing leg in the largest load of the joint, above which it is not
+// known well. Chosen: at a tenth, the delays of a simulated robot are 0.5 ms wrong.
+constexpr double kQuickShare = 0.05;
 
 // Load cells are smoothed to this frequency [Hz]. Chosen: the weight goes from foot to foot in 0.1
 // s or more.

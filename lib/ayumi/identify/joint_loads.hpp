@@ -8,6 +8,9 @@
 
 namespace ayumi {
 
+/// Load of a standing leg above this frequency is quick [Hz]. Chosen: slower than a step.
+inline constexpr double kQuickLoad = 5;
+
 /// What carries the robot while it moves.
 enum class RobotStand {
   feet,  ///< it stands or walks on level ground; from the joint angles

@@ -268,7 +268,7 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
 }
 
 void require_answer(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
-                    double longest_delay, const std::string& file) {
+                    double longest_lag, const std::string& file) {
   const auto complain = [&](const std::string& what) {
     fail(ErrorCode::bad_file, file + ": " + what);
   };
@@ -290,15 +290,18 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   const double reach = std::min(5.0, 0.3 * asked);
   const double shift = time_shift(model, command, measured, reach);
   // One row earlier than its command is how recorders count.
-  if (shift > longest_delay || shift < -2 * measured.dt) {
+  if (shift > longest_lag || shift < -2 * measured.dt) {
     std::vector<Index> few = dofs;
     if (few.size() > 4) few.resize(4);
     double near = distance(command, measured, few, 0, kShiftStep);
-    near = std::min(near, distance(command, measured, few, longest_delay, kShiftStep));
+    near = std::min(near, distance(command, measured, few, longest_lag, kShiftStep));
     if (distance(command, measured, few, shift, kShiftStep) < kShiftGain * near)
       complain("the angles are " + text::fixed(1000 * std::abs(shift), 0) + " ms " +
-               (shift > 0 ? "behind" : "ahead of") +
-               " their command; the recording is shifted, so let both begin at the same time");
+               (shift > 0 ? "behind" : "ahead of") + " their command" +
+               (shift > 0 ? ", and a servo is at most " + text::fixed(1000 * longest_lag, 0) +
+                                " ms behind (--longest-lag)"
+                          : "") +
+               "; the recording is shifted, so let both begin at the same time");
   }
   const DelayJump jump = delay_jump(command, measured, dofs);
   if (jump.found)
@@ -308,7 +311,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
                               : "later than before: rows are repeated there") +
              "; record again, or give the rows a time column");
   const std::vector<std::string> wrong = motion_complaints(
-      model, command, measured, std::clamp(shift, 0.0, longest_delay), 0, command.duration());
+      model, command, measured, std::clamp(shift, 0.0, longest_lag), 0, command.duration());
   if (!wrong.empty()) complain(wrong.front());
 }
 

@@ -24,9 +24,9 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
                                            double end);
 
 /// Throws Error(bad_file) "`file`: what" for the first of these, and where `measured` is of another
-/// length than the command, comes earlier or later than `longest_delay` [s], or has no joint that
+/// length than the command, comes earlier or later than `longest_lag` [s], or has no joint that
 /// moves.
 void require_answer(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
-                    double longest_delay, const std::string& file);
+                    double longest_lag, const std::string& file);
 
 }  // namespace ayumi
