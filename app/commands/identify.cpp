@@ -195,6 +195,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
              ": the robot has no soles; add \"soles\" to its sidecar, or use --stand "
              "fixed");
   how.longest_lag = 0.001 * options.longest_lag_ms;
+  how.loads_place = options.loads;
   how.threads = context.threads;
   const Identification found = identify(model, motion, how, options.measured, context.progress());
   std::string words = options.measured + ": " + text::fixed(found.seconds, 3) + " s, " +

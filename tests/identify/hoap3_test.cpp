@@ -95,6 +95,18 @@ TEST(IdentifyHoap3, FindsTheServosWithoutLoadCells) {
   expect_the_servos_of_the_walk(false);
 }
 
+// Load cells that begin half a second later than the angles are not of this recording.
+TEST(IdentifyHoap3, RefusesLoadCellsThatAreLate) {
+  if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
+  const RobotModel model = recorded_robot();
+  RecordedMotion motion = recorded_walk(model);
+  const auto agreement = [&] { return joint_loads(model, motion, RobotStand::feet).agreement; };
+  EXPECT_GT(agreement(), 0.9);
+  const Eigen::MatrixXd loads = motion.sensors.foot_load;
+  motion.sensors.foot_load.bottomRows(loads.rows() - 500) = loads.topRows(loads.rows() - 500);
+  EXPECT_THROW(require_loads(motion.sensors, motion.measured, agreement(), "l.csv"), Error);
+}
+
 // Five rows of a file without time are missing: the answer comes earlier from there on.
 TEST(IdentifyHoap3, RefusesMissingRows) {
   if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;

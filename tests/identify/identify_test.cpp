@@ -11,6 +11,7 @@
 #include "ayumi/base/in_parallel.hpp"
 #include "ayumi/identify/recording_checks.hpp"
 #include "tests/identify/synthetic_servo.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -186,6 +187,28 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
        "arm_joint does not follow its command");
   said(answer_error([](RecordedMotion& m) { m.command.theta.setConstant(0.1); }),
        "no joint of this recording moves");
+}
+
+TEST(RecordingChecks, OneLineForLoadCellsOfAnotherMotion) {
+  AngleTable measured;
+  measured.dt = 0.001;
+  measured.theta = Eigen::MatrixXd::Zero(6001, 1);
+  SensorTable loads;
+  loads.dt = 0.002;
+  loads.foot_load = Eigen::MatrixXd::Constant(3001, 2, 30);
+  EXPECT_NO_THROW(require_loads(loads, measured, 0.97, "l.csv"));
+  EXPECT_NO_THROW(require_loads({}, measured, 1, "l.csv"));
+  const auto message = [&](double agreement) {
+    return error_message([&] { require_loads(loads, measured, agreement, "l.csv"); },
+                         ErrorCode::bad_file);
+  };
+  EXPECT_NE(message(0.6).find("l.csv: while one foot stands, its load cells carry only 60 %"),
+            std::string::npos)
+      << message(0.6);
+  loads.foot_load.conservativeResize(1500, 2);
+  EXPECT_NE(message(1).find("l.csv: lasts 2.998 s, but the measured angles last 6.000 s"),
+            std::string::npos)
+      << message(1);
 }
 
 }  // namespace

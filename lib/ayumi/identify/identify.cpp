@@ -491,6 +491,7 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
   require_answer(model, motion.command, motion.measured, longest, place);
   report(progress, {"loads", 0, ""});
   const JointLoads loads = joint_loads(model, motion, options.stand);
+  require_loads(motion.sensors, motion.measured, loads.agreement, options.loads_place);
   const std::vector<std::string> types = motor_types(model);
   Identification result;
   result.seconds = motion.measured.duration();

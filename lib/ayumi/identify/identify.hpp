@@ -17,6 +17,7 @@ struct IdentifyOptions {
   RobotStand stand = RobotStand::feet;
   double longest_lag = 0;  ///< of an answer that a servo gives [s]; 0: that of longest_lag()
   int threads = 0;         ///< 0: all cores
+  std::string loads_place = "load cells";  ///< of their file, for messages
 };
 
 /// A value with its 95 % interval.

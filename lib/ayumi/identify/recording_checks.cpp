@@ -26,6 +26,10 @@ constexpr double kMoves = 0.5 * kDegree;
 // delay of a servo; what is shorter has lost rows or its end.
 constexpr double kLengthShare = 0.02, kLengthTime = 0.25, kShorter = 0.05;
 
+// Share of the weight on the standing foot, in the mean of all single supports, below which load
+// cells are not of this motion. Chosen: cells that are 0.3 s late, or of the other side, have less.
+constexpr double kStandingShare = 0.8;
+
 // Windows over which the delay of the answer is followed [s], and a change of it that only missing
 // or repeated rows explain [s]. Chosen: a motion has all its rates within a window, and a change
 // that is far beyond what friction and load do to the mean of several windows.
@@ -313,6 +317,25 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   const std::vector<std::string> wrong = motion_complaints(
       model, command, measured, std::clamp(shift, 0.0, longest_lag), 0, command.duration());
   if (!wrong.empty()) complain(wrong.front());
+}
+
+void require_loads(const SensorTable& loads, const AngleTable& measured, double agreement,
+                   const std::string& file) {
+  if (loads.foot_load.rows() == 0) return;
+  const double lasts = loads.dt * static_cast<double>(loads.foot_load.rows() - 1);
+  if (std::abs(lasts - measured.duration()) > kLengthTime)
+    fail(ErrorCode::bad_file,
+         file + ": lasts " + text::fixed(lasts, 3) + " s, but the measured angles last " +
+             text::fixed(measured.duration(), 3) +
+             " s; the load cells are incomplete, have another rate (give --rate), or belong to "
+             "another recording");
+  if (agreement < kStandingShare)
+    fail(ErrorCode::bad_file,
+         file + ": while one foot stands, its load cells carry only " +
+             text::fixed(100 * agreement, 0) + " % of the weight (limit " +
+             text::fixed(100 * kStandingShare, 0) +
+             " %); the load cells are shifted, belong to another recording, or left and right are "
+             "exchanged");
 }
 
 }  // namespace ayumi
