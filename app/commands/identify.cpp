@@ -25,6 +25,7 @@ constexpr double kIdentifiedDegree = M_PI / 180;
 struct IdentifyCommand {
   std::string robot, command, measured, loads, out, per = "joint", stand = "auto";
   RecordingOptions reading;
+  double longest_lag_ms = 0;
 };
 
 // Digits that the interval of a value leaves, one more.
@@ -193,11 +194,14 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
          options.robot +
              ": the robot has no soles; add \"soles\" to its sidecar, or use --stand "
              "fixed");
+  how.longest_lag = 0.001 * options.longest_lag_ms;
+  how.loads_place = options.loads;
   how.threads = context.threads;
   const Identification found = identify(model, motion, how, options.measured, context.progress());
   std::string words = options.measured + ": " + text::fixed(found.seconds, 3) + " s, " +
                       std::to_string(found.joints.size()) +
                       " joints; values with their 95 % intervals\n";
+  if (!found.caution.empty()) words += "  " + found.caution + "\n";
   Json joints = Json::array();
   bool advice = false;
   for (const IdentifiedJoint& joint : found.joints) {
@@ -221,6 +225,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   context.print_json(Json{
       {"output", options.out.empty() ? Json(nullptr) : Json(options.out)},
       {"seconds", found.seconds},
+      {"caution", found.caution.empty() ? Json(nullptr) : Json(found.caution)},
       {"stand", how.stand == RobotStand::feet ? "feet" : "fixed"},
       {"joints", joints}}.dump(2));
 }
@@ -274,6 +279,13 @@ void add_identify(CLI::App& app, Context& context) {
                    "the measured angles, the rate of the command).")
       ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
+  command
+      ->add_option("--longest-lag", options.longest_lag_ms,
+                   "Time by which a servo may be behind its command; a recording that is later is "
+                   "refused as shifted (default: 30, or twice the lag of the slowest servo of "
+                   "ROBOT) [ms].")
+      ->check(number_within(1.0, 500.0))
+      ->type_name("MS");
   command->callback([&context] {
     options.reading.degrees = unit == "deg";
     identify_servos(context, options);

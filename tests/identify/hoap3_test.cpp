@@ -24,13 +24,14 @@ RobotModel recorded_robot() {
                     {.folders = {kHoap3 + "/hoap3_description"}});
 }
 
-RecordedMotion recorded_walk(const RobotModel& model) {
+RecordedMotion recorded_walk(const RobotModel& model, bool with_loads = true) {
   const auto read = [&](const std::string& name) { return read_file(kHoap3 + "/" + name); };
   RecordedMotion motion;
   motion.command =
       read_angles(read("motions/walk_m03_fujitsu_sample_pulses_1ms.csv"), "command", model);
   motion.measured =
       read_angles(read("recordings/walk_m03_measured_encoder_pulses_1ms.csv"), "measured", model);
+  if (!with_loads) return motion;
   motion.sensors = read_sensors_table(read("recordings/walk_m03_measured_sensors_adc_1ms.csv"),
                                       "sensors", model);
   return motion;
@@ -38,11 +39,11 @@ RecordedMotion recorded_walk(const RobotModel& model) {
 
 // Two independent evaluations of this recording gave 3.5 to 3.8 ms at the legs, 0.055 to 0.059
 // degrees of sag at the knees and 0.035 to 0.037 at the hip rolls.
-TEST(IdentifyHoap3, FindsDelayAndSagOfTheRecordedWalk) {
-  if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
+void expect_the_servos_of_the_walk(bool with_loads) {
   constexpr double kDegree = M_PI / 180;
   const RobotModel model = recorded_robot();
-  const Identification result = identify(model, recorded_walk(model), {}, "measured");
+  const Identification result = identify(model, recorded_walk(model, with_loads), {}, "measured");
+  EXPECT_EQ(result.caution, "");
   std::vector<double> delays;
   for (const IdentifiedJoint& joint : result.joints) {
     if (!joint.moved) continue;
@@ -63,6 +64,47 @@ TEST(IdentifyHoap3, FindsDelayAndSagOfTheRecordedWalk) {
   EXPECT_NEAR(0.5 * (delays[6] + delays[7]), 0.0036, 0.0003);
   EXPECT_NEAR(delays.front(), 0.0036, 0.0005);
   EXPECT_NEAR(delays.back(), 0.0036, 0.0005);
+  // The weight shows the stiffness of knees and hip rolls: 2500 to 5000 N m/rad by lever, with 10 %
+  // for it, and that of one side agrees with that of the other.
+  for (const std::string joint : {"LFE_%_KN_joint", "LR_%_LAA_joint"}) {
+    std::vector<ServoEstimate> sides;
+    for (const IdentifiedJoint& each : result.joints)
+      for (const char side : {'R', 'L'}) {
+        std::string name = std::string(1, side) + "_" + joint;
+        name[name.find('%')] = side;
+        if (each.joint != name) continue;
+        EXPECT_TRUE(each.kp.known) << name;
+        EXPECT_GT(each.kp.value, 2500 * 0.9) << name;
+        EXPECT_LT(each.kp.value, 5000 * 1.1) << name;
+        sides.push_back(each.kp);
+      }
+    ASSERT_EQ(sides.size(), 2u) << joint;
+    EXPECT_LT(sides[0].lower, sides[1].upper) << joint;
+    EXPECT_LT(sides[1].lower, sides[0].upper) << joint;
+  }
+}
+
+TEST(IdentifyHoap3, FindsTheServosOfTheRecordedWalk) {
+  if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
+  expect_the_servos_of_the_walk(true);
+}
+
+// How the feet share the weight then follows from the geometry.
+TEST(IdentifyHoap3, FindsTheServosWithoutLoadCells) {
+  if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
+  expect_the_servos_of_the_walk(false);
+}
+
+// Load cells that begin half a second later than the angles are not of this recording.
+TEST(IdentifyHoap3, RefusesLoadCellsThatAreLate) {
+  if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
+  const RobotModel model = recorded_robot();
+  RecordedMotion motion = recorded_walk(model);
+  const auto agreement = [&] { return joint_loads(model, motion, RobotStand::feet).agreement; };
+  EXPECT_GT(agreement(), 0.9);
+  const Eigen::MatrixXd loads = motion.sensors.foot_load;
+  motion.sensors.foot_load.bottomRows(loads.rows() - 500) = loads.topRows(loads.rows() - 500);
+  EXPECT_THROW(require_loads(motion.sensors, motion.measured, agreement(), "l.csv"), Error);
 }
 
 // Five rows of a file without time are missing: the answer comes earlier from there on.
@@ -71,12 +113,12 @@ TEST(IdentifyHoap3, RefusesMissingRows) {
   const RobotModel model = recorded_robot();
   RecordedMotion motion = recorded_walk(model);
   const Eigen::MatrixXd whole = motion.measured.theta;
-  EXPECT_NO_THROW(require_answer(model, motion.command, motion.measured, 0.1, "m.csv"));
+  EXPECT_NO_THROW(require_answer(model, motion.command, motion.measured, 0.03, "m.csv"));
   const Eigen::Index gap = 8000, missing = 5, rows = whole.rows() - missing;
   motion.measured.theta.resize(rows, whole.cols());
   motion.measured.theta << whole.topRows(gap), whole.bottomRows(rows - gap);
   try {
-    require_answer(model, motion.command, motion.measured, 0.1, "m.csv");
+    require_answer(model, motion.command, motion.measured, 0.03, "m.csv");
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("5 ms earlier than before: rows are missing"),

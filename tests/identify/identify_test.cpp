@@ -11,6 +11,7 @@
 #include "ayumi/base/in_parallel.hpp"
 #include "ayumi/identify/recording_checks.hpp"
 #include "tests/identify/synthetic_servo.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -113,6 +114,27 @@ TEST(Identify, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.delay.upper, four.delay.upper);
 }
 
+// What a servo may be behind is a named limit; half of it is told in one line.
+TEST(Identify, SaysThatTheRecordingMayBeShifted) {
+  const SyntheticServo servo = soft();
+  const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
+  const RobotModel model(pendulum_robot(servo));
+  RecordedMotion motion = recorded(theta, kNoise, kCount, 1, excitation);
+  EXPECT_EQ(identify(model, motion, held_root(), "m.csv").caution, "");
+  const Eigen::MatrixXd old = motion.measured.theta;
+  constexpr Eigen::Index kLate = 15;
+  motion.measured.theta.topRows(kLate).setConstant(old(0, 0));
+  motion.measured.theta.bottomRows(old.rows() - kLate) = old.topRows(old.rows() - kLate);
+  EXPECT_NE(
+      identify(model, motion, held_root(), "m.csv")
+          .caution.find("ms is the lag of the servos in the robot's file: make sure that both "
+                        "files begin at the same time"),
+      std::string::npos);
+  IdentifyOptions strict = held_root();
+  strict.longest_lag = 0.01;
+  EXPECT_THROW(identify(model, motion, strict, "m.csv"), Error);
+}
+
 std::string answer_error(const std::function<void(RecordedMotion&)>& spoil) {
   const SyntheticServo servo = soft();
   static const Eigen::VectorXd theta = simulated_angles(soft(), 6, excitation);
@@ -120,7 +142,7 @@ std::string answer_error(const std::function<void(RecordedMotion&)>& spoil) {
   RecordedMotion motion = recorded(theta, kNoise, kCount, 1, excitation);
   spoil(motion);
   try {
-    require_answer(model, motion.command, motion.measured, 0.1, "m.csv");
+    require_answer(model, motion.command, motion.measured, 0.03, "m.csv");
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_file);
     return error.what();
@@ -140,7 +162,16 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
          m.measured.theta.topRows(800).setConstant(old(0, 0));
          m.measured.theta.bottomRows(old.rows() - 800) = old.topRows(old.rows() - 800);
        }),
-       "ms behind their command; the recording is shifted");
+       "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
+       "recording is shifted");
+  // 50 ms are no lag of a servo either.
+  said(answer_error([](RecordedMotion& m) {
+         const Eigen::MatrixXd old = m.measured.theta;
+         m.measured.theta.topRows(50).setConstant(old(0, 0));
+         m.measured.theta.bottomRows(old.rows() - 50) = old.topRows(old.rows() - 50);
+       }),
+       "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
+       "recording is shifted");
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(5901, 1); }),
        "m.csv: lasts 5.900 s, but its command lasts 6.000 s");
   said(answer_error([](RecordedMotion& m) { m.measured.theta *= -1; }),
@@ -156,6 +187,28 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
        "arm_joint does not follow its command");
   said(answer_error([](RecordedMotion& m) { m.command.theta.setConstant(0.1); }),
        "no joint of this recording moves");
+}
+
+TEST(RecordingChecks, OneLineForLoadCellsOfAnotherMotion) {
+  AngleTable measured;
+  measured.dt = 0.001;
+  measured.theta = Eigen::MatrixXd::Zero(6001, 1);
+  SensorTable loads;
+  loads.dt = 0.002;
+  loads.foot_load = Eigen::MatrixXd::Constant(3001, 2, 30);
+  EXPECT_NO_THROW(require_loads(loads, measured, 0.97, "l.csv"));
+  EXPECT_NO_THROW(require_loads({}, measured, 1, "l.csv"));
+  const auto message = [&](double agreement) {
+    return error_message([&] { require_loads(loads, measured, agreement, "l.csv"); },
+                         ErrorCode::bad_file);
+  };
+  EXPECT_NE(message(0.6).find("l.csv: while one foot stands, its load cells carry only 60 %"),
+            std::string::npos)
+      << message(0.6);
+  loads.foot_load.conservativeResize(1500, 2);
+  EXPECT_NE(message(1).find("l.csv: lasts 2.998 s, but the measured angles last 6.000 s"),
+            std::string::npos)
+      << message(1);
 }
 
 }  // namespace

@@ -36,5 +36,18 @@ TEST(LinearSolve, MeetsTheEquations) {
   }
 }
 
+// What is left over is perpendicular to every column; two equal columns do no harm.
+TEST(LinearSolve, LeastSquaresLeaveWhatIsPerpendicular) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    test::Random random(seed);
+    MatrixXd A = random_matrix(random, 30, 5);
+    if (seed % 2 == 0) A.col(4) = A.col(1);
+    const VectorXd b = random_matrix(random, 30, 1).col(0);
+    const VectorXd left = b - A * solve_least_squares(A, b);
+    EXPECT_LT((A.transpose() * left).norm(), 1e-12);
+    EXPECT_GT(left.norm(), 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace ayumi

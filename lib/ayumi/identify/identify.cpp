@@ -10,7 +10,9 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/identify/recording_checks.hpp"
 #include "ayumi/identify/servo_fit.hpp"
+#include "ayumi/identify/standing_stiffness.hpp"
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
@@ -52,13 +54,22 @@ constexpr double kRotorShare = 0.25;
 // of small humanoids, which have 1e-4 or more.
 constexpr double kLeastCompliance = 1e-6;
 
-// Lag beyond which a recording may be shifted [s]. Chosen: soft servos of small humanoids have up
-// to 20 ms.
-constexpr double kSlowServo = 0.03;
+// Lag of an answer that no servo has [s], and in lags of the servo that the robot's file states:
+// the larger of both holds. Chosen: soft servos of small humanoids have up to 20 ms. A recording
+// that is shifted by more than this is refused; half as much would refuse soft servos.
+constexpr double kSlowServo = 0.03, kSlowerThanStated = 2;
+
+// Lag beyond that of the robot's file from which on a shift of the recording is likely [s].
+// Chosen: loads and friction change the lag of a servo by a few milliseconds.
+constexpr double kLikelyShift = 0.007;
 
 // Time for which the load of a joint has to be known [s], or its stiffness is not looked for.
 // Chosen: the single supports of two steps.
 constexpr double kLeastKnown = 1;
+
+// Place of the centre of gravity of a robot that its file may be wrong by [m]. Chosen: cables and
+// batteries. The torques of a standing leg are wrong by the weight at this lever.
+constexpr double kCogError = 0.002;
 
 // Torque that puts a gear on one of its flanks [N m]. Chosen: the friction of a small gear.
 constexpr double kFlankTorque = 0.05;
@@ -74,7 +85,8 @@ struct TypeFit {
   /// What the delay is less, and its uncertainty, for what a servo does between two commands [s].
   double hold = 0;
   double step = 0;  ///< as much for the damping: the simulator's step was neither seen nor excluded
-  ServoConstants heavier;  ///< with a rotor that is heavier by its uncertainty
+  ServoConstants heavier;       ///< with a rotor that is heavier by its uncertainty
+  StandingCompliance standing;  ///< where it shows the stiffness better than the motion does
 };
 
 double rms_between(const ServoFit& a, const ServoFit& b) {
@@ -96,6 +108,28 @@ double deviation(const ServoFit& fit, Constant which) {
 bool is_seen(const ServoFit& with, const ServoFit& without, double value, Constant which) {
   return rms_between(with, without) > kBeyondErrors * with.model_error &&
          value > with.t_factor * deviation(with, which);
+}
+
+// Standard deviation of what loads a joint beside its own inertia [N m].
+double load_change(const JointRecording& recording) {
+  const VectorXd load =
+      (recording.torque.array() - recording.link_inertia.array() * recording.acceleration.array())
+          .matrix()(recording.compared);
+  return std::sqrt((load.array() - load.mean()).square().mean());
+}
+
+// Uncertainty of the torque of a joint, in parts of the changes of its load.
+double load_share_error(const JointRecording& recording) {
+  return kModelShare + kLoadError / std::max(load_change(recording), 1e-6);
+}
+
+// Half width of the interval of the compliance of a joint [rad/(N m)].
+double compliance_half_width(const TypeFit& type, const JointRecording& recording) {
+  if (type.standing.found) return type.standing.half_width + kModelShare * type.standing.value;
+  const double s = type.fit.constants[0].compliance,
+               heavier = std::max(type.heavier.compliance, 1e-12);
+  return type.fit.t_factor * deviation(type.fit, Constant::compliance) +
+         load_share_error(recording) * s + std::abs(heavier - s);
 }
 
 constexpr std::array<bool, kConstants> holding(bool damping, bool backlash) {
@@ -150,10 +184,33 @@ ServoFit damped_fit(const std::vector<JointRecording>& joints, const ServoFit& s
   return fit_servo(joints, best, holding(false, true), longest_delay);
 }
 
+// Where the weight that a leg carries shows the stiffness better than the motion does, the other
+// constants are fitted beside it.
+void take_standing_stiffness(const std::vector<JointRecording>& joints, double longest_delay,
+                             double load_error, TypeFit& type) {
+  const ServoConstants& found = type.fit.constants[0];
+  const StandingCompliance standing =
+      standing_compliance(joints, found.delay + found.damping, load_error);
+  double half = HUGE_VAL;
+  for (const JointRecording& joint : joints)
+    half = std::min(half, compliance_half_width(type, joint));
+  if (!standing.found || standing.half_width * found.compliance >= half * standing.value) return;
+  std::array<bool, kConstants> held = holding(type.delay_takes_damping, true);
+  held[static_cast<size_t>(Constant::compliance)] = true;
+  std::vector<ServoConstants> start = type.fit.constants;
+  for (ServoConstants& each : start) each.compliance = standing.value;
+  type.fit = fit_servo(joints, start, held, longest_delay);
+  const auto at = static_cast<Index>(Constant::compliance);
+  const double sigma = standing.half_width / type.fit.t_factor;
+  type.fit.covariance(at, at) = sigma * sigma;
+  type.heavier = type.fit.constants[0];
+  type.standing = standing;
+}
+
 // A servo may hold each command until the next one, or go from one to the other. Where the
 // recording shows the difference, the better is taken. Where it does not, the delay of a servo that
 // holds would be half an interval shorter: the delay is given in the middle of both.
-TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay) {
+TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, double weight) {
   const std::vector<ServoConstants> guess = first_guess(joints, longest_delay);
   std::vector<ServoConstants> start = guess;
   for (ServoConstants& each : start) each.damping = 0;
@@ -201,12 +258,16 @@ TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay) {
                           is_seen(play, result.fit, play.constants[0].backlash, Constant::backlash);
     if (result.has_backlash) result.fit = std::move(play);
   }
-  for (JointRecording& joint : joints)
+  std::vector<JointRecording> heavy = joints;
+  for (JointRecording& joint : heavy)
     joint.inertia += kRotorShare * (joint.inertia - joint.link_inertia);
   result.heavier =
-      fit_servo(joints, result.fit.constants,
+      fit_servo(heavy, result.fit.constants,
                 holding(result.delay_takes_damping, !result.has_backlash), longest_delay)
           .constants[0];
+  // A weight that goes from one flank of a gear to the other shows its play too.
+  if (!result.has_backlash)
+    take_standing_stiffness(joints, longest_delay, kCogError * weight, result);
   return result;
 }
 
@@ -228,10 +289,6 @@ ServoEstimate ratio(double a, double s, double var_a, double var_s, double cov, 
 class Advice {
  public:
   Advice(const TypeFit& type, const IdentifiedJoint& joint, bool load_known) : fit_(type.fit) {
-    if (joint.lag > kSlowServo)
-      say("the answer is " + text::fixed(1000 * joint.lag, 0) +
-          " ms behind its command, which is rare for a servo: make sure that both files begin at "
-          "the same time");
     if (!load_known) {
       say("both feet stand, so the legs may press against each other and their load is not known: "
           "record a motion that lifts each foot");
@@ -273,34 +330,46 @@ class Advice {
   const ServoFit& fit_;
 };
 
-// How the measured angle changes from the unloaded to the loaded foot: least squares of its
-// distance from the late command by the share of the load on the own foot. It needs no stiffness.
-void find_sag(const RobotModel& model, const JointLoads& loads, int dof,
-              const JointRecording& recording, IdentifiedJoint& joint) {
-  for (const Side side : {Side::left, Side::right}) {
-    if (loads.left_share.size() == 0) return;
-    const std::vector<int>& leg = model.leg(side);
-    if (std::find(leg.begin(), leg.end(), dof) == leg.end()) continue;
-    double x = 0, y = 0, xx = 0, xy = 0, least = 1, most = 0;
-    const auto n = static_cast<double>(recording.measured.size());
-    for (Index k = 0; k < recording.measured.size(); ++k) {
-      const double left = loads.left_share[k], own = side == Side::left ? left : 1 - left;
-      const double late = command_at(recording, recording.dt * static_cast<double>(k) - joint.lag);
-      const double distance = recording.measured[k] - late;
-      x += own, y += distance, xx += own * own, xy += own * distance;
-      least = std::min(least, own), most = std::max(most, own);
-    }
-    joint.has_sag = least < 1 - kLoaded && most > kLoaded;
-    if (joint.has_sag) joint.sag = (xy - x * y / n) / (xx - x * x / n);
+// Rows where the share of the load on the own foot has been above kLoaded, or below the rest, and
+// stays there: in the middle of a stretch of kSettle. The load of a leg is then not a matter of how
+// the feet share the weight.
+std::vector<Index> settled_rows(const VectorXd& own, double dt) {
+  const auto half = static_cast<Index>(std::ceil(0.5 * kSettle / dt));
+  const auto kind = [&](Index k) { return own[k] > kLoaded ? 1 : own[k] < 1 - kLoaded ? -1 : 0; };
+  std::vector<Index> rows;
+  Index since = 0;  // row from which on the kind is that of the last one
+  for (Index k = 0; k < own.size(); ++k) {
+    if (k > 0 && kind(k) != kind(k - 1)) since = k;
+    if (kind(k) != 0 && k - since >= 2 * half) rows.push_back(k - half);
   }
+  return rows;
 }
 
-// Standard deviation of what loads a joint beside its own inertia [N m].
-double load_change(const JointRecording& recording) {
-  const VectorXd load =
-      (recording.torque.array() - recording.link_inertia.array() * recording.acceleration.array())
-          .matrix()(recording.compared);
-  return std::sqrt((load.array() - load.mean()).square().mean());
+// The share of the load on the foot of the leg to which this joint belongs; empty: of no leg.
+VectorXd own_share(const RobotModel& model, const JointLoads& loads, int dof) {
+  if (loads.left_share.size() == 0) return {};
+  for (const Side side : {Side::left, Side::right}) {
+    const std::vector<int>& leg = model.leg(side);
+    if (std::find(leg.begin(), leg.end(), dof) == leg.end()) continue;
+    return side == Side::left ? loads.left_share : VectorXd(1 - loads.left_share.array());
+  }
+  return {};
+}
+
+// How the measured angle changes from the unloaded to the loaded foot: least squares of its
+// distance from the late command by the share of the load on the own foot, in the rows where one
+// foot carries the robot. It needs no stiffness.
+void find_sag(const JointRecording& recording, IdentifiedJoint& joint) {
+  double x = 0, y = 0, xx = 0, xy = 0, n = 0, least = 1, most = 0;
+  for (const Index k : recording.settled) {
+    const double own = recording.own_share[k];
+    const double late = command_at(recording, recording.dt * static_cast<double>(k) - joint.lag);
+    const double distance = recording.measured[k] - late;
+    x += own, y += distance, xx += own * own, xy += own * distance, ++n;
+    least = std::min(least, own), most = std::max(most, own);
+  }
+  joint.has_sag = least < 1 - kLoaded && most > kLoaded;
+  if (joint.has_sag) joint.sag = (xy - x * y / n) / (xx - x * x / n);
 }
 
 void describe(const TypeFit& type, size_t i, const JointRecording& recording,
@@ -315,9 +384,8 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
                          factor * deviation(fit, Constant::delay) + type.hold, 0);
   joint.lag = c.delay + c.damping;
   const double s = c.compliance, heavier = std::max(type.heavier.compliance, 1e-12),
-               load_share = kModelShare + kLoadError / std::max(load_change(recording), 1e-6),
-               half = factor * deviation(fit, Constant::compliance) + load_share * s +
-                      std::abs(heavier - s);
+               load_share = load_share_error(recording),
+               half = compliance_half_width(type, recording);
   joint.kp = {1 / std::max(s, 1e-12), 1 / (s + half), s > half ? 1 / (s - half) : HUGE_VAL,
               half <= kKnown * s};
   const auto by_stiffness = [&](Constant which, double value, double other, double more) {
@@ -327,6 +395,8 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
   };
   joint.damping = by_stiffness(Constant::damping, c.damping, type.heavier.damping,
                                type.step / std::max(s, 1e-12));
+  // What the delay contains is not known by itself.
+  if (type.delay_takes_damping) joint.damping = {0, 0, HUGE_VAL, false};
   joint.coulomb = by_stiffness(Constant::dry, c.dry, type.heavier.dry, 0);
   // The motor's damping and viscous friction act alike. What the robot's file states of the first
   // is taken off, unless the recording contradicts it.
@@ -364,6 +434,8 @@ JointRecording recording_of(const RobotModel& model, const RecordedMotion& motio
   r.inertia = r.link_inertia.array() + model.limits().servo[static_cast<size_t>(dof)].rotor_inertia;
   r.acceleration = loads.acceleration.col(dof);
   r.rate = loads.rate.col(dof);
+  r.own_share = own_share(model, loads, dof);
+  r.settled = settled_rows(r.own_share, r.dt);
   r.compared = telling_rows(r, load_known(model, loads, dof, r.dt));
   r.load_known = r.dt * static_cast<double>(r.compared.size()) > kLeastKnown;
   if (!r.load_known)
@@ -372,6 +444,31 @@ JointRecording recording_of(const RobotModel& model, const RecordedMotion& motio
 }
 
 }  // namespace
+
+double longest_lag(const RobotModel& model) {
+  double longest = kSlowServo;
+  for (const ServoDescription& servo : model.limits().servo)
+    longest = std::max(longest, kSlowerThanStated * servo.lag());
+  return longest;
+}
+
+// The words on an answer that is rather late, from the joint in the middle; empty: none.
+std::string late_answer(const RobotModel& model, const std::vector<IdentifiedJoint>& joints) {
+  std::vector<std::pair<double, double>> lags;  // beyond the stated one, whole
+  for (const IdentifiedJoint& joint : joints) {
+    if (!joint.moved) continue;
+    const auto dof = static_cast<size_t>(model.find_dof(joint.joint));
+    lags.emplace_back(joint.lag - model.limits().servo[dof].lag(), joint.lag);
+  }
+  if (lags.empty()) return "";
+  std::sort(lags.begin(), lags.end());
+  const auto& [beyond, lag] = lags[lags.size() / 2];
+  if (beyond < kLikelyShift) return "";
+  return "the angles are " + text::fixed(1000 * lag, 0) + " ms behind their command, and " +
+         text::fixed(1000 * (lag - beyond), 0) +
+         " ms is the lag of the servos in the robot's file: make sure that both files begin at the "
+         "same time";
+}
 
 std::vector<std::string> motor_types(const RobotModel& model) {
   const ActuatorLimits& limits = model.limits();
@@ -390,9 +487,11 @@ std::vector<std::string> motor_types(const RobotModel& model) {
 Identification identify(const RobotModel& model, const RecordedMotion& motion,
                         const IdentifyOptions& options, const std::string& place,
                         const Progress& progress) {
-  require_answer(model, motion.command, motion.measured, options.longest_delay, place);
+  const double longest = options.longest_lag > 0 ? options.longest_lag : longest_lag(model);
+  require_answer(model, motion.command, motion.measured, longest, place);
   report(progress, {"loads", 0, ""});
   const JointLoads loads = joint_loads(model, motion, options.stand);
+  require_loads(motion.sensors, motion.measured, loads.agreement, options.loads_place);
   const std::vector<std::string> types = motor_types(model);
   Identification result;
   result.seconds = motion.measured.duration();
@@ -433,14 +532,15 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
   in_parallel(jobs.size(), options.threads, stop, [&](size_t job) {
     std::vector<JointRecording> joints;
     for (const size_t i : jobs[job]) joints.push_back(recordings[i]);
-    const TypeFit fit = fit_type(joints, options.longest_delay);
+    const TypeFit fit = fit_type(joints, longest, model.mass() * kGravity);
     for (size_t n = 0; n < jobs[job].size(); ++n) {
       const size_t i = jobs[job][n];
       describe(fit, n, recordings[i], model.limits().servo[static_cast<size_t>(dofs[i])],
                !model.description().servos_inferred, result.joints[i]);
-      find_sag(model, loads, dofs[i], recordings[i], result.joints[i]);
+      find_sag(recordings[i], result.joints[i]);
     }
   });
+  result.caution = late_answer(model, result.joints);
   return result;
 }
 

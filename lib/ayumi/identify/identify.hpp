@@ -15,8 +15,9 @@ namespace ayumi {
 struct IdentifyOptions {
   bool per_type = false;  ///< one set of constants for all joints of one motor type
   RobotStand stand = RobotStand::feet;
-  double longest_delay = 0.1;  ///< [s]
-  int threads = 0;             ///< 0: all cores
+  double longest_lag = 0;  ///< of an answer that a servo gives [s]; 0: that of longest_lag()
+  int threads = 0;         ///< 0: all cores
+  std::string loads_place = "load cells";  ///< of their file, for messages
 };
 
 /// A value with its 95 % interval.
@@ -48,6 +49,7 @@ struct IdentifiedJoint {
 struct Identification {
   std::vector<IdentifiedJoint> joints;  ///< in the robot's order; those the recording has
   double seconds = 0;                   ///< length of the recording [s]
+  std::string caution;                  ///< that the recording may be shifted; empty: it is not
 };
 
 /// Throws Error(bad_file) "`place`: what" for a recording that cannot be of this command: a joint
@@ -55,6 +57,9 @@ struct Identification {
 Identification identify(const RobotModel& model, const RecordedMotion& motion,
                         const IdentifyOptions& options, const std::string& place,
                         const Progress& progress = {});
+
+/// By how much an answer may be behind its command [s]: what comes later is a shifted recording.
+double longest_lag(const RobotModel& model);
 
 /// Motor types: joints with the same limits and servo, by dof. Named by their first joint.
 std::vector<std::string> motor_types(const RobotModel& model);

@@ -30,10 +30,9 @@ constexpr double kLoadCutoff = 50;
 // friction change it, and the noise of an encoder beyond this frequency does not become a torque.
 constexpr double kSagCutoff = 15;
 
-// Load of a standing leg above this frequency [Hz], and its share of the largest load of the joint
-// above which it is not known well. Chosen: slower than a step; at a tenth, the delays of a
-// simulated robot are 0.5 ms wrong.
-constexpr double kQuickLoad = 5, kQuickShare = 0.05;
+// Share of the quick load of a standing leg in the largest load of the joint, above which it is not
+// known well. Chosen: at a tenth, the delays of a simulated robot are 0.5 ms wrong.
+constexpr double kQuickShare = 0.05;
 
 // Load cells are smoothed to this frequency [Hz]. Chosen: the weight goes from foot to foot in 0.1
 // s or more.
@@ -250,12 +249,19 @@ JointLoads joint_loads(const RobotModel& model, const RecordedMotion& motion, Ro
   LoadsOnFeet feet(model, theta, measured.dt);
   const VectorXd share = recorded_share(motion.sensors, rows, measured.dt);
   loads.left_share.resize(rows);
+  double agreed = 0, single = 0;
   for (size_t k = 0; k < static_cast<size_t>(rows); ++k) {
     double& used = loads.left_share[static_cast<Index>(k)];
     used = share.size() > 0 ? share[static_cast<Index>(k)] : -1;
+    const Support support = feet.support(k);
+    if (used >= 0 && (support == Support::left || support == Support::right)) {
+      agreed += support == Support::left ? used : 1 - used;
+      ++single;
+    }
     add_row(k, feet.sample(k), feet.torque(k, used));
-    loads.support.push_back(feet.support(k));
+    loads.support.push_back(support);
   }
+  if (single > 0) loads.agreement = agreed / single;
   return loads;
 }
 

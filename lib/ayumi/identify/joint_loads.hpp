@@ -8,6 +8,9 @@
 
 namespace ayumi {
 
+/// Load of a standing leg above this frequency is quick [Hz]. Chosen: slower than a step.
+inline constexpr double kQuickLoad = 5;
+
 /// What carries the robot while it moves.
 enum class RobotStand {
   feet,  ///< it stands or walks on level ground; from the joint angles
@@ -20,6 +23,8 @@ struct JointLoads {
   Eigen::MatrixXd rate, acceleration;  ///< rows x dof, of the smoothed motion
   Eigen::VectorXd left_share;          ///< of the ground's load on the left foot; empty when fixed
   std::vector<Support> support;        ///< by row; empty when fixed
+  /// Mean share of the standing foot in single support, by the load cells; 1 without them.
+  double agreement = 1;
 };
 
 /// Rows as those of `motion.measured`; joints that it does not have keep the home posture. Angles

@@ -26,6 +26,10 @@ constexpr double kMoves = 0.5 * kDegree;
 // delay of a servo; what is shorter has lost rows or its end.
 constexpr double kLengthShare = 0.02, kLengthTime = 0.25, kShorter = 0.05;
 
+// Share of the weight on the standing foot, in the mean of all single supports, below which load
+// cells are not of this motion. Chosen: cells that are 0.3 s late, or of the other side, have less.
+constexpr double kStandingShare = 0.8;
+
 // Windows over which the delay of the answer is followed [s], and a change of it that only missing
 // or repeated rows explain [s]. Chosen: a motion has all its rates within a window, and a change
 // that is far beyond what friction and load do to the mean of several windows.
@@ -268,7 +272,7 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
 }
 
 void require_answer(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
-                    double longest_delay, const std::string& file) {
+                    double longest_lag, const std::string& file) {
   const auto complain = [&](const std::string& what) {
     fail(ErrorCode::bad_file, file + ": " + what);
   };
@@ -290,15 +294,18 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   const double reach = std::min(5.0, 0.3 * asked);
   const double shift = time_shift(model, command, measured, reach);
   // One row earlier than its command is how recorders count.
-  if (shift > longest_delay || shift < -2 * measured.dt) {
+  if (shift > longest_lag || shift < -2 * measured.dt) {
     std::vector<Index> few = dofs;
     if (few.size() > 4) few.resize(4);
     double near = distance(command, measured, few, 0, kShiftStep);
-    near = std::min(near, distance(command, measured, few, longest_delay, kShiftStep));
+    near = std::min(near, distance(command, measured, few, longest_lag, kShiftStep));
     if (distance(command, measured, few, shift, kShiftStep) < kShiftGain * near)
       complain("the angles are " + text::fixed(1000 * std::abs(shift), 0) + " ms " +
-               (shift > 0 ? "behind" : "ahead of") +
-               " their command; the recording is shifted, so let both begin at the same time");
+               (shift > 0 ? "behind" : "ahead of") + " their command" +
+               (shift > 0 ? ", and a servo is at most " + text::fixed(1000 * longest_lag, 0) +
+                                " ms behind (--longest-lag)"
+                          : "") +
+               "; the recording is shifted, so let both begin at the same time");
   }
   const DelayJump jump = delay_jump(command, measured, dofs);
   if (jump.found)
@@ -308,8 +315,27 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
                               : "later than before: rows are repeated there") +
              "; record again, or give the rows a time column");
   const std::vector<std::string> wrong = motion_complaints(
-      model, command, measured, std::clamp(shift, 0.0, longest_delay), 0, command.duration());
+      model, command, measured, std::clamp(shift, 0.0, longest_lag), 0, command.duration());
   if (!wrong.empty()) complain(wrong.front());
+}
+
+void require_loads(const SensorTable& loads, const AngleTable& measured, double agreement,
+                   const std::string& file) {
+  if (loads.foot_load.rows() == 0) return;
+  const double lasts = loads.dt * static_cast<double>(loads.foot_load.rows() - 1);
+  if (std::abs(lasts - measured.duration()) > kLengthTime)
+    fail(ErrorCode::bad_file,
+         file + ": lasts " + text::fixed(lasts, 3) + " s, but the measured angles last " +
+             text::fixed(measured.duration(), 3) +
+             " s; the load cells are incomplete, have another rate (give --rate), or belong to "
+             "another recording");
+  if (agreement < kStandingShare)
+    fail(ErrorCode::bad_file,
+         file + ": while one foot stands, its load cells carry only " +
+             text::fixed(100 * agreement, 0) + " % of the weight (limit " +
+             text::fixed(100 * kStandingShare, 0) +
+             " %); the load cells are shifted, belong to another recording, or left and right are "
+             "exchanged");
 }
 
 }  // namespace ayumi

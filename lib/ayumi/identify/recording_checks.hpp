@@ -24,9 +24,15 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
                                            double end);
 
 /// Throws Error(bad_file) "`file`: what" for the first of these, and where `measured` is of another
-/// length than the command, comes earlier or later than `longest_delay` [s], or has no joint that
+/// length than the command, comes earlier or later than `longest_lag` [s], or has no joint that
 /// moves.
 void require_answer(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
-                    double longest_delay, const std::string& file);
+                    double longest_lag, const std::string& file);
+
+/// Throws Error(bad_file) "`file`: what" for load cells that were not recorded with `measured`:
+/// another length, or a standing foot, as the angles show it, that does not carry the robot.
+/// `agreement` is that of JointLoads.
+void require_loads(const SensorTable& loads, const AngleTable& measured, double agreement,
+                   const std::string& file);
 
 }  // namespace ayumi

@@ -116,8 +116,24 @@ ScoreCovariance block_sums(const MatrixXd& scores, const std::vector<Index>& siz
   return sum;
 }
 
-// Covariance of the free parameters from their Jacobian and the residuals, and the factor of a 95 %
-// interval.
+double model_error(const std::vector<JointRecording>& joints,
+                   const std::vector<VectorXd>& residuals) {
+  double sum = 0, variance = 0, count = 0;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    const VectorXd& r = residuals[j];
+    const Index lag = std::max<Index>(1, std::lround(kNoiseTime / joints[j].dt));
+    if (r.size() <= lag) continue;
+    sum += r.head(r.size() - lag).dot(r.tail(r.size() - lag));
+    variance += r.squaredNorm();
+    count += static_cast<double>(r.size());
+  }
+  if (count == 0) return 0;
+  // What uncorrelated residuals give by chance is taken off.
+  return std::sqrt(std::max(0.0, sum / count - 2 * variance / count / std::sqrt(count)));
+}
+
+}  // namespace
+
 MatrixXd covariance_of(const MatrixXd& jacobian, const std::vector<VectorXd>& residuals,
                        double& factor) {
   const Index n = jacobian.rows(), p = jacobian.cols();
@@ -150,24 +166,6 @@ MatrixXd covariance_of(const MatrixXd& jacobian, const std::vector<VectorXd>& re
   factor = 1.96 + 2.4 / free + 3.0 / (free * free);
   return covariance;
 }
-
-double model_error(const std::vector<JointRecording>& joints,
-                   const std::vector<VectorXd>& residuals) {
-  double sum = 0, variance = 0, count = 0;
-  for (size_t j = 0; j < joints.size(); ++j) {
-    const VectorXd& r = residuals[j];
-    const Index lag = std::max<Index>(1, std::lround(kNoiseTime / joints[j].dt));
-    if (r.size() <= lag) continue;
-    sum += r.head(r.size() - lag).dot(r.tail(r.size() - lag));
-    variance += r.squaredNorm();
-    count += static_cast<double>(r.size());
-  }
-  if (count == 0) return 0;
-  // What uncorrelated residuals give by chance is taken off.
-  return std::sqrt(std::max(0.0, sum / count - 2 * variance / count / std::sqrt(count)));
-}
-
-}  // namespace
 
 std::vector<Index> telling_rows(const JointRecording& joint, const std::vector<char>& known) {
   const Index rows = joint.measured.size();

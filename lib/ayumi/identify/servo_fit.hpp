@@ -25,6 +25,12 @@ struct ServoFit {
   double model_error = 0;                 ///< part of the residuals that is not noise, rms [rad]
 };
 
+/// Covariance of parameters from the Jacobian of `residuals`, joint after joint, and the factor of
+/// a 95 % interval in standard deviations. Residuals may be correlated in time: their scores are
+/// summed over blocks longer than that correlation.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian,
+                              const std::vector<Eigen::VectorXd>& residuals, double& factor);
+
 /// Rows that a fit can compare: those where `known` holds and has held for the time that a servo
 /// needs to settle, and will hold for as long. The joint starts where the recording does, but not
 /// with its torque. Where the joint rests for longer than this, it stands where friction and the

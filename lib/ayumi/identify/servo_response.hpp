@@ -45,6 +45,8 @@ struct JointRecording {
   Eigen::VectorXd rate;                ///< of the smoothed motion [rad/s]
   std::vector<Eigen::Index> compared;  ///< rows that a fit compares, ascending
   bool load_known = true;              ///< `torque` is right at these rows
+  Eigen::VectorXd own_share;           ///< of the weight on the foot of its leg; empty: of no leg
+  std::vector<Eigen::Index> settled;   ///< rows where one foot carries the robot, ascending
 };
 
 /// A joint settles in this time after its start, or after a time in which its load was not known

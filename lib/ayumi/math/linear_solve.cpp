@@ -24,4 +24,8 @@ Eigen::MatrixXd solve_general(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b
   return A.partialPivLu().solve(b);
 }
 
+Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  return A.colPivHouseholderQr().solve(b);
+}
+
 }  // namespace ayumi

@@ -16,4 +16,8 @@ Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd&
 Eigen::VectorXd solve_general(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 Eigen::MatrixXd solve_general(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b);
 
+/// The x with the least |A x - b| by QR with column pivoting. A: m x n, m >= n; where its columns
+/// are not independent, some entries of x are 0.
+Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
 }  // namespace ayumi

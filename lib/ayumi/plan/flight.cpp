@@ -6,13 +6,13 @@
 //   L_G = L_B - (p_G - p_B) x p.
 #include "ayumi/plan/flight.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/linear_solve.hpp"
 #include "ayumi/math/quintic.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/pattern_context.hpp"
@@ -147,7 +147,7 @@ class FlightTurn {
                      ? led_rates[dof]
                      : job_.tracks.joints[dof].at(t).rate;
     }
-    const VectorXd V = A.colPivHouseholderQr().solve(b);
+    const VectorXd V = solve_least_squares(A, b);
     const int trunk = model.trunk_body();
     return body_jacobian(model, data_, trunk, data_.base_position + data_.position[trunk])
                .bottomRows<3>() *

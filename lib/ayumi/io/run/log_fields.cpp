@@ -1,5 +1,6 @@
 #include "ayumi/io/run/log_fields.hpp"
 
+#include <map>
 #include <type_traits>
 
 #include "ayumi/base/error.hpp"
@@ -67,6 +68,32 @@ class AppendValues {
   std::string& bytes_;
 };
 
+// What a quantity nearly follows from. A source without the part of a column is not of it; a source
+// may be named with its part.
+struct QuantitySources {
+  const char* name;
+  std::vector<const char*> sources;
+};
+const std::vector<QuantitySources>& quantity_sources() {
+  static const std::vector<QuantitySources> list = {
+      {"base", {"base.v"}},
+      {"theta", {"dtheta"}},
+      {"torque", {"target", "theta", "dtheta"}},
+      {"ref.theta", {"ref.dtheta"}},
+      {"cog", {"dcog"}},
+      {"fz", {"left.force.z", "right.force.z"}},
+      {"measured.zmp", {"zmp"}},
+      {"measured.fz", {"fz"}},
+      {"cmd.cog", {"cmd.dcog"}},
+      {"ref.cog", {"ref.dcog"}},
+      {"ref.dcog", {"ref.ddcog"}},
+      {"ref.ddcog", {"law.motion", "law.short_term", "law.pull", "law.rocking"}},
+      {"law.planned_zmp", {"cmd.zmp"}},
+      {"law.wanted_zmp", {"ref.zmp"}},
+  };
+  return list;
+}
+
 }  // namespace
 
 std::string LogQuantity::column(size_t index) const {
@@ -80,6 +107,28 @@ std::vector<LogQuantity> log_quantities(const std::vector<std::string>& joints) 
   const SimulationSample sample;
   for_each_field(sample, ListQuantities(joints, list));
   return list;
+}
+
+std::vector<std::vector<size_t>> log_sources(const std::vector<std::string>& joints) {
+  std::map<std::string, size_t> columns;  // by name and part
+  std::vector<std::pair<std::string, std::string>> places;
+  for (const LogQuantity& quantity : log_quantities(joints))
+    for (size_t i = 0; i < quantity.columns(); ++i) {
+      const std::string part = quantity.parts.empty() ? "" : "." + quantity.parts[i];
+      columns.emplace(quantity.name + part, places.size());
+      places.emplace_back(quantity.name, part);
+    }
+  std::vector<std::vector<size_t>> sources(places.size());
+  for (const QuantitySources& of : quantity_sources())
+    for (size_t c = 0; c < places.size(); ++c) {
+      if (places[c].first != of.name) continue;
+      for (const char* const source : of.sources) {
+        auto found = columns.find(source + places[c].second);
+        if (found == columns.end()) found = columns.find(source);
+        if (found != columns.end()) sources[c].push_back(found->second);
+      }
+    }
+  return sources;
 }
 
 void append_values(const SimulationSample& sample, size_t joints, std::string& bytes) {

@@ -2,6 +2,7 @@
 
 #include <zstd.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,12 +13,14 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/compression.hpp"
+#include "ayumi/math/linear_solve.hpp"
 
 namespace ayumi {
 
 namespace {
 
-constexpr int kOrders = 5;  // Definition: n is 0 to 4
+constexpr int kOrders = 5;   // Definition: n is 0 to 4
+constexpr int kRelated = 5;  // Definition: stands where a column is predicted from others
 
 // The last four values of a column, the last one first; before the first value there are zeros.
 using Past = std::array<double, 4>;
@@ -51,55 +54,248 @@ std::uint64_t folded(std::uint64_t difference) {
 }
 std::uint64_t unfolded(std::uint64_t number) { return (number >> 1) ^ (0 - (number & 1)); }
 
-std::uint64_t residual(int order, const Past& past, double value) {
-  return folded(rank_of(value) - rank_of(prediction(order, past)));
-}
-
 double float_at(std::string_view bytes, size_t index) {
   double value = 0;
   std::memcpy(&value, bytes.data() + index * sizeof value, sizeof value);
   return value;
 }
 
-int best_order(const std::vector<double>& column) {
-  std::array<std::uint64_t, kOrders> bits = {};
-  Past past = {};
-  for (const double value : column) {
-    for (int order = 0; order < kOrders; ++order)
-      bits[static_cast<size_t>(order)] +=
-          static_cast<std::uint64_t>(std::bit_width(residual(order, past, value)));
-    advance(past, value);
-  }
-  return static_cast<int>(std::min_element(bits.begin(), bits.end()) - bits.begin());
+// What a related column is predicted by: for each source its value, its first and its second
+// difference, with a weight each.
+constexpr size_t kTerms = 3;  // Definition
+
+struct Relation {
+  std::vector<std::uint32_t> sources;
+  std::vector<double> weights;  // kTerms for each source
+};
+
+using Column = std::vector<double>;
+
+double before(const Column& column, size_t k, size_t rows) {
+  return k >= rows ? column[k - rows] : 0;
 }
 
-// One byte per column, its order; then the planes.
-size_t plain_size(size_t columns, size_t rows) { return columns + columns * rows * sizeof(double); }
+std::array<double, kTerms> terms_at(const Column& source, size_t k) {
+  const double a = source[k], b = before(source, k, 1), c = before(source, k, 2);
+  return {a, a - b, (a - b) - (b - c)};
+}
 
-// Where byte `plane` (7 is the most significant one) of the first value of a column stands.
+double prediction(const Relation& relation, const std::vector<Column>& columns, size_t k,
+                  double last) {
+  double value = last;
+  for (size_t i = 0; i < relation.sources.size(); ++i) {
+    const auto terms = terms_at(columns[relation.sources[i]], k);
+    for (size_t n = 0; n < kTerms; ++n) value += relation.weights[kTerms * i + n] * terms[n];
+  }
+  return std::isfinite(value) ? value : 0;
+}
+
+// How the values of one column are predicted.
+struct Predictor {
+  int order = 0;  // kRelated: by `relation`
+  Relation relation;
+
+  double next(const std::vector<Column>& columns, size_t k, const Past& past) const {
+    return order == kRelated ? prediction(relation, columns, k, past[0]) : prediction(order, past);
+  }
+};
+
+std::vector<std::uint64_t> residuals(const Predictor& predictor, const std::vector<Column>& columns,
+                                     size_t c) {
+  std::vector<std::uint64_t> numbers;
+  numbers.reserve(columns[c].size());
+  Past past = {};
+  for (size_t k = 0; k < columns[c].size(); ++k) {
+    const double value = columns[c][k];
+    numbers.push_back(folded(rank_of(value) - rank_of(predictor.next(columns, k, past))));
+    advance(past, value);
+  }
+  return numbers;
+}
+
+std::uint64_t bits_of(const std::vector<std::uint64_t>& numbers) {
+  std::uint64_t bits = 0;
+  for (const std::uint64_t number : numbers) bits += static_cast<unsigned>(std::bit_width(number));
+  return bits;
+}
+
+// The weights with which the sources come nearest to the steps of the column, by least squares over
+// one row of kFitRows. A relation holds to the last bits in most rows, and not at all where a motor
+// is at its peak torque or where the law changes. So the worst rows are left out, and the rest is
+// fitted again. Chosen: with twice as many rows in the fit, a log of the bundled walk is as large.
+constexpr size_t kFitRows = 7;
+constexpr int kFitRounds = 4;         // Chosen: 0.8 of the rows stay in each, at last half of them
+constexpr double kFitShare = 0.8;     // Chosen: as above
+constexpr size_t kRowsPerWeight = 4;  // Chosen: fewer rows would only be learned by heart
+
+Relation fitted_relation(const std::vector<Column>& columns, size_t c,
+                         const std::vector<size_t>& sources) {
+  Relation relation;
+  relation.sources.assign(sources.begin(), sources.end());
+  const size_t count = kTerms * sources.size();
+  relation.weights.assign(count, 0);
+  std::vector<size_t> rows;
+  for (size_t k = 1; k < columns[c].size(); k += kFitRows) {
+    bool finite = std::isfinite(columns[c][k]) && std::isfinite(columns[c][k - 1]);
+    for (const size_t source : sources)
+      for (const double term : terms_at(columns[source], k)) finite = finite && std::isfinite(term);
+    if (finite) rows.push_back(k);
+  }
+  for (int round = 0; round < kFitRounds && rows.size() >= kRowsPerWeight * count; ++round) {
+    Eigen::MatrixXd A(rows.size(), count);
+    Eigen::VectorXd steps(rows.size());
+    for (size_t r = 0; r < rows.size(); ++r) {
+      const auto row = static_cast<Eigen::Index>(r);
+      Eigen::Index at = 0;
+      for (const size_t source : sources)
+        for (const double term : terms_at(columns[source], rows[r])) A(row, at++) = term;
+      steps[row] = columns[c][rows[r]] - columns[c][rows[r] - 1];
+    }
+    // Columns of one size: the weights have units.
+    Eigen::VectorXd size = A.colwise().norm().transpose();
+    size = (size.array() > 0).select(size, 1);
+    A = A * size.cwiseInverse().asDiagonal();
+    const Eigen::VectorXd scaled = solve_least_squares(A, steps);
+    const Eigen::VectorXd missed = (A * scaled - steps).cwiseAbs();
+    for (size_t i = 0; i < count; ++i)
+      relation.weights[i] =
+          scaled[static_cast<Eigen::Index>(i)] / size[static_cast<Eigen::Index>(i)];
+    std::vector<double> sorted(missed.begin(), missed.end());
+    const auto limit = sorted.begin() +
+                       static_cast<std::ptrdiff_t>(kFitShare * static_cast<double>(sorted.size()));
+    std::nth_element(sorted.begin(), limit, sorted.end());
+    std::vector<size_t> kept;
+    for (size_t r = 0; r < rows.size(); ++r)
+      if (missed[static_cast<Eigen::Index>(r)] <= *limit) kept.push_back(rows[r]);
+    rows = std::move(kept);
+  }
+  return relation;
+}
+
+// The predictor with the shortest residuals, and these.
+Predictor best_predictor(const std::vector<Column>& columns, size_t c,
+                         const std::vector<size_t>& sources, std::vector<std::uint64_t>& numbers) {
+  Predictor best;
+  numbers = residuals(best, columns, c);
+  std::uint64_t least = bits_of(numbers);
+  const auto consider = [&](Predictor other, std::uint64_t more) {
+    std::vector<std::uint64_t> found = residuals(other, columns, c);
+    const std::uint64_t bits = bits_of(found) + more;
+    if (bits >= least) return;
+    least = bits;
+    best = std::move(other);
+    numbers = std::move(found);
+  };
+  for (int order = 1; order < kOrders; ++order) consider({order, {}}, 0);
+  if (!sources.empty())
+    consider({kRelated, fitted_relation(columns, c, sources)},
+             64 * kTerms * static_cast<std::uint64_t>(sources.size()));
+  return best;
+}
+
+// The columns so that each one comes after its sources; shorter where some wait for each other.
+std::vector<size_t> decoding_order(const std::vector<Predictor>& predictors) {
+  std::vector<size_t> order;
+  std::vector<char> known(predictors.size(), 0);
+  for (bool found = true; found;) {
+    found = false;
+    for (size_t c = 0; c < predictors.size(); ++c) {
+      const std::vector<std::uint32_t>& sources = predictors[c].relation.sources;
+      const bool ready = std::all_of(sources.begin(), sources.end(),
+                                     [&](std::uint32_t source) { return known[source] != 0; });
+      if (known[c] != 0 || !ready) continue;
+      known[c] = 1;
+      order.push_back(c);
+      found = true;
+    }
+  }
+  return order;
+}
+
+template <class Number>
+void append_number(std::string& bytes, Number number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+std::string head_of(const std::vector<Predictor>& predictors) {
+  std::string head;
+  for (const Predictor& predictor : predictors) head += static_cast<char>(predictor.order);
+  for (const Predictor& predictor : predictors) {
+    if (predictor.order != kRelated) continue;
+    append_number(head, static_cast<std::uint32_t>(predictor.relation.sources.size()));
+    for (const std::uint32_t source : predictor.relation.sources) append_number(head, source);
+    for (const double weight : predictor.relation.weights) append_number(head, weight);
+  }
+  return head;
+}
+
+// Reads what head_of() wrote; `at` is then behind it. Empty when it is not that of `columns`.
+std::vector<Predictor> predictors_of(const std::string& plain, size_t columns, size_t& at) {
+  std::vector<Predictor> predictors(columns);
+  bool good = plain.size() >= columns;
+  at = 0;
+  for (size_t c = 0; c < columns && good; ++c) {
+    predictors[c].order = plain[at++];
+    good = predictors[c].order >= 0 && predictors[c].order <= kRelated;
+  }
+  const auto read = [&](auto& number) {
+    good = good && plain.size() - at >= sizeof number;
+    if (!good) return;
+    std::memcpy(&number, plain.data() + at, sizeof number);
+    at += sizeof number;
+  };
+  for (Predictor& predictor : predictors) {
+    if (!good) break;
+    if (predictor.order != kRelated) continue;
+    std::uint32_t count = 0;
+    read(count);
+    good = good && count <= columns;
+    if (!good) break;
+    predictor.relation.sources.resize(count);
+    predictor.relation.weights.resize(kTerms * count);
+    for (std::uint32_t& source : predictor.relation.sources) {
+      read(source);
+      good = good && source < columns;
+    }
+    for (double& weight : predictor.relation.weights) read(weight);
+  }
+  if (!good) predictors.clear();
+  return predictors;
+}
+
+// Where byte `plane` (7 is the most significant one) of the first value of a column stands behind
+// the head.
 size_t plane_begin(size_t plane, size_t column, size_t columns, size_t rows) {
-  return columns + ((7 - plane) * columns + column) * rows;
+  return ((7 - plane) * columns + column) * rows;
+}
+
+// [bytes] What head_of() can have at most: every column related to all others.
+size_t largest_head(size_t columns) {
+  return columns *
+         (1 + sizeof(std::uint32_t) + columns * (sizeof(std::uint32_t) + kTerms * sizeof(double)));
 }
 
 }  // namespace
 
-std::string compress_samples(std::string_view rows, size_t columns) {
+std::string compress_samples(std::string_view rows, size_t columns, const ColumnSources& sources) {
   const size_t count = columns == 0 ? 0 : rows.size() / (columns * sizeof(double));
-  std::string plain(plain_size(columns, count), '\0');
-  std::vector<double> column(count);
+  require(sources.empty() || sources.size() == columns, "sources for another number of columns");
+  std::vector<Column> values(columns, Column(count));
+  for (size_t c = 0; c < columns; ++c)
+    for (size_t k = 0; k < count; ++k) values[c][k] = float_at(rows, k * columns + c);
+  std::string planes(columns * count * sizeof(double), '\0');
+  std::vector<Predictor> predictors;
+  std::vector<std::uint64_t> numbers;
   for (size_t c = 0; c < columns; ++c) {
-    for (size_t k = 0; k < count; ++k) column[k] = float_at(rows, k * columns + c);
-    const int order = best_order(column);
-    plain[c] = static_cast<char>(order);
-    Past past = {};
-    for (size_t k = 0; k < count; ++k) {
-      const std::uint64_t number = residual(order, past, column[k]);
-      for (size_t plane = 0; plane < 8; ++plane)
-        plain[plane_begin(plane, c, columns, count) + k] = static_cast<char>(number >> (8 * plane));
-      advance(past, column[k]);
-    }
+    predictors.push_back(
+        best_predictor(values, c, sources.empty() ? std::vector<size_t>() : sources[c], numbers));
+    for (size_t plane = 0; plane < 8; ++plane)
+      for (size_t k = 0; k < count; ++k)
+        planes[plane_begin(plane, c, columns, count) + k] =
+            static_cast<char>(numbers[k] >> (8 * plane));
   }
-  return zstd_frame(plain);
+  require(decoding_order(predictors).size() == columns, "columns that predict each other");
+  return zstd_frame(head_of(predictors) + planes);
 }
 
 std::string decompress_samples(std::string_view bytes, size_t columns, size_t rows,
@@ -110,34 +306,43 @@ std::string decompress_samples(std::string_view bytes, size_t columns, size_t ro
   if (whole != bytes.size())
     fail(ErrorCode::bad_file,
          file + ": damaged: " + std::to_string(bytes.size() - whole) + " bytes after the samples");
-  const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
-  if (size != plain_size(columns, rows))
-    fail(ErrorCode::bad_file, file + ": damaged: the samples are not " + std::to_string(rows) +
-                                  " rows of " + std::to_string(columns) + " columns");
-  std::string plain(size, '\0');
+  const auto stop = [&](const std::string& what) {
+    fail(ErrorCode::bad_file, file + ": damaged: " + what);
+  };
+  const std::string size =
+      std::to_string(rows) + " rows of " + std::to_string(columns) + " columns";
+  const size_t planes = columns * rows * sizeof(double);
+  const unsigned long long announced = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
+  if (announced < columns + planes || announced > planes + largest_head(columns))
+    stop("the samples are not " + size);
+  std::string plain(announced, '\0');
   const size_t got = ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size());
-  if (got != size)
-    fail(ErrorCode::bad_file,
-         file + ": damaged: the samples do not decompress (" + ZSTD_getErrorName(got) + ")");
-  std::string values(columns * rows * sizeof(double), '\0');
-  for (size_t c = 0; c < columns; ++c) {
-    const int order = plain[c];
-    if (order < 0 || order >= kOrders)
-      fail(ErrorCode::bad_file,
-           file + ": damaged: column " + std::to_string(c) + " of the samples");
+  if (got != plain.size())
+    stop(std::string("the samples do not decompress (") + ZSTD_getErrorName(got) + ")");
+  size_t head = 0;
+  const std::vector<Predictor> predictors = predictors_of(plain, columns, head);
+  const std::vector<size_t> order = decoding_order(predictors);
+  if (order.size() != columns) stop("how the columns of the samples were predicted");
+  if (plain.size() != head + planes) stop("the samples are not " + size);
+  std::vector<Column> values(columns, Column(rows));
+  for (const size_t c : order) {
     Past past = {};
     for (size_t k = 0; k < rows; ++k) {
       std::uint64_t number = 0;
       for (size_t plane = 0; plane < 8; ++plane)
         number |= std::uint64_t{static_cast<unsigned char>(
-                      plain[plane_begin(plane, c, columns, rows) + k])}
+                      plain[head + plane_begin(plane, c, columns, rows) + k])}
                   << (8 * plane);
-      const double value = value_at(unfolded(number) + rank_of(prediction(order, past)));
-      std::memcpy(values.data() + (k * columns + c) * sizeof value, &value, sizeof value);
-      advance(past, value);
+      values[c][k] = value_at(unfolded(number) + rank_of(predictors[c].next(values, k, past)));
+      advance(past, values[c][k]);
     }
   }
-  return values;
+  std::string samples(planes, '\0');
+  for (size_t c = 0; c < columns; ++c)
+    for (size_t k = 0; k < rows; ++k)
+      std::memcpy(samples.data() + (k * columns + c) * sizeof(double), &values[c][k],
+                  sizeof(double));
+  return samples;
 }
 
 }  // namespace ayumi

@@ -3,17 +3,27 @@
 // smooth quantity, so each is predicted from the ones before it by the polynomial of order n - 1
 // through the last n of them:
 //   n = 0: 0;  1: a;  2: 2a - b;  3: 3(a - b) + c;  4: 4(a + c) - 6b - d   (a the last one)
-// Value and prediction, as integers in the order of the floats, differ by a small integer. Its
-// bytes are written plane by plane, the most significant byte of all values first, and compressed
-// by zstd. Each column has the n with the shortest differences.
+// Some columns nearly follow from others in the same row: an angle from its rate, a torque from the
+// angle and its target. Where the caller names these sources s, the prediction may also be
+//   a + sum of u s + v (s - s') + w (s - 2 s' + s'')
+// with weights u, v, w by least squares, which are written too. Value and prediction, as integers
+// in the order of the floats, differ by a small integer. Its bytes are written plane by plane, the
+// most significant byte of all values first, and compressed by zstd. Each column has the prediction
+// with the shortest differences.
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ayumi {
 
+/// By column, those that it may be predicted from; empty: none. No two columns may follow from
+/// each other, directly or through others.
+using ColumnSources = std::vector<std::vector<size_t>>;
+
 /// `rows` holds rows of `columns` floats, one after the other.
-std::string compress_samples(std::string_view rows, size_t columns);
+std::string compress_samples(std::string_view rows, size_t columns,
+                             const ColumnSources& sources = {});
 
 /// The rows again. Throws Error(bad_file), beginning with `file`, when `bytes` is not the whole
 /// result of compress_samples() for that many columns and rows.

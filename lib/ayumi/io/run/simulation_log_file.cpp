@@ -25,10 +25,12 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "logs are little-endian");
 
 constexpr char kMagic[] = "AYUMILOG";
-constexpr std::uint32_t kPlain = 1;       // Definition: the version with rows as they are
-constexpr std::uint32_t kCompressed = 2;  // Definition: the version with compressed rows
-constexpr size_t kPrefix = 16;            // magic, version, header length
-constexpr size_t kChecksum = 4;           // of the header, where the rows are compressed
+constexpr std::uint32_t kPlain = 1;  // Definition: the version with rows as they are
+// Definition: the version with compressed rows. In version 2 no column is predicted from others;
+// it is read like this one.
+constexpr std::uint32_t kCompressed = 3;
+constexpr size_t kPrefix = 16;   // magic, version, header length
+constexpr size_t kChecksum = 4;  // of the header, where the rows are compressed
 // [bytes] Chosen: the samples of half an hour at 1 kHz have less.
 constexpr size_t kMostBytes = size_t{4} << 30;
 constexpr const char* kOutcomes[] = {"stands", "unsettled", "fell"};
@@ -223,7 +225,8 @@ std::string log_bytes(const SimulationLog& log) {
   const std::string header = header_of(log, log.provenance.command_line, kCompressed);
   std::string bytes = prefix_of(kCompressed, header);
   append_word(bytes, crc32_of(header));
-  return bytes + header + compress_samples(rows_of(log), columns_of(log.joints).size());
+  return bytes + header +
+         compress_samples(rows_of(log), columns_of(log.joints).size(), log_sources(log.joints));
 }
 
 std::string plain_log_bytes(const SimulationLog& log) {
@@ -238,16 +241,16 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   if (bytes.size() < kPrefix || bytes.compare(0, 8, kMagic) != 0)
     stop("this is not a simulation log; name a run folder or one of its .bin files");
   const std::uint32_t version_of_file = word_at(bytes, 8);
-  if (version_of_file != kPlain && version_of_file != kCompressed)
+  if (version_of_file < kPlain || version_of_file > kCompressed)
     stop("log version " + std::to_string(version_of_file) + " cannot be read; this " +
-         "version of Ayumi reads " + std::to_string(kPlain) + " and " +
-         std::to_string(kCompressed));
-  const size_t begin = kPrefix + (version_of_file == kCompressed ? kChecksum : 0);
+         "version of Ayumi reads " + std::to_string(kPlain) + " to " + std::to_string(kCompressed));
+  const bool is_compressed = version_of_file != kPlain;
+  const size_t begin = kPrefix + (is_compressed ? kChecksum : 0);
   const size_t length = word_at(bytes, 12);
   if (bytes.size() < begin || length > bytes.size() - begin)
     stop("truncated: the header is cut off");
   const std::string text = bytes.substr(begin, length);
-  if (version_of_file == kCompressed && word_at(bytes, kPrefix) != crc32_of(text))
+  if (is_compressed && word_at(bytes, kPrefix) != crc32_of(text))
     stop("damaged: the checksum of the header is wrong");
   const std::string place = file + " (header)";
   const Json document = parse_json(text, place, ErrorCode::bad_file);
@@ -265,7 +268,7 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
                                std::to_string(kMostBytes / row_bytes) + ")");
   std::string_view values = std::string_view(bytes).substr(begin + length);
   std::string decompressed;
-  if (version_of_file == kCompressed) {
+  if (is_compressed) {
     decompressed = decompress_samples(values, columns.size(), rows, file);
     values = decompressed;
   }
