@@ -9,4 +9,4 @@ set(ayumi_slow_suites
   plant_mujoco.RepairedWalk render.Batch render.Clip render.Commands render.Renderer
   repair.ConstraintRows repair.CorrectionProblem repair.Faults repair.JumpRepair repair.Landing
   repair.LeastChange repair.Repair repair.ThrownKnee report.AuthorPage report.Report scenarios.Hoap1Walk
-  scenarios.SensorLatency scenarios.ViipHoap1 sim.Walking study.Certify study.Push study.Retime study.SequentialTest)
+  scenarios.SensorLatency scenarios.ViipHoap1 sim.Walking study.Certify study.LocalRetime study.Push study.Retime study.SequentialTest)

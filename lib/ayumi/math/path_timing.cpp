@@ -14,7 +14,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A row of unit length, or one between parallels, is kept to this. Chosen: far above the rounding
-// of doubles and far below any limit of a motion. No measured case changes from half to twice.
+// of doubles and far below any limit of a motion.
 constexpr double kKept = 1e-10;
 
 // No s'' is larger. Definition: above any that makes sense, so that only the rows bind.
