@@ -16,4 +16,4 @@ set(ayumi_slow_suites
   repair.InfeasibilityReport repair.JumpRepair repair.Landing repair.LeastChange repair.Repair
   repair.ThrownKnee report.AuthorPage report.Report scenarios.DtadGaits scenarios.Hoap1Walk
   scenarios.ImportedMotions scenarios.SensorLatency scenarios.StanceLoop scenarios.ViipHoap1
-  sim.Walking study.Certify study.Push study.Retime study.SequentialTest)
+  sim.Walking study.Certify study.LocalRetime study.Push study.Retime study.SequentialTest)

@@ -12,6 +12,7 @@
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "ayumi/study/local_retime.hpp"
 #include "ayumi/study/retime.hpp"
 #include "check_table.hpp"
 #include "loop_words.hpp"
@@ -34,6 +35,8 @@ struct EditCommand {
   PatternOptions input;
   double scale = 0;
   bool to_limits = false;
+  bool local = false;     // of retime: no single factor
+  double margin = -1;     // of retime [m]; below 0: none was given
   bool as_table = false;  // of concat, blend and loop
   int times = 1;          // of loop and alternate
   bool open_end = false;  // of alternate
@@ -155,10 +158,62 @@ FastestPace limits_of(const Context& context, const EditCommand& options, const 
   return pace;
 }
 
+// What limits a pace, for people: "support 61 %, speed 20 %".
+std::string in_words(const std::vector<BindingLimit>& limits) {
+  std::string out;
+  for (const BindingLimit& limit : limits) {
+    const std::string percent = text::fixed(100 * limit.share, 0);
+    if (percent == "0") continue;
+    out += (out.empty() ? "" : ", ") + (limit.limit.empty() ? "none" : limit.limit) + " " +
+           percent + " %";
+  }
+  return out;
+}
+
+void retime_locally(Context& context, const EditCommand& options, const Task& input) {
+  LocalRetimeOptions local;
+  local.path.check = check_options(input, options.tolerances);
+  if (options.margin >= 0) local.path.most_margin = options.margin;
+  local.dt = input.series.dt;
+  LocalPace pace = fastest_local_pace(
+      input.robot, input.pattern, table_beside(options.out).string(), local, context.progress());
+  if (!pace.found)
+    fail(ErrorCode::solver,
+         options.pattern + ": no course of time passes the check: " + pace.limited_by +
+             (pace.by_posture ? "; the posture itself is wrong, and no course of time changes it"
+                              : "; more time alone is not enough") +
+             "; try repair");
+  Result result;
+  result.caution = input.caution;
+  result.series = std::move(pace.series);
+  result.report = std::move(pace.report);
+  result.words = check_table(result.report, input.robot);
+  const ForceRange force = force_range(result.series);
+  Json limits = Json::array();
+  for (const BindingLimit& limit : pace.binding)
+    limits.push_back({{"limit", limit.limit.empty() ? Json(nullptr) : Json(limit.limit)},
+                      {"share", limit.share}});
+  write_edited(
+      context, options, pace.pattern, result,
+      "  the motion takes " + text::brief(pace.scale) + " times its original time\n" +
+          "  limited by, for this share of the time: " + in_words(pace.binding) + "\n",
+      Json{{"scale", pace.scale},
+           {"path_scale", pace.path_scale},
+           {"rounds", pace.rounds},
+           {"limited_by", limits},
+           {"zmp_margin_m", {{"after", result.report.summary[FindingKind::support_margin]}}},
+           {"fz_N", {{"after", {force.least, force.most}}}}});
+}
+
 void retime(Context& context, const EditCommand& options) {
   if (options.to_limits == (options.scale != 0))
     fail(ErrorCode::usage, "edit retime: give either --scale S or --to-limits");
+  if (options.local && !options.to_limits)
+    fail(ErrorCode::usage, "edit retime: --local has a meaning with --to-limits only");
+  if (options.margin >= 0 && !options.local)
+    fail(ErrorCode::usage, "edit retime: --margin has a meaning with --to-limits --local only");
   const Task input = load(context, options);
+  if (options.local) return retime_locally(context, options, input);
   const ConsistencyReport before =
       check_consistency(input.robot, input.series, check_options(input, options.tolerances));
   FastestPace pace;
@@ -387,6 +442,7 @@ void add_edit(CLI::App& app, Context& context) {
       "Examples:\n  ayumi edit mirror walk.json -o mirrored.json\n"
       "  ayumi edit retime walk.json --scale 1.25 -o slower.json\n"
       "  ayumi edit retime walk.json --to-limits -o fastest.json\n"
+      "  ayumi edit retime walk.json --to-limits --local -o quicker.json\n"
       "  ayumi edit bake walk.json -o baked.json\n"
       "  ayumi edit concat step.json walk.json -o both.json\n"
       "  ayumi edit blend squat.json sway.json --over 0.8 -o both.json\n"
@@ -444,6 +500,15 @@ void add_edit(CLI::App& app, Context& context) {
       ->type_name("S");
   retime_command.add_flag("--to-limits", options.to_limits,
                           "Find the fastest scale that passes the check.");
+  retime_command.add_flag("--local", options.local,
+                          "With --to-limits: slow the motion only where a limit binds.");
+  retime_command
+      .add_option("--margin", options.margin,
+                  "With --local: the largest distance that the ZMP keeps from the edge of the "
+                  "support [m] (default: 80 % of its distance at the fastest uniform pace, or an "
+                  "eighth of the sole's width).")
+      ->check(number_within(0.0, 1.0))
+      ->type_name("M");
   retime_command.callback([&context] { retime(context, options); });
   CLI::App& loop_command =
       add_edit_of(*command, "loop", "repeat a motion whose end meets its beginning", options);

@@ -62,6 +62,35 @@ TEST_F(Edit, RetimeToLimitsIsTheFastestThatPasses) {
   EXPECT_NE(broken.exit_code, 0);
 }
 
+// Slower only where a limit binds: quicker than at one pace, and as good for the check.
+TEST_F(Edit, RetimeLocallyIsQuicker) {
+  const auto retimed = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"edit", "retime", kWalk, "--to-limits", "--json", "-q"});
+    const Output out = ayumi(options);
+    EXPECT_EQ(out.exit_code, 0) << out.out << out.err;
+    return Json::parse(out.out);
+  };
+  const Json uniform = retimed({"-o", "uniform.json"});
+  const Json local = retimed({"--local", "-o", "local.json"});
+  EXPECT_LE(double(local["duration_s"]), 0.9 * double(uniform["duration_s"]));
+  EXPECT_EQ(local["check"]["verdict"], "consistent");
+  EXPECT_EQ(local["table"], "local.csv");
+  double share = 0;
+  for (const Json& limit : local["limited_by"]) share += double(limit["share"]);
+  EXPECT_NEAR(share, 1, 1e-9);
+  EXPECT_EQ(ayumi({"check", "local.json"}).exit_code, 0);
+  // The whole support may be used where the author says so.
+  const Json bare = retimed({"--local", "--margin", "0", "-o", "bare.json"});
+  EXPECT_LT(double(bare["duration_s"]), double(local["duration_s"]));
+  EXPECT_LT(double(bare["zmp_margin_m"]["after"]), double(local["zmp_margin_m"]["after"]));
+
+  EXPECT_EQ(ayumi({"edit", "retime", kWalk, "--scale", "2", "--local", "-o", "a.json"}).exit_code,
+            2);
+  EXPECT_EQ(
+      ayumi({"edit", "retime", kWalk, "--to-limits", "--margin", "0", "-o", "a.json"}).exit_code,
+      2);
+}
+
 // The same twice, and a squat where a walk that turned has ended.
 TEST_F(Edit, MotionsJoin) {
   const Output made = ayumi({"new", "walk", "--steps", "2", "--turn", "4", "-o", "walk.json"});

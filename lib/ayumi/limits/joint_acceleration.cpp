@@ -37,8 +37,9 @@ void place_roughness_rows(RowSite& site) {
     if (site.is_locked(i)) continue;
     const auto size = [i](const CommandSample& s) { return std::abs(s.acceleration[6 + i]); };
     for (int point = 0; point < site.count(); ++point)
-      site.add_largest(kRoughnessRows, point, JointQuantity::acceleration, i,
-                       site.most(point, size), std::max(most, size(site.given(point))), 1);
+      site.add_largest(
+          kRoughnessRows, point, JointQuantity::acceleration, i, site.most(point, size),
+          site.settings.own_roughness ? std::max(most, size(site.given(point))) : most, 1);
   }
 }
 

@@ -48,17 +48,19 @@ struct RowSettings {
   std::vector<int> near_pairs;                 ///< pairs of bodies that are watched
   std::vector<bool> locked;                    ///< by dof; empty: none
   std::array<bool, 2> locked_feet = {};        ///< by Side: keep their paths
-  bool swing_goals = true;   ///< low soles level and over their places, the others high enough
-  double watched_share = 0;  ///< a limit has rows where a watched sample uses more than this
-  double limit_share = 1;    ///< of a limit that may be used
-  double active = 0;         ///< RowBlock::active of most rows, a share of the limit or [rad]
-  double trusted_share = 0;  ///< of the check's tolerance that a trusted COG or ZMP may be off
-  double joint_margin = 0;   ///< inside the soft limits of a joint [rad]
-  double sole_position = 0;  ///< half the band of a sole in its place [m]
+  bool swing_goals = true;    ///< low soles level and over their places, the others high enough
+  bool own_roughness = true;  ///< a joint may accelerate as much as the given motion has it
+  double watched_share = 0;   ///< a limit has rows where a watched sample uses more than this
+  double limit_share = 1;     ///< of a limit that may be used
+  double active = 0;          ///< RowBlock::active of most rows, a share of the limit or [rad]
+  double trusted_share = 0;   ///< of the check's tolerance that a trusted COG or ZMP may be off
+  double joint_margin = 0;    ///< inside the soft limits of a joint [rad]
+  double sole_position = 0;   ///< half the band of a sole in its place [m]
 
   // Of single limits, by the name of their file.
   struct {
     double least = 0, safe = 0;  ///< margins inside the support [m]
+    double mended = 0;           ///< wanted around a margin below `least`; at least that [m]
     double safe_around = 0;      ///< time around too small a margin in which `safe` is wanted [s]
     double own_share = 0;        ///< of its own margin that a motion keeps elsewhere
   } support;

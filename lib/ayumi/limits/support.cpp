@@ -63,8 +63,9 @@ std::vector<double> own_margins(const RowSite& site) {
 }
 
 // The margin wanted at every point. Where the motion's ZMP is outside or too near an edge, and for
-// a while around, that is the safe margin; elsewhere it is a share of the motion's own margin, at
-// most the safe one. A step that begins badly is not safe when only its end is.
+// a while around, that is the mended margin, which is the safe one in a repair; elsewhere it is a
+// share of the motion's own margin, at most the safe one. A step that begins badly is not safe when
+// only its end is.
 std::vector<double> wanted_margins(const RowSite& site) {
   const auto& settings = site.settings.support;
   const double safe = std::max(settings.safe, settings.least);
@@ -77,7 +78,7 @@ std::vector<double> wanted_margins(const RowSite& site) {
           settings.safe_around)
         least = std::min(least, own[j]);
     wanted.push_back(least < settings.least
-                         ? safe
+                         ? std::max(settings.mended, settings.least)
                          : std::clamp(settings.own_share * own[i], settings.least, safe));
   }
   return wanted;

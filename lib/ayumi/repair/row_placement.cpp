@@ -30,6 +30,7 @@ RowSettings row_settings(const CorrectionSpec& spec) {
   s.sole_position = spec.sole_position;
   s.support = {.least = spec.zmp_margin,
                .safe = spec.safe_margin,
+               .mended = spec.safe_margin,
                .safe_around = policy::zmp::kSafeAround,
                .own_share = policy::zmp::kOwnShare};
   s.normal_force = {.least = spec.least_normal_force, .light = policy::collocation::kLightShare};

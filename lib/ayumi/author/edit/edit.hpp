@@ -43,6 +43,24 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
                   double factor);
 
+/// Another course of time along a motion of the same postures.
+struct TimeCourse {
+  double dt = 0.001;       ///< of the new motion [s]
+  std::vector<double> at;  ///< at its sample k: the time of the given motion; rises to its end [s]
+
+  double duration() const { return dt * static_cast<double>(at.size() - 1); }
+  /// The new time of a time of the given motion [s].
+  double time_of(double given) const;
+};
+
+/// The motion in another course of time, as a table of posture and base (COG, ZMP and f_z are those
+/// of the full model). `series` holds the samples of the pattern, between which the postures follow
+/// their rates and accelerations. Phases, pushes, weights and windows move along. The feet are
+/// planned where the joints have them, because a planned swing knows no other course of time.
+/// Throws as baked().
+Pattern with_course(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
+                    const TimeCourse& course, const std::string& table);
+
 /// A single keyframe that is copied, moved or mirrored.
 struct KeyEdit {
   double at = 0;             ///< time of the keyframe, within 0.5 ms [s]

@@ -1,0 +1,290 @@
+#include "ayumi/study/local_retime.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
+#include "ayumi/motion/servo_feedforward.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "ayumi/plan/viip_phases.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Share of the room between standing still and a limit that a timing may use at first. Chosen: what
+// the smoothing and the ticks between two points change is less.
+constexpr double kFirstShare = 0.97;
+// Factor on it around an error of the check: the limit over the value, within these bounds, and the
+// time to either side [s of the path]. Chosen: one to three rounds remove the errors that were
+// seen.
+constexpr double kLeastShareStep = 0.75, kMostShareStep = 0.94;
+constexpr double kAround = 0.04;
+// Courses of time that are checked. Chosen: twice the most that a walk needed.
+constexpr int kMostRounds = 10;
+// Timings of which each gives the tangents of the next. Measured: the third changes the duration by
+// less than 0.1 %.
+constexpr int kTimings = 3;
+
+// Width of one of the three boxes that smooth a course of time [s]: s'' then has no jump and no
+// kink. Chosen: servos of small robots answer within 30 ms, and the motion gets 36 ms longer.
+constexpr double kBox = 0.013;
+
+// Period of sampling where the pace of the path is sought [s]. Chosen: a tenth of the usual work.
+constexpr double kSearchPeriod = 0.01;
+// Spacing of the points there [s]. Chosen: the peaks of a swing of 0.2 s have several.
+constexpr double kSearchSpacing = 0.02;
+// Relative accuracy of that pace, and by how much the path is then slower. Chosen: coarse samples
+// miss the peaks by about a percent.
+constexpr double kPaceAccuracy = 0.02;
+constexpr double kPaceSpare = 1.01;
+// Factor between paces where the ZMP leaves the support, which no row foretells. Chosen.
+constexpr double kSlowerStep = 1.25;
+// Paces that are tried. Chosen: more than the search needs from one end of its range to the other.
+constexpr int kMostPaces = 25;
+// Factor by which the path is slower where the limits stand against each other, and how often.
+// Chosen: the share of the limits that is used asks for 1.5 %.
+constexpr double kSlowerPath = 1.03;
+constexpr int kMostSlower = 6;
+
+// Margin of the ZMP that is kept where 80 % of its own is less, over half the width of the narrower
+// sole. Chosen: a quarter.
+constexpr double kLeastMargin = 0.25;
+
+bool keys_fly(const Pattern& pattern) {
+  return std::any_of(pattern.phases.begin(), pattern.phases.end(),
+                     [](const Phase& phase) { return phase.support == Support::none; });
+}
+
+class LocalSearch {
+ public:
+  LocalSearch(const RobotModel& model, const Pattern& pattern, const std::string& table,
+              const LocalRetimeOptions& options, const Progress& progress)
+      : model_(model),
+        pattern_(pattern),
+        table_(table),
+        options_(options),
+        progress_(progress),
+        given_duration_(pattern.duration()) {
+    if (pattern_.table)
+      *pattern_.table =
+          postures_of(model, model.limits(options.path.check.profile), *pattern_.table);
+  }
+
+  LocalPace run() {
+    result_.path_scale = keys_fly(pattern_) ? 1 : path_scale();
+    // The least margin is given up first, because a posture may stand nearer to the edge at any
+    // pace; then the path is slower.
+    double least_margin = kLeastMargin * half_sole_width(model_);
+    for (int trial = 0; trial <= kMostSlower; ++trial) {
+      result_.limited_by.clear();
+      if (trial > 1) result_.path_scale *= kSlowerPath;
+      take_path(least_margin);
+      if (play_rounds() || !stuck_ || (limits_->flies() && trial > 0)) break;
+      least_margin = 0;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  struct Timing {
+    std::vector<double> u, x;
+  };
+
+  void take_path(double least_margin) {
+    path_pattern_ = retimed(model_, pattern_, result_.path_scale);
+    path_ = sample(model_, path_pattern_, {.dt = options_.dt}, progress_);
+    PathLimitOptions path = options_.path;
+    path.least_margin = least_margin;
+    limits_.emplace(model_, path_, path);
+    share_.assign(limits_->points().size(), kFirstShare);
+    timing_ = {};
+  }
+
+  // Until the check passes, or the limits that are left stand against each other.
+  bool play_rounds() {
+    for (int round = 1; round <= kMostRounds; ++round) {
+      const std::optional<Timing> timing = quickest();
+      stuck_ = !timing;
+      if (stuck_) return false;
+      ++result_.rounds;
+      if (play(*timing)) return true;
+      if (result_.by_posture) break;
+    }
+    result_.limited_by = first_error();
+    return false;
+  }
+
+  // The smallest scale at which the whole path keeps its limits, by coarse samples; the largest one
+  // that was tried where none does.
+  double path_scale() {
+    PathLimitOptions path = options_.path;
+    path.own_margin = 0;
+    path.spacing = kSearchSpacing;
+    double scale = 1, keeps = 0, fails = 0;
+    for (int n = 0; n < kMostPaces && scale <= options_.slowest; ++n) {
+      report(progress_, {"retime", -1, "scale " + text::fixed(scale, 4)});
+      const std::optional<PathLimits::UniformPace> pace = coarse_pace(scale, path);
+      const bool foretold = pace && pace->pace > 0;
+      if (pace && pace->keeps) {
+        keeps = scale;
+        if (pace->pace < 1 + kPaceAccuracy || keeps <= options_.fastest) break;
+        scale = std::max(scale / pace->pace, options_.fastest);
+      } else {
+        fails = scale;
+        scale *= foretold && pace->pace < 1 ? (1 + kPaceAccuracy / 2) / pace->pace : kSlowerStep;
+      }
+      if (keeps == 0 || fails == 0) continue;
+      if (keeps < fails * (1 + kPaceAccuracy)) break;
+      if (scale <= fails || scale >= keeps) scale = std::sqrt(keeps * fails);
+    }
+    return keeps > 0 ? std::min(keeps * kPaceSpare, options_.slowest) : 1;
+  }
+
+  std::optional<PathLimits::UniformPace> coarse_pace(double scale, const PathLimitOptions& path) {
+    try {
+      const double period = std::max(options_.dt, kSearchPeriod);
+      const CommandSeries series =
+          sample(model_, retimed(model_, pattern_, scale), {.dt = period}, progress_);
+      return PathLimits(model_, series, path).uniform_pace();
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_pattern || scale == 1) throw;
+      return std::nullopt;
+    }
+  }
+
+  // The timing of this round; none where the limits stand against each other.
+  std::optional<Timing> quickest() {
+    const std::vector<TimingPoint>& points = limits_->points();
+    if (timing_.x.empty())
+      timing_ = {std::vector<double>(points.size(), 0), std::vector<double>(points.size(), 1)};
+    for (int n = 0; n < kTimings; ++n) {
+      limits_->linearize(timing_.u, timing_.x, share_);
+      PathTiming found = quickest_timing(points);
+      if (found.x.empty()) {
+        const std::string broken = limits_->broken_at(found.stuck);
+        const double at = points[static_cast<size_t>(found.stuck)].at / result_.path_scale;
+        result_.limited_by = "at " + text::fixed(at, 3) + " s no pace keeps all limits" +
+                             (broken.empty() ? "" : "; standing still breaks: " + broken);
+        return std::nullopt;
+      }
+      timing_.x = std::move(found.x);
+      for (size_t i = 0; i + 1 < points.size(); ++i)
+        timing_.u[i] = (timing_.x[i + 1] - timing_.x[i]) / (2 * (points[i + 1].at - points[i].at));
+      timing_.u.back() = 0;
+    }
+    return timing_;
+  }
+
+  // Samples and checks; true when the check passes.
+  bool play(const Timing& timing) {
+    report(progress_, {"retime", -1, "round " + std::to_string(result_.rounds)});
+    result_.binding = limits_->binding(timing.u, timing.x);
+    const TimeCourse course = course_of(timing.x);
+    result_.pattern = with_course(model_, path_pattern_, path_, course, table_);
+    result_.series = sample(model_, result_.pattern, {.dt = options_.dt}, progress_);
+    result_.report = check_consistency(model_, result_.series, options_.path.check);
+    result_.scale = result_.series.duration() / given_duration_;
+    result_.found = result_.report.consistent;
+    if (result_.found) return true;
+    for (const Finding& f : result_.report.findings) {
+      if (f.severity != Severity::error) continue;
+      result_.by_posture = result_.by_posture || is_of_posture(f);
+      const double over = std::abs(f.limit) / std::max(std::abs(f.worst), 1e-9);
+      lower_share(
+          place(course, f.begin) - kAround, place(course, f.end) + kAround,
+          f.limit == 0 ? kMostShareStep : std::clamp(over, kLeastShareStep, kMostShareStep));
+    }
+    return false;
+  }
+
+  double place(const TimeCourse& course, double t) const {
+    const long last = static_cast<long>(course.at.size()) - 1;
+    return course.at[static_cast<size_t>(std::clamp(std::lround(t / course.dt), 0L, last))];
+  }
+
+  void lower_share(double begin, double end, double factor) {
+    for (size_t i = 0; i < share_.size(); ++i)
+      if (limits_->points()[i].at >= begin && limits_->points()[i].at <= end) share_[i] *= factor;
+  }
+
+  // The place s by ticks, smoothed by three boxes, from rest to rest.
+  TimeCourse course_of(const std::vector<double>& x) const {
+    const std::vector<TimingPoint>& points = limits_->points();
+    const std::vector<double> times = times_along(points, x);
+    const int half = std::max(1, static_cast<int>(std::lround(kBox / options_.dt / 2)));
+    const auto beside = static_cast<size_t>(3 * half);
+    const double end = points.back().at;
+    const auto count = static_cast<size_t>(std::ceil(times.back() / options_.dt - 1e-9)) + 1;
+    std::vector<double> at(beside, 0.0);
+    size_t i = 0;
+    for (size_t k = 0; k < count; ++k) {
+      const double t = options_.dt * static_cast<double>(k);
+      while (i + 2 < times.size() && times[i + 1] <= t) ++i;
+      const double later = t - times[i];
+      const double u = (x[i + 1] - x[i]) / (2 * (points[i + 1].at - points[i].at));
+      at.push_back(std::min(points[i].at + later * (std::sqrt(x[i]) + 0.5 * u * later), end));
+    }
+    at.insert(at.end(), beside, end);
+    for (int round = 0; round < 3; ++round) at = box_mean(at, half);
+    at.front() = 0;
+    at.back() = end;
+    TimeCourse course;
+    course.dt = options_.dt;
+    course.at = std::move(at);
+    return course;
+  }
+
+  static std::vector<double> box_mean(const std::vector<double>& values, int half) {
+    const int last = static_cast<int>(values.size()) - 1;
+    std::vector<double> result(values.size());
+    for (int k = 0; k <= last; ++k) {
+      double sum = 0;
+      for (int j = k - half; j <= k + half; ++j)
+        sum += values[static_cast<size_t>(std::clamp(j, 0, last))];
+      result[static_cast<size_t>(k)] = sum / (2 * half + 1);
+    }
+    return result;
+  }
+
+  std::string first_error() const {
+    const Finding* shown = nullptr;
+    for (const Finding& f : result_.report.findings)
+      if (f.severity == Severity::error && (!shown || (is_of_posture(f) && !is_of_posture(*shown))))
+        shown = &f;
+    if (!shown) return "the check";
+    return std::string(name_of(shown->kind)) + " " + shown->where + " at " +
+           text::fixed(shown->at, 3) + " s: " + amount_text(*shown) + " (motion of " +
+           text::fixed(result_.series.duration(), 3) + " s)";
+  }
+
+  const RobotModel& model_;
+  Pattern pattern_;
+  const std::string& table_;
+  const LocalRetimeOptions& options_;
+  const Progress& progress_;
+  const double given_duration_;
+  LocalPace result_;
+  Pattern path_pattern_;
+  CommandSeries path_;
+  std::optional<PathLimits> limits_;
+  Timing timing_;
+  std::vector<double> share_;  // by point
+  bool stuck_ = false;         // the limits stand against each other
+};
+
+}  // namespace
+
+LocalPace fastest_local_pace(const RobotModel& model, const Pattern& pattern,
+                             const std::string& table, const LocalRetimeOptions& options,
+                             const Progress& progress) {
+  refuse_viip_phases(pattern, "retimed");
+  return LocalSearch(model, pattern, table, options, progress).run();
+}
+
+}  // namespace ayumi

@@ -1,0 +1,44 @@
+#pragma once
+// The quickest course of time along a motion: it slows the motion only where a limit binds. The
+// path is the motion at the fastest pace that all of it keeps, because the COG that is solved from
+// the ZMP depends on the pace. Along the path, math/path_timing finds the quickest timing within
+// the rows of study/path_limits, which is then made smooth, sampled and checked. Where the check
+// finds an error, less of the limits may be used, and the next round begins.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/motion/pattern.hpp"
+#include "ayumi/study/path_limits.hpp"
+
+namespace ayumi {
+
+struct LocalRetimeOptions {
+  PathLimitOptions path;                ///< its least margin is set by the search
+  double dt = 0.001;                    ///< of sampling [s]
+  double fastest = 0.05, slowest = 20;  ///< range of the uniform scale of the path
+};
+
+struct LocalPace {
+  bool found = false;                 ///< a course of time passes the check
+  Pattern pattern;                    ///< in this course, as a table
+  CommandSeries series;               ///< its samples
+  ConsistencyReport report;           ///< of them
+  double scale = 1;                   ///< duration over that of the given pattern
+  double path_scale = 1;              ///< of the path, uniform
+  std::vector<BindingLimit> binding;  ///< what limits the pace, the longest first
+  int rounds = 0;                     ///< courses of time that were checked
+  std::string limited_by;             ///< why none was found, in words
+  bool by_posture = false;            ///< because of the posture, which no course of time changes
+};
+
+/// The table of the result gets the file name `table`. Flights keep their pace. Throws
+/// Error(bad_pattern) as sample() for a pattern that cannot be sampled, and for a phase with a
+/// goal.
+LocalPace fastest_local_pace(const RobotModel& model, const Pattern& pattern,
+                             const std::string& table, const LocalRetimeOptions& options,
+                             const Progress& progress = {});
+
+}  // namespace ayumi

@@ -1,0 +1,103 @@
+#pragma once
+// The limits of a motion along its path. Played with s'(t) in place of s' = 1, the same postures
+// have
+//   dq = q_s s',   ddq = q_s s'' + q_ss s'^2,
+// so that inverse dynamics is F = F_0 + F_u u + F_x x with u = s'' and x = s'^2. The rows of all
+// limits of rates and forces, those that a repair keeps (limits/row.hpp), become rows in (u, x):
+// those of accelerations and of the ground wrench's linear parts exactly, the others by their
+// tangents at the timing of the round before.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/limits/row_site.hpp"
+#include "ayumi/math/path_timing.hpp"
+
+namespace ayumi {
+
+struct PathLimitOptions {
+  CheckOptions check;
+  double spacing = 0.01;    ///< of the points on the path [s]
+  double own_margin = 0.8;  ///< share of the ZMP's margin at the path's own pace that is kept
+  double least_margin = 0;  ///< kept where that is less [m]
+  double most_margin = kUnbounded;  ///< no larger margin is kept [m]
+  double most_pace = 4;             ///< largest s'
+};
+
+/// Which limit binds a timing, and for how much of it.
+struct BindingLimit {
+  std::string limit;  ///< name of its rows; "pace": the largest s'; "" where none binds
+  double share = 0;   ///< of the duration
+};
+
+/// A row of one point with its origin.
+struct PathRow {
+  const RowKind* kind = nullptr;
+  int item = 0;  ///< as RowBlock::item
+  TimingRow row;
+};
+
+class PathLimits {
+ public:
+  /// `series` is the path. Model and series must outlive this.
+  PathLimits(const RobotModel& model, const CommandSeries& series, const PathLimitOptions& options);
+
+  /// Of the path, with rows from linearize().
+  const std::vector<TimingPoint>& points() const { return timing_; }
+
+  /// Makes the rows about a timing with these u and x by point. `share` by point: of the room
+  /// between standing still and a limit that may be used. In a motion that flies, the path's own
+  /// pace (u = 0, x = 1) keeps all rows, because nothing else is possible in flight.
+  void linearize(const std::vector<double>& u, const std::vector<double>& x,
+                 const std::vector<double>& share);
+
+  /// The rows of points()[point] and what they stem from. Speeds are no rows but bounds of x.
+  std::vector<PathRow> rows_at(int point) const;
+  /// The sample of the path that is points()[point].
+  int sample_of(int point) const { return sites_[static_cast<size_t>(point)].sample; }
+
+  bool flies() const { return flies_; }
+
+  /// What the path allows when it is played at one pace.
+  struct UniformPace {
+    bool keeps = false;  ///< its own pace keeps all rows
+    double pace = 0;     ///< the largest that keeps them, but for those of the ZMP
+  };
+  UniformPace uniform_pace();
+
+  /// Which rows bind a timing, the longest first.
+  std::vector<BindingLimit> binding(const std::vector<double>& u,
+                                    const std::vector<double>& x) const;
+
+  /// Names of the rows that standing still breaks at a point.
+  std::string broken_at(int point) const;
+
+ private:
+  struct Forces {
+    Eigen::VectorXd rest, of_u, of_x;
+  };
+
+  void place_points(const PathLimitOptions& options);
+  void place_rows();
+  void compute_forces();
+  void linearize_point(size_t i, double u, double x, double share);
+  template <class Work>
+  void for_each_point(const Work& work) const;
+
+  const RobotModel& model_;
+  const CommandSeries& series_;
+  const PathLimitOptions options_;
+  const ActuatorLimits& actuators_;
+  const ContactPlan plan_;
+  bool flies_ = false;
+  std::vector<CollocationPoint> sites_;
+  std::vector<char> fixed_;  ///< by point, s' = 1: in flight and beside it
+  std::vector<RowBlock> rows_;
+  std::vector<std::vector<const RowBlock*>> rows_of_;  ///< by point, of rows_
+  std::vector<Forces> forces_;                         ///< by point
+  std::vector<TimingPoint> timing_;
+  std::vector<std::vector<const RowBlock*>> origins_;  ///< of the rows in timing_
+  std::vector<const RowKind*> cap_;                    ///< by point: what bounds x; null: nothing
+};
+
+}  // namespace ayumi
