@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "tests/support/biped.hpp"
 
@@ -14,7 +15,8 @@ double overshoot(const ViipParams& params, double mass) {
   const double omega = 6.4, dt = 1e-5;
   double z = 0.205, dz = 0, over = 0;
   for (int i = 0; i < 300000; ++i) {
-    dz += dt * (viip_force(params, mass, omega, 0.225, z, dz) / mass - kGravity);
+    const HeightGains gains = viip_height_gains(params, mass, omega);
+    dz += dt * (viip_force(gains, mass, 0.225, z, dz) / mass - kGravity);
     z += dt * dz;
     over = std::max(over, z - 0.225);
   }
@@ -40,6 +42,29 @@ TEST(Viip, PrintedCondition25Overshoots) {
   EXPECT_LE(printed(1.0), 0.0002);
   EXPECT_NEAR(printed(6.5), 0.0052, 0.0003);
   EXPECT_NEAR(printed(35.0), 0.0117, 0.0003);
+}
+
+// K_Pz and K_Dz follow the contact, and (25) holds with each of them.
+TEST(Viip, TheSpringDependsOnTheFeetThatBear) {
+  const double mass = 6.5, omega = 6.4;
+  const ViipParams params;
+  const HeightGains both = viip_height_gains(params, mass, omega),
+                    one = viip_height_gains(params, mass, omega, 1);
+  EXPECT_NEAR(both.stiffness, mass * elementary::power<2>(1.5 * omega), 1e-9);
+  EXPECT_NEAR(one.stiffness, mass * elementary::power<2>(params.one_foot_rate * omega), 1e-9);
+  for (const HeightGains& gains : {both, one})
+    EXPECT_NEAR(gains.damping * gains.damping, 4 * mass * gains.stiffness, 1e-6);
+}
+
+// A ring of the mass m that is turned about its centre, the COG, by the ground alone: with the
+// acceleration of turning_acceleration() the ZMP stays under the COG.
+TEST(Viip, ATurningBodyKeepsItsZmp) {
+  const double mass = 6.5, z = 0.22, weight = mass * kGravity;
+  const Eigen::Vector3d rate(0.3, -0.2, 0);  // L' [N m]
+  const Eigen::Vector2d a = turning_acceleration(rate, mass, z);
+  // Moment of the ground about the COG: (zmp - cog) x f = L'.
+  const Eigen::Vector3d force(mass * a.x(), mass * a.y(), weight), arm(0, 0, -z);
+  EXPECT_NEAR((arm.cross(force) - rate).norm(), 0, 1e-12);
 }
 
 std::string complaint(const std::string& gain, double value) {

@@ -22,13 +22,13 @@ Pattern pattern_of(const std::string& name) {
   return read_pattern(AYUMI_SOURCE_DIR "/patterns/" + name + ".json");
 }
 
-SimulationLog run_jump(const Pattern& pattern, bool noise = false) {
+SimulationLog run_jump(const Pattern& pattern, bool noise = false, int seed = 1) {
   SimulateOptions options;
   options.controller = pattern.controller;
   options.profile = pattern.profile;
   options.world = pattern.world;
   options.sensor_noise = noise;
-  options.seed = 1;
+  options.seed = static_cast<std::uint64_t>(seed);
   return simulate(hoap1(), sample(hoap1(), pattern), options);
 }
 
@@ -68,6 +68,39 @@ TEST(Hoap1Jump, RisesAsPlannedLandsAndSettles) {
       SCOPED_TRACE(testing::Message() << height << " " << stoop);
       expect_jump(run_jump(with_goal(height, stoop, JumpGoal::Release::ref_z)), height, 0.01,
                   stoop);
+    }
+}
+
+// The landing: at most twice the force of (27), which is m (speed^2 / z_d + g), no bounce above 5
+// ms, and the spring of (27) by the speed that the COG really had.
+TEST(Hoap1Jump, LegsYieldAtTheTouchdown) {
+  const double mass = hoap1().mass(), weight = mass * 9.80665;
+  using Release = JumpGoal::Release;
+  for (const auto& [release, height] : {std::pair{Release::ref_z, 0.02},
+                                        {Release::ref_z, 0.03},
+                                        {Release::ref_z, 0.045},
+                                        {Release::spring, 0.02},
+                                        {Release::spring, 0.045}})
+    for (const int seed : {0, 1, 2}) {  // 0: without noise
+      SCOPED_TRACE(testing::Message()
+                   << height << ", spring " << static_cast<int>(release) << ", seed " << seed);
+      const SimulationLog log =
+          run_jump(with_goal(height, 0.035, release), seed > 0, std::max(1, seed));
+      const auto jumps = test::jumps_of(hoap1(), log, kRef);
+      ASSERT_EQ(jumps.size(), 1u);
+      const size_t down = static_cast<size_t>(std::lround(jumps[0].touchdown / log.dt));
+      const double speed = -log.samples[down - 1].dcog.z();
+      double peak = 0, air = 0, bounce = 0, stiffness = 0;
+      for (size_t k = down; k < log.samples.size(); ++k) {
+        const SimulationSample& s = log.samples[k];
+        peak = std::max(peak, s.fz);
+        air = s.fz > 0 ? 0 : air + log.dt;
+        bounce = std::max(bounce, air);
+        if (s.law.stage == LawStage::landing) stiffness = s.law.K_Pz;
+      }
+      EXPECT_LE(peak, 2 * (mass * speed * speed / 0.035 + weight));
+      EXPECT_LE(bounce, seed > 0 ? 0.020 : 0.005);
+      EXPECT_NEAR(std::sqrt(stiffness / mass) * 0.035, speed, 0.05 * speed);
     }
 }
 

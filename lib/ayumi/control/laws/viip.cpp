@@ -5,9 +5,12 @@
 //   ddzr  = (reffz - yield F)/m - g                                   (16), F: vertical push
 //   w2    = reffz / (m zr)                                            (17)
 //   ddxr  = w2 (xr - Z(dcm_r)) + ka w2 (zhat - Z(dcm^)) + av w (dx^ - dxr) + ax w^2 (x^ - xr)
+//          - moment L'y / (m zr)
 // The first term is (14) of the reference pendulum, the second the short-term absorption of
-// laws/dtad.cpp, the others keep the reference at the robot. A foot lands where dcm^ will need it:
-// Z + (dcm^ - Z) E - b. The joints follow by (28)(29), control/whole_body.
+// laws/dtad.cpp, the next two keep the reference at the robot, and the last one leaves the ZMP
+// where it is while the angular momentum L of the reference changes. kz depends on the feet that
+// bear. A foot lands where dcm^ will need it: Z + (dcm^ - Z) E - b. The joints follow by (28)(29),
+// control/whole_body.
 #include "ayumi/control/laws/viip.hpp"
 
 #include <algorithm>
@@ -73,10 +76,19 @@ constexpr double kLandingBiasLimit = 0.015;
 // HOAP-1. Chosen: as the offset time of DTAD. Figures change by less than 5 % from half to twice.
 constexpr double kSlopeTime = 6.6;
 
-// Low pass of the vertical push that is found in the load cells, times 1/omega: 30 ms on HOAP-1.
-// Derived: a loop on a force that is late by d is stable with a filter above d, and sensors may be
-// 10 ms late.
-constexpr double kPushFilter = 0.2;
+// Time constant of the low pass of the vertical push that is found in the load cells, beside the
+// lag of the servos [s]. Derived: with a low pass T and a force that is late by d, the loop obeys
+// T s = -exp(-s d), which is stable for d < T pi/2. Sensors may be 10 ms late.
+constexpr double kPushFilterTime = 0.010;
+
+// The longest lag of a servo of the legs [s].
+double leg_lag(const RobotModel& model, const ActuatorLimits& limits) {
+  const Eigen::VectorXd lead = velocity_lead(limits);
+  double lag = 0;
+  for (const Side side : {Side::left, Side::right})
+    for (const int dof : model.leg(side)) lag = std::max(lag, lead[dof]);
+  return lag;
+}
 
 GroundPose ground_middle(const RobotModel& model, const std::array<Isometry3d, 2>& feet) {
   const GroundPose left = ground_pose(model, Side::left, feet[0]);
@@ -97,6 +109,8 @@ std::map<std::string, double*> gain_fields(ViipParams& p) {
           {"tau_z", &p.zmp_filter},
           {"margin", &p.margin},
           {"kz", &p.height_rate},
+          {"kz_one", &p.one_foot_rate},
+          {"moment", &p.momentum_share},
           {"yield", &p.yielding},
           {"dz", &p.height_damping},
           {"ankle", &p.ankle_share},
@@ -138,7 +152,7 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
     set(name, value, model.name() + " sidecar", ErrorCode::bad_model);
   if (spec.type.kind == ControllerKind::viip)
     for (const auto& [name, value] : spec.gains) set(name, value, "controller gains");
-  for (const char* name : {"q", "goal", "tau_z", "kz", "single", "both", "lift"})
+  for (const char* name : {"q", "goal", "tau_z", "kz", "kz_one", "single", "both", "lift"})
     if (!(*fields.at(name) > 0))
       fail(ErrorCode::usage, std::string("controller gains: ") + name + " must be positive");
   if (p.height_damping < 1 - 1e-9)
@@ -155,17 +169,20 @@ double stepping_time(const ViipParams& p, double omega, int steps) {
   return (kShiftTime + steps * (p.single_support + p.double_support) + kSettleTime) / omega;
 }
 
-HeightGains viip_height_gains(const ViipParams& p, double mass, double omega) {
-  const double rate = p.height_rate * omega;
+Vector2d turning_acceleration(const Vector3d& momentum_rate, double mass, double z) {
+  return Vector2d(-momentum_rate.y(), momentum_rate.x()) / (mass * z);
+}
+
+HeightGains viip_height_gains(const ViipParams& p, double mass, double omega, int feet) {
+  const double rate = (feet == 1 ? p.one_foot_rate : p.height_rate) * omega;
   HeightGains gains;
   gains.stiffness = mass * rate * rate;
   gains.damping = 2 * p.height_damping * std::sqrt(mass * gains.stiffness);
   return gains;
 }
 
-double viip_force(const ViipParams& p, double mass, double omega, double goal, double z,
-                  double dz) {
-  return height_force(viip_height_gains(p, mass, omega), mass * kGravity, goal, z, dz);
+double viip_force(const HeightGains& gains, double mass, double goal, double z, double dz) {
+  return height_force(gains, mass * kGravity, goal, z, dz);
 }
 
 Vector2d viip_acceleration(const ViipParams& p, double omega, double omega2, double dt,
@@ -196,6 +213,7 @@ Viip::Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipPara
       dt_(dt),
       omega_(std::sqrt(kGravity / (held.cog.z() - ground_of(held.feet)))),
       height_(held.cog.z() - ground_of(held.feet)),
+      push_filter_(leg_lag(model, limits) + kPushFilterTime),
       command_(start.command),
       body_(model, limits, dt, start.reference, start.target, {.in_order = false}),
       dynamics_(model, limits, dt),
@@ -337,18 +355,21 @@ CogReference Viip::cog_reference(const Estimate& e, LawTerms& terms) {
   const Vector3d goal = standing_goal(displacement_[2]);
   const double z = body_.cog().z() - ground;
   CogReference ref;
+  // Without feedback the contact is the planned one.
+  const bool both = params_.feedback
+                        ? bears(*model_, e, Side::left) == bears(*model_, e, Side::right)
+                        : plan_.support == Support::both;
+  const HeightGains gains = viip_height_gains(params_, m, omega_, both ? 2 : 1);
   const bool yields = params_.feedback && stage_ == Stage::stand && e.contact;
   sag_ =
       yields ? sag_ + low_pass_share(dt_, omega_, 1) * (e.cog.z() - body_.cog().z() - sag_) : 0.0;
-  ref.fz = admissible_force(
-      viip_force(params_, m, omega_, goal.z() - ground, z + sag_, body_.dcog().z()), m);
-  push_ = yields ? push_ + low_pass_share(dt_, omega_, kPushFilter) *
-                               (e.fz - m * (kGravity + lift_) - push_)
-                 : 0.0;
+  ref.fz = admissible_force(viip_force(gains, m, goal.z() - ground, z + sag_, body_.dcog().z()), m);
+  push_ = yields
+              ? push_ + std::min(1.0, dt_ / push_filter_) * (e.fz - m * (kGravity + lift_) - push_)
+              : 0.0;
   lift_ = vertical_acceleration(ref.fz - params_.yielding * push_, m);
   ref.ddcog.z() = lift_;
   const double w2 = omega_squared(ref.fz, m, z);
-  const HeightGains gains = viip_height_gains(params_, m, omega_);
   terms = {.stage = law_stage(), .height = z, .omega2 = w2};
   terms.K_Pz = gains.stiffness;
   terms.K_Dz = gains.damping;
@@ -371,6 +392,10 @@ CogReference Viip::cog_reference(const Estimate& e, LawTerms& terms) {
   const ReferencePendulum reference = {body_.cog().head<2>(), body_.dcog().head<2>(), zmp_[1]};
   ref.ddcog.head<2>() =
       viip_acceleration(params_, omega_, w2, dt_, reference, zmp_[0], e, filter_, terms);
+  const Vector2d turning =
+      params_.momentum_share * turning_acceleration(dynamics_.momentum_rate(), m, z);
+  ref.ddcog.head<2>() += turning;
+  terms.motion.head<2>() += turning;
   terms.filtered_zmp << filter_.zmp(), ground;
   return ref;
 }
@@ -495,7 +520,8 @@ void Viip::step_state_machine(const Estimate& e) {
     const bool landed =
         params_.landings && elapsed_ > kStepLandingAfter * single && bears(*model_, e, foot);
     if (landed || elapsed_ >= single) {
-      next_.feet[index(foot)].translation().z() = plan_.feet[index(anchor_)].translation().z();
+      early_ =
+          next_.feet[index(foot)].translation().z() - plan_.feet[index(anchor_)].translation().z();
       footsteps_.advance(steps_, anchor_, steps_left_);
       --steps_left_;
       zmp_before_ = zmp_;
@@ -503,7 +529,14 @@ void Viip::step_state_machine(const Estimate& e) {
       elapsed_ = 0;
       time_scale_ = 1;
     }
-  } else if (stage_ == Stage::double_support && elapsed_ >= both) {
+  } else if (stage_ == Stage::double_support) {
+    // A foot that has met the ground early takes over its load as gradually as the ZMP moves.
+    const double share = std::min(1.0, elapsed_ / both);
+    next_.feet[index(other(anchor_))].translation().z() =
+        plan_.feet[index(anchor_)].translation().z() +
+        early_ * (1 - share * share * (3 - 2 * share));
+  }
+  if (stage_ == Stage::double_support && elapsed_ >= both) {
     if (steps_left_ > 0) {
       anchor_ = other(anchor_);
       if (params_.feedback) update_landing_bias(landing_error(e, anchor_));

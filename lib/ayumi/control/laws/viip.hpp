@@ -25,8 +25,10 @@ struct ViipParams {
   double rocking_damping = 8;     ///< [damp] of the robot's rocking on its soles and servos
   double zmp_filter = 0.01;       ///< [tau_z] low pass of the measured ZMP
   double margin = 0.01;           ///< [margin] kept inside the support region
-  double height_rate = 1.5;       ///< [kz] sqrt(K_Pz / m) of (24)
+  double height_rate = 1.5;       ///< [kz] sqrt(K_Pz / m) of (24) while both feet bear
+  double one_foot_rate = 1.06;    ///< [kz_one] the same while one foot bears
   double height_damping = 1;      ///< [dz] K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
+  double momentum_share = 0.3;    ///< [moment] share of the moment of a swing that the COG takes
   double yielding = 1;            ///< [yield] share of a vertical push that standing yields to
   double ankle_share = 0.5;       ///< [ankle] share of the stance foot's tilt turned back
   double single_support = 1.7;    ///< [single] length of a single support
@@ -62,16 +64,18 @@ Eigen::Vector2d viip_acceleration(const ViipParams& params, double omega, double
                                   const Eigen::Vector2d& measured_zmp, const Estimate& estimate,
                                   ReactionFilter& filter, LawTerms& terms);
 
+/// Acceleration of a COG at the height z [m] beside (14)(15), so that a body whose angular momentum
+/// changes at `momentum_rate` [N m] keeps its ZMP [m/s^2].
+Eigen::Vector2d turning_acceleration(const Eigen::Vector3d& momentum_rate, double mass, double z);
+
 /// How long `steps` counted steps take from standing to standing [s].
 double stepping_time(const ViipParams& params, double omega, int steps);
 
-/// K_Pz and K_Dz of (24).
-HeightGains viip_height_gains(const ViipParams& params, double mass, double omega);
+/// K_Pz and K_Dz of (24) while `feet` feet bear; a robot in the air keeps those of both feet.
+HeightGains viip_height_gains(const ViipParams& params, double mass, double omega, int feet = 2);
 
-/// Ref f_z of (24) with the gains of `params` [N] for a COG at height z moving at dz that is to be
-/// at `goal`.
-double viip_force(const ViipParams& params, double mass, double omega, double goal, double z,
-                  double dz);
+/// Ref f_z of (24) with `gains` [N] for a COG at height z moving at dz that is to be at `goal`.
+double viip_force(const HeightGains& gains, double mass, double goal, double z, double dz);
 
 class Viip {
  public:
@@ -126,6 +130,7 @@ class Viip {
   const RobotModel* model_;
   ViipParams params_;
   double dt_, omega_, height_;
+  double push_filter_;   // time constant of push_ [s]
   CommandPlan command_;  // of the pattern, for the next law
   ReferenceBody body_;
   ReferenceDynamics dynamics_;
@@ -142,6 +147,7 @@ class Viip {
   double elapsed_ = 0;        // in this stage, by its clock [s]
   double time_scale_ = 1;     // of that clock: a step that comes sooner runs faster
   Side anchor_ = Side::left;  // foot the reference stands on
+  double early_ = 0;          // height at which the plan has a foot that has met the ground [m]
   Footsteps footsteps_;
   // Systematic error of each foot's landing, axes of the foot [m].
   std::array<Eigen::Vector2d, 2> landing_bias_ = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};

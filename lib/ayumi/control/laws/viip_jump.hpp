@@ -58,6 +58,7 @@ class ViipJump {
   void release();
   void fly(const Estimate& estimate, ControlOutput& out);
   Eigen::Vector3d foot_position(int side, double t) const;
+  void measure_speed(const Estimate& estimate);
   void touch_down(const Estimate& estimate);
   Eigen::VectorXd torque(const Eigen::VectorXd& velocity);
   void move_joints(const Eigen::VectorXd& velocity, ControlOutput& out);
@@ -83,6 +84,8 @@ class ViipJump {
   double elapsed_ = 0;        // in this stage [s]
   double unloaded_ = 0;       // time without ground force at the end of a spring push [s]
   double loaded_ = 0;         // time with ground force at the end of a flight [s]
+  double speed_ = 0;          // vertical, of the COG, measured [m/s]
+  double speed_before_ = 0;   // the same when the feet last bore no load [m/s]
   double forward_ = 0;        // share of the torque that is fed forward, 0 to 1
   Eigen::VectorXd velocity_;  // generalised, of the last tick; empty after an impact
   int left_ = 1;              // jumps to go, this one included
