@@ -54,11 +54,19 @@ std::string value_of(const CLI::Option& option) {
 // What `ayumi --names` lists for the value of an option or for a word of a command; "" for files
 // and numbers.
 std::string names_kind(const CLI::Option& option) {
-  static const std::map<std::string, std::string> kinds = {
-      {"robot", "robots"},     {"ROBOT", "robots"},     {"profile", "profiles"},
-      {"posture", "postures"}, {"POSTURE", "postures"}, {"gain", "gains"},
-      {"gains", "gains"},      {"joint", "joints"},     {"joints", "joints"},
-      {"lock", "joints"},      {"weight", "joints"}};
+  static const std::map<std::string, std::string> kinds = {{"robot", "robots"},
+                                                           {"ROBOT", "robots"},
+                                                           {"profile", "profiles"},
+                                                           {"posture", "postures"},
+                                                           {"POSTURE", "postures"},
+                                                           {"gain", "gains"},
+                                                           {"gains", "gains"},
+                                                           {"joint", "joints"},
+                                                           {"joints", "joints"},
+                                                           {"lock", "joints"},
+                                                           {"weight", "joints"},
+                                                           {"controller", "controllers"},
+                                                           {"against-controller", "controllers"}};
   const std::string name = option.get_positional() && flags_of(option).empty()
                                ? option.get_name(true)
                            : option.get_lnames().empty() ? ""

@@ -71,6 +71,12 @@ std::set<std::string> posture_names(const Named& named) {
 std::set<std::string> gain_names() {
   std::set<std::string> names = {"k", "d"};
   for (const auto& gain : gains_of(DtadParams())) names.insert(gain.first);
+  DtadParams baseline;
+  for (const std::string& name : controller_names()) {
+    baseline.kind = controller_type(name).kind;
+    if (!is_baseline(baseline.kind)) continue;
+    for (const auto& gain : gains_of(baseline)) names.insert(gain.first);
+  }
   for (const auto& gain : gains_of(ViipParams())) names.insert(gain.first);
   return names;
 }
@@ -81,6 +87,7 @@ std::set<std::string> names_of(const Context& context, const std::string& kind,
   if (kind == "robots")
     for (const RobotEntry& entry : find_robots(robot_search(context))) names.insert(entry.name);
   if (kind == "gains") names = gain_names();
+  if (kind == "controllers") names.insert(controller_names().begin(), controller_names().end());
   if (kind != "joints" && kind != "postures" && kind != "profiles") return names;
   const Named named = named_by(context, words);
   if (kind == "postures") return posture_names(named);

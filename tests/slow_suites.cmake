@@ -8,5 +8,5 @@ set(ayumi_slow_suites
   plant_mujoco.MujocoPlant plant_mujoco.MujocoWalk plant_mujoco.PushAgreement
   plant_mujoco.RepairedWalk render.Batch render.Clip render.Commands render.Renderer
   repair.ConstraintRows repair.CorrectionProblem repair.Faults repair.JumpRepair repair.Landing
-  repair.LeastChange repair.Repair repair.ThrownKnee report.AuthorPage report.Report scenarios.Hoap1Walk
+  repair.LeastChange repair.Repair repair.ThrownKnee report.AuthorPage report.Report scenarios.Baselines scenarios.Hoap1Walk
   scenarios.SensorLatency scenarios.ViipHoap1 sim.Walking study.Certify study.Push study.Retime study.SequentialTest)
