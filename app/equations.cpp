@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/control/feedback.hpp"
+#include "ayumi/control/laws/dtad.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi::app {
@@ -46,7 +46,8 @@ class Writer {
   EquationNumbers out_;
 };
 
-/// Whether DTAD made this tick; a run under one controller may have phases of the other.
+/// Whether DTAD made this tick, or a baseline on its body; a run under one controller may have
+/// phases of the other.
 bool dtad(const RunInstant& i) {
   const LawStage stage = i.now().law.stage;
   return stage == LawStage::follow || stage == LawStage::follow_flight;
@@ -54,10 +55,18 @@ bool dtad(const RunInstant& i) {
 bool literal(const RunInstant& i) {
   return dtad(i) && i.log.controller->demonstration == Demonstration::literal;
 }
+/// Whether a baseline chose the ZMP of this tick, where dtad() holds.
+bool baseline(const RunInstant& i) {
+  return dtad(i) && i.log.controller && is_baseline(i.log.controller->kind);
+}
+bool previewed(const RunInstant& i) {
+  return baseline(i) && i.log.controller->kind == ControllerKind::preview;
+}
 /// Whether the gains of the log are those of the law that made this tick.
 bool own_gains(const RunInstant& i) {
-  return i.log.controller &&
-         i.log.controller->kind == (dtad(i) ? ControllerKind::dtad : ControllerKind::viip);
+  if (!i.log.controller) return false;
+  const ControllerKind kind = i.log.controller->kind;
+  return dtad(i) ? has_dtad_gains(kind) : kind == ControllerKind::viip;
 }
 
 const char* stage_words(LawStage stage) {
@@ -97,6 +106,9 @@ bool on_ground(LawStage stage) {
 
 Writer begin(const RunInstant& i) {
   Writer w(i);
+  if (baseline(i))
+    w.line("the controller " + name_of(*i.log.controller) +
+           " chooses the ZMP in the place of (18)(19); all else is done as by DTAD");
   w.line(stage_words(i.now().law.stage));
   w.scalar("law.stage", "1", static_cast<double>(i.now().law.stage));
   return w;
@@ -119,10 +131,15 @@ void acceleration_lines(Writer& w, const RunInstant& i, int a) {
   const LawTerms& law = s.law;
   const bool plan = dtad(i) && !literal(i);
   const double sum = law.motion[a] + law.pull[a] + law.short_term[a] + law.rocking[a];
-  w.line(std::string(1, kAxis[a]) + ": " + (plan ? "commanded " : "of the pendulum itself ") +
+  w.line(std::string(1, kAxis[a]) + ": " +
+         (previewed(i) && a < 2 ? "of the previewed COG "
+          : plan                ? "commanded "
+                                : "of the pendulum itself ") +
          fixed(w.part("law.motion", "m/s^2", law.motion, a), 3) + ", short term " +
          fixed(w.part("law.short_term", "m/s^2", law.short_term, a), 3) + ", pull to the " +
-         (plan ? "command " : "measured state ") +
+         (previewed(i) && a < 2 ? "previewed COG "
+          : plan                ? "command "
+                                : "measured state ") +
          fixed(w.part("law.pull", "m/s^2", law.pull, a), 3) + ", damping of the rocking " +
          fixed(w.part("law.rocking", "m/s^2", law.rocking, a), 3) + "; together " +
          acceleration(sum));
@@ -202,14 +219,23 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
     return w.take();
   }
   const double K = w.scalar("law.K", "1", law.K), D = w.scalar("law.D", "s", law.D);
-  w.line(dtad(i) ? "K = " + text::brief(K) + ", D = " + fixed(1e3 * D, 0) + " ms"
-                 : "the wanted ZMP moves by K = " + fixed(K, 3) +
-                       " times what the COG moves, and by D = " + fixed(1e3 * D, 0) +
-                       " ms times its speed");
+  w.line(previewed(i) ? "the wanted ZMP is that of the previewed COG, and " + fixed(K, 3) +
+                            " times the distance of the measured COG from it, x + " +
+                            fixed(1e3 * D / K, 0) + " ms times its speed"
+         : baseline(i) ? "the wanted ZMP is the planned one and " + fixed(K, 3) +
+                             " times the error of the DCM, x + " + fixed(1e3 * D / K, 0) +
+                             " ms times its speed"
+         : dtad(i) ? "K = " + text::brief(K) + ", D = " + fixed(1e3 * D, 0) + " ms"
+                   : "the wanted ZMP moves by K = " + fixed(K, 3) +
+                         " times what the COG moves, and by D = " + fixed(1e3 * D, 0) +
+                         " ms times its speed");
   const Vector3d e = s.command_cog - s.measured_cog, de = s.command_dcog - s.measured_dcog;
   for (int a = 0; a < 2; ++a) {
     const double planned = w.part("law.planned_zmp", "m", law.planned_zmp, a);
-    if (dtad(i)) {
+    if (previewed(i)) {
+      const double wanted = w.part("law.wanted_zmp", "m", law.wanted_zmp, a);
+      w.line(std::string(1, kAxis[a]) + ": planned " + mm(planned) + ", wanted " + mm(wanted));
+    } else if (dtad(i)) {
       const double wanted =
           w.part("law.wanted_zmp", "m", law.wanted_zmp, a, planned - K * e[a] - D * de[a]);
       w.line(std::string(1, kAxis[a]) + ": " + mm(planned) + " - K x " + mm(e[a]) + " - D x " +

@@ -73,6 +73,12 @@ std::set<std::string> posture_names(const Named& named) {
 std::set<std::string> gain_names() {
   std::set<std::string> names = {"k", "d"};
   for (const auto& gain : gains_of(DtadParams())) names.insert(gain.first);
+  DtadParams baseline;
+  for (const std::string& name : controller_names()) {
+    baseline.kind = controller_type(name).kind;
+    if (!is_baseline(baseline.kind)) continue;
+    for (const auto& gain : gains_of(baseline)) names.insert(gain.first);
+  }
   for (const auto& gain : gains_of(ViipParams())) names.insert(gain.first);
   return names;
 }

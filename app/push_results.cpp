@@ -42,6 +42,8 @@ Json case_json(const PushCase& push) {
           {"direction_rad", push.direction},
           {"bound_Ns", push.bound},
           {"edge_bound_Ns", push.edge_bound},
+          {"mass_kg", push.mass},
+          {"height_m", push.height},
           {"open_loop", limit_json(push.open_loop)},
           {"limits", limits}};
 }
@@ -52,6 +54,8 @@ PushCase case_from(const Json& json) {
   push.direction = json.at("direction_rad");
   push.bound = json.at("bound_Ns");
   push.edge_bound = json.at("edge_bound_Ns");
+  push.mass = json.at("mass_kg");
+  push.height = json.at("height_m");
   push.open_loop = limit_from(json.at("open_loop"));
   for (const Json& limit : json.at("limits")) push.limits.push_back(limit_from(limit));
   return push;
@@ -61,6 +65,10 @@ Json summary_json(const PushSummary& s) {
   return {{"cases", s.cases},
           {"worst_ratio", s.worst},
           {"mean_ratio", s.mean},
+          {"worst_J_per_m_m_per_s", s.worst_speed},
+          {"mean_J_per_m_m_per_s", s.mean_speed},
+          {"worst_J_per_m_sqrt_gz", s.worst_froude},
+          {"mean_J_per_m_sqrt_gz", s.mean_froude},
           {"open_loop_worst_ratio", s.open_worst},
           {"open_loop_mean_ratio", s.open_mean},
           {"below_open_loop", s.below_open}};

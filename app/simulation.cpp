@@ -17,9 +17,11 @@ namespace ayumi::app {
 
 void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   command
-      .add_option("--controller", choice.controller,
-                  "none (open loop), dtad, viip, or for demonstration dtad-literal, viip-landings, "
-                  "viip-nofeedback (default: the pattern's).")
+      .add_option(
+          "--controller", choice.controller,
+          "none (open loop), dtad, viip, to compare with: preview, foot-guided, dcm-step, or "
+          "for demonstration dtad-literal, viip-landings, viip-nofeedback (default: the "
+          "pattern's).")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,

@@ -14,6 +14,7 @@ set(ayumi_slow_suites
   plant_mujoco.RepairedWalk plant_mujoco.ServoAgreement render.Batch render.Clip render.Commands
   render.Renderer repair.BadStarts repair.ConstraintRows repair.CorrectionProblem repair.Faults
   repair.InfeasibilityReport repair.JumpRepair repair.Landing repair.LeastChange repair.Repair
-  repair.ThrownKnee report.AuthorPage report.Report scenarios.DtadGaits scenarios.Hoap1Walk
-  scenarios.ImportedMotions scenarios.SensorLatency scenarios.StanceLoop scenarios.ViipHoap1
-  sim.Walking study.Certify study.LocalRetime study.Push study.Retime study.SequentialTest)
+  repair.ThrownKnee report.AuthorPage report.Report scenarios.Baselines scenarios.DtadGaits
+  scenarios.Hoap1Walk scenarios.ImportedMotions scenarios.SensorLatency scenarios.StanceLoop
+  scenarios.ViipHoap1 sim.Walking study.Certify study.LocalRetime study.Push study.Retime
+  study.SequentialTest)

@@ -142,11 +142,19 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
     for (size_t k = 0; k < push.controllers.size(); ++k)
       line(name_of(push.controllers[k].type) + " / B",
            [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
+    for (size_t k = 0; k < push.controllers.size(); ++k)
+      line(name_of(push.controllers[k].type) + " J/m",
+           [k](const PushCase& c) { return text::fixed(push_speed(c, c.limits[k].impulse), 3); });
+    for (size_t k = 0; k < push.controllers.size(); ++k)
+      line(name_of(push.controllers[k].type) + " J/mv",
+           [k](const PushCase& c) { return text::fixed(push_froude(c, c.limits[k].impulse), 3); });
   }
   for (const std::string& line : push_summary_lines(cases, push, series)) out += line + "\n";
   return out +
          "B = largest push that a point mass could absorb; + = the largest push that was tried, "
-         "survived\n";
+         "survived\n"
+         "J/m = speed that the push gives to the COG, in m/s; J/mv = the same in units of "
+         "v = sqrt(g z), z: height of the COG above the ZMP\n";
 }
 
 Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, double wall) {
@@ -161,7 +169,15 @@ Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, do
     sum += ratio;
     ++count;
   }
-  return {{"thresholds", thresholds_json(cases, push.controllers)},
+  Json thresholds = thresholds_json(cases, push.controllers);
+  size_t next = 0;
+  for (const PushCase& c : cases)
+    for (const PushLimit& limit : c.limits) {
+      Json& threshold = thresholds[next++];
+      threshold["J_per_m_m_per_s"] = push_speed(c, limit.impulse);
+      threshold["J_per_m_sqrt_gz"] = push_froude(c, limit.impulse);
+    }
+  return {{"thresholds", thresholds},
           {"worst_ratio", worst},
           {"mean_ratio", count ? sum / count : 0.0},
           {"summary", summaries_json(cases, push)},

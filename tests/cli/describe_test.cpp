@@ -67,6 +67,8 @@ std::string names(std::vector<std::string> words) {
 TEST(Names, AreThoseOfTheRobotOnTheCommandLine) {
   EXPECT_NE(names({"robots"}).find("\nhoap1\n"), std::string::npos);
   EXPECT_NE(names({"gains"}).find("\nka\n"), std::string::npos);
+  EXPECT_NE(names({"gains"}).find("\nsoonest\n"), std::string::npos);  // of a baseline
+  EXPECT_NE(names({"controllers"}).find("\nfoot-guided\n"), std::string::npos);
   EXPECT_NE(names({"postures", "posture", "draw", "hoap1"}).find("\nhome\n"), std::string::npos);
   const std::string tall = names({"joints", "new", "walk", "--robot", "humanoid30"});
   EXPECT_NE(tall.find("\nneck"), std::string::npos) << tall;
@@ -83,6 +85,7 @@ TEST(Names, AreAskedForByEveryCompletion) {
   const std::string bash = described("bash"), zsh = described("zsh"), fish = described("fish");
   EXPECT_NE(bash.find("' repair --lock') kind=joints"), std::string::npos);
   EXPECT_NE(bash.find("' run --gain') kind=gains"), std::string::npos);
+  EXPECT_NE(bash.find("' run --controller') kind=controllers"), std::string::npos);
   EXPECT_NE(bash.find("' edit ramp --posture') kind=postures"), std::string::npos);
   EXPECT_NE(zsh.find(": _ayumi_names joints'"), std::string::npos);
   EXPECT_NE(zsh.find(": _ayumi_names robots'"), std::string::npos);

@@ -183,6 +183,9 @@ TEST(ExplainCommand, EveryNumberIsTheLogsOwn) {
       {"dtad", "hoap1_walk", {}, {3.005, 0, 3.35}, true},
       {"gains", "hoap1_walk", {"--gain", "ka=0.7", "--gain", "q=0.5"}, {3.05}},
       {"literal", "hoap1_walk", {"--controller", "dtad-literal"}, {0.4}},
+      {"preview", "hoap1_walk", {"--controller", "preview"}, {3.05, 3.3}},
+      {"guided", "hoap1_walk", {"--controller", "foot-guided"}, {3.05, 3.3}},
+      {"steps", "hoap1_walk", {"--controller", "dcm-step"}, {3.05, 3.3}},
       {"viip", "hoap1_viip_step", {}, {2.21, 0.2, 2.6}, true},
       {"jump", "hoap1_jump", {}, {1.32, 0.5, 1.45, 1.55, 2.4}, true},
   };
@@ -224,6 +227,30 @@ TEST(ExplainCommand, EveryNumberIsTheLogsOwn) {
     if (std::string(run.name) != "open") {
       EXPECT_GT(computed, 3u) << run.name;
     }
+  }
+}
+
+// A baseline is named, and no equation of the paper is claimed for its ZMP.
+TEST(ExplainCommand, NamesTheBaselineThatChoseTheZmp) {
+  for (const auto& [name, words] : {std::pair{"preview", "is that of the previewed COG"},
+                                    std::pair{"foot-guided", "times the error of the DCM"}}) {
+    const Folder folder;
+    ASSERT_EQ(
+        run_program({"new", "stand", "--duration", "0.3", "-o", "stand.json", "--force", "-q"},
+                    folder.path())
+            .exit_code,
+        0);
+    ASSERT_EQ(run_program({"simulate", "stand.json", "--controller", name, "-o", "run", "-q"},
+                          folder.path())
+                  .exit_code,
+              0);
+    const std::string said = run_program({"explain", "18", "run@0.2"}, folder.path()).out;
+    EXPECT_NE(said.find("the controller " + std::string(name) +
+                        " chooses the ZMP in the place of (18)(19)"),
+              std::string::npos)
+        << said;
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+    EXPECT_EQ(said.find("K = "), std::string::npos) << said;
   }
 }
 

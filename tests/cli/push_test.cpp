@@ -82,6 +82,17 @@ TEST(PushCommand, DrawsItsMapAndPrintsJson) {
   const Json json = Json::parse(good.out);
   EXPECT_EQ(json["thresholds"].size(), 2u);
   EXPECT_GT(json["worst_ratio"].get<double>(), 0.8);
+  // J/m and J/(m sqrt(g z)) from the robot's mass and the height of its COG.
+  const Json stored = Json::parse(contents(study.folder / "results.json"))["cases"][0];
+  const double mass = stored["mass_kg"], height = stored["height_m"];
+  EXPECT_NEAR(mass, 6, 1);
+  EXPECT_NEAR(height, 0.22, 0.02);
+  for (const Json& t : json["thresholds"]) {
+    const double impulse = t["impulse_Ns"], speed = impulse / mass;
+    EXPECT_NEAR(t["J_per_m_m_per_s"].get<double>(), speed, 1e-12);
+    EXPECT_NEAR(t["J_per_m_sqrt_gz"].get<double>(), speed / std::sqrt(9.80665 * height), 1e-12);
+    EXPECT_LE(json["summary"][0]["walking"]["worst_J_per_m_m_per_s"].get<double>(), speed + 1e-12);
+  }
   const std::string map = contents(study.folder / "map.svg");
   EXPECT_NE(map.find("capture bound B"), std::string::npos);
   EXPECT_NE(map.find("t = 0.500 s"), std::string::npos);

@@ -188,7 +188,7 @@ inline const std::vector<Broken>& mistakes() {
        "/world/ground: 'hilly' is not allowed; the only allowed value is 'flat'"},
       {"controller", R"({"type": "pid"})",
        "/controller/type: 'pid' is not one of none, dtad, dtad-literal, viip, viip-landings, "
-       "viip-nofeedback"},
+       "viip-nofeedback, preview, foot-guided, dcm-step"},
       {"controller", R"({"type": "dtad", "gains": {"q": 1, "k": 2, "d": 1}})",
        "q determines k and d"},
       {"controller", R"({"type": "dtad", "gains": {"k": 2}})", "k needs d, and d needs k"},

@@ -96,6 +96,8 @@ TEST(Push, SummaryOfKnownNumbers) {
   PushCase a, b, standing;
   a.bound = 2, a.open_loop.impulse = 1, a.limits.resize(1), a.limits[0].impulse = 2.4;
   b.bound = 1, b.open_loop.impulse = 0.7, b.limits.resize(1), b.limits[0].impulse = 0.6;
+  a.mass = b.mass = 2;
+  a.height = 0.9, b.height = 0.4;
   standing = b;
   standing.phase.standing = true;
   const PushSummary s = summarize({a, b, standing}, 0, false, 0.06);
@@ -105,6 +107,11 @@ TEST(Push, SummaryOfKnownNumbers) {
   EXPECT_DOUBLE_EQ(s.open_worst, 0.5);
   EXPECT_DOUBLE_EQ(s.open_mean, 0.6);
   EXPECT_EQ(s.below_open, 1);
+  EXPECT_DOUBLE_EQ(s.worst_speed, 0.3);
+  EXPECT_DOUBLE_EQ(s.mean_speed, 0.75);
+  EXPECT_NEAR(s.worst_froude, 0.3 / std::sqrt(0.4 * 9.80665), 1e-12);
+  EXPECT_NEAR(s.mean_froude,
+              0.5 * (1.2 / std::sqrt(0.9 * 9.80665) + 0.3 / std::sqrt(0.4 * 9.80665)), 1e-12);
   EXPECT_EQ(summarize({a, b}, 0, false, 0.2).below_open, 0);
 }
 

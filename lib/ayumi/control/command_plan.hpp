@@ -16,6 +16,7 @@ class CommandPlan {
   explicit CommandPlan(const CommandSeries& series);
 
   double dt() const { return series_->dt; }  ///< [s]
+  const CommandSeries& series() const { return *series_; }
 
   /// The command of the coming tick.
   const CommandSample& now() const { return now_; }

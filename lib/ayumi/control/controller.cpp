@@ -10,13 +10,13 @@
 namespace ayumi {
 
 void check_controller(const RobotModel& model, const ControllerSpec& spec) {
-  if (spec.type.kind == ControllerKind::dtad) dtad_params(model, spec);
+  if (has_dtad_gains(spec.type.kind)) dtad_params(model, spec);
   viip_params(model, spec);
 }
 
 std::vector<std::pair<std::string, double>> gains_in_use(const RobotModel& model,
                                                          const ControllerSpec& spec) {
-  if (spec.type.kind == ControllerKind::dtad) return gains_of(dtad_params(model, spec));
+  if (has_dtad_gains(spec.type.kind)) return gains_of(dtad_params(model, spec));
   if (spec.type.kind == ControllerKind::viip) return gains_of(viip_params(model, spec));
   return {};
 }
@@ -56,13 +56,13 @@ Controller::Law Controller::first_law() {
 
 // DTAD or open loop, going on at the handover's plan.
 Controller::Law Controller::law_of_command(Handover from) const {
-  const bool dtad = spec_.type.kind == ControllerKind::dtad || spec_.type == ControllerKind::viip;
-  if (!dtad) return OpenLoop(limits_, from.command, torque_lead_, from.target, series_->targets);
-  const bool own_gains = spec_.type.kind == ControllerKind::dtad;
+  const bool own_gains = has_dtad_gains(spec_.type.kind);
+  if (!own_gains && spec_.type != ControllerKind::viip)
+    return OpenLoop(limits_, from.command, torque_lead_, from.target, series_->targets);
   const DtadParams params =
       dtad_params(*model_, own_gains ? spec_ : ControllerSpec{ControllerKind::dtad, {}});
-  if (params.step_share > 0 && !params.literal && series_->viip.empty())
-    from.command.move_footholds(*model_, {params.step_share, params.time_scale_limit});
+  if (params.moves_footholds() && series_->viip.empty())
+    from.command.move_footholds(*model_, params.footholds());
   Dtad law(*model_, limits_, params, from.command, torque_lead_, from.target);
   if (tick_ > 0) law.take_over(from);
   return law;

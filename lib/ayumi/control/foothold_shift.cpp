@@ -251,17 +251,22 @@ Vector2d FootholdShift::not_crossing(const Vector2d& target) const {
   return step.stance.position + turn * offset - step.landing.position + after_;
 }
 
-/// What the leg can reach, and in the time that is left.
-Vector2d FootholdShift::reachable(const Vector2d& target, double time_scale) const {
+/// How far the foot can be moved in the time that is left [m].
+double FootholdShift::swing_room(double time_scale) const {
   const PlannedSwing& swing = steps_[coming_].swing;
-  Vector2d shift = target - after_;
-  const double reach = kFootholdReach * height_;
-  if (shift.norm() > reach) shift *= reach / shift.norm();
   const double margin = kSwingMargin * (swing.land - swing.lift);
   const double begin = std::max(phase_, swing.lift + margin);
   const double time = std::max(0.0, swing.land - margin - begin) * series_->dt / time_scale;
-  const double most = kFootSpeed * omega_ * height_ * time / kLeastJerkPeak;
-  const Vector2d from = foot_[index(swing.foot)];
+  return kFootSpeed * omega_ * height_ * time / kLeastJerkPeak;
+}
+
+/// What the leg can reach, and in the time that is left.
+Vector2d FootholdShift::reachable(const Vector2d& target, double time_scale) const {
+  Vector2d shift = target - after_;
+  const double reach = kFootholdReach * height_;
+  if (shift.norm() > reach) shift *= reach / shift.norm();
+  const double most = swing_room(time_scale);
+  const Vector2d from = foot_[index(steps_[coming_].swing.foot)];
   Vector2d move = after_ + shift - from;
   if (move.norm() > most) move *= most / move.norm();
   return from + move;
@@ -285,6 +290,56 @@ void FootholdShift::choose_foothold(const Estimate& e) {
     return;
   }
   const Vector2d dcm = divergent_component(e.cog, e.dcog, omega_).head<2>();
+  if (params_.program)
+    solve_foothold(dcm);
+  else
+    search_foothold(dcm);
+  moved_ = moved_ || time_scale_ != 1 || target_ != after_;
+}
+
+void FootholdShift::solve_foothold(const Vector2d& dcm) {
+  const Step& step = steps_[coming_];
+  const double time = seconds_to(step.swing.land);
+  if (time < series_->dt) return;
+  const double yaw = step.stance.yaw;
+  const Eigen::Rotation2Dd turn(yaw);
+  const auto local = [&](const Vector2d& v) -> Vector2d { return turn.inverse() * v / height_; };
+  StepProblem p;
+  p.error = local(dcm - divergent_component(now_.cog, now_.dcog, omega_).head<2>() -
+                  dcm_shift(1, after_));
+  p.dcm = local(step.dcm - step.zmp);
+  p.growth = elementary::exp(omega_ * time);
+  p.share = step.share;
+  p.least_growth = elementary::exp(omega_ * time / params_.time_scale_limit);
+  p.most_growth = elementary::exp(omega_ * time / params_.program->slowest);
+  set_support(p, step.single, yaw, height_, 1 - kReserve);
+
+  // Within reach, with the speed of the swing, on its own side.
+  const int side = index(step.swing.foot);
+  const Vector2d from = local(foot_[side] - after_);
+  const Vector2d room = Vector2d::Constant(swing_room(time_scale_) / height_);
+  const Vector2d reach = Vector2d::Constant(kFootholdReach);
+  p.low = (from - room).cwiseMax(-reach);
+  p.high = (from + room).cwiseMin(reach);
+  const double apart = local(step.landing.position - step.stance.position).y();
+  const double least = std::min((2 * half_width_ + kSoleClearance) / height_, std::abs(apart));
+  if (step.swing.foot == Side::left)
+    p.low.y() = std::max(p.low.y(), least - apart);
+  else
+    p.high.y() = std::min(p.high.y(), -least - apart);
+  for (int axis = 0; axis < 2; ++axis)
+    if (p.low[axis] > p.high[axis])
+      p.low[axis] = p.high[axis] = std::clamp(from[axis], p.high[axis], p.low[axis]);
+
+  const StepChoice choice = choose_step(p, *params_.program);
+  const double left = elementary::log(choice.growth) / omega_;
+  time_scale_ = left > series_->dt
+                    ? std::clamp(time / left, params_.program->slowest, params_.time_scale_limit)
+                    : params_.time_scale_limit;
+  target_ = reachable(after_ + height_ * (turn * choice.move), time_scale_);
+}
+
+void FootholdShift::search_foothold(const Vector2d& dcm) {
   double least = std::numeric_limits<double>::infinity(), chosen = time_scale_;
   for (int i = 0; time_scale_ + i * kTimeScaleStep <= params_.time_scale_limit + 1e-9; ++i) {
     const double time_scale = time_scale_ + i * kTimeScaleStep;
@@ -303,7 +358,6 @@ void FootholdShift::choose_foothold(const Estimate& e) {
     if (rest.isZero(0)) break;  // a faster clock leaves no less
   }
   time_scale_ = chosen;
-  moved_ = moved_ || time_scale_ > 1 || target_ != after_;
 }
 
 bool FootholdShift::lands_early(const Estimate& e) const {

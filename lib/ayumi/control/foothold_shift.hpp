@@ -2,11 +2,13 @@
 // Moves the coming footholds of a pattern, and speeds up its clock, where a push is more than the
 // present support can answer: the next step answers the rest. docs/theory.md, "Moving footholds".
 
+#include <optional>
 #include <vector>
 
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/control/footsteps.hpp"
 #include "ayumi/control/plan_shift.hpp"
+#include "ayumi/control/step_program.hpp"
 #include "ayumi/control/swing_foot.hpp"
 #include "ayumi/motion/command_series.hpp"
 
@@ -29,6 +31,9 @@ void command_between(const CommandSeries& series, double phase, CommandSample& c
 struct FootholdParams {
   double share = 0;               ///< of the DCM error that the supports leave over; 0: off
   double time_scale_limit = 2.5;  ///< fastest clock of the pattern, at least 1
+  /// Footholds and clock by the program of control/step_program, which answers every error, in the
+  /// place of a search that answers what the supports leave over.
+  std::optional<StepWeights> program = {};
 };
 
 /// The plan of a pattern whose footholds move. Until the supports leave an error over it is the
@@ -71,6 +76,9 @@ class FootholdShift {
   Eigen::Vector2d not_crossing(const Eigen::Vector2d& target) const;
   Eigen::Vector2d reachable(const Eigen::Vector2d& target, double time_scale) const;
   void choose_foothold(const Estimate& estimate);
+  void search_foothold(const Eigen::Vector2d& dcm);
+  void solve_foothold(const Eigen::Vector2d& dcm);
+  double swing_room(double time_scale) const;
   bool lands_early(const Estimate& estimate) const;
   void land_where_it_is(const Estimate& estimate);
   void land();

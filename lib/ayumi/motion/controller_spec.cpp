@@ -19,11 +19,19 @@ const std::vector<NamedController>& named_controllers() {
       {"dtad-literal", {ControllerKind::dtad, Demonstration::literal}},
       {"viip", ControllerKind::viip},
       {"viip-landings", {ControllerKind::viip, Demonstration::landings_only}},
-      {"viip-nofeedback", {ControllerKind::viip, Demonstration::no_feedback}}};
+      {"viip-nofeedback", {ControllerKind::viip, Demonstration::no_feedback}},
+      {"preview", ControllerKind::preview},
+      {"foot-guided", ControllerKind::foot_guided},
+      {"dcm-step", ControllerKind::dcm_step}};
   return table;
 }
 
 }  // namespace
+
+bool is_baseline(ControllerKind kind) {
+  return kind == ControllerKind::preview || kind == ControllerKind::foot_guided ||
+         kind == ControllerKind::dcm_step;
+}
 
 const std::string& name_of(const ControllerType& type) {
   for (const NamedController& each : named_controllers())

@@ -13,7 +13,15 @@ enum class ControllerKind {
   none,  ///< open loop: the servos receive the command; VIIP phases hold their posture
   dtad,  ///< DTAD, section 3 of the paper; VIIP in phases that carry goals
   viip,  ///< the same laws in the same phases, but the gains given are those of VIIP
+  /// Baselines: what others have published, on the body, sensors and servos of DTAD. Only the
+  /// choice of the ZMP differs. VIIP in phases that carry goals.
+  preview,      ///< ZMP preview control (control/preview_control)
+  foot_guided,  ///< foot-guided control (control/foot_guided)
+  dcm_step,     ///< DCM tracking that chooses step place and durations (control/step_program)
 };
+
+/// Whether the law is one to compare with: a ZMP chosen otherwise, all else as under DTAD.
+bool is_baseline(ControllerKind kind);
 
 /// Variants that show what a part of a law is worth. They are not meant for a robot.
 enum class Demonstration {

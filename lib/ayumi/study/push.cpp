@@ -17,6 +17,7 @@
 #include "ayumi/control/capture_bound.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/random.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "ayumi/study/runs.hpp"
 
@@ -293,13 +294,17 @@ PushCase Study::plan(size_t i) const {
   const long k = std::lround(result.phase.at / plan.dt);
   result.bound = capture_bound(capture_region(model, plan, k), u);
   result.edge_bound = edge_bound(model, plan, k, u);
+  const CommandSample& now =
+      plan.samples[std::min(static_cast<size_t>(k), plan.samples.size() - 1)];
+  result.mass = model.mass();
+  result.height = now.cog.z() - now.zmp.z();
   if (!series.viip.empty()) result.bound = result.edge_bound = standing_edge_bound();
   return result;
 }
 
 bool Study::plan_moves(const ControllerSpec& controller) const {
   return !series.viip.empty() ||
-         (controller.type == ControllerKind::dtad && dtad_params(model, controller).step_share > 0);
+         (has_dtad_gains(controller.type.kind) && dtad_params(model, controller).moves_footholds());
 }
 
 void Study::search(size_t i, PushCase& found) {
@@ -367,13 +372,25 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
   return cases;
 }
 
+double push_speed(const PushCase& push, double impulse) { return impulse / push.mass; }
+
+double push_froude(const PushCase& push, double impulse) {
+  return push_speed(push, impulse) / std::sqrt(kGravity * push.height);
+}
+
 PushSummary summarize(const std::vector<PushCase>& cases, size_t c, bool standing, double step) {
   PushSummary s;
-  s.worst = s.open_worst = std::numeric_limits<double>::infinity();
+  s.worst = s.open_worst = s.worst_speed = s.worst_froude = std::numeric_limits<double>::infinity();
   for (const PushCase& push : cases) {
     if (push.phase.standing != standing || push.bound <= 0) continue;
     const double ratio = push.limits.at(c).impulse / push.bound;
     const double open = push.open_loop.impulse / push.bound;
+    const double speed = push_speed(push, push.limits[c].impulse);
+    const double froude = push_froude(push, push.limits[c].impulse);
+    s.worst_speed = std::min(s.worst_speed, speed);
+    s.worst_froude = std::min(s.worst_froude, froude);
+    s.mean_speed += speed;
+    s.mean_froude += froude;
     s.worst = std::min(s.worst, ratio);
     s.open_worst = std::min(s.open_worst, open);
     s.mean += ratio;
@@ -384,6 +401,8 @@ PushSummary summarize(const std::vector<PushCase>& cases, size_t c, bool standin
   if (s.cases == 0) return {};
   s.mean /= s.cases;
   s.open_mean /= s.cases;
+  s.mean_speed /= s.cases;
+  s.mean_froude /= s.cases;
   return s;
 }
 

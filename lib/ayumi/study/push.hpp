@@ -58,13 +58,23 @@ struct PushCase {
   /// both bounds are then m omega times the distance to the nearest edge of the support at the
   /// start.
   double bound = 0, edge_bound = 0;
+  /// Of the robot [kg] and of its planned COG above its planned ZMP [m]: J/m and J/(m sqrt(g z))
+  /// compare pushes of different robots.
+  double mass = 0, height = 0;
   PushLimit open_loop;            ///< with VIIP goals: VIIP without feedback
   std::vector<PushLimit> limits;  ///< by PushOptions::controllers
 };
 
+/// J/m [m/s], the speed that an impulse J [N s] gives to the COG.
+double push_speed(const PushCase& push, double impulse);
+/// J/(m sqrt(g z)): that speed without dimension.
+double push_froude(const PushCase& push, double impulse);
+
 /// Figures over a group of cases, in capture bounds.
 struct PushSummary {
   double worst = 0, mean = 0, open_worst = 0, open_mean = 0;
+  double worst_speed = 0, mean_speed = 0;    ///< J/m [m/s]
+  double worst_froude = 0, mean_froude = 0;  ///< J/(m sqrt(g z))
   int below_open = 0;  ///< number of cases more than one search step below open loop
   int cases = 0;
 };

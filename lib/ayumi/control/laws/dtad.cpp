@@ -43,42 +43,100 @@ constexpr double kOffsetLimit = 0.09;
 // 5; twice: rough walk, touchdowns 6 to 7.
 constexpr double kContactTiltTime = 0.33;
 
-std::map<std::string, double*> gain_fields(DtadParams& p) {
-  return {{"q", &p.pole_ratio},         {"ka", &p.zmp_gain},
-          {"ks", &p.pull_rate},         {"kd", &p.pull_damping},
-          {"damp", &p.rocking_damping}, {"tau_z", &p.zmp_filter},
-          {"margin", &p.margin},        {"kz", &p.height_stiffness},
-          {"dz", &p.height_damping},    {"kaz", &p.fz_gain},
-          {"washout", &p.offset_time},  {"ankle", &p.ankle_share},
-          {"conform", &p.compliance},   {"momentum", &p.momentum_gain},
-          {"step", &p.step_share},      {"hurry", &p.time_scale_limit},
-          {"long", &p.long_term},       {"as_printed", &p.as_printed}};
+using GainFields = std::map<std::string, double*>;
+
+/// Of the body, whatever chooses the ZMP.
+GainFields body_gain_fields(DtadParams& p) {
+  return {{"ka", &p.zmp_gain},           {"ks", &p.pull_rate},      {"kd", &p.pull_damping},
+          {"damp", &p.rocking_damping},  {"tau_z", &p.zmp_filter},  {"margin", &p.margin},
+          {"kz", &p.height_stiffness},   {"dz", &p.height_damping}, {"kaz", &p.fz_gain},
+          {"washout", &p.offset_time},   {"ankle", &p.ankle_share}, {"conform", &p.compliance},
+          {"momentum", &p.momentum_gain}};
+}
+
+/// Of what chooses the ZMP.
+GainFields zmp_gain_fields(DtadParams& p) {
+  if (p.kind == ControllerKind::preview)
+    return {{"effort", &p.preview_effort},
+            {"horizon", &p.preview_horizon},
+            {"feedback", &p.preview_feedback}};
+  if (p.kind == ControllerKind::foot_guided) return {{"soonest", &p.least_guide_time}};
+  if (p.kind == ControllerKind::dcm_step)
+    return {{"q", &p.pole_ratio},         {"hurry", &p.time_scale_limit}, {"place", &p.steps.place},
+            {"time", &p.steps.time},      {"offset", &p.steps.offset},    {"zmp", &p.steps.zmp},
+            {"slowest", &p.steps.slowest}};
+  return {{"q", &p.pole_ratio},
+          {"step", &p.step_share},
+          {"hurry", &p.time_scale_limit},
+          {"long", &p.long_term},
+          {"as_printed", &p.as_printed}};
+}
+
+GainFields gain_fields(DtadParams& p) {
+  GainFields fields = body_gain_fields(p);
+  fields.merge(zmp_gain_fields(p));
+  return fields;
+}
+
+/// Throws Error(usage) for a gain of a baseline that is out of range.
+void check_baseline(const DtadParams& p) {
+  const auto need = [](bool holds, const char* name, double value, const char* what) {
+    if (!holds)
+      fail(ErrorCode::usage, std::string("controller gains: ") + name + " must be " + what +
+                                 "; it is " + text::brief(value));
+  };
+  const auto positive = [&](const char* name, double value) {
+    need(value > 0, name, value, "positive");
+  };
+  if (p.kind == ControllerKind::preview) {
+    need(p.preview_effort >= 1e-9 && p.preview_effort <= 1, "effort", p.preview_effort,
+         "from 1e-9 to 1 (the cost of changing the jerk of the COG)");
+    need(p.preview_horizon > 0 && p.preview_horizon <= 50, "horizon", p.preview_horizon,
+         "above 0 and at most 50 (how far the planned ZMP is seen ahead, times omega)");
+  }
+  if (p.kind == ControllerKind::foot_guided) positive("soonest", p.least_guide_time);
+  if (p.kind == ControllerKind::dcm_step) {
+    positive("place", p.steps.place);
+    positive("time", p.steps.time);
+    positive("offset", p.steps.offset);
+    positive("zmp", p.steps.zmp);
+    need(p.steps.slowest >= 0.1 && p.steps.slowest <= 1, "slowest", p.steps.slowest,
+         "from 0.1 to 1 (the least factor on the speed of the pattern)");
+  }
 }
 
 }  // namespace
 
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   DtadParams p;
-  const std::map<std::string, double*> fields = gain_fields(p);
-  std::vector<std::string> names = {"k", "d"};
+  p.kind = spec.type.kind;
+  const GainFields fields = gain_fields(p);
+  const bool poles = p.kind == ControllerKind::dtad || p.kind == ControllerKind::viip;
+  std::vector<std::string> names;
+  if (poles) names = {"k", "d"};
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const std::string& where,
                  ErrorCode code = ErrorCode::usage) {
     if (!std::isfinite(value) || value < 0)
       fail(code, where + ": gain " + name + " is " + text::brief(value) +
                      "; a gain must be a finite number that is not negative");
-    if (name == "k")
+    if (poles && name == "k")
       p.k = value;
-    else if (name == "d")
+    else if (poles && name == "d")
       p.d = value;
     else if (const auto found = fields.find(name); found != fields.end())
       *found->second = value;
     else
-      fail(code, where + ": dtad has no gain '" + name + "'" + text::suggestion(name, names) +
-                     " (known: " + text::join(names, ", ") + ")");
+      fail(code, where + ": " + name_of(p.kind) + " has no gain '" + name + "'" +
+                     text::suggestion(name, names) + " (known: " + text::join(names, ", ") + ")");
   };
+  // Those of the body are the robot's own under every law.
+  DtadParams dtad;
+  GainFields of_dtad = gain_fields(dtad);
+  for (const char* name : {"k", "d"}) of_dtad[name] = nullptr;
   for (const auto& [name, value] : model.description().control.dtad)
-    set(name, value, model.name() + " sidecar", ErrorCode::bad_model);
+    if (p.kind == ControllerKind::dtad || !of_dtad.contains(name) || fields.contains(name))
+      set(name, value, model.name() + " sidecar", ErrorCode::bad_model);
   bool q_given = false;
   for (const auto& [name, value] : spec.gains) {
     set(name, value, "controller gains");
@@ -93,6 +151,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
     fail(ErrorCode::usage,
          "controller gains: k = " + text::brief(*p.k) + ", d = " + text::brief(*p.d) +
              " never bring the COG back; equations (18)(19) need K > 1 and D > 0");
+  check_baseline(p);
   if (!p.k && p.pole_ratio <= 0)
     fail(ErrorCode::usage, "controller gains: q must be positive (K = 1 + q must exceed 1)");
   if (p.zmp_filter <= 0) fail(ErrorCode::usage, "controller gains: tau_z must be positive");
@@ -113,8 +172,8 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
 }
 
 std::vector<std::pair<std::string, double>> gains_of(DtadParams p) {
-  std::vector<std::pair<std::string, double>> gains = {{"k", long_term_k(p)},
-                                                       {"d", long_term_d(p)}};
+  std::vector<std::pair<std::string, double>> gains;
+  if (p.kind == ControllerKind::dtad) gains = {{"k", long_term_k(p)}, {"d", long_term_d(p)}};
   for (const auto& [name, value] : gain_fields(p)) gains.emplace_back(name, *value);
   return gains;
 }
@@ -135,6 +194,11 @@ Dtad::Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadPara
       body_(model, limits, command_.dt(), plan().state, target),
       momentum_(model, limits),
       filter_(plan().zmp.head<2>(), plan().fz) {
+  if (params.kind == ControllerKind::preview)
+    preview_.emplace(command_, params.preview_effort, params.preview_horizon,
+                     params.preview_feedback);
+  if (params.kind == ControllerKind::foot_guided)
+    guide_.emplace(command_.series(), params.least_guide_time);
   if (plan().support == Support::right) anchor_ = Side::right;
 }
 
@@ -144,6 +208,16 @@ void Dtad::take_over(const Handover& handover) {
   first_ = false;
 }
 
+HorizontalGains Dtad::horizontal_gains(double w) const {
+  if (preview_) {
+    const Vector2d gains = preview_->measured_gains();
+    return {gains[0], gains[1] / w};
+  }
+  if (!guide_) return {long_term_k(params_), long_term_d(params_) / w};
+  const double gain = guide_->gain(command_.sample(), w);
+  return {gain, gain / w};
+}
+
 // (14)-(21), in the order of the derivation above.
 CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   const DtadParams& p = params_;
@@ -151,7 +225,7 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   const double m = model_->mass();
   const double z = command.cog.z() - command.zmp.z();
   const double w = std::sqrt(kGravity / z);
-  const double K = long_term_k(p), D = long_term_d(p) / w;
+  const auto [K, D] = horizontal_gains(w);
 
   const CogError error = cog_error(command, estimate);
   CogReference ref;
@@ -160,9 +234,11 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   // A planned ZMP outside the support, as imported motions have it, is no error to be answered.
   const Vector2d planned =
       polygon.empty() ? Vector2d(command.zmp.head<2>()) : polygon.project(command.zmp.head<2>());
-  const Vector2d wanted = long_term_zmp(planned, K, D, error);
+  const Vector2d wanted =
+      preview_ ? preview_->wanted_zmp(command, estimate, w) : long_term_zmp(planned, K, D, error);
   ref.zmp = command.zmp;
   ref.zmp.head<2>() = polygon.empty() ? wanted : polygon.project(wanted);
+  if (preview_) previewed_ = preview_->go_on(command_.sample(), w);
   outside_ = wanted - ref.zmp.head<2>();
   ref.fz = admissible_force(
       long_term_force(command.fz, m, p.height_stiffness * w * w, p.height_damping * w, error), m);
@@ -193,9 +269,15 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   }
   const bool carries = estimate.contact && command.support != Support::none;
   const Vector2d gap = carries ? zmp_gap(ref.zmp.head<2>(), w, z) : Vector2d(Vector2d::Zero());
-  const Vector3d pull = p.pull_rate * p.pull_rate * w * w * (command.cog - body_.cog()) +
-                        2 * p.pull_damping * w * (command.dcog - body_.dcog());
+  Vector3d cog = command.cog, dcog = command.dcog;
   terms.motion = command.ddcog;
+  if (preview_) {
+    cog.head<2>() = previewed_.cog;
+    dcog.head<2>() = previewed_.dcog;
+    terms.motion.head<2>() = previewed_.ddcog;
+  }
+  const Vector3d pull = p.pull_rate * p.pull_rate * w * w * (cog - body_.cog()) +
+                        2 * p.pull_damping * w * (dcog - body_.dcog());
   terms.pull = pull;
   terms.short_term.head<2>() = short_term_acceleration(p.zmp_gain, w2, gap);
   if (carries)
@@ -248,6 +330,7 @@ void Dtad::fly(const Estimate& e, const CommandSample& next, ControlOutput& out)
   Vector3d tilt = log_rotation(turned);
   tilt.z() = 0;
   outside_.setZero();
+  if (preview_) preview_->restart();
   filter_ = ReactionFilter(e.contact ? e.zmp.head<2>() : command.zmp.head<2>(), e.fz);
   body_.fly(tilt, command, next, offsets_, out);
 }

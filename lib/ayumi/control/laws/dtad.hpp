@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "ayumi/control/feedback.hpp"
+#include "ayumi/control/foot_guided.hpp"
+#include "ayumi/control/preview_control.hpp"
 #include "ayumi/control/support_region.hpp"
 #include "ayumi/control/whole_body.hpp"
 #include "ayumi/motion/controller_spec.hpp"
@@ -40,7 +42,29 @@ struct DtadParams {
                              ///< footholds; 0: off
   double time_scale_limit = 2.5;  ///< [hurry] fastest clock of a pattern whose footholds move
   bool literal = false;           ///< (14) integrated as printed, D sign corrected: a demonstration
+  ControllerKind kind = ControllerKind::dtad;  ///< that chooses the ZMP: DTAD or a baseline
+  /// [effort] preview: cost of the jerk's change. Source: Q = 1, R = 1e-6 of Kajita and others
+  /// (2003), with their tick of 5 ms and COG height of 0.814 m made dimensionless.
+  double preview_effort = 5e-7;
+  double preview_horizon = 5.5;  ///< [horizon] preview: of the planned ZMP; theirs, 1.6 s
+  double preview_feedback = 1;   ///< [feedback] preview: share of its gains on the measured state
+  double least_guide_time = 1;   ///< [soonest] foot-guided: least time that the DCM is given
+  StepWeights steps;             ///< [place], [time], [offset], [zmp], [slowest] dcm-step
+
+  /// Whether the plan moves with the robot, in a pattern without VIIP goals.
+  bool moves_footholds() const {
+    return kind == ControllerKind::dcm_step || (step_share > 0 && !literal);
+  }
+  FootholdParams footholds() const {
+    if (kind == ControllerKind::dcm_step) return {1, time_scale_limit, steps};
+    return {step_share, time_scale_limit};
+  }
 };
+
+/// Whether the gains of the law are in DtadParams: those of DTAD and of the baselines.
+inline bool has_dtad_gains(ControllerKind kind) {
+  return kind == ControllerKind::dtad || is_baseline(kind);
+}
 
 /// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
 /// unknown gain, K <= 1 or D <= 0, q together with k and d, or a value out of range.
@@ -53,6 +77,13 @@ std::vector<std::pair<std::string, double>> gains_of(DtadParams params);
 double long_term_k(const DtadParams& params);
 double long_term_d(const DtadParams& params);
 
+/// K and D of (18)(19), and those by which a baseline chooses the ZMP.
+struct HorizontalGains {
+  double K = 0;  ///< [1]
+  double D = 0;  ///< [s]
+};
+
+/// DTAD, and the baselines: another choice of the ZMP on the same body.
 class Dtad {
  public:
   /// Starts at rest in the posture of the command, which the servos hold with `target` [rad].
@@ -75,6 +106,7 @@ class Dtad {
   }
 
  private:
+  HorizontalGains horizontal_gains(double omega) const;
   CogReference cog_reference(const Estimate& estimate, LawTerms& terms);
   Eigen::Vector2d zmp_gap(const Eigen::Vector2d& ref_zmp, double omega, double z);
   void turn_upper_body(double omega);
@@ -87,6 +119,9 @@ class Dtad {
   std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   ReferenceBody body_;
   AngularMomentumTask momentum_;
+  std::optional<PreviewControl> preview_;  // of the baselines of these names
+  CogMotion previewed_;                    // by preview_, in this tick
+  std::optional<FootGuided> guide_;
   SupportRegion region_;
   Eigen::VectorXd offsets_;  // of the servo targets: ankles and torque [rad]
   Side anchor_ = Side::left;

@@ -1,0 +1,36 @@
+#pragma once
+// Small convex quadratic programs, solved in every tick of a controller.
+
+#include <Eigen/Core>
+
+namespace ayumi {
+
+/// Most unknowns and inequalities of a program.
+inline constexpr int kMostUnknowns = 8;       ///< Definition
+inline constexpr int kMostInequalities = 40;  ///< Definition
+
+/// Least 1/2 x'H x + f'x with A x <= b. H: symmetric and definite.
+struct QuadraticProgram {
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostUnknowns, 1>;
+  using Matrix =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostUnknowns, kMostUnknowns>;
+  using Rows =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostInequalities, kMostUnknowns>;
+  using Bounds = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostInequalities, 1>;
+  Matrix H;
+  Vector f;
+  Rows A;
+  Bounds b;
+};
+
+struct ProgramSolution {
+  QuadraticProgram::Vector x;
+  QuadraticProgram::Bounds multipliers;  ///< of the inequalities, >= 0
+  bool optimal = false;                  ///< false: x is feasible only
+};
+
+/// By an active set that begins at `start`, which has to keep A x <= b. Allocates nothing.
+ProgramSolution solve_program(const QuadraticProgram& program,
+                              const QuadraticProgram::Vector& start);
+
+}  // namespace ayumi
