@@ -16,7 +16,6 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
-#include "ayumi/motion/standing_velocity.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/task/task.hpp"
 #include "motion_search.hpp"
@@ -41,8 +40,7 @@ struct NewOptions {
   double scale = 1;         // of the amplitudes of an excitation
   // Left out: HOAP-1's, scaled to the robot.
   std::vector<double> cog, velocity;  // goals of VIIP
-  int viip_steps = -1;                // not given
-  double moving = 1;                  // duration of a velocity with the feet in place [s]
+  int viip_steps = 0;
   std::optional<double> stride, period, lift, side, depth, hold, length, height;
   std::optional<double> angle_deg;
   SeatParameters seat;
@@ -422,14 +420,11 @@ double height_for_steps(const RobotModel& model, Pattern pattern) {
 // Stands, does what the goal asks, stands.
 void new_viip(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
-  const bool steps = options.viip_steps >= 0, stays = options.viip_steps == 0;
+  const bool steps = options.viip_steps > 0;
   if (steps == !options.cog.empty())
     fail(ErrorCode::usage,
          "viip: give either --cog DX,DY,DZ or --steps N; --velocity and --turn may be added to "
          "--steps");
-  if (stays && (options.velocity.empty() || options.turn_deg != 0))
-    fail(ErrorCode::usage,
-         "viip: with --steps 0 the feet stay and the COG moves: give --velocity and no --turn");
   if (!steps && (!options.velocity.empty() || options.turn_deg != 0))
     fail(ErrorCode::usage, "viip: --velocity and --turn need --steps N");
   const auto moves = [](double v) { return v != 0; };
@@ -454,17 +449,11 @@ void new_viip(const Context& context, const NewOptions& options) {
   };
   phase(0, CogGoal{});
   std::vector<std::string> comments;
-  StepGoal goal;
-  goal.steps = stays ? kNoSteps : options.viip_steps;
-  for (size_t i = 0; i < options.velocity.size(); ++i)
-    goal.velocity[static_cast<Eigen::Index>(i)] = options.velocity[i];
-  if (stays) {
-    phase(options.moving, goal);
-    phase(kDisplaced, StepGoal{kNoSteps, {0, 0}, 0});
-    phase(kDisplaced, CogGoal{});
-    comments = {
-        "The robot stands on both feet; the COG moves at a velocity, stops, and goes back."};
-  } else if (steps) {
+  if (steps) {
+    StepGoal goal;
+    goal.steps = options.viip_steps;
+    for (size_t i = 0; i < options.velocity.size(); ++i)
+      goal.velocity[static_cast<Eigen::Index>(i)] = options.velocity[i];
     goal.turn = options.turn_deg * std::numbers::pi / 180;
     pattern.phases.push_back({kStandFirst + 10.0 * goal.steps, Support::both, {}, goal});
     pattern.cog_height = height_for_steps(model, pattern);
@@ -617,7 +606,6 @@ void add_sway(CLI::App& command, NewOptions& options) {
 void add_viip(CLI::App& command, NewOptions& options) {
   command.footer(
       "Examples:\n  ayumi new viip --cog 0.02,0,0 -o shift.json\n"
-      "  ayumi new viip --steps 0 --velocity 0.03 --duration 1 -o moving.json\n"
       "  ayumi new viip --steps 8 -o in_place.json\n"
       "  ayumi new viip --steps 14 --velocity 0.1 -o walk.json\n"
       "  ayumi new viip --steps 14 --velocity 0.05,0.01 --turn 15 -o turn.json");
@@ -631,8 +619,8 @@ void add_viip(CLI::App& command, NewOptions& options) {
   command
       .add_option("--steps", options.viip_steps,
                   "Number of steps; the last one brings the feet together. Without --velocity, the "
-                  "robot steps in place. With 0, the feet stay and the COG moves.")
-      ->check(whole_number_within(0, 10000).description(""))
+                  "robot steps in place.")
+      ->check(whole_number_within(1, 10000).description(""))
       ->type_name("N");
   command
       .add_option("--velocity", options.velocity, "Velocity of the COG [m/s]: forward, and left.")
@@ -641,11 +629,6 @@ void add_viip(CLI::App& command, NewOptions& options) {
       ->type_name("VX,VY");
   command.add_option("--turn", options.turn_deg, "Turning rate to the left [deg/s].")
       ->type_name("W");
-  command
-      .add_option("--duration", options.moving, "Time for which the COG moves with --steps 0 [s].")
-      ->check(number_within(0.001, 600))
-      ->capture_default_str()
-      ->type_name("S");
 }
 
 void add_squat(CLI::App& command, NewOptions& options) {

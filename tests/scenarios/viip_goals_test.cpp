@@ -5,7 +5,6 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/check/actuator_need.hpp"
-#include "ayumi/motion/standing_velocity.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "tests/support/hoap1.hpp"
@@ -50,32 +49,6 @@ TEST(ViipGoals, DisplacementsBeyondFeetOrLegsAreRefused) {
         Case{{std::numeric_limits<double>::quiet_NaN(), 0, 0}, "not a finite number"}})
     EXPECT_NE(refusal(CogGoal{c.displacement}).find(c.words), std::string::npos)
         << refusal(CogGoal{c.displacement});
-}
-
-// A velocity counts from where the goals before it lead, for the time of its phase.
-TEST(ViipGoals, VelocitiesThatLeadBeyondTheFeetAreRefused) {
-  const auto moving = [](double velocity) { return StepGoal{kNoSteps, {velocity, 0}, 0}; };
-  EXPECT_EQ(refusal(moving(0.04 / 4.5)), "");
-  EXPECT_NE(refusal(moving(0.06 / 4.5)).find("after 4.500 s the COG would be"), std::string::npos);
-  EXPECT_NE(refusal(moving(0.06 / 4.5)).find("mm/s is possible"), std::string::npos);
-  Pattern p = with(CogGoal{{0.03, 0, 0}}, 2);
-  const auto reachable = [&] {
-    require_reachable_goals(hoap1(), sample(hoap1(), p), p.controller);
-  };
-  p.phases.push_back({3, Support::both, {}, moving(0.01)});
-  EXPECT_NO_THROW(reachable());
-  p.phases.push_back({4, Support::both, {}, moving(0.02)});
-  EXPECT_THROW(reachable(), Error);
-  p.phases.back().viip = moving(-0.07);
-  EXPECT_NO_THROW(reachable());
-  // Short, but too fast to stop before the toes.
-  const Pattern fast = with(moving(0.4), 0.55);
-  try {
-    require_reachable_goals(hoap1(), sample(hoap1(), fast), fast.controller);
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("could not stop"), std::string::npos) << error.what();
-  }
 }
 
 TEST(ViipGoals, StepsBeyondTheLegsAreRefused) {

@@ -6,7 +6,6 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
-#include "ayumi/motion/standing_velocity.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "ayumi/study/push.hpp"
@@ -83,29 +82,6 @@ TEST(ViipHoap1, CogGoesToADisplacementOnBothFeet) {
     for (const SimulationSample& s : log.samples)
       EXPECT_GE(s.reference_cog.z() - from.z(), way.z() - 0.0003);
   }
-}
-
-StepGoal moving(double forward, double left) { return {kNoSteps, {forward, left}, 0}; }
-
-// The COG moves at the goal's velocity, ref v_G, and stops where the phase ends: also when it is
-// pushed on the way, with noisy and late sensors.
-TEST(ViipHoap1, CogMovesAtAVelocityOnBothFeet) {
-  const double from = 0.5, time = 1.2;
-  for (const auto& [forward, left] : {std::pair{0.03, 0.0}, {-0.02, 0.025}, {0.01, -0.02}})
-    for (const bool hard : {false, true}) {
-      SCOPED_TRACE(testing::Message() << forward << " " << left << (hard ? ", pushed" : ""));
-      Conditions c{.profile = "hoap1", .noise = hard};
-      if (hard) c.pushes = {push(0.9, {0, 1, 0}, 0.3)};
-      const SimulationLog log = run_viip(
-          goals({{from, CogGoal{}}, {from + time, moving(forward, left)}, {3.2, moving(0, 0)}}, 0),
-          c);
-      EXPECT_EQ(log.result.outcome, Outcome::stands);
-      const Vector3d velocity(forward, left, 0), start = log.samples[499].cog;
-      EXPECT_LT((log.samples.back().cog - start - time * velocity).norm(), hard ? 4e-3 : 1e-3);
-      const Vector3d mean = (log.samples[1690].cog - log.samples[1390].cog) / 0.3;
-      EXPECT_LT((mean - velocity).norm(), hard ? 8e-3 : 2e-3) << mean.transpose();
-      for (const SimulationSample& s : log.samples) EXPECT_GT(s.fz, 30.0);
-    }
 }
 
 // A force F from above sinks the standing robot by F / K_Pz, (24), on stiff servos and on soft

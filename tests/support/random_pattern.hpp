@@ -4,7 +4,6 @@
 #include <random>
 
 #include "ayumi/motion/pattern.hpp"
-#include "ayumi/motion/standing_velocity.hpp"
 #include "tests/support/degree.hpp"
 
 namespace ayumi::test {
@@ -75,7 +74,6 @@ inline ViipGoal random_goal(PatternDice& random, bool degrees) {
       steps.steps = random.pick(3);
       if (random.coin()) steps.velocity = {random.uniform(-1, 1), 0};
       if (random.coin()) steps.turn = random.angle(degrees);
-      if (random.pick(4) == 0) return StepGoal{kNoSteps, {random.uniform(-1, 1), 0}, 0};
       return steps;
     }
     default: {

@@ -6,7 +6,6 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/torque_feedforward.hpp"
-#include "ayumi/motion/standing_velocity.hpp"
 
 namespace ayumi {
 
@@ -105,13 +104,11 @@ void Controller::start_viip(const ViipSpan& span, long k) {
 
 // Steps go on into following phases of steps.
 void Controller::set_goal(const ViipSpan& span, long k) {
-  const auto walks = [](const ViipGoal& goal) {
-    const auto* steps = std::get_if<StepGoal>(&goal);
-    return steps && !feet_stay(*steps);
-  };
   long end = span.end;
   for (const ViipSpan& next : series_->viip)
-    if (next.begin == end && walks(span.goal) && walks(next.goal)) end = next.end;
+    if (next.begin == end && std::holds_alternative<StepGoal>(span.goal) &&
+        std::holds_alternative<StepGoal>(next.goal))
+      end = next.end;
   Viip& viip = std::get<Viip>(law_);
   if (const auto* steps = std::get_if<StepGoal>(&span.goal)) {
     const double time = static_cast<double>(end - k) * series_->dt;

@@ -6,7 +6,6 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/motion/standing_velocity.hpp"
 #include "ayumi/plot/axes.hpp"
 
 namespace ayumi {
@@ -214,10 +213,7 @@ std::string motion_of(const CommandSeries& series) {
   const auto one = [](const CommandSample& s) {
     return s.support == Support::left || s.support == Support::right;
   };
-  const auto steps = [](const ViipSpan& s) {
-    const auto* goal = std::get_if<StepGoal>(&s.goal);
-    return goal && !feet_stay(*goal);
-  };
+  const auto steps = [](const ViipSpan& s) { return std::holds_alternative<StepGoal>(s.goal); };
   const bool walks = std::any_of(series.samples.begin(), series.samples.end(), one) ||
                      std::any_of(series.viip.begin(), series.viip.end(), steps);
   return walks ? "walking" : "during the pattern";

@@ -1,5 +1,5 @@
 // Per axis x (y alike), hats measured, r reference, dcm = x + dx/w, Pi the support region:
-//   standing  Z(dcm) = Pi[xd + (1 + q)(dcm - xd - vd/w)]              (18)(19), vd: goal velocity
+//   standing  Z(dcm) = Pi[xd + (1 + q)(dcm - xd)]                     (18)(19)
 //   stepping  Z(dcm) = Pi[(dcm_e - dcm E) / (1 - E)],  E = exp(w T) to the landing, dcm_e = p + b
 //   reffz = m (kz w)^2 (zd - zr) - 2 dz m kz w dzr + m g              (24), (25) with the mass
 //   ddzr  = (reffz - yield F)/m - g                                   (16), F: vertical push
@@ -25,7 +25,6 @@
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
-#include "ayumi/motion/standing_velocity.hpp"
 #include "ayumi/plan/foot_plan.hpp"
 
 namespace ayumi {
@@ -246,18 +245,14 @@ Footsteps Viip::new_path(const std::array<Isometry3d, 2>& feet) const {
 
 void Viip::set_goal(const ViipGoal& goal, long ticks) {
   ticks_left_ = ticks;
-  const auto* steps = std::get_if<StepGoal>(&goal);
-  if (steps)
-    steps_ = *steps;
-  else if (feet_stay(steps_))
-    steps_ = {};
-  if (steps && !feet_stay(*steps)) {
-    displacement_[0].setZero();
-    start_steps();
-  } else {
-    if (const auto* cog = std::get_if<CogGoal>(&goal)) displacement_[0] = cog->displacement;
+  if (const auto* cog = std::get_if<CogGoal>(&goal)) {
+    displacement_[0] = cog->displacement;
     steps_left_ = stage_ == Stage::single_support ? 1 : 0;  // a foot in the air comes down first
     if (stage_ == Stage::weight_shift) stage_ = Stage::stand;
+  } else if (const auto* steps = std::get_if<StepGoal>(&goal)) {
+    steps_ = *steps;
+    displacement_[0].setZero();
+    start_steps();
   }
   finish_plan();
   plan_ = next_;
@@ -312,17 +307,6 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
   const auto standing = [&](const Vector2d& goal) -> Vector2d {
     return regulating_zmp(goal, params_.pole_ratio, dcm);
   };
-  // About a goal that moves, if both feet stay and it has a velocity: that of the lagged
-  // displacement.
-  const auto at_rest_or_moving = [&] {
-    Vector2d ahead = Vector2d::Zero();
-    if (feet_stay(steps_)) {
-      const Vector3d rate = omega_ / params_.goal_lag * (displacement_[1] - displacement_[2]);
-      ahead = rotated(rate, ground_middle(*model_, next_.feet).yaw).head<2>() / omega_;
-    }
-    return regulating_zmp(standing_goal(displacement_[2]).head<2>(), params_.pole_ratio,
-                          dcm - ahead);
-  };
   const auto growth = [&](double time) {  // of zmp_to_arrive()
     const double E = elementary::exp(omega_ * time);
     return E / (E - 1);
@@ -350,7 +334,7 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
       const double share = std::min(1.0, elapsed_ / both);
       const Vector2d& before = zmp_before_[state];
       if (steps_left_ == 0) {
-        const Vector2d after = at_rest_or_moving();
+        const Vector2d after = standing(standing_goal(displacement_[2]).head<2>());
         return {(1 - share) * before + share * after, share * stands};
       }
       // From foot to foot the ZMP moves gradually; the answer to a push is added at once.
@@ -362,7 +346,7 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
               growth(both - elapsed_ + single)};
     }
   }
-  return {at_rest_or_moving(), stands};
+  return {standing(standing_goal(displacement_[2]).head<2>()), stands};
 }
 
 // (24), (16), (17), then (14)(15) closed on the measured ZMP.
@@ -518,8 +502,6 @@ void Viip::step_state_machine(const Estimate& e) {
   next_ = plan_;
   elapsed_ += time_scale_ * dt_;
   --ticks_left_;
-  if (feet_stay(steps_) && stage_ == Stage::stand && ticks_left_ >= 0)
-    displacement_[0].head<2>() += dt_ * steps_.velocity;
   const double lag = low_pass_share(dt_, omega_, params_.goal_lag);
   for (int i : {1, 2}) displacement_[i] += lag * (displacement_[i - 1] - displacement_[i]);
   const Vector3d dcm = params_.feedback ? divergent_component(e.cog, e.dcog, omega_)
@@ -580,8 +562,6 @@ void Viip::finish_plan() {
   next_.state.base_angular_velocity.z() = std::remainder(feet.yaw - yaw_before, 2 * M_PI) / dt_;
   next_.cog = standing_goal(displacement_[0]);
   next_.dcog.setZero();
-  if (feet_stay(steps_) && ticks_left_ > 0)
-    next_.dcog = rotated({steps_.velocity.x(), steps_.velocity.y(), 0}, feet.yaw);
   if (stage_ != Stage::stand) {
     next_.cog.head<2>() = body_.cog().head<2>();
     next_.dcog = body_.dcog();

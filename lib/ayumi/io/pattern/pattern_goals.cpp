@@ -3,7 +3,6 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
-#include "ayumi/motion/standing_velocity.hpp"
 
 namespace ayumi {
 
@@ -12,8 +11,8 @@ namespace {
 constexpr double kMostSteps = 10000;  // Chosen: longer than kLongestPattern at 0.36 s each
 constexpr double kFastest = 10;       // [m/s], [rad/s]. Chosen: any speed beyond is a mistake
 
-int read_count(const JsonNode& node, PatternScope& scope, double most, double least = 1) {
-  const double count = read_number(node, scope, least, most);
+int read_count(const JsonNode& node, PatternScope& scope, double most) {
+  const double count = read_number(node, scope, 1, most);
   if (count != std::round(count)) node.complain(text::exact(count) + " is not a whole number");
   return static_cast<int>(count);
 }
@@ -28,16 +27,7 @@ StepGoal read_steps(const JsonNode& node, PatternScope& scope) {
             std::string("\"") + key +
             "\" and \"step\": \"in_place\" exclude each other; remove one of these two keys");
   }
-  if (const auto steps = node.find("steps")) {
-    goal.steps = read_count(*steps, scope, kMostSteps, 0);
-    if (goal.steps == 0) {
-      goal.steps = kNoSteps;
-      if (!node.has("velocity") || node.has("turn"))
-        steps->complain(
-            "without steps, the robot stands and its COG moves: expected \"velocity\" and no "
-            "\"turn\"; or give 1 step or more");
-    }
-  }
+  if (const auto steps = node.find("steps")) goal.steps = read_count(*steps, scope, kMostSteps);
   if (const auto velocity = node.find("velocity")) {
     const std::vector<double> v = read_numbers(*velocity, scope, 2, 2, "[forward, left]");
     goal.velocity = {v[0], v[1]};

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/file.hpp"
@@ -6,7 +5,6 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
 #include "ayumi/io/pattern/scenario_text.hpp"
-#include "ayumi/motion/standing_velocity.hpp"
 
 namespace ayumi {
 
@@ -111,9 +109,9 @@ class Writer {
   }
   std::string goal(const StepGoal& goal) const {
     Members members;
-    const bool in_place = goal.velocity.isZero(0) && goal.turn == 0 && !feet_stay(goal);
+    const bool in_place = goal.velocity.isZero(0) && goal.turn == 0;
     if (in_place) members.add("step", quoted("in_place"));
-    if (goal.steps != 0) members.add("steps", std::to_string(std::max(0, goal.steps)));
+    if (goal.steps > 0) members.add("steps", std::to_string(goal.steps));
     if (!in_place)
       members.add(
           "velocity",
