@@ -39,7 +39,8 @@ struct NewOptions {
   double stand_height = 0;  // [m]; 0: of the home posture
   double scale = 1;         // of the amplitudes of an excitation
   // Left out: HOAP-1's, scaled to the robot.
-  std::vector<double> cog, velocity;  // goals of VIIP
+  std::vector<double> cog, velocity, cog_velocity;  // goals of VIIP
+  double moving = 1;                                // time of a COG velocity [s]
   int viip_steps = 0;
   std::optional<double> stride, period, lift, side, depth, hold, length, height;
   std::optional<double> angle_deg;
@@ -421,10 +422,10 @@ double height_for_steps(const RobotModel& model, Pattern pattern) {
 void new_viip(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
   const bool steps = options.viip_steps > 0;
-  if (steps == !options.cog.empty())
+  if (steps + !options.cog.empty() + !options.cog_velocity.empty() != 1)
     fail(ErrorCode::usage,
-         "viip: give either --cog DX,DY,DZ or --steps N; --velocity and --turn may be added to "
-         "--steps");
+         "viip: give one of --cog DX,DY,DZ, --cog-velocity VX,VY,VZ and --steps N; --velocity and "
+         "--turn may be added to --steps, and --duration to --cog-velocity");
   if (!steps && (!options.velocity.empty() || options.turn_deg != 0))
     fail(ErrorCode::usage, "viip: --velocity and --turn need --steps N");
   const auto moves = [](double v) { return v != 0; };
@@ -437,11 +438,12 @@ void new_viip(const Context& context, const NewOptions& options) {
   Pattern pattern;
   pattern.robot = options.robot;
   pattern.controller.type = ControllerKind::viip;
-  for (const std::vector<double>& values : {options.cog, options.velocity, {options.turn_deg}})
+  for (const std::vector<double>& values :
+       {options.cog, options.cog_velocity, options.velocity, {options.turn_deg}})
     for (const double value : values)
       if (!std::isfinite(value))
         fail(ErrorCode::usage,
-             "viip: a value of --cog, --velocity or --turn is not a finite number");
+             "viip: a value of --cog, --cog-velocity, --velocity or --turn is not a finite number");
   double t = kStandFirst;
   const auto phase = [&](double length, const ViipGoal& goal) {
     t += length;
@@ -464,6 +466,13 @@ void new_viip(const Context& context, const NewOptions& options) {
         std::to_string(goal.steps) +
             " steps, the last of which brings the feet together; VIIP chooses the footholds.",
         "The duration of the phase is the time of all steps, from standing to standing."};
+  } else if (!options.cog_velocity.empty()) {
+    const std::vector<double>& v = options.cog_velocity;
+    phase(options.moving, CogVelocityGoal{{v[0], v[1], v[2]}});
+    phase(kDisplaced, CogVelocityGoal{});
+    phase(kDisplaced, CogGoal{});
+    comments = {
+        "The robot stands on both feet; the COG moves at a velocity, stops, and goes back."};
   } else {
     const Eigen::Vector3d displacement(options.cog[0], options.cog[1], options.cog[2]);
     phase(kDisplaced, CogGoal{displacement});
@@ -606,6 +615,7 @@ void add_sway(CLI::App& command, NewOptions& options) {
 void add_viip(CLI::App& command, NewOptions& options) {
   command.footer(
       "Examples:\n  ayumi new viip --cog 0.02,0,0 -o shift.json\n"
+      "  ayumi new viip --cog-velocity 0.03,0,0 --duration 1 -o moving.json\n"
       "  ayumi new viip --steps 8 -o in_place.json\n"
       "  ayumi new viip --steps 14 --velocity 0.1 -o walk.json\n"
       "  ayumi new viip --steps 14 --velocity 0.05,0.01 --turn 15 -o turn.json");
@@ -616,6 +626,16 @@ void add_viip(CLI::App& command, NewOptions& options) {
       ->delimiter(',')
       ->expected(3)
       ->type_name("DX,DY,DZ");
+  command
+      .add_option("--cog-velocity", options.cog_velocity,
+                  "Velocity of the COG while both feet stay [m/s]: forward, left, up.")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("VX,VY,VZ");
+  command.add_option("--duration", options.moving, "Time for which --cog-velocity acts [s].")
+      ->check(number_within(0.001, 600))
+      ->capture_default_str()
+      ->type_name("S");
   command
       .add_option("--steps", options.viip_steps,
                   "Number of steps; the last one brings the feet together. Without --velocity, the "
@@ -797,7 +817,7 @@ void add_new(CLI::App& app, Context& context) {
   kick->callback([shared, &context] { new_kick(context, *shared); });
 
   CLI::App* viip = command->add_subcommand(
-      "viip", "goals in place of keys: COG displacement, steps, a walk at a velocity");
+      "viip", "goals in place of keys: COG displacement or velocity, steps, a walk at a velocity");
   add_viip(*viip, options);
   viip->callback([shared, &context] { new_viip(context, *shared); });
   add_new_jump(*command, context);

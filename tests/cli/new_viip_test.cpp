@@ -25,6 +25,9 @@ TEST_F(NewViip, RefusesWhatTheRobotCannotReach) {
   for (const Case& c : {Case{{"--cog", "0.2,0,0"}, 3, "outside the support of the feet"},
                         Case{{"--cog", "0,0,-0.1"}, 3, "is possible"},
                         Case{{"--cog", "nan,0,0"}, 2, "not a finite"},
+                        Case{{"--cog-velocity", "0.06,0,0"}, 3, "is possible"},
+                        Case{{"--cog-velocity", "0.06,0,0", "--duration", "0"}, 2, "--duration"},
+                        Case{{"--cog-velocity", "0.01,0,0", "--steps", "2"}, 2, "give one of"},
                         Case{{"--steps", "6", "--velocity", "0.5"}, 3, "the largest step is"},
                         Case{{"--steps", "6", "--turn", "300"}, 3, "deg/s"},
                         Case{{"--steps", "1", "--velocity", "0.1"}, 2, "--steps 2"},
@@ -42,6 +45,9 @@ TEST_F(NewViip, LongStepsHoldTheCogLowerAndNameTheirActuators) {
   const std::string text = contents(folder.path() / "v.json");
   EXPECT_NE(text.find("\"profile\": \"hoap1-strong\""), std::string::npos) << text;
   EXPECT_NE(text.find("\"cog_height\": 0.238"), std::string::npos) << text;
+  ASSERT_EQ(make({"--cog-velocity", "0,0.02,-0.01", "--duration", "1.5"}).exit_code, 0);
+  EXPECT_NE(contents(folder.path() / "v.json").find("\"cog_velocity\": [0, 0.02, -0.01]"),
+            std::string::npos);
   ASSERT_EQ(make({"--cog", "0.03,0,-0.01"}).exit_code, 0);
   EXPECT_NE(contents(folder.path() / "v.json").find("\"profile\": \"hoap1\""), std::string::npos);
 }

@@ -139,6 +139,8 @@ void expect_same(const ViipGoal& a, const ViipGoal& b) {
   ASSERT_EQ(a.index(), b.index());
   if (const auto* cog = std::get_if<CogGoal>(&a)) {
     EXPECT_EQ(cog->displacement, std::get<CogGoal>(b).displacement);
+  } else if (const auto* moving = std::get_if<CogVelocityGoal>(&a)) {
+    EXPECT_EQ(moving->velocity, std::get<CogVelocityGoal>(b).velocity);
   } else if (const auto* steps = std::get_if<StepGoal>(&a)) {
     EXPECT_EQ(steps->steps, std::get<StepGoal>(b).steps);
     EXPECT_EQ(steps->velocity, std::get<StepGoal>(b).velocity);

@@ -84,6 +84,31 @@ TEST(ViipHoap1, CogGoesToADisplacementOnBothFeet) {
   }
 }
 
+// The COG moves at the goal's velocity, ref v_G, and stops where the phase ends: also after a push
+// on the way, with noisy and late sensors.
+TEST(ViipHoap1, CogMovesAtACommandedVelocityOnBothFeet) {
+  const double from = 0.5, moving = 1.2, push_at = 0.9;
+  for (const Vector3d& velocity : {Vector3d(0.03, 0, 0), Vector3d(-0.02, 0.025, 0),
+                                   Vector3d(0, 0, -0.03), Vector3d(0.01, -0.02, -0.01)})
+    for (const bool hard : {false, true}) {
+      SCOPED_TRACE(testing::Message() << velocity.transpose() << (hard ? ", pushed" : ""));
+      Conditions c{.profile = "hoap1", .noise = hard};
+      if (hard) c.pushes = {push(push_at, {0, 1, 0}, 0.3)};
+      const SimulationLog log = run_viip(goals({{from, CogGoal{}},
+                                                {from + moving, CogVelocityGoal{velocity}},
+                                                {from + moving + 1.5, CogVelocityGoal{}}},
+                                               0),
+                                         c);
+      EXPECT_EQ(log.result.outcome, Outcome::stands);
+      const Vector3d start = log.samples[499].cog;
+      EXPECT_LT((log.samples.back().cog - start - moving * velocity).norm(), hard ? 4e-3 : 1e-3);
+      // Half of the way, when a push is over; its mean velocity in the lab.
+      const Vector3d mean = (log.samples[1690].cog - log.samples[1390].cog) / 0.3;
+      EXPECT_LT((mean - velocity).norm(), hard ? 8e-3 : 1e-3) << mean.transpose();
+      for (const SimulationSample& s : log.samples) EXPECT_GT(s.fz, 30.0);
+    }
+}
+
 // A force F from above sinks the standing robot by F / K_Pz, (24), on stiff servos and on soft
 // ones, with sensors up to 10 ms late.
 TEST(ViipHoap1, YieldsToAVerticalForceAsKpzSays) {

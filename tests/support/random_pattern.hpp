@@ -66,7 +66,9 @@ inline Push random_push(PatternDice& random) {
 }
 
 inline ViipGoal random_goal(PatternDice& random, bool degrees) {
-  switch (random.pick(3)) {
+  switch (random.pick(4)) {
+    case 3:
+      return CogVelocityGoal{{random.uniform(-1, 1), 0, random.uniform(-1, 1)}};
     case 0:
       return CogGoal{{random.uniform(-1, 1), random.uniform(-1, 1), 0}};
     case 1: {

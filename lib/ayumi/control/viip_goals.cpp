@@ -1,10 +1,13 @@
 // A displacement is reachable when the robot can stand there: the COG is inside the support of the
 // feet with the margin that VIIP keeps, and VIIP's own resolution gets there, joints inside their
-// limits. How much of it is possible is found by bisection. Steps are judged by the walk with keys.
+// limits. How much of it is possible is found by bisection. A velocity is reachable when the COG
+// can stand where it leads to, and can stop there: the DCM is inside the support too. Steps are
+// judged by the walk with keys.
 #include "ayumi/control/viip_goals.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
@@ -153,25 +156,86 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
          (attempt.joint.empty() ? "" : ", because " + attempt.joint + " is at its limit there");
 }
 
+// The largest share of a goal, from 0 to 1, that meets no obstacle.
+double possible_share(const std::function<std::string(double)>& obstacle_of) {
+  double possible = 0, not_possible = 1;
+  if (obstacle_of(0).empty())
+    for (int i = 0; i < kHalvings; ++i) {
+      const double share = 0.5 * (possible + not_possible);
+      (obstacle_of(share).empty() ? possible : not_possible) = share;
+    }
+  return possible;
+}
+
 void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,
                        const std::string& place, const CogGoal& goal) {
   if (!goal.displacement.allFinite())
     fail(ErrorCode::bad_pattern, place + "a COG displacement is not a finite number");
   const std::string why = obstacle(model, held, params, goal.displacement);
   if (why.empty()) return;
-  double possible = 0, not_possible = 1;
-  if (obstacle(model, held, params, Vector3d::Zero()).empty())
-    for (int i = 0; i < kHalvings; ++i) {
-      const double share = 0.5 * (possible + not_possible);
-      (obstacle(model, held, params, share * goal.displacement).empty() ? possible : not_possible) =
-          share;
-    }
+  const double possible = possible_share(
+      [&](double share) { return obstacle(model, held, params, share * goal.displacement); });
   fail(ErrorCode::bad_pattern,
        place + "COG displacement " + in_millimetres(goal.displacement) + ": " + why + "; " +
            (possible > 0
                 ? "in this direction " + in_millimetres(possible * goal.displacement) +
                       " is possible: reduce the displacement, or hold the COG at another height"
                 : std::string("not even the posture without a displacement is possible")));
+}
+
+/// A velocity of the COG, from where, and for how long [m], [s].
+struct CogPath {
+  Vector3d from, velocity;
+  double time = 0;
+};
+
+// The displacement that the goals up to a span ask for at its begin: VIIP goes on from it as long
+// as it keeps the feet and the robot.
+CogPath cog_path(const CommandSeries& series, const ViipSpan& span) {
+  CogPath path = {Vector3d::Zero(), Vector3d::Zero(), 0};
+  long end = 0;
+  for (const ViipSpan& each : series.viip) {
+    path.from = each.begin == end ? Vector3d(path.from + path.time * path.velocity)
+                                  : Vector3d(Vector3d::Zero());
+    path.velocity.setZero();
+    path.time = static_cast<double>(each.end - each.begin) * series.dt;
+    end = each.end;
+    const auto* moving = std::get_if<CogVelocityGoal>(&each.goal);
+    if (moving) path.velocity = moving->velocity;
+    if (&each == &span) break;
+    if (!moving) path.from.setZero();
+    if (const auto* cog = std::get_if<CogGoal>(&each.goal)) path.from = cog->displacement;
+  }
+  return path;
+}
+
+void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,
+                       const std::string& place, const CogPath& path) {
+  if (!path.velocity.allFinite())
+    fail(ErrorCode::bad_pattern, place + "a COG velocity is not a finite number");
+  const double height = held.cog.z() - ground_of(held.feet);
+  const auto obstacle_at = [&](double share) {
+    const Vector3d velocity = share * path.velocity, end = path.from + path.time * velocity;
+    const std::string why = obstacle(model, held, params, end);
+    if (!why.empty()) return "after " + text::fixed(path.time, 3) + " s " + why;
+    const double rate = std::sqrt(kGravity / (height + end.z()));
+    Vector3d stops = velocity / rate;
+    stops.z() = 0;
+    const double yaw = matrix_to_rpy(held.feet[0].linear()).z();
+    const Vector3d dcm = held.cog + rpy_to_matrix({0, 0, yaw}) * (end + stops);
+    const double inside = support_polygon(model, held.feet, Support::both).margin(dcm.head<2>());
+    if (inside >= params.margin * height) return std::string();
+    return "the COG could not stop inside the support of the feet, because stopping takes " +
+           text::fixed(1e3 * stops.norm(), 1) + " mm at this speed";
+  };
+  const std::string why = obstacle_at(1);
+  if (why.empty()) return;
+  const double possible = possible_share(obstacle_at);
+  fail(ErrorCode::bad_pattern,
+       place + "COG velocity " + in_millimetres(path.velocity) + "/s: " + why + "; " +
+           (possible > 0 ? "in this direction " + in_millimetres(possible * path.velocity) +
+                               "/s is possible: reduce the velocity, or make the phase shorter"
+                         : std::string("not even a small velocity in this direction is possible")));
 }
 
 void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,
@@ -220,6 +284,10 @@ std::vector<KeyedGoal> keyed_goals(const RobotModel& model, const CommandSeries&
         keyed.place = "VIIP displacement" + at;
         require_reachable(model, held, params, "", *cog);
         continue;  // slow, from rest to rest: the posture at its end is all there is to judge
+      } else if (std::holds_alternative<CogVelocityGoal>(span.goal)) {
+        keyed.place = "VIIP velocity" + at;
+        require_reachable(model, held, params, "", cog_path(series, span));
+        continue;
       } else if (const auto* steps = std::get_if<StepGoal>(&span.goal)) {
         keyed.place = "VIIP steps" + at;
         require_reachable(model, held, params, "", *steps);
@@ -246,6 +314,8 @@ void require_reachable_goals(const RobotModel& model, const CommandSeries& serie
     if (const auto* cog = std::get_if<CogGoal>(&span.goal)) {
       if (!(cog->displacement.norm() == 0))
         require_reachable(model, held_in(series, span), params, place, *cog);
+    } else if (std::holds_alternative<CogVelocityGoal>(span.goal)) {
+      require_reachable(model, held_in(series, span), params, place, cog_path(series, span));
     } else if (const auto* steps = std::get_if<StepGoal>(&span.goal)) {
       require_reachable(model, held_in(series, span), params, place, *steps);
     }

@@ -37,7 +37,7 @@ struct LawTerms {
   double K_Pz = 0, K_Dz = 0;      ///< of (24) to (27) [N/m], [N s/m]
   double spring_goal = 0;         ///< ref z_G of (24) above the ground [m]
   double spring_height = 0;       ///< z_G there [m]
-  double spring_rate = 0;         ///< its rate [m/s]
+  double spring_rate = 0;         ///< rate of z_G less that of ref z_G [m/s]
   /// Summands of the reference's acceleration. Of the motion itself: commanded under DTAD, (14) to
   /// (17) of the reference pendulum under VIIP; of the short-term absorption; the pull to the
   /// command (DTAD) or to the measured state (VIIP); the damping of the rocking.

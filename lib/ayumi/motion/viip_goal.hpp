@@ -13,6 +13,13 @@ struct CogGoal {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
 };
 
+/// Both feet stay, and the COG moves at this velocity [m/s], ref v_G of the paper, in the axes of
+/// the feet (x forward, z up). It starts from the place that the goals before it ask for, and it
+/// stops where the phase ends.
+struct CogVelocityGoal {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+};
+
 /// Steps with a commanded COG velocity, in place when it is zero; the controller places the
 /// footholds. The robot stands before and after them.
 struct StepGoal {
@@ -32,6 +39,6 @@ struct JumpGoal {
   Release release = Release::ref_z;
 };
 
-using ViipGoal = std::variant<CogGoal, StepGoal, JumpGoal>;
+using ViipGoal = std::variant<CogGoal, CogVelocityGoal, StepGoal, JumpGoal>;
 
 }  // namespace ayumi

@@ -195,6 +195,7 @@ class Mirror {
 
   static void mirror(ViipGoal& goal) {
     if (auto* cog = std::get_if<CogGoal>(&goal)) cog->displacement.y() *= -1;
+    if (auto* moving = std::get_if<CogVelocityGoal>(&goal)) moving->velocity.y() *= -1;
     if (auto* step = std::get_if<StepGoal>(&goal)) {
       step->velocity.y() *= -1;
       step->turn *= -1;

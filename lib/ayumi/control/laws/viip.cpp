@@ -1,7 +1,7 @@
 // Per axis x (y alike), hats measured, r reference, dcm = x + dx/w, Pi the support region:
-//   standing  Z(dcm) = Pi[xd + (1 + q)(dcm - xd)]                     (18)(19)
+//   standing  Z(dcm) = Pi[xd + (1 + q)(dcm - xd - vd/w)]              (18)(19)
 //   stepping  Z(dcm) = Pi[(dcm_e - dcm E) / (1 - E)],  E = exp(w T) to the landing, dcm_e = p + b
-//   reffz = m (kz w)^2 (zd - zr) - 2 dz m kz w dzr + m g              (24), (25) with the mass
+//   reffz = m (kz w)^2 (zd - zr) + 2 dz m kz w (vd - dzr) + m g       (24), (25) with the mass
 //   ddzr  = (reffz - yield F)/m - g                                   (16), F: vertical push
 //   w2    = reffz / (m zr)                                            (17)
 //   ddxr  = w2 (xr - Z(dcm_r)) + ka w2 (zhat - Z(dcm^)) + av w (dx^ - dxr) + ax w^2 (x^ - xr)
@@ -245,14 +245,17 @@ Footsteps Viip::new_path(const std::array<Isometry3d, 2>& feet) const {
 
 void Viip::set_goal(const ViipGoal& goal, long ticks) {
   ticks_left_ = ticks;
-  if (const auto* cog = std::get_if<CogGoal>(&goal)) {
-    displacement_[0] = cog->displacement;
-    steps_left_ = stage_ == Stage::single_support ? 1 : 0;  // a foot in the air comes down first
-    if (stage_ == Stage::weight_shift) stage_ = Stage::stand;
-  } else if (const auto* steps = std::get_if<StepGoal>(&goal)) {
+  goal_velocity_[0].setZero();
+  if (const auto* steps = std::get_if<StepGoal>(&goal)) {
     steps_ = *steps;
     displacement_[0].setZero();
     start_steps();
+  } else {
+    if (const auto* cog = std::get_if<CogGoal>(&goal)) displacement_[0] = cog->displacement;
+    if (const auto* moving = std::get_if<CogVelocityGoal>(&goal))
+      goal_velocity_[0] = moving->velocity;
+    steps_left_ = stage_ == Stage::single_support ? 1 : 0;  // a foot in the air comes down first
+    if (stage_ == Stage::weight_shift) stage_ = Stage::stand;
   }
   finish_plan();
   plan_ = next_;
@@ -275,6 +278,10 @@ Vector3d Viip::standing_goal(const Vector3d& displacement) const {
   const GroundPose feet = ground_middle(*model_, next_.feet);
   const Vector3d on_ground(feet.position.x(), feet.position.y(), ground_of(next_.feet));
   return on_ground + rotated(offset_ + displacement, feet.yaw);
+}
+
+Vector3d Viip::standing_velocity(const Vector3d& velocity) const {
+  return rotated(velocity, ground_middle(*model_, next_.feet).yaw);
 }
 
 // The nearest admissible ZMP, section 3.3 of the paper.
@@ -307,6 +314,11 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
   const auto standing = [&](const Vector2d& goal) -> Vector2d {
     return regulating_zmp(goal, params_.pole_ratio, dcm);
   };
+  const auto moving = [&] {
+    const Vector2d ahead = standing_velocity(goal_velocity_[2]).head<2>() / omega_;
+    return regulating_zmp(standing_goal(displacement_[2]).head<2>(), params_.pole_ratio,
+                          dcm - ahead);
+  };
   const auto growth = [&](double time) {  // of zmp_to_arrive()
     const double E = elementary::exp(omega_ * time);
     return E / (E - 1);
@@ -334,7 +346,7 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
       const double share = std::min(1.0, elapsed_ / both);
       const Vector2d& before = zmp_before_[state];
       if (steps_left_ == 0) {
-        const Vector2d after = standing(standing_goal(displacement_[2]).head<2>());
+        const Vector2d after = moving();
         return {(1 - share) * before + share * after, share * stands};
       }
       // From foot to foot the ZMP moves gradually; the answer to a push is added at once.
@@ -346,14 +358,14 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
               growth(both - elapsed_ + single)};
     }
   }
-  return {standing(standing_goal(displacement_[2]).head<2>()), stands};
+  return {moving(), stands};
 }
 
 // (24), (16), (17), then (14)(15) closed on the measured ZMP.
 CogReference Viip::cog_reference(const Estimate& e, LawTerms& terms) {
   const double m = model_->mass(), ground = ground_of(plan_.feet);
   const Vector3d goal = standing_goal(displacement_[2]);
-  const double z = body_.cog().z() - ground;
+  const double z = body_.cog().z() - ground, dz = body_.dcog().z() - goal_velocity_[2].z();
   CogReference ref;
   // Without feedback the contact is the planned one.
   const bool both = params_.feedback
@@ -363,7 +375,7 @@ CogReference Viip::cog_reference(const Estimate& e, LawTerms& terms) {
   const bool yields = params_.feedback && stage_ == Stage::stand && e.contact;
   sag_ =
       yields ? sag_ + low_pass_share(dt_, omega_, 1) * (e.cog.z() - body_.cog().z() - sag_) : 0.0;
-  ref.fz = admissible_force(viip_force(gains, m, goal.z() - ground, z + sag_, body_.dcog().z()), m);
+  ref.fz = admissible_force(viip_force(gains, m, goal.z() - ground, z + sag_, dz), m);
   push_ = yields
               ? push_ + std::min(1.0, dt_ / push_filter_) * (e.fz - m * (kGravity + lift_) - push_)
               : 0.0;
@@ -375,7 +387,7 @@ CogReference Viip::cog_reference(const Estimate& e, LawTerms& terms) {
   terms.K_Dz = gains.damping;
   terms.spring_goal = goal.z() - ground;
   terms.spring_height = z + sag_;
-  terms.spring_rate = body_.dcog().z();
+  terms.spring_rate = dz;
   terms.motion.z() = vertical_acceleration(ref.fz, m);
   terms.short_term.z() = lift_ - terms.motion.z();
 
@@ -502,8 +514,13 @@ void Viip::step_state_machine(const Estimate& e) {
   next_ = plan_;
   elapsed_ += time_scale_ * dt_;
   --ticks_left_;
+  if (stage_ == Stage::stand) displacement_[0] += dt_ * goal_velocity_[0];
+  if (ticks_left_ <= 0) goal_velocity_[0].setZero();
   const double lag = low_pass_share(dt_, omega_, params_.goal_lag);
-  for (int i : {1, 2}) displacement_[i] += lag * (displacement_[i - 1] - displacement_[i]);
+  for (int i : {1, 2}) {
+    displacement_[i] += lag * (displacement_[i - 1] - displacement_[i]);
+    goal_velocity_[i] += lag * (goal_velocity_[i - 1] - goal_velocity_[i]);
+  }
   const Vector3d dcm = params_.feedback ? divergent_component(e.cog, e.dcog, omega_)
                                         : divergent_component(body_.cog(), body_.dcog(), omega_);
   const double single = params_.single_support / omega_, both = params_.double_support / omega_;
@@ -561,7 +578,7 @@ void Viip::finish_plan() {
   next_.state.base_angular_velocity.setZero();
   next_.state.base_angular_velocity.z() = std::remainder(feet.yaw - yaw_before, 2 * M_PI) / dt_;
   next_.cog = standing_goal(displacement_[0]);
-  next_.dcog.setZero();
+  next_.dcog = standing_velocity(goal_velocity_[0]);
   if (stage_ != Stage::stand) {
     next_.cog.head<2>() = body_.cog().head<2>();
     next_.dcog = body_.dcog();

@@ -84,7 +84,8 @@ class Viip {
   Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipParams& params, double dt,
        const Handover& start, const CommandSample& held);
 
-  /// CogGoal or StepGoal from the coming tick on, for `ticks` (steps without a count end in time).
+  /// CogGoal, CogVelocityGoal or StepGoal from the coming tick on, for `ticks`: steps without a
+  /// count end in time, and a velocity ends with them.
   void set_goal(const ViipGoal& goal, long ticks);
 
   double omega() const { return omega_; }  ///< sqrt(g / z) of the held posture [1/s]
@@ -105,6 +106,7 @@ class Viip {
   enum class Stage { stand, weight_shift, single_support, double_support };
 
   Eigen::Vector3d standing_goal(const Eigen::Vector3d& displacement) const;
+  Eigen::Vector3d standing_velocity(const Eigen::Vector3d& velocity) const;
   LawStage law_stage() const;
   /// A ZMP before the nearest point of the support is taken [m], and its growth with the DCM [1].
   struct WantedZmp {
@@ -140,6 +142,9 @@ class Viip {
   // COG displacement: as asked, after one lag and after two, where it is followed [m].
   std::array<Eigen::Vector3d, 3> displacement_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                                                   Eigen::Vector3d::Zero()};
+  // Goal velocity, ref v_G, with the same lags [m/s]; the displacement follows it.
+  std::array<Eigen::Vector3d, 3> goal_velocity_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                                   Eigen::Vector3d::Zero()};
   StepGoal steps_;
   int steps_left_ = 0;
   long ticks_left_ = 0;

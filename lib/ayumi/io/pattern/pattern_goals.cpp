@@ -62,11 +62,16 @@ ViipGoal read_viip_goal(const JsonNode& node, PatternScope& scope) {
   only_pattern_keys(node, "viip");
   const bool walks =
       node.has("step") || node.has("steps") || node.has("velocity") || node.has("turn");
-  if (node.has("cog") + node.has("jump") + walks != 1)
+  if (node.has("cog") + node.has("cog_velocity") + node.has("jump") + walks != 1)
     node.complain(
-        "expected one goal: {\"cog\": [dx, dy, dz]}, {\"step\": \"in_place\"}, {\"steps\": N, "
-        "\"velocity\": [vx, vy], \"turn\": w} or {\"jump\": {...}}");
+        "expected one goal: {\"cog\": [dx, dy, dz]}, {\"cog_velocity\": [vx, vy, vz]}, {\"step\": "
+        "\"in_place\"}, {\"steps\": N, \"velocity\": [vx, vy], \"turn\": w} or {\"jump\": {...}}");
   if (node.has("cog")) return CogGoal{read_vector3(node.at("cog"), scope)};
+  if (const auto velocity = node.find("cog_velocity")) {
+    const CogVelocityGoal goal{read_vector3(*velocity, scope)};
+    if (goal.velocity.norm() > kFastest) velocity->complain("the velocity must be at most 10 m/s");
+    return goal;
+  }
   if (node.has("jump")) return read_jump(node.at("jump"), scope);
   return read_steps(node, scope);
 }

@@ -19,7 +19,7 @@ const std::map<std::string, std::vector<std::string>>& pattern_keys() {
       {"start", {"left", "right"}},
       {"phase", {"until", "duration", "support", "swing", "viip"}},
       {"repeated_phases", {"repeat", "count", "phases"}},
-      {"viip", {"cog", "step", "steps", "velocity", "turn", "jump"}},
+      {"viip", {"cog", "cog_velocity", "step", "steps", "velocity", "turn", "jump"}},
       {"jump", {"height", "stoop", "forward", "times", "release"}},
       {"swing", {"foot", "to", "step", "lift"}},
       {"step", {"forward", "side", "up", "turn"}},

@@ -107,6 +107,9 @@ class Writer {
   std::string goal(const CogGoal& goal) const {
     return Members().add("cog", vector_text(goal.displacement)).object();
   }
+  std::string goal(const CogVelocityGoal& goal) const {
+    return Members().add("cog_velocity", vector_text(goal.velocity)).object();
+  }
   std::string goal(const StepGoal& goal) const {
     Members members;
     const bool in_place = goal.velocity.isZero(0) && goal.turn == 0;
