@@ -150,9 +150,13 @@ void soften(StackedTask& task, int first, int count) {
   task.u.segment(first, count) *= kSoftness;
 }
 
-/// Whether the rates do the task; softened rows count as little as they weigh.
-bool task_done(const StackedTask& task, const VectorXd& dtheta) {
-  return (task.J.lazyProduct(dtheta) - task.u).cwiseAbs().maxCoeff() < kDone;
+/// What the rates leave of the task; softened rows count as little as they weigh.
+StackedTask::Vector left_of(const StackedTask& task, const VectorXd& dtheta) {
+  StackedTask::Vector done = StackedTask::Vector::Zero();
+  kernels::best_kernels().multiply_add(task.J.data(), StackedTask::kRows,
+                                       static_cast<int>(task.J.cols()), StackedTask::kRows,
+                                       dtheta.data(), done.data());
+  return done - task.u;
 }
 
 }  // namespace
@@ -166,7 +170,10 @@ void solve_stacked_task(const StackedTask& task, const VectorXd& w, const Vector
   weighted.resize(kRows, n);
   for (int j = 0; j < n; ++j) weighted.col(j) = task.J.col(j) * (1 / w[j]);
   Eigen::Matrix<double, kRows, kRows> A;
-  kernels.gram(weighted.data(), kRows, task.J.data(), kRows, n, kRows, kRows, A.data(), kRows);
+  // The product is symmetric, and of it only what stands on and below the diagonal is read.
+  for (int j = 0; j < kRows; j += 4)
+    kernels.gram(weighted.data() + j, kRows, task.J.data() + j, kRows, n, kRows - j, 4,
+                 A.data() + j * kRows + j, kRows);
   if (damping > 0) A.diagonal().array() += damping * A.trace() / kRows;
   StackedTask::Vector y = -task.u;  // -v of (23)
   kernels.multiply_add(task.J.data(), kRows, n, kRows, bias.data(), y.data());
@@ -260,10 +267,11 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     attempt.yielding = yielding;
     std::swap(result, attempt);
     if (!options.in_order) break;
-    if (result.scale == 1 && (result.held.empty() || task_done(work.softened, result.dtheta)))
+    if (result.scale == 1 && (result.held.empty() ||
+                              left_of(work.softened, result.dtheta).cwiseAbs().maxCoeff() < kDone))
       break;
   }
-  work.left = task.J.lazyProduct(result.dtheta) - u;
+  work.left = left_of(task, result.dtheta);
   result.residuals.cog = work.left.head<3>().norm();
   result.residuals.foot = work.left.segment<3>(3).norm();
   result.residuals.foot_turn = work.left.segment<3>(6).norm() / length;

@@ -126,6 +126,7 @@ bool eliminate(double* G, double* x, int m) {
       const double factor = G[k + m * j];
       if (factor == 0) continue;
       double* target = G + m * j;
+#pragma GCC ivdep  // two columns
       for (int i = k + 1; i < m; ++i) target[i] -= factor * column[i];
     }
     for (int i = k + 1; i < m; ++i) x[i] -= x[k] * column[i];
