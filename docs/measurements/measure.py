@@ -379,6 +379,72 @@ def pushes_viip():
     return lines
 
 
+# ---- Baselines ----
+
+
+BASELINES = ("preview", "foot-guided", "dcm-step")
+LAWS_TO_COMPARE = ("dtad", "dtad, `step=1`") + BASELINES
+
+
+def sway(robot):
+    made = WORK / f"sway_{robot}.json"
+    ayumi("new", "sway", "--robot", robot, "-o", made, "--force")
+    return made
+
+
+@functools.lru_cache(maxsize=None)
+def pushes_of_laws(pattern, *words):
+    """Thresholds by the laws of LAWS_TO_COMPARE."""
+    compared = [w for law in ("dtad",) + BASELINES for w in ("--controller", law)]
+    study = push_study(pattern, *FOUR, *words, *compared)
+    by_law = {law: [c for c in study if c["controller"] == law] for law in ("dtad",) + BASELINES}
+    by_law["dtad, `step=1`"] = push_study(pattern, *FOUR, *words, "--controller", "dtad",
+                                          "--gain", "step=1")
+    return by_law
+
+
+def six_patterns(*words):
+    """(name, cases by law) of six patterns."""
+    for robot, walk, name in (("hoap1", WALK, "HOAP-1"),
+                              ("humanoid30", LARGE_WALK, "`humanoid30`")):
+        laws = pushes_of_laws(walk, *words)
+        for what, standing in (("walk", False), ("standing", True)):
+            yield f"{name}, {what}", {law: cases(c, standing) for law, c in laws.items()}
+        laws = pushes_of_laws(sway(robot), *words)
+        yield f"{name}, sway", {law: cases(c, False) for law, c in laws.items()}
+
+
+@table("baselines/pushes")
+def baselines_pushes():
+    lines = head("pattern", "law", "J/B", "J/m [m/s]", "J/(m √(g z))", "lower than DTAD")
+    for name, by_law in six_patterns():
+        dtad = by_law["dtad"]
+        for law in LAWS_TO_COMPARE:
+            chosen = by_law[law]
+            lower = sum(c["impulse_Ns"] < d["impulse_Ns"] - 1e-9 for c, d in zip(chosen, dtad))
+            lines.append(row(name, law, in_bounds(chosen),
+                             pair([c["J_per_m_m_per_s"] for c in chosen]),
+                             pair([c["J_per_m_sqrt_gz"] for c in chosen], 3),
+                             "" if law == "dtad" else f"{lower} of {len(chosen)}"))
+    return lines
+
+
+@table("baselines/unpushed")
+def baselines_unpushed():
+    lines = head("pattern", "law", "verdict", "COG error at the end", "ZMP error, rms",
+                 "COG error at the end, `--noise`", "ZMP error, rms, `--noise`")
+    for name, pattern in (("HOAP-1, walk", WALK), ("`humanoid30`, walk", LARGE_WALK)):
+        for law, words in [("dtad", ()), ("dtad, `step=1`", ("--gain", "step=1"))] + [
+                (law, ("--controller", law)) for law in BASELINES]:
+            clean, noisy = (simulate(pattern, "--scenario", "none", *words, *more)
+                            for more in ((), ("--noise",)))
+            lines.append(row(name, law, verdict(clean), f"{mm(clean['final_cog_error_m'], 2)} mm",
+                             f"{mm(clean['zmp_tracking_rms_m'])} mm",
+                             f"{mm(noisy['final_cog_error_m'], 2)} mm",
+                             f"{mm(noisy['zmp_tracking_rms_m'])} mm"))
+    return lines
+
+
 # ---- Terms and gains of DTAD ----
 
 
