@@ -78,6 +78,11 @@ constexpr double kFlankTorque = 0.05;
 // shows which of them holds. Chosen: five standard deviations, squared.
 constexpr double kLawSeen = 25;
 
+// Share of what a law leaves over below which the answers of two laws are the same. Chosen: the
+// steps in which an answer is integrated change it by up to a tenth. Synthetic servos of which the
+// wrong law was chosen before had 0.005 to 0.12, others 0.25 or more.
+constexpr double kSameAnswer = 0.15;
+
 struct TypeFit {
   ServoFit fit;
   bool delay_takes_damping = false;  // the recording does not tell delay and damping apart
@@ -146,6 +151,13 @@ bool load_changes_sign(const std::vector<JointRecording>& joints) {
 // Whether the recording shows that `a` holds, and not `b`.
 bool fits_better(const ServoFit& a, const ServoFit& b) {
   return 2 * a.independent * elementary::log(b.rms / a.rms) > kLawSeen;
+}
+
+// The same of two laws of what a servo does between two commands: their answers have to differ by
+// more than what the better one leaves over beside noise.
+bool shows_law(const ServoFit& a, const ServoFit& b) {
+  return fits_better(a, b) &&
+         rms_between(a, b) > std::max(kBeyondErrors * a.model_error, kSameAnswer * a.rms);
 }
 
 // Whether the recording shows inertia and damping.
@@ -226,8 +238,8 @@ TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, doubl
   for (ServoConstants& each : start)
     each.delay = std::max(0.0, each.delay - behind(CommandLaw::held, joints[0]));
   ServoFit held = fit_servo(joints, start, holding(true, true), longest_delay);
-  if (fits_better(result.fit, held) || fits_better(held, result.fit)) result.hold = 0;
-  if (fits_better(held, result.fit)) result.fit = std::move(held), law = CommandLaw::held;
+  if (shows_law(result.fit, held) || shows_law(held, result.fit)) result.hold = 0;
+  if (shows_law(held, result.fit)) result.fit = std::move(held), law = CommandLaw::held;
 
   set_law(joints, CommandLaw::linear, false);
   ServoFit damped = damped_fit(joints, result.fit, guess, longest_delay);
@@ -236,9 +248,9 @@ TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, doubl
   for (const CommandLaw other : {CommandLaw::held, CommandLaw::stepped}) {
     set_law(joints, other, false);
     ServoFit fit = damped_fit(joints, result.fit, guess, longest_delay);
-    const bool better = fits_better(fit, damped);
-    if (better || (other == CommandLaw::held && fits_better(damped, fit))) hold = 0;
-    if (other == CommandLaw::stepped && (better || fits_better(damped, fit))) step = 0;
+    const bool better = shows_law(fit, damped);
+    if (better || (other == CommandLaw::held && shows_law(damped, fit))) hold = 0;
+    if (other == CommandLaw::stepped && (better || shows_law(damped, fit))) step = 0;
     if (better) damped = std::move(fit), damped_law = other;
   }
   if (shows_damping(damped, result.fit)) {
