@@ -86,7 +86,7 @@ TEST(PushCommand, DrawsItsMapAndPrintsJson) {
   const Json stored = Json::parse(contents(study.folder / "results.json"))["cases"][0];
   const double mass = stored["mass_kg"], height = stored["height_m"];
   EXPECT_NEAR(mass, 6, 1);
-  EXPECT_NEAR(height, 0.22, 0.02);
+  EXPECT_NEAR(height, 0.245, 0.005);
   for (const Json& t : json["thresholds"]) {
     const double impulse = t["impulse_Ns"], speed = impulse / mass;
     EXPECT_NEAR(t["J_per_m_m_per_s"].get<double>(), speed, 1e-12);
