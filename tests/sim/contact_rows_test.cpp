@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kStep = 1e-3;  // [s]
+constexpr double kRowStep = 1e-3;  // [s]
 
 /// A step of a random robot with contacts at random places of some of its bodies.
 struct ContactStep {
@@ -56,7 +56,7 @@ struct ContactStep {
 
   /// The change of velocity by the contact problem.
   VectorXd by_rows(ContactSolution& solution) {
-    rows.set(contacts, data, factor, before, kStep);
+    rows.set(contacts, data, factor, before, kRowStep);
     EXPECT_TRUE(factor.factor(mass));
     VectorXd x = in_places(right);
     factor.solve_upper(x);
@@ -67,7 +67,7 @@ struct ContactStep {
 
   /// The change of velocity with the contacts as springs.
   VectorXd by_springs() {
-    rows.set(contacts, data, factor, before, kStep);
+    rows.set(contacts, data, factor, before, kRowStep);
     EXPECT_TRUE(factor.factor(mass));  // gives the rows their size and their padding
     std::vector<double>& system = factor.rows();
     for (int k = 0; k < mass.rows(); ++k)
@@ -150,7 +150,7 @@ TEST(ContactRows, SpringsRefuseWhatTheyHaveNotExpected) {
   step.contacts[0].gap = -1e-3;
   step.contacts[0].friction = 1e3;
   for (ActiveContact& contact : step.contacts) contact.impulse.setZero();
-  step.rows.set(step.contacts, step.data, step.factor, step.before, kStep);
+  step.rows.set(step.contacts, step.data, step.factor, step.before, kRowStep);
   ASSERT_TRUE(step.rows.all_stick());
   const VectorXd free = step.by_springs();
   EXPECT_FALSE(step.rows.take_springs(step.data, step.factor, free, solution));  // it penetrates
