@@ -249,8 +249,9 @@ async function poses(tab) {
   const name = await tab.run("return window.ayumiAuthor.page.state.joints.find((j) => /^l_shoulder_pitch/.test(j.name)).name");
   await tab.type(`#joints input[type=number][aria-label^="${name} "]`, 40, "input");
   await until(() => tab.run("return window.ayumiAuthor.page.previewed !== null"));
-  const moved = await place();
-  expect(Math.hypot(...moved.map((x, i) => x - before[i])) > 0.005, "the arm follows its slider");
+  const follows = await until(async () =>
+    Math.hypot(...(await place()).map((x, i) => x - before[i])) > 0.005);  // once it is painted
+  expect(follows, "the arm follows its slider");
   expect(data().keyframes.length === frames, "nothing is written while it is tried");
   await tab.after(() => tab.click("#write-pose"));
   const written = data().keyframes.find((frame) => Math.abs(frame.t - 2.4) < 1e-6);
