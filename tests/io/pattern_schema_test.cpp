@@ -74,7 +74,8 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
   EXPECT_TRUE(schema.accepts(with_comments(kTwoSteps)));
   for (unsigned seed = 0; seed < 60; ++seed)
     EXPECT_TRUE(schema.accepts(with_comments(pattern_text(random_pattern(seed))))) << seed;
-  // Beyond a schema: order of times, meaning of names and expressions, other files, zero vectors.
+  // Beyond a schema: order of times, meaning of names and expressions, other files, lengths of
+  // vectors.
   const std::vector<std::string> beyond = {"give a later time",
                                            "carries the robot",
                                            "is already set",
@@ -83,6 +84,7 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
                                            "write a parameter as",
                                            "no such file",
                                            "the direction is zero",
+                                           "the velocity must be at most 10 m/s",
                                            "a point needs a link",
                                            "a payload needs a link",
                                            "needs a duration above",

@@ -51,20 +51,21 @@ TEST(ViipGoals, DisplacementsBeyondFeetOrLegsAreRefused) {
         << refusal(CogGoal{c.displacement});
 }
 
-// A velocity counts from where the goals before it lead, for the time of its phase.
+// A velocity counts from where the goals before it lead, for the time of its phase. Downwards, the
+// 66.4 mm of a displacement are 14.8 mm/s.
 TEST(ViipGoals, VelocitiesThatLeadBeyondFeetOrLegsAreRefused) {
   const double time = 4.5;
   const auto refused = [&](const Vector3d& way) { return refusal(CogVelocityGoal{way / time}); };
   EXPECT_EQ(refused({0.04, 0, 0}), "");
   EXPECT_NE(refused({0.06, 0, 0}).find("after 4.500 s the COG would be"), std::string::npos);
-  EXPECT_NE(refused({0, 0, -0.1}).find("0.0, 0.0, -14.7 mm/s is possible"), std::string::npos)
+  EXPECT_NE(refused({0, 0, -0.1}).find("0.0, 0.0, -14.8 mm/s is possible"), std::string::npos)
       << refused({0, 0, -0.1});
   Pattern p = with(CogGoal{{0.03, 0, 0}}, 2);
   p.phases.push_back({3, Support::both, {}, CogVelocityGoal{{0.01, 0, 0}}});
   require_reachable_goals(hoap1(), sample(hoap1(), p), p.controller);
   p.phases.push_back({4, Support::both, {}, CogVelocityGoal{{0.02, 0, 0}}});
   EXPECT_THROW(require_reachable_goals(hoap1(), sample(hoap1(), p), p.controller), Error);
-  p.phases.back().viip = CogVelocityGoal{{-0.08, 0, 0}};
+  p.phases.back().viip = CogVelocityGoal{{-0.07, 0, 0}};
   require_reachable_goals(hoap1(), sample(hoap1(), p), p.controller);
   // Short, but too fast to stop before the toes.
   Pattern fast = with(CogVelocityGoal{{0.4, 0, 0}}, 0.55);
