@@ -116,7 +116,17 @@ void prepare(const Folder& folder, const std::string& shell, const std::string& 
   write(folder / "w.json", contents(kWalk));
   write(folder / "other.csv", "t\n");
 }
-std::string program_folder() { return fs::path(program_under_test()).parent_path().string(); }
+/// What a shell prints in the folder; it finds the program and no settings of a user.
+Output in_shell(const Folder& folder, const std::vector<std::string>& words) {
+  const std::string programs = fs::path(program_under_test()).parent_path().string();
+  std::vector<std::string> all = {"HOME=" + folder.path().string(),
+                                  "PATH=" + programs + ":/usr/bin:/bin"};
+  all.insert(all.end(), words.begin(), words.end());
+  return run_program(all, folder.path(), "/usr/bin/env");
+}
+Output completed_by_fish(const Folder& folder, const std::string& line) {
+  return in_shell(folder, {"fish", "-c", "source ayumi.fish; complete -C '" + line + "'"});
+}
 bool installed(const std::string& shell) {
   return std::system((shell + " -c true > /dev/null 2>&1").c_str()) == 0;
 }
@@ -126,19 +136,13 @@ TEST(Names, CompleteInFish) {
   const Folder folder;
   prepare(folder, "fish", "ayumi.fish");
   for (const Completed& each : kCompleted) {
-    const Output output = run_program(
-        {"HOME=" + folder.path().string(), "PATH=" + program_folder() + ":/usr/bin:/bin", "fish",
-         "-c", "source ayumi.fish; complete -C '" + each.line + "'"},
-        folder.path(), "/usr/bin/env");
+    const Output output = completed_by_fish(folder, each.line);
     const std::string lines = "\n" + output.out;
     EXPECT_NE(lines.find("\n" + each.word), std::string::npos) << each.line << lines << output.err;
     EXPECT_EQ(lines.find("\n" + each.other), std::string::npos) << each.line << lines;
   }
   // A command that is chosen is not offered again.
-  const Output chosen =
-      run_program({"HOME=" + folder.path().string(), "PATH=" + program_folder() + ":/usr/bin:/bin",
-                   "fish", "-c", "source ayumi.fish; complete -C 'ayumi new walk '"},
-                  folder.path(), "/usr/bin/env");
+  const Output chosen = completed_by_fish(folder, "ayumi new walk ");
   EXPECT_EQ(chosen.out.find("squat"), std::string::npos) << chosen.out;
 }
 
@@ -157,10 +161,7 @@ TEST(Names, CompleteInZsh) {
     print -r -- "$out"
   )");
   for (const Completed& each : kCompleted) {
-    const Output output = run_program(
-        {"HOME=" + folder.path().string(), "PATH=" + program_folder() + ":/usr/bin:/bin", "zsh",
-         "-f", "terminal.zsh", each.line, each.word},
-        folder.path(), "/usr/bin/env");
+    const Output output = in_shell(folder, {"zsh", "-f", "terminal.zsh", each.line, each.word});
     EXPECT_NE(output.out.find(each.word), std::string::npos)
         << each.line << output.out << output.err;
   }

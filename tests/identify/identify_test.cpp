@@ -154,22 +154,21 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
   const auto said = [](const std::string& message, const std::string& words) {
     EXPECT_NE(message.find(words), std::string::npos) << message;
   };
+  const auto late_by = [](Eigen::Index rows) {
+    return [rows](RecordedMotion& m) {
+      const Eigen::MatrixXd old = m.measured.theta;
+      m.measured.theta.topRows(rows).setConstant(old(0, 0));
+      m.measured.theta.bottomRows(old.rows() - rows) = old.topRows(old.rows() - rows);
+    };
+  };
   EXPECT_EQ(answer_error([](RecordedMotion&) {}), "");
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(3000, 1); }),
        "m.csv: lasts 2.999 s, but its command lasts 6.000 s");
-  said(answer_error([](RecordedMotion& m) {
-         const Eigen::MatrixXd old = m.measured.theta;
-         m.measured.theta.topRows(800).setConstant(old(0, 0));
-         m.measured.theta.bottomRows(old.rows() - 800) = old.topRows(old.rows() - 800);
-       }),
+  said(answer_error(late_by(800)),
        "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
   // 50 ms are no lag of a servo either.
-  said(answer_error([](RecordedMotion& m) {
-         const Eigen::MatrixXd old = m.measured.theta;
-         m.measured.theta.topRows(50).setConstant(old(0, 0));
-         m.measured.theta.bottomRows(old.rows() - 50) = old.topRows(old.rows() - 50);
-       }),
+  said(answer_error(late_by(50)),
        "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(5901, 1); }),
