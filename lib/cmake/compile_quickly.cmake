@@ -1,7 +1,8 @@
 # What makes a build from nothing quick.
 #
 # AYUMI_PRECOMPILE: the headers that nearly every source includes (Eigen, the standard library, and
-#   those that a target names) are parsed once for each target. It costs a rebuild nothing.
+#   those that a target names) are parsed once. The libraries that name no further headers share
+#   what ayumi_core has parsed. It costs a rebuild nothing.
 # AYUMI_UNITY: several sources of a room are compiled as one. A build from nothing takes about a
 #   third of the time; after a change of one source its whole group is compiled, and after a new
 #   source its room. The preset for daily work switches it off.
@@ -27,9 +28,12 @@ function(ayumi_compile_together key)
   endforeach()
 endfunction()
 
-# ayumi_compile_quickly(target headers...): headers in angle brackets, beyond the standard library.
+# ayumi_compile_quickly(target headers...): headers in angle brackets, beyond the standard library; or
+# REUSE_FROM and a target that is compiled with the same options.
 function(ayumi_compile_quickly target)
-  if(AYUMI_PRECOMPILE)
+  if(AYUMI_PRECOMPILE AND "${ARGV1}" STREQUAL "REUSE_FROM")
+    target_precompile_headers(${target} REUSE_FROM ${ARGV2})
+  elseif(AYUMI_PRECOMPILE)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <functional> <map>
                               <memory> <optional> <string> <utility> <vector> ${ARGN})
   endif()

@@ -49,5 +49,20 @@ TEST(LinearSolve, LeastSquaresLeaveWhatIsPerpendicular) {
   }
 }
 
+// Of rank 4 in 7 columns: what is left is perpendicular to the columns, and the solution to the
+// kernel.
+TEST(LinearSolve, LeastNormStaysOutOfTheKernel) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    test::Random random(seed);
+    const MatrixXd rows = random_matrix(random, 4, 7);
+    const MatrixXd A = random_matrix(random, 12, 4) * rows;
+    const MatrixXd b = random_matrix(random, 12, 2);
+    const MatrixXd x = solve_least_norm(A, b);
+    EXPECT_LT((A.transpose() * (b - A * x)).norm(), 1e-11);
+    const MatrixXd in_rows = rows.transpose() * solve_general(rows * rows.transpose(), rows * x);
+    EXPECT_LT((x - in_rows).norm(), 1e-11);
+  }
+}
+
 }  // namespace
 }  // namespace ayumi

@@ -11,6 +11,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/eigenvalues.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -66,7 +67,7 @@ MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
 }  // namespace
 
 LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params) {
-  const Eigen::VectorXcd values = tick_matrix(loop, params).eigenvalues();
+  const Eigen::VectorXcd values = eigenvalues(tick_matrix(loop, params));
   LoopAnalysis analysis;
   for (const std::complex<double>& value : values)
     if (std::abs(value) > 1e-9) analysis.poles.push_back(std::log(value) / loop.tick);

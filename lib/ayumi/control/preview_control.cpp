@@ -13,6 +13,7 @@
 #include <complex>
 #include <utility>
 
+#include "ayumi/math/eigenvalues.hpp"
 #include "ayumi/math/riccati.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -41,7 +42,7 @@ PreviewGains preview_gains(double tick, double effort, double horizon) {
   g.state = K.tail<3>();
 
   // Two poles are about -1, twice, the others much faster.
-  Eigen::Vector4cd poles = Eigen::Matrix4d(g.A - g.B * K).eigenvalues();
+  Eigen::VectorXcd poles = eigenvalues(g.A - g.B * K);
   std::sort(poles.begin(), poles.end(),
             [](const auto& a, const auto& b) { return std::norm(a) > std::norm(b); });
   const double sum = (poles[0] + poles[1]).real(), product = (poles[0] * poles[1]).real();

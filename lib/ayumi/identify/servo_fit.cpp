@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/math/linear_solve.hpp"
 
 namespace ayumi {
 
@@ -147,7 +148,7 @@ MatrixXd covariance_of(const MatrixXd& jacobian, const std::vector<VectorXd>& re
   }
   const MatrixXd scores = all.asDiagonal() * jacobian;
   const MatrixXd normal = jacobian.transpose() * jacobian;
-  const MatrixXd inverse = normal.completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd inverse = solve_least_norm(normal, MatrixXd::Identity(p, p));
   const double noise = all.squaredNorm() / static_cast<double>(std::max<Index>(1, n - p));
   MatrixXd covariance = noise * inverse;
   const Index length = correlation_length(residuals);
@@ -334,7 +335,7 @@ std::vector<ServoConstants> first_guess(const std::vector<JointRecording>& joint
       }
     }
     const MatrixXd full = normal.selfadjointView<Eigen::Lower>();
-    const VectorXd x = full.completeOrthogonalDecomposition().solve(right);
+    const VectorXd x = solve_least_norm(full, right);
     const double left = square - x.dot(right);
     if (!(left < best)) continue;
     best = left;

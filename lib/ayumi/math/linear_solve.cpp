@@ -28,4 +28,8 @@ Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& A, const Eigen::Vecto
   return A.colPivHouseholderQr().solve(b);
 }
 
+Eigen::MatrixXd solve_least_norm(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b) {
+  return A.completeOrthogonalDecomposition().solve(b);
+}
+
 }  // namespace ayumi

@@ -20,4 +20,8 @@ Eigen::MatrixXd solve_general(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b
 /// are not independent, some entries of x are 0.
 Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
+/// Of all x with the least |A x - b| the one with the least |x|, by a complete orthogonal
+/// decomposition. A: m x n of any rank; b: m x k, the result n x k.
+Eigen::MatrixXd solve_least_norm(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b);
+
 }  // namespace ayumi

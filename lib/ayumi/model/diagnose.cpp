@@ -5,13 +5,13 @@
 
 #include "ayumi/model/diagnose.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/eigenvalues.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/model/body_poses.hpp"
@@ -147,8 +147,7 @@ class Doctor {
   }
 
   void examine_tensor(const Link& link) {
-    const Eigen::Vector3d principal =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia.about_com).eigenvalues();
+    const Eigen::Vector3d principal = symmetric_eigenvalues(link.inertia.about_com);
     if (principal.maxCoeff() <= 0)
       warn("link", link.name,
            "its inertia tensor is zero; give the tensor that follows from its shape and mass");

@@ -1,6 +1,5 @@
 #include "ayumi/model/validate.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +7,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/eigenvalues.hpp"
 
 namespace ayumi {
 
@@ -50,8 +50,7 @@ void validate_inertia(const RobotDescription& robot, const LinkDescription& link
   if (inertia.com.cwiseAbs().maxCoeff() > kLargestLength)
     complain_urdf(robot, where + "its centre of mass lies farther than " +
                              text::exact(kLargestLength) + " m away; URDF lengths are in metres");
-  const Eigen::Vector3d principal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia.about_com).eigenvalues();
+  const Eigen::Vector3d principal = symmetric_eigenvalues(inertia.about_com);
   if (principal.minCoeff() < -1e-9 * std::max(1e-6, principal.cwiseAbs().maxCoeff()))
     complain_urdf(robot, where + "its inertia tensor has the negative principal moment " +
                              text::brief(principal.minCoeff()) +

@@ -7,6 +7,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/demand/collision_scan.hpp"
+#include "ayumi/math/linear_solve.hpp"
 #include "ayumi/math/windows.hpp"
 #include "ayumi/motion/correction.hpp"
 #include "ayumi/repair/weighted_change.hpp"
@@ -143,8 +144,7 @@ CorrectionTrack kept_at(CorrectionTrack track, const std::vector<double>& times)
   }
   for (Eigen::Index row = 3; row < c.rows() - 3; ++row)
     if (!c.row(row).isZero(0)) free.col(row) = all.col(row);
-  const auto solver = free.completeOrthogonalDecomposition();
-  for (int pass = 0; pass < 2; ++pass) c -= solver.solve(all * c);
+  for (int pass = 0; pass < 2; ++pass) c -= solve_least_norm(free, all * c);
   return track;
 }
 
