@@ -25,6 +25,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import textwrap
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -603,7 +604,11 @@ def shown(figure, value):
 
 
 def words_of(figure):
-    return re.sub(r"_(m_s2|m_s|rad_s2|rad|m|s|N|Nm)$", "", figure).replace("_", " ")
+    words = re.sub(r"_(m_s2|m_s|rad_s2|rad|m|s|N|Nm)$", "", figure).replace("_", " ")
+    for short, long in (("max ", "largest "), ("min ", "smallest ")):
+        if words.startswith(short):
+            words = long + words[len(short):]
+    return words.replace("zmp", "ZMP")
 
 
 def differences(before, after):
@@ -628,15 +633,46 @@ def differences(before, after):
                 weight = min(weight, 50) * (0.1 if figure in ("iterations", "joints moved") else 1)
             else:
                 weight = {"outcome": 1000, "findings": 200, "causes": 100}.get(figure, 80)
-            if figure == "findings":
-                a, b = changed_words(a, b)
-            found.append((weight, name, f"{words_of(figure)} {shown(figure, a)} → {shown(figure, b)}"))
+            words = f"{words_of(figure)} {shown(figure, a)} → {shown(figure, b)}"
+            found.append((weight, name, changed_counts(figure, a, b) if figure in COUNTED else words))
     return sorted(found, key=lambda f: -f[0]), any_change
 
 
-def changed_words(a, b):
-    old, new = (set((text or "none").split(", ")) for text in (a, b))
-    return ", ".join(sorted(old - new)) or "none", ", ".join(sorted(new - old)) or "none"
+# Lists of numbers and kinds, such as "2 error joint_speed, 1 warning servo_step".
+COUNTED = {"findings": "{0} findings {1}", "causes": "causes {0}", "events": "{0} events"}
+MOST_KINDS = 2  # of such a list that are shown
+WIDEST_CELL = 200  # characters
+
+
+def counted(text):
+    """{"error joint_speed": 2} of such a list."""
+    entries = [e.split(" ", 1) for e in (text or "none").split(", ") if e != "none"]
+    return {kind: int(number) for number, kind in entries}
+
+
+def changed_counts(figure, a, b):
+    """The kinds of which there are more or fewer."""
+    before, after = counted(a), counted(b)
+    changes = [f"{COUNTED[figure].format(*kind.split())} {before.get(kind, 0)} → {after.get(kind, 0)}"
+               for kind in sorted({**before, **after}) if before.get(kind) != after.get(kind)]
+    more = len(changes) - MOST_KINDS
+    if more > 0:
+        changes = changes[:MOST_KINDS] + [f"{more} more kind{'s' if more > 1 else ''}"]
+    return ", ".join(changes)
+
+
+def cell_of(parts, more):
+    """Text of a cell: (case, words of its figures) of the cases that are named, and how many more
+    changed. Figures and then a case are left out until the cell is not too wide."""
+    for cases, figures in ((2, 2), (2, 1), (1, 1)):
+        texts = [f"{name}: {'; '.join(words[:figures])}" for name, words in parts[:cases]]
+        left = more + len(parts) - len(texts)
+        if left:
+            texts.append(f"{left} more case{'s' if left > 1 else ''}")
+        text = ". ".join(texts)
+        if len(text) <= WIDEST_CELL:
+            break
+    return text
 
 
 def summary_of(before, after):
@@ -648,9 +684,8 @@ def summary_of(before, after):
     by_case = {}
     for _, name, words in found:
         by_case.setdefault(name, []).append(words)
-    parts = [f"{name}: {'; '.join(words[:2])}" for name, words in list(by_case.items())[:2]]
-    more = len(by_case) - len(parts)
-    return ". ".join(parts) + (f". {more} more cases" if more > 1 else ". 1 more case" if more else "")
+    parts = list(by_case.items())
+    return cell_of(parts[:2], len(parts[2:]))
 
 
 # ---- The page ----
@@ -678,7 +713,8 @@ def write_page(results, found, commit):
     lines += ["", "### Left out", ""]
     for why in sorted({w for _, _, w in found if w}):
         names = [f"`{n.split('/')[-1]}`" for n, _, w in found if w == why]
-        lines.append(f"- {why}: {', '.join(names)}")
+        lines += textwrap.wrap(f"- {why}: {', '.join(names)}", 150, subsequent_indent="  ",
+                               break_long_words=False, break_on_hyphens=False)
     note = f"Commit {commit}, {datetime.date.today()}: `docs/measurements/constants.py`"
     text = PAGE.read_text()
     before, rest = text.split(START, 1)

@@ -2,7 +2,7 @@
 // Foot-guided control, one of the baselines of DTAD: the ZMP that guides the DCM to where the plan
 // has it when the next foot takes over, with the least deviation from the planned ZMP on the way.
 // After Sugihara and Yamamoto, "Foot-guided agile control of a biped robot through ZMP
-// manipulation" (2017). docs/theory.md, "Baselines".
+// manipulation" (2017). docs/theory_baselines.md, "Foot-guided control".
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
 // Gains from poles, and whether the whole linear loop they close is stable: the robot on its servos
-// and soles, filter and accepted offset, delays, control tick. docs/theory.md, "Gain design".
+// and soles, filter and accepted offset, delays, control tick. docs/theory_gains.md, "Gain design".
 
 #include <array>
 #include <complex>

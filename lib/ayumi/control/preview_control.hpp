@@ -2,7 +2,7 @@
 // ZMP preview control, one of the baselines of DTAD: the jerk of the COG is chosen by its state,
 // the ZMP so far and the planned ZMP to come, and the ZMP by the measured state with the same
 // gains. After Kajita and others, "Biped walking pattern generation by using preview control of
-// zero-moment point" (2003). docs/theory.md, "Baselines".
+// zero-moment point" (2003). docs/theory_baselines.md, "Preview control".
 
 #include <Eigen/Core>
 #include <memory>

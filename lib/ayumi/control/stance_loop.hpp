@@ -1,6 +1,6 @@
 #pragma once
 // A robot that stands, as a linear system: what the control loop works on. Feet flat, the ZMP away
-// from the edge, small deviations from the home posture. docs/theory.md, "Gain design".
+// from the edge, small deviations from the home posture. docs/theory_gains.md, "Gain design".
 
 #include <Eigen/Dense>
 #include <string>

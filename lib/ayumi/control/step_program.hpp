@@ -2,7 +2,7 @@
 // Where the next foot lands and how long until then, by a quadratic program in every tick: the
 // step of DCM tracking that chooses step place and durations, one of the baselines of DTAD. After
 // Khadiv and others, "Step timing adjustment: a step toward generating robust gaits" (2016), with
-// the ZMP inside the sole as a further unknown. docs/theory.md, "Baselines".
+// the ZMP inside the sole as a further unknown. docs/theory_baselines.md.
 
 #include <Eigen/Core>
 
