@@ -1,7 +1,7 @@
 #!/bin/bash
-# The paper's Fig. 3 and Fig. 4 with this program: snapshots of HOAP-1 pushed while it walks, and the
-# loci of its COG along x, y, z with and without control. AYUMI names the program; left out, the
-# one that examples/quickstart.sh builds.
+# Figs. 3 and 4 of the paper: snapshots of HOAP-1, which is pushed while it walks, and curves of its
+# COG along x, y and z, with and without control. The variable AYUMI names the program. Its default is
+# the program that examples/quickstart.sh builds.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

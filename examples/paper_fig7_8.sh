@@ -1,6 +1,6 @@
 #!/bin/bash
-# Figs. 7, 8 and 11 of the paper, on its robot of 30 degrees of freedom: VIIP shifts the weight on both
-# feet, steps in place under a push, and walks. Needs the program: build it first (quickstart.sh).
+# Figs. 7, 8 and 11 of the paper, with its robot of 30 degrees of freedom. VIIP shifts the weight on both
+# feet, steps in place under a push, and walks. The program must be built before (quickstart.sh).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 ayumi=${AYUMI:-build/release/app/ayumi}
@@ -14,7 +14,8 @@ for name in humanoid30_viip_shift humanoid30_viip_step humanoid30_viip_walk; do
   run=$out/$name
   "$ayumi" run "patterns/$name.json" -o "$run" --no-pictures --force
   "$ayumi" --force preview "$run" --log closed_loop --strip 8 -o "$run/fig7_snapshots.png"
-  # Against time: COG, ref ZMP and ZMP in the frame of the feet. From above: with the footholds.
+  # One plot over time: COG, reference ZMP and ZMP in the frame of the feet. One plot from above, with
+  # the footholds.
   "$ayumi" --force plot "$run" --log closed_loop -o "$run/fig8_loci.svg"
   "$ayumi" --force plot "$run" --log closed_loop --top -o "$run/top.png"
 done

@@ -1,6 +1,7 @@
 #!/bin/bash
-# The jump of HOAP-1, figures 9 and 10 of the paper: a strip of snapshots, the loci of COG and ZMP,
-# and a clip at a fifth of the speed. Needs a built program: AYUMI, or build/release/app/ayumi.
+# The jump of HOAP-1, Figs. 9 and 10 of the paper: a strip of snapshots, the curves of COG and ZMP, and
+# a clip at a fifth of the speed. The program must be built before. The variable AYUMI names it. Its
+# default is build/release/app/ayumi.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

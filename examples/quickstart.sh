@@ -1,5 +1,5 @@
 #!/bin/bash
-# From a bare Debian 12 to the main job's results: installs what is missing, builds, runs.
+# On a bare Debian 12: installs the missing packages, builds the program, and makes the results of a walk.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
