@@ -41,7 +41,7 @@ SOURCES = ["repair/policy.hpp", "limits", "check", "demand", "control", "sim", "
 
 # Constants that have to be known to the compiler, or whose half and double have no meaning.
 LEFT_OUT = {
-    "kWhole": "a law, namely the full value of a limit",
+    "kWhole": "the number 1, which stands for the whole of a limit",
     "kFindingKindCount": "a count",
     "kRows": "the size of a matrix",
     "kReserved": "reserves memory, changes no result",
