@@ -81,13 +81,14 @@ TEST(BrokenRobot, WhatIsNoFile) {
   EXPECT_EQ(message_of(folder, "missing.urdf"), "missing.urdf: no such file");
   std::filesystem::create_directory(folder.path() / "folder.urdf");
   EXPECT_EQ(message_of(folder, "folder.urdf"),
-            "folder.urdf: this is a folder, but a file is needed");
+            "folder.urdf: this folder holds neither a robot.json nor exactly one robot in another "
+            "format; name the file of the robot");
   EXPECT_EQ(message_of(folder, "empty_folder"),
             "robot 'empty_folder': no such file, folder or bundled robot");
   std::filesystem::create_directory(folder.path() / "bare");
   EXPECT_EQ(message_of(folder, "bare"),
-            "bare: holds neither a robot.json nor exactly one robot in another format; name the "
-            "robot's file");
+            "bare: this folder holds neither a robot.json nor exactly one robot in another format; "
+            "name the file of the robot");
   std::filesystem::create_symlink("loop.urdf", folder.path() / "loop.urdf");
   EXPECT_EQ(message_of(folder, "loop.urdf"),
             "loop.urdf: cannot be read (Too many levels of symbolic links)");
