@@ -242,7 +242,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "x.db"}), 3, "the distribution has no source of its numbers");
   with_uncertainty(R"({"quantities": [{"what": "mass", "on": "tail", "uniform": [0.9, 1.1],
                        "source": "assumed: a test"}]})");
-  expect(s.sweep({"-o", "x.db"}), 3, "nothing uses this quantity");
+  expect(s.sweep({"-o", "x.db"}), 3, "this quantity has no effect");
   with_uncertainty(R"({"factors": [{"name": "battery", "source": "assumed: a test"}],
     "quantities": [{"what": "mass", "uniform": [0.9, 1.1], "source": "assumed: a test"}]})");
   expect(s.sweep({"-o", "x.db"}), 3, "no quantity uses the factor 'battery'");
