@@ -74,8 +74,8 @@ TEST(Stopping, AMissingFfmpegIsFoundBeforeTheWork) {
   const Output run = run_program({"run", kWalk, "-o", "out"}, folder.path());
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_EQ(run.err,
-            "ayumi: the program 'ffmpeg', which makes the clip, is in no folder of PATH; install "
-            "ffmpeg, or leave the pictures out\n");
+            "ayumi: the program 'ffmpeg', which makes the clip, is not in any folder of PATH; "
+            "install ffmpeg, or do not ask for pictures\n");
   EXPECT_EQ(run.out, "");
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
