@@ -104,7 +104,7 @@ TEST_F(CheckRepair, OneEntryForEachCauseAndAllFindingsOnRequest) {
   EXPECT_EQ(few.exit_code, 1);
   EXPECT_LE(line_count(few.out), 40) << few.out;
   EXPECT_NE(few.out.find("r_knee and l_knee, 18 times "), std::string::npos) << few.out;
-  EXPECT_NE(few.out.find("what follows from it: table_step ("), std::string::npos) << few.out;
+  EXPECT_NE(few.out.find("consequences: table_step ("), std::string::npos) << few.out;
   EXPECT_NE(few.out.find("speed 146 % ("), std::string::npos) << few.out;
   const Json json = Json::parse(ayumi({"check", "fast.json", "-q", "--json"}).out);
   const Output all = ayumi({"check", "fast.json", "-q", "--all"});

@@ -245,9 +245,9 @@ TEST(ExplainCommand, NamesTheBaselineThatChoseTheZmp) {
                   .exit_code,
               0);
     const std::string said = run_program({"explain", "18", "run@0.2"}, folder.path()).out;
-    EXPECT_NE(said.find("the controller " + std::string(name) +
-                        " chooses the ZMP in the place of (18)(19)"),
-              std::string::npos)
+    EXPECT_NE(
+        said.find("the controller " + std::string(name) + " chooses the ZMP in place of (18)(19)"),
+        std::string::npos)
         << said;
     EXPECT_NE(said.find(words), std::string::npos) << said;
     EXPECT_EQ(said.find("K = "), std::string::npos) << said;
